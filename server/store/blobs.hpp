@@ -1,0 +1,67 @@
+#pragma once
+/// Blobs: uploaded bytes and their decoded columns as files beside the database.
+///
+///   <root>/blobs/ab/abcdef...            the bytes as uploaded, named by their SHA-256
+///   <root>/columns/ab/abcdef....columns  their decoded columns (core/read/column_file.hpp)
+///   <root>/incoming/                     files being written; emptied when a daemon starts
+///
+/// A file appears under its final name complete or not at all: temporary file, fsync, rename, fsync of the directory. A
+/// row in the store is written after the files; a file without a row is removed by the sweeper after 24 h.
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/signal/result.hpp"
+#include "server/store/clock.hpp"
+
+namespace driftlab::server {
+
+/// An upload in progress: bytes go to disk and into the hash, memory stays flat. Dropped without `keep`: nothing is left.
+class IncomingBlob {
+ public:
+  IncomingBlob() = default;
+  IncomingBlob(const IncomingBlob&) = delete;
+  IncomingBlob& operator=(const IncomingBlob&) = delete;
+  virtual ~IncomingBlob() = default;
+  /// Errors: DiskFull, Io.
+  [[nodiscard]] virtual Status append(std::span<const std::byte> bytes) = 0;
+  /// Flushes to disk and closes the hash. Call once, before the members below.
+  [[nodiscard]] virtual Status seal() = 0;
+  [[nodiscard]] virtual const std::string& sha256() const = 0;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// The temporary file, for decoding before it is kept.
+  [[nodiscard]] virtual const std::filesystem::path& path() const = 0;
+  /// Where the decoded columns are to be written; `keep` moves them in place with the bytes.
+  [[nodiscard]] virtual std::filesystem::path columns_path() const = 0;
+  /// Moves bytes and columns to their final names, durably. Already there: the copy is dropped, success.
+  [[nodiscard]] virtual Status keep() = 0;
+};
+
+class BlobStore {
+ public:
+  BlobStore() = default;
+  BlobStore(const BlobStore&) = delete;
+  BlobStore& operator=(const BlobStore&) = delete;
+  virtual ~BlobStore() = default;
+  [[nodiscard]] virtual Result<std::unique_ptr<IncomingBlob>> begin() = 0;
+  [[nodiscard]] virtual std::filesystem::path bytes_path(std::string_view sha256) const = 0;
+  [[nodiscard]] virtual std::filesystem::path columns_path(std::string_view sha256) const = 0;
+  /// Removes both files of a blob. Absent: success.
+  [[nodiscard]] virtual Status remove(std::string_view sha256) = 0;
+  /// Hashes of all blob files older than `before`. For the sweeper.
+  [[nodiscard]] virtual Result<std::vector<std::string>> hashes_older_than(UtcMicros before) = 0;
+  /// Free bytes on the file system, and the fraction that is free. For admission and /readyz.
+  struct Space {
+    std::uintmax_t free_bytes = 0;
+    double free_fraction = 0.0;
+  };
+  [[nodiscard]] virtual Result<Space> space() const = 0;
+};
+
+/// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Errors: Io.
+[[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blob_directory(const std::filesystem::path& root);
+
+}  // namespace driftlab::server

@@ -1,0 +1,166 @@
+#pragma once
+/// The store: everything the daemon remembers, behind one interface.
+///
+/// One suite (tests/unit/store/store_suite.hpp) runs over every implementation; today that is SQLite. Methods are
+/// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A write
+/// that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors are named.
+/// Lists are keyset pages in ascending id order: `after` is the last id of the page before, empty for the first.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/signal/result.hpp"
+#include "server/store/rows.hpp"
+
+namespace driftlab::server {
+
+struct Page {
+  std::string after;
+  int limit = 50;
+};
+
+struct RecordingFilter {
+  std::optional<std::string> device_id;
+  std::optional<std::string> condition;
+};
+
+struct JobFilter {
+  std::optional<std::string> kind;
+  std::optional<JobState> state;
+};
+
+/// For fits and channel results. Only the latest result per (recording, channel) is listed when `latest_only`.
+struct FitFilter {
+  std::optional<std::string> device_id;
+  std::optional<std::string> recording_id;
+  std::optional<std::string> job_id;
+  std::optional<std::string> quantity;
+  std::optional<std::string> axis;
+  std::optional<std::string> model;
+  std::optional<bool> best_only;
+};
+
+struct DeviceChange {
+  std::optional<std::string> model, imu, serial, labels_json;
+};
+
+struct NewJob {
+  std::string kind;
+  std::string unique_key;
+  std::string request_json;
+  int priority = 5;
+};
+
+/// `created` is false where an equal job was queued, running or succeeded already; that one is returned.
+struct EnqueuedJob {
+  Job job;
+  bool created = false;
+};
+
+struct RecordingOutcome {
+  Recording recording;
+  bool created = false;
+};
+
+/// What a worker holds while it works: writes carry both, and the attempt fences off a worker whose lease was lost.
+struct Lease {
+  std::string job_id;
+  std::int64_t attempt = 0;
+};
+
+struct LeaseStatus {
+  bool held = false;              ///< false: another worker may have the job; stop and discard
+  bool cancel_requested = false;
+};
+
+/// How an attempt ended without a result.
+struct AttemptFailure {
+  std::string problem_json;
+  bool retryable = false;         ///< I/O, memory: back to `queued` with backoff; else `failed` at once
+  bool fault_signal = false;      ///< the job's own work raised SIGSEGV or the like: twice is `dead`
+};
+
+class Store {
+ public:
+  Store() = default;
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+  virtual ~Store() = default;
+
+  // ---- health
+  /// Answers a trivial query. For /readyz.
+  [[nodiscard]] virtual Status ping() = 0;
+
+  // ---- devices
+  /// The device of that name, created if absent. `created` tells.
+  struct DeviceOutcome {
+    Device device;
+    bool created = false;
+  };
+  [[nodiscard]] virtual Result<DeviceOutcome> ensure_device(const Device& device) = 0;
+  /// By `dev_` id or by name. NotFound.
+  [[nodiscard]] virtual Result<Device> device(std::string_view id_or_name) = 0;
+  [[nodiscard]] virtual Result<std::vector<Device>> devices(const Page& page) = 0;
+  /// Changes what `change` holds if the revision is still `expected_revision`. NotFound; Conflict (field "revision").
+  [[nodiscard]] virtual Result<Device> update_device(std::string_view id, const DeviceChange& change,
+                                                     std::int64_t expected_revision) = 0;
+
+  // ---- blobs and recordings
+  [[nodiscard]] virtual Result<std::optional<Blob>> blob(std::string_view sha256) = 0;
+  /// Adds the blob row if absent and the recording of (device, blob) if absent, in one transaction. The same metadata again
+  /// gives the existing recording; other metadata: Conflict, with field "recording_id".
+  [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
+  [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
+  /// New metadata, one revision higher, if the revision is still `expected_revision`. NotFound; Conflict.
+  [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) = 0;
+  /// Removes a recording that no job is using; its results go with it. NotFound; Conflict (revision; running job).
+  [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
+  /// Hashes of all blob rows, for the sweeper.
+  [[nodiscard]] virtual Result<std::vector<std::string>> blob_hashes() = 0;
+  /// Removes a blob row that no recording names. True if removed.
+  [[nodiscard]] virtual Result<bool> remove_unused_blob(std::string_view sha256) = 0;
+
+  // ---- jobs (state machine: server/jobs/README.md)
+  [[nodiscard]] virtual Result<EnqueuedJob> enqueue(const NewJob& job) = 0;
+  [[nodiscard]] virtual Result<Job> job(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) = 0;
+  /// The next runnable job by (priority with ageing, run_at, id), now `running` with a lease; nothing if none is due.
+  [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros) = 0;
+  [[nodiscard]] virtual Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) = 0;
+  [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage, double progress) = 0;
+  /// Results and the finish in one transaction. `held` false: lease lost, nothing was written.
+  [[nodiscard]] virtual Result<LeaseStatus> succeed(const Lease& lease, const JobResults& results) = 0;
+  [[nodiscard]] virtual Result<LeaseStatus> fail_attempt(const Lease& lease, const AttemptFailure& failure) = 0;
+  /// The worker of a job whose cancellation was requested has stopped.
+  [[nodiscard]] virtual Result<LeaseStatus> acknowledge_cancel(const Lease& lease) = 0;
+  /// Hands a job back unfinished (graceful stop); does not count as a failure.
+  [[nodiscard]] virtual Result<LeaseStatus> release(const Lease& lease) = 0;
+  /// queued -> cancelled at once; running -> flag; terminal -> unchanged. NotFound.
+  [[nodiscard]] virtual Result<Job> request_cancel(std::string_view id) = 0;
+  /// Jobs whose lease has expired go back to `queued`, without counting as failures. How many.
+  [[nodiscard]] virtual Result<int> rescue_expired() = 0;
+  /// Ends every lease, for the start of a daemon that owns the store alone. How many.
+  [[nodiscard]] virtual Result<int> end_all_leases() = 0;
+  [[nodiscard]] virtual Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence, int limit) = 0;
+
+  // ---- results
+  [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
+  [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
+  /// The latest result per (recording, channel) of the recording's current revision, in (condition, recording, channel) order.
+  [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
+                                                                                  std::string_view quantity,
+                                                                                  std::string_view axis) = 0;
+
+  // ---- idempotency
+  /// The stored reply for a key younger than 24 h.
+  [[nodiscard]] virtual Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) = 0;
+  [[nodiscard]] virtual Status remember_reply(const IdempotentReply& reply) = 0;
+  /// Removes replies older than 24 h. How many.
+  [[nodiscard]] virtual Result<int> forget_old_replies() = 0;
+};
+
+}  // namespace driftlab::server
