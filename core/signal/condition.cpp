@@ -1,17 +1,18 @@
 #include "core/signal/condition.hpp"
 
+#include "core/signal/number.hpp"
+
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "core/signal/number.hpp"
-
 namespace driftlab {
 namespace {
 
-constexpr std::array kKinds{ConditionKind::Static,  ConditionKind::ConstantRate, ConditionKind::ConstantAngularAcceleration,
-                            ConditionKind::Profile, ConditionKind::SixPosition,  ConditionKind::Drive};
+constexpr std::array kKinds{
+    ConditionKind::Static,  ConditionKind::ConstantRate, ConditionKind::ConstantAngularAcceleration,
+    ConditionKind::Profile, ConditionKind::SixPosition,  ConditionKind::Drive};
 
 /// deg/s^2 and rad/s^2 are units of a condition only, so they live here and not in the unit table.
 Result<double> angular_acceleration_factor(std::string_view unit) {
@@ -56,12 +57,18 @@ tl::unexpected<Error> misfit(ConditionKind kind, const std::string& what, const 
 
 std::string_view name_of(ConditionKind kind) {
   switch (kind) {
-    case ConditionKind::Static: return "static";
-    case ConditionKind::ConstantRate: return "constant_rate";
-    case ConditionKind::ConstantAngularAcceleration: return "constant_angular_acceleration";
-    case ConditionKind::Profile: return "profile";
-    case ConditionKind::SixPosition: return "six_position";
-    case ConditionKind::Drive: return "drive";
+    case ConditionKind::Static:
+      return "static";
+    case ConditionKind::ConstantRate:
+      return "constant_rate";
+    case ConditionKind::ConstantAngularAcceleration:
+      return "constant_angular_acceleration";
+    case ConditionKind::Profile:
+      return "profile";
+    case ConditionKind::SixPosition:
+      return "six_position";
+    case ConditionKind::Drive:
+      return "drive";
   }
   return "static";
 }
@@ -179,7 +186,8 @@ std::optional<double> written_value(const Condition& condition) {
   }
   // Conversion to SI and back may cost the last bit; fifteen digits give back what the user wrote.
   char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, *condition.value / *factor, std::chars_format::general, 15);
+  const auto end =
+      std::to_chars(buffer, buffer + sizeof buffer, *condition.value / *factor, std::chars_format::general, 15);
   return parse_double({buffer, end.ptr});
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 /// The dynamic condition under which a recording was made (spec/study.md): what the sensor *should* have read.
+#include "core/signal/result.hpp"
+#include "core/signal/unit.hpp"
+
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include "core/signal/result.hpp"
-#include "core/signal/unit.hpp"
 
 namespace driftlab {
 
@@ -21,10 +21,10 @@ enum class ConditionKind {
 /// A condition as a value. `value` is SI (rad/s or rad/s^2); `unit` remembers how the user wrote it.
 struct Condition {
   ConditionKind kind = ConditionKind::Static;
-  std::string axis;                   ///< "x", "y", "z"; empty where the kind has none
-  std::optional<double> value;        ///< SI; only for the two constant kinds
-  std::string unit;                   ///< deg/s, rad/s, deg/h, deg/s^2, rad/s^2; empty where the kind has no value
-  std::optional<bool> up;             ///< six_position only
+  std::string axis;             ///< "x", "y", "z"; empty where the kind has none
+  std::optional<double> value;  ///< SI; only for the two constant kinds
+  std::string unit;             ///< deg/s, rad/s, deg/h, deg/s^2, rad/s^2; empty where the kind has no value
+  std::optional<bool> up;       ///< six_position only
 
   friend bool operator==(const Condition&, const Condition&) = default;
 };

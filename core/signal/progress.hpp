@@ -6,8 +6,8 @@
 
 namespace driftlab {
 
-/// Called with a stage name ("variance", "fit WN+GM", ...) and the fraction of the whole call done, 0 to 1, never falling.
-/// Called from the calling thread only.
+/// Called with a stage name ("variance", "fit WN+GM", ...) and the fraction of the whole call done, 0 to 1, never
+/// falling. Called from the calling thread only.
 using ProgressFunction = std::function<void(std::string_view stage, double fraction)>;
 
 /// What a long computation is given beside its input. Both members may be empty.

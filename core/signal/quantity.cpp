@@ -15,20 +15,34 @@ bool any_of(std::string_view axis, const std::array<std::string_view, N>& axes) 
 
 std::string_view name_of(Quantity quantity) {
   switch (quantity) {
-    case Quantity::Unspecified: return "unspecified";
-    case Quantity::Time: return "time";
-    case Quantity::AngularRate: return "angular_rate";
-    case Quantity::SpecificForce: return "specific_force";
-    case Quantity::Temperature: return "temperature";
-    case Quantity::ReferenceAngularRate: return "reference_angular_rate";
-    case Quantity::ReferenceSpecificForce: return "reference_specific_force";
-    case Quantity::ReferenceAngle: return "reference_angle";
-    case Quantity::MagneticField: return "magnetic_field";
-    case Quantity::GnssPosition: return "gnss_position";
-    case Quantity::GnssVelocity: return "gnss_velocity";
-    case Quantity::ReferencePosition: return "reference_position";
-    case Quantity::ReferenceVelocity: return "reference_velocity";
-    case Quantity::ReferenceAttitude: return "reference_attitude";
+    case Quantity::Unspecified:
+      return "unspecified";
+    case Quantity::Time:
+      return "time";
+    case Quantity::AngularRate:
+      return "angular_rate";
+    case Quantity::SpecificForce:
+      return "specific_force";
+    case Quantity::Temperature:
+      return "temperature";
+    case Quantity::ReferenceAngularRate:
+      return "reference_angular_rate";
+    case Quantity::ReferenceSpecificForce:
+      return "reference_specific_force";
+    case Quantity::ReferenceAngle:
+      return "reference_angle";
+    case Quantity::MagneticField:
+      return "magnetic_field";
+    case Quantity::GnssPosition:
+      return "gnss_position";
+    case Quantity::GnssVelocity:
+      return "gnss_velocity";
+    case Quantity::ReferencePosition:
+      return "reference_position";
+    case Quantity::ReferenceVelocity:
+      return "reference_velocity";
+    case Quantity::ReferenceAttitude:
+      return "reference_attitude";
   }
   return "unspecified";
 }
@@ -63,21 +77,29 @@ bool measures(const Unit& unit, Quantity quantity) {
     return true;
   }
   switch (quantity) {
-    case Quantity::Unspecified: return true;
-    case Quantity::Time: return unit.dimension == Dimension::Time;
+    case Quantity::Unspecified:
+      return true;
+    case Quantity::Time:
+      return unit.dimension == Dimension::Time;
     case Quantity::AngularRate:
-    case Quantity::ReferenceAngularRate: return unit.dimension == Dimension::AngularRate;
+    case Quantity::ReferenceAngularRate:
+      return unit.dimension == Dimension::AngularRate;
     case Quantity::SpecificForce:
-    case Quantity::ReferenceSpecificForce: return unit.dimension == Dimension::SpecificForce;
-    case Quantity::Temperature: return unit.dimension == Dimension::Temperature;
+    case Quantity::ReferenceSpecificForce:
+      return unit.dimension == Dimension::SpecificForce;
+    case Quantity::Temperature:
+      return unit.dimension == Dimension::Temperature;
     case Quantity::ReferenceAngle:
-    case Quantity::ReferenceAttitude: return unit.dimension == Dimension::Angle;
-    case Quantity::MagneticField: return unit.dimension == Dimension::MagneticField;
+    case Quantity::ReferenceAttitude:
+      return unit.dimension == Dimension::Angle;
+    case Quantity::MagneticField:
+      return unit.dimension == Dimension::MagneticField;
     case Quantity::GnssPosition:
     case Quantity::ReferencePosition:
       return unit.dimension == Dimension::Length || unit.dimension == Dimension::Angle;
     case Quantity::GnssVelocity:
-    case Quantity::ReferenceVelocity: return unit.dimension == Dimension::Velocity;
+    case Quantity::ReferenceVelocity:
+      return unit.dimension == Dimension::Velocity;
   }
   return false;
 }
@@ -90,22 +112,29 @@ bool is_axis_of(std::string_view axis, Quantity quantity) {
   using Axes3 = std::array<std::string_view, 3>;
   switch (quantity) {
     case Quantity::Time:
-    case Quantity::Temperature: return false;
+    case Quantity::Temperature:
+      return false;
     case Quantity::GnssPosition:
     case Quantity::ReferencePosition:
       return any_of(axis, std::array<std::string_view, 6>{"lat", "lon", "height", "north", "east", "down"});
     case Quantity::GnssVelocity:
-    case Quantity::ReferenceVelocity: return any_of(axis, Axes3{"north", "east", "down"});
-    case Quantity::ReferenceAttitude: return any_of(axis, Axes3{"roll", "pitch", "yaw"});
-    default: return any_of(axis, Axes3{"x", "y", "z"});
+    case Quantity::ReferenceVelocity:
+      return any_of(axis, Axes3{"north", "east", "down"});
+    case Quantity::ReferenceAttitude:
+      return any_of(axis, Axes3{"roll", "pitch", "yaw"});
+    default:
+      return any_of(axis, Axes3{"x", "y", "z"});
   }
 }
 
 std::string_view sensor_of(Quantity quantity) {
   switch (quantity) {
-    case Quantity::AngularRate: return "gyroscope";
-    case Quantity::SpecificForce: return "accelerometer";
-    default: return "sensor";
+    case Quantity::AngularRate:
+      return "gyroscope";
+    case Quantity::SpecificForce:
+      return "accelerometer";
+    default:
+      return "sensor";
   }
 }
 

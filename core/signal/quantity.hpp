@@ -1,12 +1,12 @@
 #pragma once
 /// What a column of a recording measures (spec/study.md), and along which axis.
+#include "core/signal/result.hpp"
+#include "core/signal/unit.hpp"
+
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "core/signal/result.hpp"
-#include "core/signal/unit.hpp"
 
 namespace driftlab {
 
@@ -36,7 +36,8 @@ enum class Quantity {
 /// Every quantity once, in declaration order.
 [[nodiscard]] const std::vector<Quantity>& all_quantities();
 
-/// True if `unit` can measure `quantity`. Unit `1` measures anything (an unstated unit); positions take lengths or angles.
+/// True if `unit` can measure `quantity`. Unit `1` measures anything (an unstated unit); positions take lengths or
+/// angles.
 [[nodiscard]] bool measures(const Unit& unit, Quantity quantity);
 
 /// True for the columns whose errors driftlab characterises: angular rate, specific force, and unspecified columns.

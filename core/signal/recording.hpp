@@ -3,6 +3,11 @@
 ///
 /// The samples themselves live in a column table (core/read/column_file.hpp maps one from disk) in the file's own
 /// units; this header holds their *meaning*. One `RecordingSpec` is one member of `recordings` in spec/study.md.
+#include "core/signal/condition.hpp"
+#include "core/signal/quantity.hpp"
+#include "core/signal/result.hpp"
+#include "core/signal/unit.hpp"
+
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -10,18 +15,13 @@
 #include <string>
 #include <vector>
 
-#include "core/signal/condition.hpp"
-#include "core/signal/quantity.hpp"
-#include "core/signal/result.hpp"
-#include "core/signal/unit.hpp"
-
 namespace driftlab {
 
 /// The meaning of one column.
 struct ColumnRole {
   Quantity quantity = Quantity::Unspecified;
-  std::string axis;              ///< "x", ...; empty where the quantity has none
-  std::optional<Unit> unit;      ///< empty: not stated; the channel is then in unit `1`, with a note
+  std::string axis;          ///< "x", ...; empty where the quantity has none
+  std::optional<Unit> unit;  ///< empty: not stated; the channel is then in unit `1`, with a note
 
   friend bool operator==(const ColumnRole&, const ColumnRole&) = default;
 };
@@ -36,8 +36,8 @@ struct Trim {
 /// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0".
 /// Empty `columns`: meaning is inferred from header names and units where they state it (see infer_roles).
 struct RecordingSpec {
-  std::string id;                           ///< the user's name for the recording; may be empty
-  std::optional<double> rate_hz;            ///< nominal rate; needed where there is no time column
+  std::string id;                 ///< the user's name for the recording; may be empty
+  std::optional<double> rate_hz;  ///< nominal rate; needed where there is no time column
   std::map<std::string, ColumnRole> columns;
   Condition condition;
   Trim trim;
@@ -56,39 +56,40 @@ using ColumnNames = std::vector<std::string>;
 /// Without: names such as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood, other
 /// columns become unspecified channels in unit `1`.
 /// Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names the column.
-[[nodiscard]] Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec, const ColumnNames& names);
+[[nodiscard]] Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec,
+                                                                          const ColumnNames& names);
 
 /// How the samples lie in time.
 struct TimeBase {
-  double dt_s = 0.0;         ///< sample interval: 1/rate_hz, or the median step of the time column
-  double start_s = 0.0;      ///< first time stamp, 0 without a time column
+  double dt_s = 0.0;     ///< sample interval: 1/rate_hz, or the median step of the time column
+  double start_s = 0.0;  ///< first time stamp, 0 without a time column
 };
 
 /// What is true of the recording as it came, reported and never silently repaired.
 struct Quality {
-  std::size_t samples = 0;        ///< rows of the file
-  std::size_t analysed = 0;       ///< rows of the analysed part, after trims
-  std::size_t gaps = 0;           ///< steps of the time column longer than 1.5 dt
-  std::size_t repeated_stamps = 0;///< steps of the time column equal to 0
+  std::size_t samples = 0;          ///< rows of the file
+  std::size_t analysed = 0;         ///< rows of the analysed part, after trims
+  std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 dt
+  std::size_t repeated_stamps = 0;  ///< steps of the time column equal to 0
   double longest_gap_s = 0.0;
-  double measured_rate_hz = 0.0;  ///< (samples - 1) / (last - first stamp); 0 without a time column
-  std::vector<std::string> notes; ///< sentences: unnamed columns, missing units, parts left out
+  double measured_rate_hz = 0.0;   ///< (samples - 1) / (last - first stamp); 0 without a time column
+  std::vector<std::string> notes;  ///< sentences: unnamed columns, missing units, parts left out
 };
 
 /// The time base and the rows to analyse of a recording.
 struct Window {
   TimeBase time;
-  std::size_t first = 0;   ///< first analysed row
-  std::size_t count = 0;   ///< analysed rows
+  std::size_t first = 0;  ///< first analysed row
+  std::size_t count = 0;  ///< analysed rows
   Quality quality;
 };
 
 /// Reads the time column (in `time_unit`; empty span: none), the stated rate and the trims, and decides which rows are
 /// analysed: where the time column has gaps, the longest stretch without one, which a note in `quality` says.
-/// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (naming the
-/// row), NonFinite, TooFewSamples (naming the parameter when a trim leaves nothing), InvalidArgument.
-/// O(rows) time, O(rows) memory for the median step.
-[[nodiscard]] Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows, std::span<const double> time_column,
-                                         const Unit& time_unit);
+/// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (naming
+/// the row), NonFinite, TooFewSamples (naming the parameter when a trim leaves nothing), InvalidArgument. O(rows) time,
+/// O(rows) memory for the median step.
+[[nodiscard]] Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows,
+                                         std::span<const double> time_column, const Unit& time_unit);
 
 }  // namespace driftlab

@@ -16,12 +16,30 @@ struct Alias {
 };
 
 constexpr std::array kAliases{
-    Alias{"sec", "s"},          Alias{"seconds", "s"},       Alias{"second", "s"},       Alias{"µs", "us"},
-    Alias{"°/s", "deg/s"},      Alias{"dps", "deg/s"},       Alias{"deg/sec", "deg/s"},  Alias{"degree/s", "deg/s"},
-    Alias{"degrees/s", "deg/s"}, Alias{"rad/sec", "rad/s"},  Alias{"°/h", "deg/h"},      Alias{"deg/hr", "deg/h"},
-    Alias{"m/s2", "m/s^2"},     Alias{"m/s²", "m/s^2"},      Alias{"m/s/s", "m/s^2"},    Alias{"m/sec^2", "m/s^2"},
-    Alias{"°C", "degC"},        Alias{"celsius", "degC"},    Alias{"°", "deg"},          Alias{"degree", "deg"},
-    Alias{"degrees", "deg"},    Alias{"µT", "uT"},           Alias{"", "1"},             Alias{"-", "1"},
+    Alias{"sec", "s"},
+    Alias{"seconds", "s"},
+    Alias{"second", "s"},
+    Alias{"µs", "us"},
+    Alias{"°/s", "deg/s"},
+    Alias{"dps", "deg/s"},
+    Alias{"deg/sec", "deg/s"},
+    Alias{"degree/s", "deg/s"},
+    Alias{"degrees/s", "deg/s"},
+    Alias{"rad/sec", "rad/s"},
+    Alias{"°/h", "deg/h"},
+    Alias{"deg/hr", "deg/h"},
+    Alias{"m/s2", "m/s^2"},
+    Alias{"m/s²", "m/s^2"},
+    Alias{"m/s/s", "m/s^2"},
+    Alias{"m/sec^2", "m/s^2"},
+    Alias{"°C", "degC"},
+    Alias{"celsius", "degC"},
+    Alias{"°", "deg"},
+    Alias{"degree", "deg"},
+    Alias{"degrees", "deg"},
+    Alias{"µT", "uT"},
+    Alias{"", "1"},
+    Alias{"-", "1"},
 };
 
 }  // namespace
@@ -68,21 +86,31 @@ Result<Unit> parse_unit(std::string_view symbol) {
     known += known.empty() ? "" : ", ";
     known += unit.symbol;
   }
-  return fail(ErrorCode::UnknownUnit, "The unit '" + std::string(symbol) + "' is not known; known units are " + known + ".",
+  return fail(ErrorCode::UnknownUnit,
+              "The unit '" + std::string(symbol) + "' is not known; known units are " + known + ".",
               {{"unit", std::string(symbol)}});
 }
 
 std::string_view si_symbol(Dimension dimension) {
   switch (dimension) {
-    case Dimension::One: return "1";
-    case Dimension::Time: return "s";
-    case Dimension::AngularRate: return "rad/s";
-    case Dimension::SpecificForce: return "m/s^2";
-    case Dimension::Temperature: return "K";
-    case Dimension::Angle: return "rad";
-    case Dimension::Length: return "m";
-    case Dimension::Velocity: return "m/s";
-    case Dimension::MagneticField: return "T";
+    case Dimension::One:
+      return "1";
+    case Dimension::Time:
+      return "s";
+    case Dimension::AngularRate:
+      return "rad/s";
+    case Dimension::SpecificForce:
+      return "m/s^2";
+    case Dimension::Temperature:
+      return "K";
+    case Dimension::Angle:
+      return "rad";
+    case Dimension::Length:
+      return "m";
+    case Dimension::Velocity:
+      return "m/s";
+    case Dimension::MagneticField:
+      return "T";
   }
   return "1";
 }
@@ -91,32 +119,55 @@ ParameterUnit lab_unit(Dimension channel, int second_power_halves) {
   if (channel == Dimension::AngularRate) {
     // rad/s -> deg/h is 3600/kDegree; every half power of a second becomes a half power of an hour.
     switch (second_power_halves) {
-      case 2: return {"deg", 1.0 / kDegree};                              // Q: angle
-      case 1: return {"deg/sqrt(h)", 60.0 / kDegree};                     // N: rad/sqrt(s)
-      case 0: return {"deg/h", 3600.0 / kDegree};                         // B, sigma
-      case -1: return {"deg/h/sqrt(h)", 3600.0 * 60.0 / kDegree};         // K
-      case -2: return {"deg/h/h", 3600.0 * 3600.0 / kDegree};             // R
-      default: break;
+      case 2:
+        return {"deg", 1.0 / kDegree};  // Q: angle
+      case 1:
+        return {"deg/sqrt(h)", 60.0 / kDegree};  // N: rad/sqrt(s)
+      case 0:
+        return {"deg/h", 3600.0 / kDegree};  // B, sigma
+      case -1:
+        return {"deg/h/sqrt(h)", 3600.0 * 60.0 / kDegree};  // K
+      case -2:
+        return {"deg/h/h", 3600.0 * 3600.0 / kDegree};  // R
+      default:
+        break;
     }
   }
   if (channel == Dimension::SpecificForce) {
     switch (second_power_halves) {
-      case 2: return {"m/s", 1.0};
-      case 1: return {"m/s/sqrt(h)", 60.0};
-      case 0: return {"mg", 1000.0 / kStandardGravity};
-      case -1: return {"mg/sqrt(h)", 60.0 * 1000.0 / kStandardGravity};
-      case -2: return {"mg/h", 3600.0 * 1000.0 / kStandardGravity};
-      default: break;
+      case 2:
+        return {"m/s", 1.0};
+      case 1:
+        return {"m/s/sqrt(h)", 60.0};
+      case 0:
+        return {"mg", 1000.0 / kStandardGravity};
+      case -1:
+        return {"mg/sqrt(h)", 60.0 * 1000.0 / kStandardGravity};
+      case -2:
+        return {"mg/h", 3600.0 * 1000.0 / kStandardGravity};
+      default:
+        break;
     }
   }
   std::string symbol(si_symbol(channel));
   switch (second_power_halves) {
-    case 0: break;
-    case 1: symbol += "*sqrt(s)"; break;
-    case -1: symbol += "/sqrt(s)"; break;
-    case 2: symbol += "*s"; break;
-    case -2: symbol += "/s"; break;
-    default: symbol += "*s^(" + std::to_string(second_power_halves) + "/2)"; break;
+    case 0:
+      break;
+    case 1:
+      symbol += "*sqrt(s)";
+      break;
+    case -1:
+      symbol += "/sqrt(s)";
+      break;
+    case 2:
+      symbol += "*s";
+      break;
+    case -2:
+      symbol += "/s";
+      break;
+    default:
+      symbol += "*s^(" + std::to_string(second_power_halves) + "/2)";
+      break;
   }
   return {std::move(symbol), 1.0};
 }

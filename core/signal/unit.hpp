@@ -2,13 +2,13 @@
 /// Physical units at the doors of driftlab. Inside, every number is SI (rad/s, m/s^2, s, rad, m, K).
 ///
 /// A `Unit` is an affine map to SI: si = value * factor + offset. Only degC has an offset. Known symbols
-/// (spec/study.md): s ms us ns; deg/s rad/s deg/h; m/s^2 g mg; degC K; deg rad; m; m/s; uT; and `1` for a column whose unit
-/// nobody stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
+/// (spec/study.md): s ms us ns; deg/s rad/s deg/h; m/s^2 g mg; degC K; deg rad; m; m/s; uT; and `1` for a column whose
+/// unit nobody stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
+#include "core/signal/result.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "core/signal/result.hpp"
 
 namespace driftlab {
 

@@ -1,14 +1,14 @@
 #pragma once
 /// A kind of job: one declaring file and one line in the registry (job_kinds.cpp).
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace driftlab::server {
 
@@ -28,10 +28,11 @@ class JobKind {
 
   [[nodiscard]] virtual std::string_view name() const = 0;
 
-  /// Checks a request (`inputs` and `parameters` of POST /v1/jobs as JSON text) and returns the canonical document whose
-  /// SHA-256 makes the job unique: sorted members, defaults filled in, input revisions pinned, seed and algorithm
+  /// Checks a request (`inputs` and `parameters` of POST /v1/jobs as JSON text) and returns the canonical document
+  /// whose SHA-256 makes the job unique: sorted members, defaults filled in, input revisions pinned, seed and algorithm
   /// version. Errors are the client's fault, located by field "pointer" (RFC 6901).
-  [[nodiscard]] virtual Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
+  [[nodiscard]] virtual Result<std::string> canonical_request(std::string_view inputs_json,
+                                                              std::string_view parameters_json,
                                                               JobContext& context) const = 0;
 
   /// Does the work. Runs on a worker thread, polls `control.stop`, reports progress. Must not write to the store.

@@ -1,13 +1,13 @@
 #pragma once
 /// The workers: threads that claim jobs from the store, run them, keep their leases alive and write their results.
 ///
-/// Lease 60 s, renewed every 15 s by a heartbeat thread; a lost lease or a cancel request stops the job through its stop
-/// token. Failed attempts are retried only for retryable codes (Io, DiskFull, Internal from std::bad_alloc). An idle
-/// worker sleeps until `wake` or one second. On `stop` running jobs get 20 s to end, then are released.
+/// Lease 60 s, renewed every 15 s by a heartbeat thread; a lost lease or a cancel request stops the job through its
+/// stop token. Failed attempts are retried only for retryable codes (Io, DiskFull, Internal from std::bad_alloc). An
+/// idle worker sleeps until `wake` or one second. On `stop` running jobs get 20 s to end, then are released.
+#include "server/jobs/job_kind.hpp"
+
 #include <functional>
 #include <memory>
-
-#include "server/jobs/job_kind.hpp"
 
 namespace driftlab::server {
 

@@ -7,19 +7,21 @@
 ///
 /// A file appears under its final name complete or not at all: temporary file, fsync, rename, fsync of the directory. A
 /// row in the store is written after the files; a file without a row is removed by the sweeper after 24 h.
+#include "core/signal/result.hpp"
+#include "server/store/clock.hpp"
+
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-
-#include "core/signal/result.hpp"
-#include "server/store/clock.hpp"
+#include <vector>
 
 namespace driftlab::server {
 
-/// An upload in progress: bytes go to disk and into the hash, memory stays flat. Dropped without `keep`: nothing is left.
+/// An upload in progress: bytes go to disk and into the hash, memory stays flat. Dropped without `keep`: nothing is
+/// left.
 class IncomingBlob {
  public:
   IncomingBlob() = default;
@@ -36,7 +38,8 @@ class IncomingBlob {
   [[nodiscard]] virtual const std::filesystem::path& path() const = 0;
   /// Where the decoded columns are to be written; `keep` moves them in place with the bytes.
   [[nodiscard]] virtual std::filesystem::path columns_path() const = 0;
-  /// Moves bytes and columns to their final names, durably. Already there: the copy is dropped, success.
+  /// Moves bytes and columns to their final names, durably. Already there: the copy is dropped, the blob counts as new
+  /// again for the sweeper, success. Errors: DiskFull, Io; Internal where no columns were ever written.
   [[nodiscard]] virtual Status keep() = 0;
 };
 
@@ -51,6 +54,9 @@ class BlobStore {
   [[nodiscard]] virtual std::filesystem::path columns_path(std::string_view sha256) const = 0;
   /// Removes both files of a blob. Absent: success.
   [[nodiscard]] virtual Status remove(std::string_view sha256) = 0;
+  /// Removes both files if both are still older than `before`; true if removed. For the sweeper: a blob that is kept again
+  /// meanwhile stays.
+  [[nodiscard]] virtual Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) = 0;
   /// Hashes of all blob files older than `before`. For the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> hashes_older_than(UtcMicros before) = 0;
   /// Free bytes on the file system, and the fraction that is free. For admission and /readyz.
@@ -61,7 +67,8 @@ class BlobStore {
   [[nodiscard]] virtual Result<Space> space() const = 0;
 };
 
-/// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Errors: Io.
+/// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Holds a lock on the directory while
+/// it lives. Errors: Io; Conflict where another daemon has the directory.
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blob_directory(const std::filesystem::path& root);
 
 }  // namespace driftlab::server

@@ -1,23 +1,24 @@
 #pragma once
 /// What the store keeps, as plain values. Members ending in `_json` hold a JSON document as text: the store neither
 /// reads nor changes it.
+#include "server/store/clock.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "server/store/clock.hpp"
 
 namespace driftlab::server {
 
 struct Device {
-  std::string id;            ///< `dev_...`
-  std::string name;          ///< the user's identifier, unique: `phone-07`
+  std::string id;    ///< `dev_...`
+  std::string name;  ///< the user's identifier, unique: `phone-07`
   std::string model;
   std::string imu;
   std::string serial;
   std::string labels_json = "{}";
-  std::int64_t revision = 1; ///< grows with every change; the ETag
+  std::int64_t revision = 1;  ///< grows with every change; the ETag
   UtcMicros created_at = 0;
   UtcMicros updated_at = 0;
 };
@@ -25,10 +26,10 @@ struct Device {
 /// Uploaded bytes by content, and what decoding found in them. The bytes and the decoded columns lie beside the
 /// database (server/store/blobs.hpp); the row says they are complete.
 struct Blob {
-  std::string sha256;          ///< 64 lower-case hex digits of the bytes as uploaded
+  std::string sha256;  ///< 64 lower-case hex digits of the bytes as uploaded
   std::int64_t bytes = 0;
-  std::string format;          ///< `csv`, `npy`
-  std::string compression;     ///< `none`, `gzip`, `xz`, `zstd`
+  std::string format;       ///< `csv`, `npy`
+  std::string compression;  ///< `none`, `gzip`, `xz`, `zstd`
   std::int64_t rows = 0;
   std::string columns_json = "[]";  ///< names in file order
   std::string notes_json = "[]";
@@ -37,12 +38,12 @@ struct Blob {
 
 /// One (device, blob) with its meaning. Other metadata for the same pair is a conflict; PATCH makes a revision.
 struct Recording {
-  std::string id;              ///< `rec_...`
+  std::string id;  ///< `rec_...`
   std::string device_id;
   std::string blob_sha256;
   std::int64_t revision = 1;
-  std::string metadata_json;   ///< canonical text of one member of `recordings` in spec/study.md, without `file`
-  std::string condition;       ///< compact text form, see core/signal/condition.hpp
+  std::string metadata_json;  ///< canonical text of one member of `recordings` in spec/study.md, without `file`
+  std::string condition;      ///< compact text form, see core/signal/condition.hpp
   std::string quality_json = "{}";
   UtcMicros created_at = 0;
   UtcMicros updated_at = 0;
@@ -50,32 +51,38 @@ struct Recording {
 
 enum class JobState { Queued, Running, Succeeded, Failed, Cancelled, Dead };
 
+/// The state as documents and rows write it: `queued`, `running`, ...
+[[nodiscard]] std::string_view name_of(JobState state);
+[[nodiscard]] std::optional<JobState> parse_job_state(std::string_view name);
+/// True for the four states that a job never leaves.
+[[nodiscard]] bool is_terminal(JobState state);
+
 struct Job {
-  std::string id;              ///< `job_...`
-  std::string kind;            ///< `characterise`
+  std::string id;    ///< `job_...`
+  std::string kind;  ///< `characterise`
   JobState state = JobState::Queued;
-  std::string stage;           ///< what the worker is doing: "decode", "fit WN+GM"; empty before the first report
-  double progress = 0.0;       ///< 0 to 1
-  int priority = 5;            ///< 0 (first) to 9
-  std::int64_t attempt = 0;    ///< fencing number: grows with every claim
-  int failures = 0;            ///< attempts that count towards `max_failures`
+  std::string stage;         ///< what the worker is doing: "decode", "fit WN+GM"; empty before the first report
+  double progress = 0.0;     ///< 0 to 1
+  int priority = 5;          ///< 0 (first) to 9
+  std::int64_t attempt = 0;  ///< fencing number: grows with every claim
+  int failures = 0;          ///< attempts that count towards `max_failures`
   int max_failures = 5;
-  std::string unique_key;      ///< SHA-256 of canonical {kind, inputs, parameters, seed, algorithm_version}
-  std::string request_json;    ///< that canonical document
+  std::string unique_key;    ///< SHA-256 of canonical {kind, inputs, parameters, seed, algorithm_version}
+  std::string request_json;  ///< that canonical document
   bool cancel_requested = false;
-  UtcMicros run_at = 0;        ///< not claimed before
+  UtcMicros run_at = 0;  ///< not claimed before
   std::optional<UtcMicros> lease_expires_at;
   UtcMicros created_at = 0;
-  std::optional<UtcMicros> started_at;    ///< of the latest attempt
-  std::optional<UtcMicros> finished_at;   ///< set if and only if the state is terminal
-  std::string problem_json;    ///< the problem document of the last failure; empty otherwise
+  std::optional<UtcMicros> started_at;             ///< of the latest attempt
+  std::optional<UtcMicros> finished_at;            ///< set if and only if the state is terminal
+  std::string problem_json;                        ///< the problem document of the last failure; empty otherwise
   std::vector<std::string> attempt_problems_json;  ///< every failed attempt, oldest first (only filled by `job`)
 };
 
 /// One line of a job's history; `sequence` is the SSE id.
 struct JobEvent {
   std::int64_t sequence = 0;
-  std::string type;            ///< `state` or `progress`
+  std::string type;  ///< `state` or `progress`
   JobState state = JobState::Queued;
   std::string stage;
   double progress = 0.0;
@@ -85,23 +92,23 @@ struct JobEvent {
 
 /// The characterisation of one channel as a job found it.
 struct ChannelResult {
-  std::string id;              ///< `chr_...`
+  std::string id;  ///< `chr_...`
   std::string job_id;
   std::string device_id;
   std::string recording_id;
   std::int64_t recording_revision = 1;
-  std::string channel;         ///< the file's column name
+  std::string channel;  ///< the file's column name
   std::string quantity;
   std::string axis;
-  std::string condition;       ///< compact text form
-  std::string document_json;   ///< one member of `channels`, spec/results.md
-  std::string settings_json;   ///< models, seed, algorithm version, instruction set
+  std::string condition;      ///< compact text form
+  std::string document_json;  ///< one member of `channels`, spec/results.md
+  std::string settings_json;  ///< models, seed, algorithm version, instruction set
   UtcMicros created_at = 0;
 };
 
 /// One model fitted to one channel.
 struct Fit {
-  std::string id;              ///< `fit_...`
+  std::string id;  ///< `fit_...`
   std::string channel_result_id;
   std::string job_id;
   std::string device_id;
@@ -112,14 +119,14 @@ struct Fit {
   std::string axis;
   std::string condition;
   std::string model;
-  int rank = 0;                ///< 0 is the best by the criterion
-  std::string document_json;   ///< one member of `fits`, spec/results.md
+  int rank = 0;               ///< 0 is the best by the criterion
+  std::string document_json;  ///< one member of `fits`, spec/results.md
   UtcMicros created_at = 0;
 };
 
 /// Everything a finished job writes, in the transaction that finishes it.
 struct JobResults {
-  std::string document_json;   ///< the whole result, served as the job's result
+  std::string document_json;  ///< the whole result, served as the job's result
   std::vector<ChannelResult> channels;
   std::vector<Fit> fits;
 };

@@ -2,17 +2,18 @@
 /// The store: everything the daemon remembers, behind one interface.
 ///
 /// One suite (tests/unit/store/store_suite.hpp) runs over every implementation; today that is SQLite. Methods are
-/// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A write
-/// that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors are named.
-/// Lists are keyset pages in ascending id order: `after` is the last id of the page before, empty for the first.
+/// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A
+/// write that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors
+/// are named. Lists are keyset pages in ascending id order: `after` is the last id of the page before, empty for the
+/// first.
+#include "core/signal/result.hpp"
+#include "server/store/rows.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "core/signal/result.hpp"
-#include "server/store/rows.hpp"
 
 namespace driftlab::server {
 
@@ -40,6 +41,7 @@ struct FitFilter {
   std::optional<std::string> axis;
   std::optional<std::string> model;
   std::optional<bool> best_only;
+  bool latest_only = false;
 };
 
 struct DeviceChange {
@@ -71,15 +73,15 @@ struct Lease {
 };
 
 struct LeaseStatus {
-  bool held = false;              ///< false: another worker may have the job; stop and discard
+  bool held = false;  ///< false: another worker may have the job; stop and discard
   bool cancel_requested = false;
 };
 
 /// How an attempt ended without a result.
 struct AttemptFailure {
   std::string problem_json;
-  bool retryable = false;         ///< I/O, memory: back to `queued` with backoff; else `failed` at once
-  bool fault_signal = false;      ///< the job's own work raised SIGSEGV or the like: twice is `dead`
+  bool retryable = false;     ///< I/O, memory: back to `queued` with backoff; else `failed` at once
+  bool fault_signal = false;  ///< the job's own work raised SIGSEGV or the like: twice is `dead`
 };
 
 class Store {
@@ -109,13 +111,14 @@ class Store {
 
   // ---- blobs and recordings
   [[nodiscard]] virtual Result<std::optional<Blob>> blob(std::string_view sha256) = 0;
-  /// Adds the blob row if absent and the recording of (device, blob) if absent, in one transaction. The same metadata again
-  /// gives the existing recording; other metadata: Conflict, with field "recording_id".
+  /// Adds the blob row if absent and the recording of (device, blob) if absent, in one transaction. The same metadata
+  /// again gives the existing recording; other metadata: Conflict, with field "recording_id".
   [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// New metadata, one revision higher, if the revision is still `expected_revision`. NotFound; Conflict.
-  [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) = 0;
+  [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed,
+                                                           std::int64_t expected_revision) = 0;
   /// Removes a recording that no job is using; its results go with it. NotFound; Conflict (revision; running job).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
   /// Hashes of all blob rows, for the sweeper.
@@ -130,7 +133,8 @@ class Store {
   /// The next runnable job by (priority with ageing, run_at, id), now `running` with a lease; nothing if none is due.
   [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) = 0;
-  [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage, double progress) = 0;
+  [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
+                                                            double progress) = 0;
   /// Results and the finish in one transaction. `held` false: lease lost, nothing was written.
   [[nodiscard]] virtual Result<LeaseStatus> succeed(const Lease& lease, const JobResults& results) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> fail_attempt(const Lease& lease, const AttemptFailure& failure) = 0;
@@ -144,13 +148,15 @@ class Store {
   [[nodiscard]] virtual Result<int> rescue_expired() = 0;
   /// Ends every lease, for the start of a daemon that owns the store alone. How many.
   [[nodiscard]] virtual Result<int> end_all_leases() = 0;
-  [[nodiscard]] virtual Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence, int limit) = 0;
+  [[nodiscard]] virtual Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence,
+                                                                   int limit) = 0;
 
   // ---- results
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
   [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
-  /// The latest result per (recording, channel) of the recording's current revision, in (condition, recording, channel) order.
+  /// The latest result per (recording, channel) of the recording's current revision, in (condition, recording, channel)
+  /// order.
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                                   std::string_view quantity,
                                                                                   std::string_view axis) = 0;

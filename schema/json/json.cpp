@@ -1,0 +1,231 @@
+#include "schema/json/json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace driftlab {
+namespace {
+
+/// Watches a parse for depth and duplicate members; nlohmann accepts both, and its copy and dump recurse without limit.
+class StrictSax final : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t value, const string_t& /*text*/) override {
+    if (!std::isfinite(value)) {
+      return refuse("a number is too large for a double");
+    }
+    return true;
+  }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool start_object(std::size_t /*elements*/) override {
+    keys_.emplace_back();
+    return deeper();
+  }
+  bool key(string_t& value) override {
+    if (!keys_.back().insert(value).second) {
+      return refuse("the member '" + value + "' appears twice in one object");
+    }
+    return true;
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    --depth_;
+    return true;
+  }
+  bool start_array(std::size_t /*elements*/) override { return deeper(); }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string& /*token*/,
+                   const nlohmann::detail::exception& /*why*/) override {
+    position_ = position;
+    return refuse("it is not well-formed at byte " + std::to_string(position));
+  }
+
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  [[nodiscard]] std::size_t position() const { return position_; }
+
+ private:
+  bool deeper() {
+    if (++depth_ > kMaxJsonDepth) {
+      return refuse("it is nested deeper than " + std::to_string(kMaxJsonDepth) + " levels");
+    }
+    return true;
+  }
+  bool refuse(std::string why) {
+    if (reason_.empty()) {
+      reason_ = std::move(why);
+    }
+    return false;
+  }
+
+  int depth_ = 0;
+  std::vector<std::set<std::string>> keys_;
+  std::string reason_;
+  std::size_t position_ = 0;
+};
+
+nlohmann::json sorted(const Json& document) {
+  if (document.is_object()) {
+    nlohmann::json object = nlohmann::json::object();
+    for (const auto& [name, value] : document.items()) {
+      object[name] = sorted(value);
+    }
+    return object;
+  }
+  if (document.is_array()) {
+    nlohmann::json array = nlohmann::json::array();
+    for (const auto& value : document) {
+      array.push_back(sorted(value));
+    }
+    return array;
+  }
+  return nlohmann::json(document);
+}
+
+std::string escaped(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '~') {
+      text += "~0";
+    } else if (c == '/') {
+      text += "~1";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text) {
+  StrictSax strict;
+  if (!Json::sax_parse(text, &strict)) {
+    std::vector<ErrorField> fields;
+    if (strict.position() > 0) {
+      fields.push_back({"byte", std::to_string(strict.position())});
+    }
+    return fail(ErrorCode::ParseError, "The JSON document cannot be read: " + strict.reason() + ".", std::move(fields));
+  }
+  return Json::parse(text, nullptr, false);
+}
+
+std::string canonical_text(const Json& document) {
+  return sorted(document).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string to_text(const Json& document) { return document.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json interval(const Interval& interval, double factor) {
+  return Json::array({number(interval.low * factor), number(interval.high * factor)});
+}
+
+Json quantity(const Estimate& estimate, double per_si, std::string_view unit) {
+  return Json{{"value", number(estimate.value * per_si)}, {"unit", unit}, {"ci95", interval(estimate.ci95, per_si)}};
+}
+
+void Faults::add(std::string pointer, ErrorCode code, std::string detail) {
+  faults_.push_back({std::move(pointer), code, std::move(detail)});
+}
+
+Error Faults::error() const {
+  Error error;
+  if (faults_.empty()) {
+    return error;
+  }
+  error.code = faults_.front().code;
+  error.message = faults_.size() == 1 ? faults_.front().detail
+                                      : "The document has " + std::to_string(faults_.size()) +
+                                            " faults; the first: " + faults_.front().detail;
+  for (const Fault& fault : faults_) {
+    error.fields.push_back({fault.pointer.empty() ? "/" : fault.pointer, fault.detail});
+  }
+  return error;
+}
+
+ObjectReader::ObjectReader(const Json& object, std::string pointer, Faults& faults)
+    : object_(object.is_object() ? &object : nullptr), pointer_(std::move(pointer)), faults_(faults) {
+  if (object_ == nullptr) {
+    faults_.add(pointer_, ErrorCode::ParseError, "A JSON object is needed here.");
+  }
+}
+
+std::string ObjectReader::pointer(std::string_view name) const { return pointer_ + "/" + escaped(name); }
+
+const Json* ObjectReader::member(std::string_view name) {
+  known_.emplace_back(name);
+  if (object_ == nullptr) {
+    return nullptr;
+  }
+  const auto found = object_->find(std::string(name));
+  return found == object_->end() ? nullptr : &*found;
+}
+
+std::optional<std::string> ObjectReader::text(std::string_view name) {
+  const Json* const value = member(name);
+  if (value == nullptr) {
+    return std::nullopt;
+  }
+  if (!value->is_string()) {
+    faults_.add(pointer(name), ErrorCode::ParseError, "The member '" + std::string(name) + "' must be a text.");
+    return std::nullopt;
+  }
+  return value->get<std::string>();
+}
+
+std::optional<double> ObjectReader::real(std::string_view name) {
+  const Json* const value = member(name);
+  if (value == nullptr) {
+    return std::nullopt;
+  }
+  if (!value->is_number()) {
+    faults_.add(pointer(name), ErrorCode::ParseError, "The member '" + std::string(name) + "' must be a number.");
+    return std::nullopt;
+  }
+  return value->get<double>();
+}
+
+std::optional<std::int64_t> ObjectReader::integer(std::string_view name) {
+  const Json* const value = member(name);
+  if (value == nullptr) {
+    return std::nullopt;
+  }
+  const bool whole =
+      value->is_number_integer() &&
+      !(value->is_number_unsigned() && value->get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX));
+  if (!whole) {
+    faults_.add(pointer(name), ErrorCode::ParseError, "The member '" + std::string(name) + "' must be a whole number.");
+    return std::nullopt;
+  }
+  return value->get<std::int64_t>();
+}
+
+std::string ObjectReader::required_text(std::string_view name) {
+  const bool present = object_ != nullptr && object_->contains(std::string(name));
+  if (!present && object_ != nullptr) {
+    faults_.add(pointer(name), ErrorCode::InvalidArgument, "The member '" + std::string(name) + "' is missing.");
+  }
+  return text(name).value_or("");
+}
+
+void ObjectReader::reject_unknown() {
+  if (object_ == nullptr) {
+    return;
+  }
+  for (const auto& [name, value] : object_->items()) {
+    if (std::find(known_.begin(), known_.end(), name) == known_.end()) {
+      faults_.add(pointer(name), ErrorCode::InvalidArgument, "The member '" + name + "' is not known here.");
+    }
+  }
+}
+
+}  // namespace driftlab

@@ -1,0 +1,214 @@
+#include "schema/json/recording_spec.hpp"
+
+#include "core/signal/number.hpp"
+
+namespace driftlab {
+namespace {
+
+Json to_json(const ColumnRole& role) {
+  Json document{{"quantity", name_of(role.quantity)}};
+  if (!role.axis.empty()) {
+    document["axis"] = role.axis;
+  }
+  if (role.unit) {
+    document["unit"] = role.unit->symbol;
+  }
+  return document;
+}
+
+ColumnRole role_from_json(const std::string& column, const Json& document, const std::string& pointer, Faults& faults) {
+  ColumnRole role;
+  ObjectReader reader(document, pointer, faults);
+  const std::string quantity = reader.required_text("quantity");
+  bool sound = document.is_object() && !quantity.empty();
+  if (sound) {
+    if (auto parsed = parse_quantity(quantity)) {
+      role.quantity = *parsed;
+    } else {
+      faults.add(reader.pointer("quantity"), parsed.error());
+      sound = false;
+    }
+  }
+  role.axis = reader.text("axis").value_or("");
+  if (const auto unit = reader.text("unit")) {
+    if (auto parsed = parse_unit(*unit)) {
+      role.unit = *parsed;
+    } else {
+      faults.add(reader.pointer("unit"), parsed.error());
+      sound = false;
+    }
+  }
+  reader.reject_unknown();
+  if (sound) {
+    if (auto checked = check_role(column, role); !checked) {
+      faults.add(pointer, checked.error());
+    }
+  }
+  return role;
+}
+
+}  // namespace
+
+Json to_json(const Condition& condition) {
+  Json document{{"kind", name_of(condition.kind)}};
+  if (!condition.axis.empty()) {
+    document["axis"] = condition.axis;
+  }
+  if (const auto value = written_value(condition)) {
+    document["value"] = *value;
+    document["unit"] = condition.unit;
+  }
+  if (condition.up) {
+    document["direction"] = *condition.up ? "up" : "down";
+  }
+  return document;
+}
+
+Condition condition_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  WrittenCondition written;
+  written.kind = reader.required_text("kind");
+  written.axis = reader.text("axis");
+  written.value = reader.real("value");
+  written.unit = reader.text("unit");
+  written.direction = reader.text("direction");
+  reader.reject_unknown();
+  if (written.kind.empty()) {
+    return {};
+  }
+  auto condition = make_condition(written);
+  if (!condition) {
+    std::string where = pointer;
+    for (const ErrorField& field : condition.error().fields) {
+      if (field.name == "parameter") {
+        where = reader.pointer(field.value);
+      } else if (field.name == "condition") {
+        where = reader.pointer("kind");
+      } else if (field.name == "unit") {
+        where = reader.pointer("unit");
+      }
+    }
+    faults.add(where, condition.error());
+    return {};
+  }
+  return *condition;
+}
+
+Json to_json(const RecordingSpec& spec) {
+  Json document = Json::object();
+  if (!spec.id.empty()) {
+    document["id"] = spec.id;
+  }
+  if (spec.rate_hz) {
+    document["rate_hz"] = *spec.rate_hz;
+  }
+  if (!spec.columns.empty()) {
+    Json columns = Json::object();
+    for (const auto& [name, role] : spec.columns) {
+      columns[name] = to_json(role);
+    }
+    document["columns"] = std::move(columns);
+  }
+  document["condition"] = to_json(spec.condition);
+  if (spec.trim.start_s != 0.0 || spec.trim.end_s != 0.0) {
+    document["trim"] = Json{{"start_s", spec.trim.start_s}, {"end_s", spec.trim.end_s}};
+  }
+  return document;
+}
+
+RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  RecordingSpec spec;
+  ObjectReader reader(document, pointer, faults);
+  spec.id = reader.text("id").value_or("");
+  (void)reader.member("file");
+  spec.rate_hz = reader.real("rate_hz");
+  if (spec.rate_hz && !(*spec.rate_hz > 0.0)) {
+    faults.add(reader.pointer("rate_hz"), ErrorCode::InvalidArgument, "The rate_hz must be greater than 0.");
+  }
+  if (const Json* const columns = reader.member("columns")) {
+    if (!columns->is_object()) {
+      faults.add(reader.pointer("columns"), ErrorCode::ParseError,
+                 "The columns must be an object keyed by column name.");
+    } else {
+      for (const auto& [name, role] : columns->items()) {
+        ObjectReader at(*columns, reader.pointer("columns"), faults);
+        spec.columns[name] = role_from_json(name, role, at.pointer(name), faults);
+      }
+    }
+  }
+  if (const Json* const condition = reader.member("condition")) {
+    spec.condition = condition_from_json(*condition, reader.pointer("condition"), faults);
+  } else if (document.is_object()) {
+    faults.add(reader.pointer("condition"), ErrorCode::InvalidArgument,
+               "The dynamic condition of the recording is missing, for example {\"kind\": \"static\"}.");
+  }
+  if (const Json* const trim = reader.member("trim")) {
+    ObjectReader ends(*trim, reader.pointer("trim"), faults);
+    spec.trim.start_s = ends.real("start_s").value_or(0.0);
+    spec.trim.end_s = ends.real("end_s").value_or(0.0);
+    ends.reject_unknown();
+    if (!(spec.trim.start_s >= 0.0) || !(spec.trim.end_s >= 0.0)) {
+      faults.add(reader.pointer("trim"), ErrorCode::InvalidArgument, "A trim must not be negative.");
+    }
+  }
+  reader.reject_unknown();
+  return spec;
+}
+
+Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
+  std::map<std::string, ColumnRole> columns;
+  std::size_t start = 0;
+  while (start <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    const std::string_view entry = text.substr(start, comma - start);
+    start = comma + 1;
+    const std::size_t equals = entry.find('=');
+    if (entry.empty() || equals == std::string_view::npos || equals == 0) {
+      return fail(ErrorCode::InvalidArgument,
+                  "Columns are written NAME=QUANTITY[:AXIS[:UNIT]] with commas between them, for example "
+                  "gz=angular_rate:z:deg/s; '" +
+                      std::string(entry) + "' is not.",
+                  {{"parameter", "columns"}});
+    }
+    const std::string name(entry.substr(0, equals));
+    std::string_view rest = entry.substr(equals + 1);
+    const std::size_t first = std::min(rest.find(':'), rest.size());
+    ColumnRole role;
+    auto named = [&](Error error) { return fail(std::move(error).with("column", name)); };
+    auto quantity = parse_quantity(rest.substr(0, first));
+    if (!quantity) {
+      return named(quantity.error());
+    }
+    role.quantity = *quantity;
+    rest = first < rest.size() ? rest.substr(first + 1) : std::string_view{};
+    const std::size_t second = std::min(rest.find(':'), rest.size());
+    role.axis = rest.substr(0, second);
+    if (second < rest.size()) {
+      auto unit = parse_unit(rest.substr(second + 1));
+      if (!unit) {
+        return named(unit.error());
+      }
+      role.unit = *unit;
+    }
+    if (auto checked = check_role(name, role); !checked) {
+      return fail(checked.error());
+    }
+    if (!columns.emplace(name, role).second) {
+      return fail(ErrorCode::DuplicateColumn, "The column '" + name + "' is given twice.", {{"column", name}});
+    }
+  }
+  return columns;
+}
+
+Json to_json(const Quality& quality) {
+  Json document{{"samples", quality.samples},
+                {"analysed", quality.analysed},
+                {"gaps", quality.gaps},
+                {"repeated_stamps", quality.repeated_stamps},
+                {"longest_gap_s", number(quality.longest_gap_s)}};
+  document["measured_rate_hz"] = quality.measured_rate_hz > 0.0 ? number(quality.measured_rate_hz) : Json(nullptr);
+  document["notes"] = quality.notes;
+  return document;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,30 @@
+#pragma once
+/// The meaning of a recording (spec/study.md, one member of `recordings`) as JSON, query text and back.
+#include "core/signal/recording.hpp"
+#include "schema/json/json.hpp"
+
+#include <string_view>
+
+namespace driftlab {
+
+/// {"kind": "constant_rate", "axis": "z", "value": 9, "unit": "deg/s"}
+[[nodiscard]] Json to_json(const Condition& condition);
+
+/// Faults are added at `pointer` and below; the result is then unspecified.
+[[nodiscard]] Condition condition_from_json(const Json& document, const std::string& pointer, Faults& faults);
+
+/// One recording without its file: id, rate_hz, columns, condition, trim. Members nobody gave are left out.
+[[nodiscard]] Json to_json(const RecordingSpec& spec);
+
+/// Reads the members of a recording; `file` is accepted and ignored (an upload carries its bytes itself).
+[[nodiscard]] RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults);
+
+/// `columns` of a query string or command line: `gz=angular_rate:z:deg/s,temp=temperature::degC,t=time::s`. A column is
+/// named as in the file, or by number from 0; axis and unit may be empty or left out. Errors: InvalidArgument,
+/// UnknownQuantity, UnknownUnit, UnitMismatch; each names the column.
+[[nodiscard]] Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text);
+
+/// What was found true of the recording as it came.
+[[nodiscard]] Json to_json(const Quality& quality);
+
+}  // namespace driftlab

@@ -1,0 +1,266 @@
+#include "server/store/blobs.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <mutex>
+#include <set>
+#include <system_error>
+
+#include "server/store/crash_point.hpp"
+#include "server/store/digest.hpp"
+#include "server/store/files.hpp"
+
+namespace driftlab::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kColumnsSuffix = ".columns";
+
+class BlobDirectory;
+
+class IncomingFile final : public IncomingBlob {
+ public:
+  IncomingFile(BlobDirectory& directory, FileHandle file, fs::path path)
+      : directory_(directory), file_(std::move(file)), path_(std::move(path)) {}
+  IncomingFile(const IncomingFile&) = delete;
+  IncomingFile& operator=(const IncomingFile&) = delete;
+  ~IncomingFile() override {
+    (void)remove_file(path_);
+    (void)remove_file(columns_path());
+  }
+
+  [[nodiscard]] Status append(std::span<const std::byte> bytes) override;
+  [[nodiscard]] Status seal() override;
+  [[nodiscard]] const std::string& sha256() const override { return sha256_; }
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] const fs::path& path() const override { return path_; }
+  [[nodiscard]] fs::path columns_path() const override {
+    fs::path columns = path_;
+    columns += kColumnsSuffix;
+    return columns;
+  }
+  [[nodiscard]] Status keep() override;
+
+ private:
+  BlobDirectory& directory_;
+  FileHandle file_;
+  fs::path path_;
+  Sha256 digest_;
+  std::string sha256_;
+  std::size_t size_ = 0;
+};
+
+class BlobDirectory final : public BlobStore {
+ public:
+  BlobDirectory(fs::path root, FileHandle lock) : root_(std::move(root)), lock_(std::move(lock)) {}
+
+  [[nodiscard]] Result<std::unique_ptr<IncomingBlob>> begin() override;
+  [[nodiscard]] fs::path bytes_path(std::string_view sha256) const override {
+    return root_ / "blobs" / sha256.substr(0, 2) / sha256;
+  }
+  [[nodiscard]] fs::path columns_path(std::string_view sha256) const override {
+    return root_ / "columns" / sha256.substr(0, 2) / (std::string(sha256) + std::string(kColumnsSuffix));
+  }
+  [[nodiscard]] Status remove(std::string_view sha256) override;
+  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) override;
+  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(UtcMicros before) override;
+  [[nodiscard]] Result<Space> space() const override;
+
+  /// Gives the files of an upload their final names. Excludes the sweeper.
+  [[nodiscard]] Status place(const IncomingFile& incoming);
+
+ private:
+  [[nodiscard]] Status remove_both(std::string_view sha256);
+
+  fs::path root_;
+  FileHandle lock_;
+  std::mutex names_;  ///< held while final names appear or disappear
+  std::atomic<std::uint64_t> counter_{0};
+};
+
+Status write_all(int descriptor, std::span<const std::byte> bytes, const fs::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) {
+        continue;
+      }
+      return fail(file_error(errno, "write", path));
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+Status IncomingFile::append(std::span<const std::byte> bytes) {
+  if (Status written = write_all(file_.get(), bytes, path_); !written) {
+    return written;
+  }
+  digest_.update(bytes);
+  size_ += bytes.size();
+  crash_point("upload.streaming");
+  return {};
+}
+
+Status IncomingFile::seal() {
+  if (::fsync(file_.get()) != 0) {
+    return fail(file_error(errno, "flush", path_));
+  }
+  file_ = FileHandle();
+  sha256_ = digest_.finish();
+  crash_point("upload.sealed");
+  return {};
+}
+
+Status IncomingFile::keep() {
+  if (sha256_.empty()) {
+    return fail(ErrorCode::Internal, "An upload was kept before it was sealed.");
+  }
+  return directory_.place(*this);
+}
+
+/// Modification time in microseconds; nothing where the file is absent.
+std::optional<UtcMicros> modified_at(const fs::path& path) {
+  struct ::stat found {};
+  if (::stat(path.c_str(), &found) != 0) {
+    return std::nullopt;
+  }
+  return UtcMicros{found.st_mtim.tv_sec} * 1'000'000 + found.st_mtim.tv_nsec / 1000;
+}
+
+/// Moves `from` to `to`, or marks an existing `to` as new and drops `from`.
+Status move_or_refresh(const fs::path& from, const fs::path& to) {
+  if (::access(to.c_str(), F_OK) == 0) {
+    if (::utimensat(AT_FDCWD, to.c_str(), nullptr, 0) != 0) {
+      return fail(file_error(errno, "mark as used", to));
+    }
+    return remove_file(from);
+  }
+  if (Status made = make_directories(to.parent_path()); !made) {
+    return made;
+  }
+  return rename_durably(from, to);
+}
+
+Status BlobDirectory::place(const IncomingFile& incoming) {
+  const fs::path from = incoming.columns_path();
+  const fs::path columns = columns_path(incoming.sha256());
+  const bool decoded = ::access(from.c_str(), F_OK) == 0;
+  if (decoded) {
+    if (Status flushed = sync_path(from); !flushed) {
+      return flushed;
+    }
+  }
+  const std::lock_guard<std::mutex> guard(names_);
+  if (!decoded && ::access(columns.c_str(), F_OK) != 0) {
+    return fail(ErrorCode::Internal, "An upload was kept before its columns were written.");
+  }
+  if (Status moved = move_or_refresh(incoming.path(), bytes_path(incoming.sha256())); !moved) {
+    return moved;
+  }
+  crash_point("upload.kept_bytes");
+  if (Status moved = move_or_refresh(from, columns); !moved) {
+    return moved;
+  }
+  crash_point("upload.kept");
+  return {};
+}
+
+Result<std::unique_ptr<IncomingBlob>> BlobDirectory::begin() {
+  fs::path path = root_ / "incoming" / std::to_string(counter_.fetch_add(1));
+  FileHandle file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file) {
+    return fail(file_error(errno, "make", path));
+  }
+  return std::make_unique<IncomingFile>(*this, std::move(file), std::move(path));
+}
+
+Status BlobDirectory::remove_both(std::string_view sha256) {
+  if (!is_sha256_hex(sha256)) {
+    return fail(ErrorCode::InvalidArgument, "A blob is named by 64 hexadecimal digits.", {{"parameter", "sha256"}});
+  }
+  if (Status removed = remove_file(columns_path(sha256)); !removed) {
+    return removed;
+  }
+  return remove_file(bytes_path(sha256));
+}
+
+Status BlobDirectory::remove(std::string_view sha256) {
+  const std::lock_guard<std::mutex> guard(names_);
+  return remove_both(sha256);
+}
+
+Result<bool> BlobDirectory::remove_if_older(std::string_view sha256, UtcMicros before) {
+  const std::lock_guard<std::mutex> guard(names_);
+  for (const fs::path& path : {bytes_path(sha256), columns_path(sha256)}) {
+    if (modified_at(path).value_or(before - 1) >= before) {
+      return false;
+    }
+  }
+  return remove_both(sha256).map([] { return true; });
+}
+
+Result<std::vector<std::string>> BlobDirectory::hashes_older_than(UtcMicros before) {
+  std::set<std::string> hashes;
+  for (const char* folder : {"blobs", "columns"}) {
+    std::error_code error;
+    fs::recursive_directory_iterator entry(root_ / folder, error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+      std::string name = entry->path().filename().string();
+      if (name.ends_with(kColumnsSuffix)) {
+        name.resize(name.size() - kColumnsSuffix.size());
+      }
+      const std::optional<UtcMicros> modified = modified_at(entry->path());
+      if (is_sha256_hex(name) && modified && *modified < before) {
+        hashes.insert(std::move(name));
+      }
+    }
+    if (error) {
+      return fail(file_error(error.value(), "list", root_ / folder));
+    }
+  }
+  return std::vector<std::string>(hashes.begin(), hashes.end());
+}
+
+Result<BlobStore::Space> BlobDirectory::space() const {
+  struct ::statvfs found {};
+  if (::statvfs(root_.c_str(), &found) != 0) {
+    return fail(file_error(errno, "examine the file system of", root_));
+  }
+  const double total = static_cast<double>(found.f_blocks);
+  return Space{static_cast<std::uintmax_t>(found.f_bavail) * found.f_frsize,
+               total > 0.0 ? static_cast<double>(found.f_bavail) / total : 0.0};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BlobStore>> open_blob_directory(const fs::path& root) {
+  for (const char* folder : {"blobs", "columns", "incoming"}) {
+    if (Status made = make_directories(root / folder); !made) {
+      return fail(made.error());
+    }
+  }
+  Result<FileHandle> lock = lock_directory(root, "blobs.lock");
+  if (!lock) {
+    return fail(lock.error());
+  }
+  std::error_code error;
+  for (fs::directory_iterator entry(root / "incoming", error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    if (Status removed = remove_file(entry->path()); !removed) {
+      return fail(removed.error());
+    }
+  }
+  if (error) {
+    return fail(file_error(error.value(), "clear", root / "incoming"));
+  }
+  return std::make_unique<BlobDirectory>(root, std::move(*lock));
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,66 @@
+#include "server/store/clock.hpp"
+
+#include <openssl/rand.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+namespace driftlab::server {
+namespace {
+
+/// Crockford's base32: no I, L, O, U.
+constexpr std::string_view kAlphabet = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
+constexpr std::size_t kBodyLength = 26;
+constexpr std::size_t kTimeLength = 10;
+
+}  // namespace
+
+UtcMicros SystemClock::now() const {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string rfc3339(UtcMicros time) {
+  const std::chrono::sys_time<std::chrono::microseconds> instant{std::chrono::microseconds{time}};
+  const auto day = std::chrono::floor<std::chrono::days>(instant);
+  const std::chrono::year_month_day date{day};
+  const std::chrono::hh_mm_ss of_day{std::chrono::floor<std::chrono::milliseconds>(instant - day)};
+  std::array<char, 64> text{};
+  const int length = std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ",
+                                   static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                                   static_cast<unsigned>(date.day()), static_cast<int>(of_day.hours().count()),
+                                   static_cast<int>(of_day.minutes().count()), static_cast<int>(of_day.seconds().count()),
+                                   static_cast<int>(of_day.subseconds().count()));
+  return {text.data(), static_cast<std::size_t>(length)};
+}
+
+std::string make_id(std::string_view prefix, UtcMicros now) {
+  // 26 characters hold 130 bits: the first ten are 48 bits of milliseconds (two bits unused), the rest 80 random bits.
+  std::string id(prefix);
+  id.push_back('_');
+  const auto milliseconds = static_cast<std::uint64_t>(std::max<UtcMicros>(now, 0) / 1000);
+  for (std::size_t i = 0; i < kTimeLength; ++i) {
+    id.push_back(kAlphabet[(milliseconds >> (5 * (kTimeLength - 1 - i))) & 31U]);
+  }
+  std::array<unsigned char, kBodyLength - kTimeLength> random{};  // one byte for each 5-bit character
+  if (RAND_bytes(random.data(), static_cast<int>(random.size())) != 1) {
+    std::abort();  // an operating system without randomness cannot give unique names
+  }
+  for (const unsigned char byte : random) {
+    id.push_back(kAlphabet[byte & 31U]);
+  }
+  return id;
+}
+
+bool is_id(std::string_view text, std::string_view prefix) {
+  if (text.size() != prefix.size() + 1 + kBodyLength || !text.starts_with(prefix) || text[prefix.size()] != '_') {
+    return false;
+  }
+  const std::string_view body = text.substr(prefix.size() + 1);
+  return std::all_of(body.begin(), body.end(),
+                     [](char letter) { return kAlphabet.find(letter) != std::string_view::npos; });
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,56 @@
+#include "server/store/crash_point.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+
+namespace driftlab::server {
+namespace {
+
+/// Points at the armed member of the list; null in production.
+std::atomic<const std::string_view*>& armed_point() {
+  static std::atomic<const std::string_view*> armed{nullptr};
+  return armed;
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& crash_point_names() {
+  static const std::vector<std::string_view> kNames = {
+      "upload.streaming",   // some bytes of an upload are on disk
+      "upload.sealed",      // all bytes are flushed and hashed
+      "upload.decoded",     // the decoded columns lie in incoming/
+      "upload.kept_bytes",  // the bytes have their final name, the columns do not
+      "upload.kept",        // bytes and columns have their final names, no row names them
+      "upload.recorded",    // the row is committed, nobody was told
+      "job.claimed",        // a worker holds the lease and has not begun
+      "job.working",        // the first progress report is written
+      "job.before_finish",  // results are computed, nothing of them is written
+      "job.in_finish",      // results are written in a transaction that is not committed
+      "job.finished",       // the finish is committed, nobody was told
+  };
+  return kNames;
+}
+
+bool arm_crash_point(std::string_view name) {
+  if (name.empty()) {
+    armed_point().store(nullptr);
+    return true;
+  }
+  const auto& names = crash_point_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    return false;
+  }
+  armed_point().store(&*found);
+  return true;
+}
+
+void crash_point(std::string_view name) {
+  const std::string_view* armed = armed_point().load(std::memory_order_relaxed);
+  if (armed != nullptr && *armed == name) {
+    (void)std::raise(SIGKILL);
+  }
+}
+
+}  // namespace driftlab::server
