@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Fails where the documentation speaks of something that is not there.
+
+- A script named in a command block of README.md, CONTRIBUTING.md or schema/docs exists and is executable.
+- A --flag given to a script or a driftlab program in such a block stands in its --help. The programs are asked where
+  their folder is given in $DRIFTLAB_BIN.
+- A path in `backticks` that begins with a top-level folder exists; <name> and * stand for anything.
+- A link between the pages leads somewhere.
+"""
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import tree
+
+BLOCK = re.compile(r"^```(?:sh|bash|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+TOPS = ("core", "schema", "server", "clients", "migrations", "tests", "deploy", ".ci")
+LINK = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)")
+
+
+def pages(root: Path) -> list[Path]:
+    named = [root / "README.md", root / "CONTRIBUTING.md"]
+    return [p for p in named if p.is_file()] + sorted((root / "schema/docs").rglob("*.md"))
+
+
+def commands_of(text: str) -> list[list[str]]:
+    """Every simple command of the command blocks, as words; comments, prompts and continuation lines resolved."""
+    commands: list[list[str]] = []
+    for block in BLOCK.findall(text):
+        for line in block.replace("\\\n", " ").split("\n"):
+            try:
+                words = shlex.split(line.removeprefix("$ "), comments=True)
+            except ValueError:
+                continue  # a line of a here-document or of JSON
+            for part in " ".join(w if w in {"|", "&&", ";"} else shlex.quote(w) for w in words).replace("&&", "|").split("|"):
+                command = [w for w in shlex.split(part) if w != ";"]
+                while command and re.fullmatch(r"\w+=.*", command[0]):
+                    command.pop(0)
+                if command:
+                    commands.append(command)
+    return commands
+
+
+@cache
+def help_of(program: Path, subcommand: str | None) -> str:
+    words = [str(program), *([subcommand] if subcommand else []), "--help"]
+    shown = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
+    return shown.stdout + shown.stderr
+
+
+def command_faults(root: Path, page: str, command: list[str], programs: Path | None) -> list[str]:
+    name = command[0]
+    if name in {"driftlab", "driftlabd"} or name.endswith(("/bin/driftlab", "/bin/driftlabd")):
+        if programs is None:
+            return []
+        program = programs / Path(name).name
+    elif name.startswith(("./", "deploy/", "tests/", ".ci/")):
+        program = root / name
+        if not program.is_file():
+            return [f"{page}: the command {name} does not exist"]
+        if not os.access(program, os.X_OK):
+            return [f"{page}: the command {name} is not executable"]
+    else:
+        return []
+    subcommand = command[1] if program.name == "driftlab" and len(command) > 1 and not command[1].startswith("-") else None
+    flags = {word.split("=")[0] for word in command[1:] if re.match(r"--[a-z]", word)}
+    shown = help_of(program, subcommand) if flags else ""
+    return [f"{page}: {' '.join(command[:2])} has no {flag} in its --help" for flag in sorted(flags)
+            if not re.search(re.escape(flag) + r"(?![\w-])", shown)]
+
+
+def path_faults(root: Path, page: Path, text: str) -> list[str]:
+    name = page.relative_to(root).as_posix()
+    prose = BLOCK.sub("", text)
+    faults = []
+    for quoted in re.findall(r"`([^`\s]+)`", prose):
+        path = quoted.rstrip("/.,")
+        if path.split("/")[0] not in TOPS or "/" not in path:
+            continue
+        pattern = re.sub(r"<[^>]+>|NNNN", "*", path)
+        if not list(root.glob(pattern)):
+            faults.append(f"{name}: `{quoted}` does not exist")
+    for target in LINK.findall(prose):
+        where = root / target.lstrip("/") if target.startswith("/") else page.parent / target
+        if not where.exists():
+            faults.append(f"{name}: the link to {target} leads nowhere")
+    return faults
+
+
+def check(root: Path) -> list[str]:
+    given = os.environ.get("DRIFTLAB_BIN")
+    programs = Path(given).resolve() if given else None
+    if programs is None:
+        print("SKIPPED: flags of driftlab and driftlabd, for DRIFTLAB_BIN does not say where they are")
+    faults: list[str] = []
+    readme = root / "README.md"
+    if not readme.is_file():
+        faults.append("README.md: is missing")
+    else:
+        first = [c[0] for c in commands_of(readme.read_text())][:2]
+        if first != ["./deploy/quickstart.sh", "./tests/run.sh"]:
+            faults.append("README.md: does not open with the two commands")
+    for page in pages(root):
+        text = page.read_text()
+        for command in commands_of(text):
+            faults += command_faults(root, page.relative_to(root).as_posix(), command, programs)
+        faults += path_faults(root, page, text)
+    return faults
+
+
+if __name__ == "__main__":
+    tree.main(check)

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Fails on an include that climbs a floor, and on what core/ may not use.
+
+Each module stands only on those named here; `tests/` stands on everything. A relative include of a driftlab header is a
+fault too, for it hides the floor.
+"""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import tree
+
+# Module -> the modules it may include beside itself, directly; what these include follows by the same table.
+CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
+ANALYSIS = [*CORE, "core/calibrate", "core/navigate", "core/investigate"]
+DOCUMENTS = [*ANALYSIS, "core/read", "schema/json"]
+SERVER = ["core/signal", "server/store", "server/observe"]
+FLOORS: dict[str, list[str]] = {
+    "core/signal": [],
+    "core/read": ["core/signal"],
+    "core/process": CORE[:1],
+    "core/variance": CORE[:2],
+    "core/fit": CORE[:3],
+    "core/calibrate": CORE,
+    "core/navigate": CORE,
+    "core/investigate": [*CORE, "core/calibrate", "core/navigate"],
+    "schema/json": [*ANALYSIS, "core/read"],
+    "server/store": ["core/signal"],
+    "server/observe": ["core/signal", "server/store"],
+    "server/auth": SERVER,
+    "server/jobs": [*DOCUMENTS, *SERVER],
+    "server/http": [*SERVER, "server/auth", "schema/json"],
+    "server/api": [*DOCUMENTS, *SERVER, "server/auth", "server/jobs", "server/http"],
+    "server": [*DOCUMENTS, *SERVER, "server/auth", "server/jobs", "server/http", "server/api"],
+    "clients/cli": DOCUMENTS,
+}
+
+# Headers -> the modules (by prefix) that may include them; every other module may not.
+RESERVED = {
+    r"sqlite3\.h": ("server/store",),
+    r"boost/(beast|asio).*": ("server", "clients/cli"),
+    r"nlohmann/.*": ("schema/json", "server", "clients/cli"),
+    r"spdlog/.*": ("server",),
+    r"iostream": ("server", "clients/cli"),
+}
+
+# What core/ may not say: it neither prints, logs, exits, reads clock or environment, nor draws unseeded randomness.
+FORBIDDEN_IN_CORE = {
+    r"\bstd::(cout|cerr|clog)\b": "prints",
+    r"\b(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror)\s*\(": "prints",
+    r"\bgetenv\b": "reads the environment",
+    r"\b(system_clock|steady_clock|high_resolution_clock|clock_gettime|gettimeofday)\b": "reads a clock",
+    r"\btime\s*\(\s*(nullptr|NULL|0)\s*\)": "reads a clock",
+    r"\brandom_device\b": "draws unseeded randomness",
+    r"(?<![\w.>])(std::)?s?rand\s*\(": "draws unseeded randomness",
+    r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(": "ends the process",
+}
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
+COMMENT_OR_LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|' r"(?<!\w)'(?:\\.|[^'\\\n])+'", re.DOTALL)
+
+
+def module_of(name: str) -> str | None:
+    """The longest module that is the folder of `name`, or holds it further down."""
+    folder = Path(name).parent
+    while str(folder) != ".":
+        if folder.as_posix() in FLOORS:
+            return folder.as_posix()
+        folder = folder.parent
+    return None
+
+
+def code_of(text: str) -> str:
+    """The text with comments and literals blanked out, line breaks kept."""
+    return COMMENT_OR_LITERAL.sub(lambda match: "\n" * match.group(0).count("\n") or " ", text)
+
+
+def faults_of(root: Path, name: str, text: str) -> list[str]:
+    faults: list[str] = []
+    module = module_of(name)
+    if module is None:
+        top = name.split("/")[0]
+        return [f"{name}: belongs to no floor; name its module in tests/house/floors.py"] if top != "tests" else []
+
+    def fault(position: int, sentence: str) -> None:
+        faults.append(f"{name}:{text.count(chr(10), 0, position) + 1}: {sentence}")
+
+    for match in INCLUDE.finditer(text):
+        included = match.group(2)
+        target = module_of(included)
+        if target is not None and target != module and target not in FLOORS[module]:
+            fault(match.start(2), f"{module} may not include {included}: {target} is not below it")
+        if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
+            fault(match.start(2), f"include {included} by its path from the top of the repository")
+        for pattern, owners in RESERVED.items():
+            if re.fullmatch(pattern, included) and not any(module == o or module.startswith(o + "/") for o in owners):
+                fault(match.start(2), f"{module} may not include <{included}>: it is kept to {', '.join(owners)}")
+    if module.startswith("core/"):
+        for number, line in enumerate(code_of(text).split("\n"), start=1):
+            for pattern, sentence in FORBIDDEN_IN_CORE.items():
+                for match in re.finditer(pattern, line):
+                    faults.append(f"{name}:{number}: core {sentence} ({match.group(0).strip('( ')})")
+    return faults
+
+
+def check(root: Path) -> list[str]:
+    faults: list[str] = []
+    seen = 0
+    for path in tree.files(root):
+        name = path.relative_to(root).as_posix()
+        if path.suffix in {".hpp", ".cpp", ".h"} and name.split("/")[0] in {"core", "schema", "server", "clients"}:
+            seen += 1
+            faults += faults_of(root, name, path.read_text())
+    return faults if seen else [f"no sources under {root}"]
+
+
+if __name__ == "__main__":
+    tree.main(check)

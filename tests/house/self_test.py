@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Every house check finds what it is there for: a small tree with one fault planted in it must be refused."""
+from __future__ import annotations
+
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+import documents
+import floors
+import leaks
+import licence
+
+
+class Planted(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name).resolve() / "tree"
+        self.root.mkdir()
+
+    def plant(self, name: str, text: str) -> Path:
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def refused(self, faults: list[str], *parts: str) -> None:
+        self.assertTrue(any(all(part in fault for part in parts) for fault in faults), faults)
+
+
+class Floors(Planted):
+    def setUp(self) -> None:
+        super().setUp()
+        self.plant("core/signal/unit.hpp", "#pragma once\n#include <string>\n")
+        self.plant("server/main.cpp", '#include "server/api/routes.hpp"\n#include <iostream>\n')
+
+    def test_an_upright_house_is_clean(self) -> None:
+        self.plant("core/fit/gmwm.cpp", '#include "core/fit/gmwm.hpp"\n#include "core/signal/unit.hpp"\n// printf(getenv)\n'
+                                        'auto s = "std::cout << abort()"; auto t = pool.exit(1); x_time(0);\n')
+        self.assertEqual(floors.check(self.root), [])
+
+    def test_each_climbing_include_is_refused(self) -> None:
+        climbing = [("core/signal/a.hpp", "core/process/process.hpp"), ("core/process/a.hpp", "core/variance/allan.hpp"),
+                    ("core/variance/a.hpp", "core/fit/fit.hpp"), ("core/fit/a.hpp", "core/navigate/filter.hpp"),
+                    ("core/calibrate/a.hpp", "core/navigate/filter.hpp"), ("core/navigate/a.hpp", "core/calibrate/six.hpp"),
+                    ("core/fit/a.hpp", "core/investigate/causes/bias.hpp"), ("core/read/csv.hpp", "core/process/process.hpp"),
+                    ("core/fit/a.hpp", "core/read/csv.hpp"), ("core/investigate/a.hpp", "schema/json/table.hpp"),
+                    ("schema/json/a.hpp", "server/store/rows.hpp"), ("clients/cli/a.cpp", "server/api/problems.hpp"),
+                    ("server/store/sqlite/a.cpp", "server/jobs/job_kind.hpp"), ("server/http/a.hpp", "server/jobs/job_kind.hpp"),
+                    ("server/jobs/a.hpp", "server/http/request.hpp"), ("server/http/a.hpp", "server/api/routes.hpp"),
+                    ("server/api/a.hpp", "clients/cli/client.hpp")]
+        for source, included in climbing:
+            with self.subTest(source=source, included=included):
+                path = self.plant(source, f'#pragma once\n#include "{included}"\n')
+                self.refused(floors.check(self.root), f"{source}:2:", "may not include", included)
+                path.unlink()
+
+    def test_what_core_may_not_say_is_refused(self) -> None:
+        for line in ("std::cout << 1;", 'printf("x");', 'auto v = getenv("X");', "std::chrono::system_clock::now();",
+                     "std::chrono::steady_clock::now();", "std::random_device d;", "std::abort();", "exit(1);", "time(nullptr);"):
+            with self.subTest(line=line):
+                self.plant("core/signal/a.cpp", "int before;\n" + line + "\n")
+                self.refused(floors.check(self.root), "core/signal/a.cpp:2: core")
+
+    def test_reserved_headers_are_refused(self) -> None:
+        for source, header in (("core/read/a.cpp", "iostream"), ("core/fit/a.cpp", "spdlog/spdlog.h"), ("core/read/b.cpp", "sqlite3.h"),
+                               ("core/signal/b.cpp", "nlohmann/json.hpp"), ("core/signal/c.cpp", "boost/beast/http.hpp"),
+                               ("core/signal/d.cpp", "boost/asio.hpp"), ("server/api/a.cpp", "sqlite3.h")):
+            with self.subTest(source=source, header=header):
+                path = self.plant(source, f"#include <{header}>\n")
+                self.refused(floors.check(self.root), source, header)
+                path.unlink()
+
+    def test_a_relative_include_is_refused(self) -> None:
+        self.plant("core/signal/unit.cpp", '#include "unit.hpp"\n')
+        self.refused(floors.check(self.root), "core/signal/unit.cpp:1:", "by its path from the top")
+
+    def test_a_folder_without_a_floor_is_refused(self) -> None:
+        self.plant("core/attic/a.hpp", "#pragma once\n")
+        self.refused(floors.check(self.root), "core/attic/a.hpp", "no floor")
+
+    def test_an_empty_tree_proves_nothing(self) -> None:
+        with tempfile.TemporaryDirectory() as empty:
+            self.refused(floors.check(Path(empty)), "no sources")
+
+
+class Leaks(Planted):
+    def setUp(self) -> None:
+        super().setUp()
+        os.environ["DRIFTLAB_SHARED"] = str(self.root.parent / "shared")
+        self.addCleanup(os.environ.pop, "DRIFTLAB_SHARED")
+        self.plant("../shared/data/imu.json", '{"rate_hz": 100}')
+
+    def test_an_ordinary_file_is_clean(self) -> None:
+        self.plant("README.md", "data are kept in /var/lib/driftlab, password: none, ids like dl_abc, ~/work/x, $HOME/home/x\n")
+        self.assertEqual(leaks.check(self.root), [])
+
+    def test_each_leak_is_refused(self) -> None:
+        for line in ("-----BEGIN RSA PRIVATE" + " KEY-----", "AKIA" + "A" * 16, "ghp_" + "a" * 36,
+                     "dl_" + "a" * 30 + "_" + "b" * 6, "password = " + '"correct-horse"', "see /home" + "/anna/data.csv",
+                     "in /ro" + "ot/build"):
+            with self.subTest(line=line):
+                self.plant("notes.txt", "first\n" + line + "\n")
+                self.refused(leaks.check(self.root), "notes.txt:2:")
+
+    def test_a_big_file_is_refused(self) -> None:
+        self.plant("tests/data/long.csv", "0" * (leaks.LARGEST + 1))
+        self.refused(leaks.check(self.root), "tests/data/long.csv", "nothing larger")
+
+    def test_a_copy_of_a_shared_file_is_refused_whatever_its_name(self) -> None:
+        self.plant("tests/data/mine.json", '{"rate_hz": 100}')
+        self.refused(leaks.check(self.root), "tests/data/mine.json", "copy of a shared file")
+
+
+class Licence(Planted):
+    def test_missing_and_shortened_texts_are_refused(self) -> None:
+        self.refused(licence.check(self.root), "LICENSE: is missing")
+        self.refused(licence.check(self.root), "NOTICE: is missing")
+        self.plant("LICENSE", "Apache License\nVersion 2.0, January 2004\n")
+        self.refused(licence.check(self.root), "LICENSE: is not the whole text")
+
+    def test_an_uncredited_library_is_refused(self) -> None:
+        self.plant("NOTICE", "driftlab links zlib.\n")
+        self.plant("CMakeLists.txt", "find_package(ZLIB REQUIRED)\nfind_package(SQLite3 3.40 REQUIRED)\n")
+        faults = licence.check(self.root)
+        self.refused(faults, "NOTICE", "SQLite3")
+        self.assertFalse(any("ZLIB" in fault for fault in faults), faults)
+
+
+class Documents(Planted):
+    def setUp(self) -> None:
+        super().setUp()
+        for name in ("deploy/quickstart.sh", "tests/run.sh"):
+            self.plant(name, "#!/bin/sh\necho 'usage: --once --port N'\n").chmod(0o755)
+        self.readme("")
+
+    def readme(self, more: str) -> None:
+        self.plant("README.md", "# driftlab\n\n```sh\n./deploy/quickstart.sh\n./tests/run.sh\n```\n" + more)
+
+    def test_a_true_readme_is_clean(self) -> None:
+        self.readme("```sh\n./deploy/quickstart.sh --once \\\n  --port 1 | cat  # --not-a-flag\n```\n`tests/<name>.sh` [x](deploy)\n")
+        self.assertEqual(documents.check(self.root), [])
+
+    def test_a_readme_that_opens_otherwise_is_refused(self) -> None:
+        self.plant("README.md", "```sh\n./tests/run.sh\n```\n")
+        self.refused(documents.check(self.root), "two commands")
+
+    def test_false_statements_are_refused(self) -> None:
+        for text, part in (("```sh\n./deploy/install.sh\n```\n", "./deploy/install.sh does not exist"),
+                           ("```sh\n./deploy/quickstart.sh --onc\n```\n", "has no --onc in its --help"),
+                           ("add a file to `core/attic/`\n", "`core/attic/` does not exist"),
+                           ("[there](schema/docs/none.md)\n", "leads nowhere")):
+            with self.subTest(text=text):
+                self.readme(text)
+                self.refused(documents.check(self.root), part)
+
+    def test_a_script_that_cannot_be_executed_is_refused(self) -> None:
+        (self.root / "tests/run.sh").chmod(0o644)
+        self.refused(documents.check(self.root), "not executable")
+
+    def test_flags_of_a_program_are_asked_of_the_subcommand(self) -> None:
+        self.plant("bin/driftlab", '#!/bin/sh\n[ "$1" = table ] && echo "--axis A"\n').chmod(0o755)
+        os.environ["DRIFTLAB_BIN"] = str(self.root / "bin")
+        self.addCleanup(os.environ.pop, "DRIFTLAB_BIN")
+        self.readme("```sh\nbuild/release/bin/driftlab table --axis z --color\n```\n")
+        faults = documents.check(self.root)
+        self.refused(faults, "driftlab table has no --color")
+        self.assertEqual(len(faults), 1, faults)
+
+
+if __name__ == "__main__":
+    unittest.main()
