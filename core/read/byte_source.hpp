@@ -65,13 +65,6 @@ enum class Compression { None, Gzip, Xz, Zstd };
 /// The compression whose magic number `head` starts with (RFC 1952, xz file format 1.1, RFC 8878).
 [[nodiscard]] Compression sniff_compression(std::string_view head);
 
-/// A reader of what `compressed` holds: concatenated members, streams or frames read as one, as gzip(1), xz(1) and
-/// zstd(1) do. Checksums in the stream are verified. Errors while reading: CorruptCompression, Truncated (the stream
-/// ends early), DecompressionLimit (over the budget of `limits`, or a dictionary larger than max_decoder_memory).
-[[nodiscard]] Result<std::unique_ptr<ByteReader>> make_decompressor(Compression compression,
-                                                                    std::unique_ptr<ByteReader> compressed,
-                                                                    const DecodeLimits& limits);
-
 /// A reader with a window of look-ahead. Not thread safe.
 class ByteSource {
  public:
@@ -87,8 +80,7 @@ class ByteSource {
   [[nodiscard]] std::uint64_t offset() const { return offset_; }  ///< bytes taken so far
   [[nodiscard]] double fraction() const { return reader_->fraction(); }
 
-  /// The reader underneath, buffered bytes first: for putting a decompressor between.
-  [[nodiscard]] static std::unique_ptr<ByteReader> into_reader(std::unique_ptr<ByteSource> source);
+  [[nodiscard]] std::uint64_t input_size() const { return reader_->size(); }
 
  private:
   std::unique_ptr<ByteReader> reader_;
@@ -98,5 +90,11 @@ class ByteSource {
   std::uint64_t offset_ = 0;
   bool ended_ = false;
 };
+
+/// A reader of what `compressed` holds: concatenated members, streams or frames read as one, as gzip(1), xz(1) and
+/// zstd(1) do. Checksums in the stream are verified. Errors while reading: CorruptCompression, Truncated (the stream
+/// ends early), DecompressionLimit (over the budget of `limits`, or a dictionary larger than max_decoder_memory).
+[[nodiscard]] Result<std::unique_ptr<ByteReader>> make_decompressor(Compression compression, ByteSource compressed,
+                                                                    const DecodeLimits& limits);
 
 }  // namespace driftlab

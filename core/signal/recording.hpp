@@ -61,7 +61,8 @@ using ColumnNames = std::vector<std::string>;
 
 /// How the samples lie in time.
 struct TimeBase {
-  double dt_s = 0.0;     ///< sample interval: 1/rate_hz, or the median step of the time column
+  double dt_s = 0.0;     ///< sample interval: 1/rate_hz, or where a time column disagrees or is alone, the mean step of
+                         ///< the analysed stretch
   double start_s = 0.0;  ///< first time stamp, 0 without a time column
 };
 
@@ -69,7 +70,7 @@ struct TimeBase {
 struct Quality {
   std::size_t samples = 0;          ///< rows of the file
   std::size_t analysed = 0;         ///< rows of the analysed part, after trims
-  std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 dt
+  std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 times its median step
   std::size_t repeated_stamps = 0;  ///< steps of the time column equal to 0
   double longest_gap_s = 0.0;
   double measured_rate_hz = 0.0;   ///< (samples - 1) / (last - first stamp); 0 without a time column

@@ -1,0 +1,160 @@
+#include "core/read/column_file.hpp"
+#include "core/read/format.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+/// Passes on to another sink; counts rows, reports progress and stops when asked, so that no format has to.
+class WatchingSink final : public ColumnSink {
+ public:
+  WatchingSink(ColumnSink& next, const ByteSource& source, const RunControl& control)
+      : next_(next), source_(source), control_(control) {}
+
+  Status begin(const ColumnLayout& layout) override {
+    std::set<std::string_view> seen;
+    for (const std::string& name : layout.names) {
+      if (!seen.insert(name).second) {
+        return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + name + "'; give each its own name.",
+                    {{"column", name}});
+      }
+    }
+    decoded_.names = layout.names;
+    decoded_.has_header = layout.has_header;
+    return next_.begin(layout);
+  }
+  Status rows(std::span<const double> values) override {
+    decoded_.rows += values.size() / decoded_.names.size();
+    auto status = watch();
+    return status ? next_.rows(values) : status;
+  }
+  Status column(std::size_t index, std::span<const double> values) override {
+    decoded_.rows += index == 0 ? values.size() : 0;
+    auto status = watch();
+    return status ? next_.column(index, values) : status;
+  }
+  void note(std::string sentence) override {
+    decoded_.notes.push_back(sentence);
+    next_.note(std::move(sentence));
+  }
+  [[nodiscard]] Decoded& decoded() { return decoded_; }
+
+ private:
+  Status watch() {
+    if (control_.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
+    }
+    control_.report("decode", std::min(source_.fraction(), 0.99));
+    return {};
+  }
+
+  ColumnSink& next_;
+  const ByteSource& source_;
+  const RunControl& control_;
+  Decoded decoded_;
+};
+
+const Format* recognise(std::string_view head) {
+  const Format* best = nullptr;
+  int score = 0;
+  for (const Format* const format : all_formats()) {
+    const int sure = format->sniff(head);
+    if (sure > score) {
+      best = format;
+      score = sure;
+    }
+  }
+  return best;
+}
+
+/// The column file as a sink.
+class FileSink final : public ColumnSink {
+ public:
+  explicit FileSink(std::filesystem::path path) : path_(std::move(path)) {}
+
+  Status begin(const ColumnLayout& layout) override {
+    auto writer = ColumnFileWriter::create(path_, layout.names);
+    if (!writer) {
+      return fail(writer.error());
+    }
+    writer_.emplace(std::move(*writer));
+    return {};
+  }
+  Status rows(std::span<const double> values) override { return writer_->append_rows(values); }
+  Status column(std::size_t index, std::span<const double> values) override {
+    return writer_->append_column(index, values);
+  }
+  void note(std::string) override {}
+  Result<std::size_t> finish() { return writer_->finish(); }
+
+ private:
+  std::filesystem::path path_;
+  std::optional<ColumnFileWriter> writer_;
+};
+
+}  // namespace
+
+Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& sink, const DecodeLimits& limits,
+                              const RunControl& control) {
+  ByteSource source(std::move(reader));
+  auto head = source.view(8);
+  if (!head) {
+    return fail(head.error());
+  }
+  if (head->empty()) {
+    return fail(ErrorCode::EmptyInput, "The file is empty.");
+  }
+  const Compression compression = sniff_compression(*head);
+  if (compression != Compression::None) {
+    auto plain = make_decompressor(compression, std::move(source), limits);
+    if (!plain) {
+      return fail(plain.error());
+    }
+    source = ByteSource(std::move(*plain));
+  }
+  head = source.view(kSniffBytes);
+  if (!head) {
+    return fail(head.error());
+  }
+  if (head->empty()) {
+    return fail(ErrorCode::EmptyInput, "The " + std::string(name_of(compression)) + " file holds no bytes.");
+  }
+  const std::string_view seen = head->substr(0, kSniffBytes);
+  const Format* const format = recognise(seen);
+  if (format == nullptr) {
+    const std::string looks = describe_unknown(seen);
+    return fail(ErrorCode::UnsupportedFormat, "This looks like " + looks + ".", {{"looks_like", looks}});
+  }
+  WatchingSink watching(sink, source, control);
+  if (auto status = format->decode(source, limits, watching, control); !status) {
+    return fail(status.error());
+  }
+  watching.decoded().format = format->name;
+  watching.decoded().compression = compression;
+  control.report("decode", 1.0);
+  return std::move(watching.decoded());
+}
+
+Result<Decoded> decode_file(const std::filesystem::path& input, const std::filesystem::path& output,
+                            const DecodeLimits& limits, const RunControl& control) {
+  auto reader = open_file_reader(input);
+  if (!reader) {
+    return fail(reader.error());
+  }
+  FileSink sink(output);
+  auto decoded = decode_stream(std::move(*reader), sink, limits, control);
+  if (!decoded) {
+    return decoded;
+  }
+  auto rows = sink.finish();
+  if (!rows) {
+    return fail(rows.error());
+  }
+  return decoded;
+}
+
+}  // namespace driftlab

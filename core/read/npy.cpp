@@ -1,0 +1,164 @@
+/// NumPy .npy, versions 1 to 3: float32 or float64 of either byte order, 1-D or samples x channels, C or Fortran order.
+/// Source: numpy/lib/format.py, "Format Version 1.0" to "3.0" of the NumPy manual (NEP 1).
+#include "core/read/formats.hpp"
+#include "core/read/npy_header.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace driftlab::formats {
+namespace {
+
+constexpr std::size_t kBatchBytes = std::size_t{1} << 17;
+
+template <class Word>
+Word byte_swapped(Word word) {
+  Word swapped = 0;
+  for (std::size_t i = 0; i < sizeof word; ++i) {
+    swapped = static_cast<Word>(swapped << 8U) | static_cast<Word>(word & 0xFFU);
+    word = static_cast<Word>(word >> 8U);
+  }
+  return swapped;
+}
+
+/// `count` numbers at `bytes` (any alignment) as doubles. Returns whether all are finite.
+template <class Float, class Word>
+bool convert(const char* bytes, std::size_t count, bool swap, double* into) {
+  bool finite = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    Word word = 0;
+    std::memcpy(&word, bytes + i * sizeof word, sizeof word);
+    const auto value = static_cast<double>(std::bit_cast<Float>(swap ? byte_swapped(word) : word));
+    finite = finite && std::isfinite(value);
+    into[i] = value;
+  }
+  return finite;
+}
+
+class NpyDecoder {
+ public:
+  NpyDecoder(ByteSource& source, ColumnSink& sink, const RunControl& control, const NpyHeader& header)
+      : source_(source), sink_(sink), control_(control), header_(header), total_(header.rows * header.columns) {}
+
+  Status run();
+
+ private:
+  Status deliver(std::span<const double> values);
+  [[nodiscard]] Status non_finite(std::span<const double> values) const;
+  [[nodiscard]] Status ends_early(std::size_t left_over) const;
+
+  ByteSource& source_;
+  ColumnSink& sink_;
+  const RunControl& control_;
+  const NpyHeader& header_;
+  std::uint64_t total_;      ///< numbers declared
+  std::uint64_t taken_ = 0;  ///< numbers delivered
+};
+
+Status NpyDecoder::run() {
+  // Whole rows in C order, so that every batch is a block of rows.
+  const std::size_t unit = header_.fortran_order ? 1 : header_.columns;
+  std::vector<double> batch(std::max<std::size_t>(kBatchBytes / header_.item_bytes / unit, 1) * unit);
+  while (taken_ < total_) {
+    if (control_.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
+    }
+    auto view = source_.view(unit * header_.item_bytes);
+    if (!view) {
+      return fail(view.error());
+    }
+    if (view->size() < unit * header_.item_bytes) {
+      return ends_early(view->size());
+    }
+    const std::uint64_t left = total_ - taken_;
+    std::size_t count = std::min<std::uint64_t>({view->size() / header_.item_bytes, batch.size(), left});
+    count -= count % unit;
+    const bool finite = header_.item_bytes == 8
+                            ? convert<double, std::uint64_t>(view->data(), count, header_.swap, batch.data())
+                            : convert<float, std::uint32_t>(view->data(), count, header_.swap, batch.data());
+    const std::span<const double> values(batch.data(), count);
+    if (!finite) {
+      return non_finite(values);
+    }
+    source_.consume(count * header_.item_bytes);
+    if (auto status = deliver(values); !status) {
+      return status;
+    }
+  }
+  auto rest = source_.view();
+  if (!rest) {
+    return fail(rest.error());
+  }
+  if (!rest->empty()) {
+    return fail(ErrorCode::ShapeMismatch, "The header declares " + header_.shape_text() + " numbers of " +
+                                              std::to_string(header_.item_bytes) +
+                                              " bytes, but the file holds more bytes than that.");
+  }
+  return {};
+}
+
+Status NpyDecoder::deliver(std::span<const double> values) {
+  if (!header_.fortran_order) {
+    taken_ += values.size();
+    return sink_.rows(values);
+  }
+  while (!values.empty()) {
+    const auto column = static_cast<std::size_t>(taken_ / header_.rows);
+    const std::size_t count = std::min<std::uint64_t>(values.size(), header_.rows - taken_ % header_.rows);
+    if (auto status = sink_.column(column, values.first(count)); !status) {
+      return status;
+    }
+    taken_ += count;
+    values = values.subspan(count);
+  }
+  return {};
+}
+
+Status NpyDecoder::non_finite(std::span<const double> values) const {
+  const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  const std::uint64_t index = taken_ + static_cast<std::uint64_t>(bad - values.begin());
+  const std::uint64_t row = header_.fortran_order ? index % header_.rows : index / header_.columns;
+  const std::uint64_t column = header_.fortran_order ? index / header_.rows : index % header_.columns;
+  return fail(ErrorCode::NonFinite,
+              "Sample " + std::to_string(row + 1) + " of column '" + std::to_string(column) + "' is " +
+                  (std::isnan(*bad) ? "NaN." : "infinite."),
+              {{"row", std::to_string(row + 1)}, {"column", std::to_string(column)}});
+}
+
+Status NpyDecoder::ends_early(std::size_t left_over) const {
+  const std::uint64_t held = taken_ * header_.item_bytes + left_over;
+  return fail(
+      ErrorCode::Truncated,
+      "The header declares " + header_.shape_text() + " numbers of " + std::to_string(header_.item_bytes) +
+          " bytes, but only " + std::to_string(held) +
+          " bytes follow it: the file is cut short, or its header is wrong.",
+      {{"row", std::to_string(header_.fortran_order ? taken_ % header_.rows + 1 : taken_ / header_.columns + 1)}});
+}
+
+int sniff(std::string_view head) { return head.starts_with("\x93NUMPY") ? 100 : 0; }
+
+Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {
+  auto header = read_npy_header(source, limits);
+  if (!header) {
+    return fail(header.error());
+  }
+  ColumnLayout layout;
+  for (std::size_t i = 0; i < header->columns; ++i) {
+    layout.names.push_back(std::to_string(i));
+  }
+  if (auto status = sink.begin(layout); !status) {
+    return status;
+  }
+  return NpyDecoder(source, sink, control, *header).run();
+}
+
+}  // namespace
+
+const Format kNpy{"npy", "NumPy array of float32 or float64, one- or two-dimensional", sniff, decode};
+
+}  // namespace driftlab::formats

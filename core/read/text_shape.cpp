@@ -1,0 +1,230 @@
+#include "core/read/text_shape.hpp"
+
+#include "core/read/decimal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace driftlab::text {
+namespace {
+
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7F;
+}
+
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = rest.find('\n');
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  return trim(line);
+}
+
+/// The next line that is neither blank nor a comment; empty at the end.
+std::string_view take_content(std::string_view& rest) {
+  while (!rest.empty()) {
+    const std::string_view line = take_line(rest);
+    if (!line.empty() && line.front() != '#') {
+      return line;
+    }
+  }
+  return {};
+}
+
+std::size_t count_unquoted(std::string_view line, char wanted) {
+  std::size_t count = 0;
+  bool quoted = false;
+  for (const char c : line) {
+    quoted = quoted != (c == '"');
+    count += !quoted && c == wanted ? 1 : 0;
+  }
+  return count;
+}
+
+/// True if `line`, cut at `separator`, is numbers only, written with a decimal comma.
+bool is_decimal_comma_row(std::string_view line, char separator) {
+  while (true) {
+    const std::size_t cut = line.find(separator);
+    std::string cell(trim(line.substr(0, cut)));
+    std::replace(cell.begin(), cell.end(), ',', '.');
+    if (!is_number(cell)) {
+      return false;
+    }
+    if (cut == std::string_view::npos) {
+      return true;
+    }
+    line.remove_prefix(cut + 1);
+  }
+}
+
+bool separates(char separator, std::string_view line) {
+  return count_unquoted(line, separator) > 0 &&
+         (count_unquoted(line, ',') == 0 || is_decimal_comma_row(line, separator));
+}
+
+/// Numbers with blanks between them, at least `least`.
+bool is_spaced_numbers(std::string_view line, std::size_t least) {
+  std::size_t count = 0;
+  line = trim(line);
+  while (!line.empty()) {
+    const std::size_t cut = std::min(line.find_first_of(" \t"), line.size());
+    if (!is_number(line.substr(0, cut))) {
+      return false;
+    }
+    ++count;
+    line = trim(line.substr(cut));
+  }
+  return count >= least;
+}
+
+}  // namespace
+
+Shape shape_of(std::string_view head) {
+  if (head.starts_with(kByteOrderMark)) {
+    head.remove_prefix(kByteOrderMark.size());
+  }
+  const std::string_view first = take_content(head);
+  if (std::any_of(first.begin(), first.end(), is_control)) {
+    return Shape::NotText;
+  }
+  if (first.empty() || first.front() == '<' || first.front() == '{' || first.front() == '[') {
+    return Shape::NotATable;
+  }
+  if (separates(';', first)) {
+    return Shape::Semicolons;
+  }
+  if (separates('\t', first)) {
+    return Shape::Tabs;
+  }
+  if (count_unquoted(first, ',') > 0) {
+    return Shape::Commas;
+  }
+  const std::string_view second = take_content(head);
+  if (is_spaced_numbers(first, 2) || is_spaced_numbers(second, 2)) {
+    return Shape::Spaces;
+  }
+  constexpr std::string_view kStartsNumber = "+-.0123456789nNiI\"";
+  const bool named = first.size() <= 256 && (second.empty() ? first.find(' ') == std::string_view::npos
+                                                            : kStartsNumber.find(second.front()) != kStartsNumber.npos);
+  return is_number(first) || named ? Shape::SingleColumn : Shape::NotATable;
+}
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
+}
+
+bool is_non_finite_word(std::string_view text) {
+  if (!text.empty() && (text.front() == '+' || text.front() == '-')) {
+    text.remove_prefix(1);
+  }
+  constexpr std::array<std::string_view, 3> kWords{"nan", "inf", "infinity"};
+  return std::any_of(kWords.begin(), kWords.end(), [text](std::string_view word) {
+    return std::equal(word.begin(), word.end(), text.begin(), text.end(),
+                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b); });
+  });
+}
+
+bool is_number(std::string_view text) {
+  double value = 0.0;
+  const std::string terminated(text);
+  return decimal::parse(terminated.c_str(), value) == terminated.c_str() + terminated.size() ||
+         is_non_finite_word(text);
+}
+
+std::string excerpt(std::string_view cell) {
+  constexpr std::size_t kMost = 32;
+  std::string shown = "'";
+  for (const char c : cell.substr(0, kMost)) {
+    shown += c >= 0x20 && c < 0x7F ? c : '?';
+  }
+  return shown + (cell.size() > kMost ? "...'" : "'");
+}
+
+namespace {
+
+/// Bytes of the well-formed UTF-8 sequence at the front of `text`, 0 if there is none (Unicode 15, table 3-7).
+std::size_t utf8_length(std::string_view text) {
+  const auto at = [text](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const unsigned lead = at(0);
+  if (lead < 0x80) {
+    return 1;
+  }
+  const std::size_t length = lead >= 0xC2 && lead <= 0xDF   ? 2
+                             : lead >= 0xE0 && lead <= 0xEF ? 3
+                             : lead >= 0xF0 && lead <= 0xF4 ? 4
+                                                            : 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((at(i) & 0xC0U) != 0x80) {
+      return 0;
+    }
+  }
+  const bool overlong = (lead == 0xE0 && at(1) < 0xA0) || (lead == 0xF0 && at(1) < 0x90);
+  const bool surrogate_or_beyond = (lead == 0xED && at(1) > 0x9F) || (lead == 0xF4 && at(1) > 0x8F);
+  return overlong || surrogate_or_beyond ? 0 : length;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) {
+      return false;
+    }
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string to_utf8(std::string_view text) {
+  if (is_utf8(text)) {
+    return std::string(text);
+  }
+  std::string converted;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      converted += c;
+    } else {
+      converted += static_cast<char>(0xC0U | (byte >> 6U));
+      converted += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return converted;
+}
+
+std::vector<std::string> split_fields(std::string_view line) {
+  std::vector<std::string> fields;
+  std::size_t i = 0;
+  while (true) {
+    while (i < line.size() && (line[i] == ' ' || line[i] == '\t')) {
+      ++i;
+    }
+    std::string field;
+    if (i < line.size() && line[i] == '"') {
+      for (++i; i < line.size(); ++i) {
+        if (line[i] == '"' && (i + 1 == line.size() || line[i + 1] != '"')) {
+          ++i;
+          break;
+        }
+        i += line[i] == '"' ? 1 : 0;  // a doubled quote is one
+        field += line[i];
+      }
+    }
+    const std::size_t comma = std::min(line.find(',', i), line.size());
+    field += trim(line.substr(i, comma - i));
+    fields.push_back(std::move(field));
+    if (comma == line.size()) {
+      return fields;
+    }
+    i = comma + 1;
+  }
+}
+
+}  // namespace driftlab::text

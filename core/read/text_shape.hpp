@@ -1,0 +1,42 @@
+#pragma once
+/// What a text looks like from its first lines: which separator, which line end. Internal to core/read.
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::text {
+
+enum class Shape {
+  NotText,       ///< control characters in the first lines
+  NotATable,     ///< words
+  Commas,        ///< a table separated by commas
+  SingleColumn,  ///< one number a line, with or without a name above
+  Semicolons,
+  Tabs,
+  Spaces,
+};
+
+/// The shape of the text that starts with `head`; comment lines (#), blank lines and a byte-order mark are skipped.
+[[nodiscard]] Shape shape_of(std::string_view head);
+
+/// `text` without spaces, tabs and carriage returns at both ends.
+[[nodiscard]] std::string_view trim(std::string_view text);
+
+/// True if all of `text` is one number, `nan` and `inf` included.
+[[nodiscard]] bool is_number(std::string_view text);
+
+/// True for nan, inf, infinity with or without sign, in any case.
+[[nodiscard]] bool is_non_finite_word(std::string_view text);
+
+/// A few characters of a cell for an error message: printable ASCII, at most 32 of them, in quotes.
+[[nodiscard]] std::string excerpt(std::string_view cell);
+
+/// `text` as UTF-8: unchanged if it is, else every byte read as ISO 8859-1.
+[[nodiscard]] std::string to_utf8(std::string_view text);
+
+/// The fields of one comma-separated line (RFC 4180 without line breaks inside quotes), trimmed and unquoted.
+[[nodiscard]] std::vector<std::string> split_fields(std::string_view line);
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+}  // namespace driftlab::text

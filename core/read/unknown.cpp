@@ -1,0 +1,104 @@
+#include "core/read/format.hpp"
+#include "core/read/text_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace driftlab {
+namespace {
+
+using namespace std::string_view_literals;
+
+/// Bytes at a place that give a format away, and what to call it.
+struct Signature {
+  std::size_t offset;
+  std::string_view magic;
+  std::string_view name;
+};
+
+constexpr std::array kSignatures{
+    Signature{0, "MATLAB 5.0 MAT-file"sv, "a MATLAB 5 file; save the samples as CSV or .npy"},
+    Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save the samples as CSV or .npy"},
+    Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
+    Signature{0, "ULog\x01\x12\x35"sv, "a PX4 ULog flight log"},
+    Signature{0, "#ROSBAG V"sv, "a ROS bag"},
+    Signature{0, "\x89MCAP0\r\n"sv, "an MCAP file"},
+    Signature{0, "SQLite format 3\0"sv, "an SQLite database (a ROS 2 bag is one)"},
+    Signature{0, "%PDF"sv, "a PDF document"},
+    Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image"},
+    Signature{0, "\xff\xd8\xff"sv, "a JPEG image"},
+    Signature{0, "GIF8"sv, "a GIF image"},
+    Signature{0, "BZh"sv, "a bzip2 file; use gzip, xz or zstd"},
+    Signature{0, "7z\xbc\xaf\x27\x1c"sv, "a 7-Zip archive"},
+    Signature{0, "Rar!\x1a\x07"sv, "a RAR archive"},
+    Signature{0, "\x04\x22\x4d\x18"sv, "an LZ4 file; use gzip, xz or zstd"},
+    Signature{257, "ustar"sv, "a tar archive; send its files one by one"},
+    Signature{0, "PAR1"sv, "a Parquet file"},
+    Signature{0, "ARROW1"sv, "an Arrow (Feather) file"},
+    Signature{0, "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"sv, "an old Microsoft Office file; save the sheet as CSV"},
+    Signature{0,
+              "\x7f"
+              "ELF"sv,
+              "a program"},
+    Signature{0, "RIFF"sv, "a RIFF file (WAV or AVI)"},
+    Signature{0, "MD\xfc\x03"sv, "an Axivity CWA file"},
+    Signature{0, "\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
+    Signature{0, "\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
+};
+
+std::string describe_zip(std::string_view head) {
+  const std::string_view entry = head.substr(0, 512);
+  if (entry.find(".npy") != std::string_view::npos) {
+    return "a NumPy .npz archive; send its arrays as .npy";
+  }
+  if (entry.find("[Content_Types].xml") != std::string_view::npos) {
+    return "a Microsoft Office file; save the sheet as CSV";
+  }
+  return "a ZIP archive; send its files one by one";
+}
+
+std::string describe_text(std::string_view head) {
+  const std::string_view start = text::trim(head.substr(std::min(head.find_first_not_of(" \t\r\n"), head.size())));
+  if (start.starts_with("<!DOCTYPE html") || start.starts_with("<!doctype html") || start.starts_with("<html")) {
+    return "an HTML page";
+  }
+  if (start.starts_with("<")) {
+    return "an XML document";
+  }
+  if (start.starts_with("{") || start.starts_with("[")) {
+    return "a JSON document";
+  }
+  switch (text::shape_of(head)) {
+    case text::Shape::Semicolons:
+      return "semicolon-separated text; use commas between columns and a decimal point";
+    case text::Shape::Tabs:
+      return "tab-separated text; use commas between columns";
+    case text::Shape::Spaces:
+      return "space-separated text; use commas between columns";
+    case text::Shape::NotText:
+      return "binary data";
+    default:
+      return "text that is not a table of numbers";
+  }
+}
+
+}  // namespace
+
+std::string describe_unknown(std::string_view head) {
+  for (const Signature& signature : kSignatures) {
+    if (head.size() >= signature.offset && head.substr(signature.offset).starts_with(signature.magic)) {
+      return std::string(signature.name);
+    }
+  }
+  if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) {
+    return describe_zip(head);
+  }
+  if (const Compression nested = sniff_compression(head); nested != Compression::None) {
+    return "a " + std::string(name_of(nested)) + " file inside a compressed file; compress once";
+  }
+  const std::string_view sample = head.substr(0, 512);
+  return sample.find('\0') != std::string_view::npos ? "binary data" : describe_text(head);
+}
+
+}  // namespace driftlab

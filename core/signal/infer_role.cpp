@@ -1,0 +1,152 @@
+#include "core/signal/infer_role.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+struct Stem {
+  std::string_view text;
+  Quantity quantity;
+};
+
+constexpr std::array kStems{
+    Stem{"g", Quantity::AngularRate},
+    Stem{"gyr", Quantity::AngularRate},
+    Stem{"gyro", Quantity::AngularRate},
+    Stem{"gyroscope", Quantity::AngularRate},
+    Stem{"w", Quantity::AngularRate},
+    Stem{"omega", Quantity::AngularRate},
+    Stem{"rate", Quantity::AngularRate},
+    Stem{"angularrate", Quantity::AngularRate},
+    Stem{"angularvelocity", Quantity::AngularRate},
+    Stem{"a", Quantity::SpecificForce},
+    Stem{"acc", Quantity::SpecificForce},
+    Stem{"accel", Quantity::SpecificForce},
+    Stem{"accelerometer", Quantity::SpecificForce},
+    Stem{"acceleration", Quantity::SpecificForce},
+    Stem{"f", Quantity::SpecificForce},
+    Stem{"specificforce", Quantity::SpecificForce},
+    Stem{"m", Quantity::MagneticField},
+    Stem{"mag", Quantity::MagneticField},
+    Stem{"magnetometer", Quantity::MagneticField},
+    Stem{"magneticfield", Quantity::MagneticField},
+};
+
+constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  return begin == std::string_view::npos ? std::string_view{}
+                                         : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// Cuts a bracketed end off `name` and returns what was inside; empty if there is none.
+std::string_view take_bracket(std::string_view& name) {
+  name = trim(name);
+  if (name.size() < 2 || (name.back() != ')' && name.back() != ']')) {
+    return {};
+  }
+  const std::size_t open = name.rfind(name.back() == ')' ? '(' : '[');
+  if (open == std::string_view::npos) {
+    return {};
+  }
+  const std::string_view inside = name.substr(open + 1, name.size() - open - 2);
+  name = trim(name.substr(0, open));
+  return trim(inside);
+}
+
+/// Letters and digits only, in lower case: "Gyroscope x" -> "gyroscopex".
+std::string squash(std::string_view name) {
+  std::string squashed;
+  for (const char c : name) {
+    if (c >= 'A' && c <= 'Z') {
+      squashed += static_cast<char>(c + ('a' - 'A'));
+    } else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+      squashed += c;
+    }
+  }
+  return squashed;
+}
+
+bool is_axis_letter(char c) { return c == 'x' || c == 'y' || c == 'z'; }
+
+std::optional<Unit> known_unit(std::string_view symbol) {
+  if (symbol.empty()) {
+    return std::nullopt;
+  }
+  auto unit = parse_unit(symbol);
+  return unit ? std::optional(std::move(*unit)) : std::nullopt;
+}
+
+bool is_time_name(std::string_view squashed) {
+  return std::find(kTimeNames.begin(), kTimeNames.end(), squashed) != kTimeNames.end();
+}
+
+/// `time_ms`, `t_s`: the unit is the last word.
+std::optional<ColumnRole> infer_time(std::string_view name, const std::optional<Unit>& bracket) {
+  const std::string squashed = squash(name);
+  if (is_time_name(squashed)) {
+    return ColumnRole{Quantity::Time, "", bracket};
+  }
+  if (squashed == "secondselapsed") {
+    return ColumnRole{Quantity::Time, "", known_unit("s")};
+  }
+  const std::size_t cut = name.find_last_of("_ ");
+  if (cut == std::string_view::npos || !is_time_name(squash(name.substr(0, cut)))) {
+    return std::nullopt;
+  }
+  const auto unit = known_unit(name.substr(cut + 1));
+  if (!unit || unit->dimension != Dimension::Time) {
+    return std::nullopt;
+  }
+  return ColumnRole{Quantity::Time, "", unit};
+}
+
+Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {
+  if (stem.empty() && unit) {
+    switch (unit->dimension) {
+      case Dimension::AngularRate:
+        return Quantity::AngularRate;
+      case Dimension::SpecificForce:
+        return Quantity::SpecificForce;
+      case Dimension::MagneticField:
+        return Quantity::MagneticField;
+      default:
+        return Quantity::Unspecified;
+    }
+  }
+  const auto found =
+      std::find_if(kStems.begin(), kStems.end(), [stem](const Stem& known) { return known.text == stem; });
+  return found == kStems.end() ? Quantity::Unspecified : found->quantity;
+}
+
+}  // namespace
+
+ColumnRole infer_role(std::string_view name) {
+  const std::optional<Unit> unit = known_unit(take_bracket(name));
+  if (auto time = infer_time(name, unit)) {
+    return *time;
+  }
+  const std::string squashed = squash(name);
+  if (squashed == "temp" || squashed == "temperature") {
+    return {Quantity::Temperature, "", unit};
+  }
+  if (!squashed.empty()) {
+    const std::string_view whole = squashed;
+    const std::array<std::pair<char, std::string_view>, 2> splits{
+        std::pair{whole.back(), whole.substr(0, whole.size() - 1)}, std::pair{whole.front(), whole.substr(1)}};
+    for (const auto& [axis, stem] : splits) {
+      const Quantity quantity = is_axis_letter(axis) ? quantity_of(stem, unit) : Quantity::Unspecified;
+      if (quantity != Quantity::Unspecified) {
+        return {quantity, std::string(1, axis), unit};
+      }
+    }
+  }
+  return {Quantity::Unspecified, "", std::nullopt};
+}
+
+}  // namespace driftlab

@@ -1,0 +1,123 @@
+#include "core/signal/recording.hpp"
+
+#include "core/signal/infer_role.hpp"
+#include "core/signal/number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+bool has_no_axis(Quantity quantity) { return quantity == Quantity::Time || quantity == Quantity::Temperature; }
+
+std::string channel_text(const ColumnRole& role) {
+  return std::string(name_of(role.quantity)) + (role.axis.empty() ? "" : " " + role.axis);
+}
+
+tl::unexpected<Error> claimed_twice(const std::string& first, const std::string& second, const ColumnRole& role) {
+  return fail(ErrorCode::DuplicateColumn,
+              "Columns '" + first + "' and '" + second + "' both claim to be " + channel_text(role) +
+                  "; state in `columns` which one is.",
+              {{"column", second}});
+}
+
+/// No two columns may be the same channel; unspecified columns without an axis are each their own.
+Status check_distinct(const ColumnNames& names, const std::vector<std::optional<ColumnRole>>& roles) {
+  std::map<std::pair<Quantity, std::string>, std::size_t> owner;
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    if (!roles[i] || (roles[i]->quantity == Quantity::Unspecified && roles[i]->axis.empty())) {
+      continue;
+    }
+    const auto [seen, fresh] = owner.insert({{roles[i]->quantity, roles[i]->axis}, i});
+    if (!fresh) {
+      return claimed_twice(names[seen->second], names[i], *roles[i]);
+    }
+  }
+  return {};
+}
+
+Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec& spec, const ColumnNames& names) {
+  std::vector<std::optional<ColumnRole>> roles(names.size());
+  for (const auto& [column, role] : spec.columns) {
+    const auto found = std::find(names.begin(), names.end(), column);
+    if (found == names.end()) {
+      std::string known;
+      for (std::size_t i = 0; i < names.size() && i < 20; ++i) {
+        known += (known.empty() ? "" : ", ") + names[i];
+      }
+      return fail(ErrorCode::UnknownColumn,
+                  "The file has no column '" + column + "'; it has " + known + (names.size() > 20 ? ", ..." : "") + ".",
+                  {{"column", column}});
+    }
+    if (auto status = check_role(column, role); !status) {
+      return fail(status.error());
+    }
+    roles[static_cast<std::size_t>(found - names.begin())] = role;
+  }
+  return roles;
+}
+
+/// Of several columns that look like time, the first whose unit is stated is the time column, else the first.
+void keep_one_time_column(std::vector<std::optional<ColumnRole>>& roles) {
+  const auto is_time = [](const std::optional<ColumnRole>& role) { return role && role->quantity == Quantity::Time; };
+  auto keep = std::find_if(roles.begin(), roles.end(), [&](const auto& role) { return is_time(role) && role->unit; });
+  if (keep == roles.end()) {
+    keep = std::find_if(roles.begin(), roles.end(), is_time);
+  }
+  for (auto role = roles.begin(); role != roles.end(); ++role) {
+    if (role != keep && is_time(*role)) {
+      role->reset();
+    }
+  }
+}
+
+}  // namespace
+
+Status check_role(const std::string& column, const ColumnRole& role) {
+  const std::string quantity(name_of(role.quantity));
+  const bool axis_fits = role.axis.empty() ? has_no_axis(role.quantity) || role.quantity == Quantity::Unspecified
+                                           : is_axis_of(role.axis, role.quantity);
+  if (!axis_fits) {
+    const std::string what = has_no_axis(role.quantity) ? "takes no axis"
+                             : role.axis.empty()        ? "needs an axis"
+                                                        : "has no axis '" + role.axis + "'";
+    return fail(ErrorCode::InvalidArgument, "Column '" + column + "': " + quantity + " " + what + ".",
+                {{"column", column}, {"parameter", "axis"}});
+  }
+  if (role.unit && !measures(*role.unit, role.quantity)) {
+    return fail(ErrorCode::UnitMismatch,
+                "Column '" + column + "': the unit " + role.unit->symbol + " does not measure " + quantity + ".",
+                {{"column", column}, {"unit", role.unit->symbol}});
+  }
+  return {};
+}
+
+Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec, const ColumnNames& names) {
+  std::vector<std::optional<ColumnRole>> roles;
+  if (spec.columns.empty()) {
+    for (const std::string& name : names) {
+      roles.emplace_back(infer_role(name));
+      if (auto status = check_role(name, *roles.back()); !status) {
+        return fail(status.error());
+      }
+    }
+    keep_one_time_column(roles);
+  } else {
+    auto stated = stated_roles(spec, names);
+    if (!stated) {
+      return stated;
+    }
+    roles = std::move(*stated);
+  }
+  if (auto status = check_distinct(names, roles); !status) {
+    return fail(status.error());
+  }
+  return roles;
+}
+
+}  // namespace driftlab
