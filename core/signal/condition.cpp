@@ -1,6 +1,7 @@
 #include "core/signal/condition.hpp"
 
 #include "core/signal/number.hpp"
+#include "core/signal/text.hpp"
 
 #include <array>
 #include <cmath>
@@ -135,16 +136,7 @@ Result<Condition> make_condition(const WrittenCondition& written) {
 }
 
 Result<Condition> parse_condition(std::string_view text) {
-  std::vector<std::string> parts;
-  std::size_t start = 0;
-  while (true) {
-    const std::size_t colon = text.find(':', start);
-    parts.emplace_back(text.substr(start, colon - start));
-    if (colon == std::string_view::npos) {
-      break;
-    }
-    start = colon + 1;
-  }
+  const std::vector<std::string_view> parts = split(text, ':');
   WrittenCondition written;
   written.kind = parts[0];
   auto kind = parse_condition_kind(written.kind);
@@ -167,7 +159,7 @@ Result<Condition> parse_condition(std::string_view text) {
   if (parts.size() > 2) {
     written.value = parse_double(parts[2]);
     if (!written.value) {
-      return misfit(*kind, "needs a number as value, not '" + parts[2] + "'", "value");
+      return misfit(*kind, "needs a number as value, not '" + std::string(parts[2]) + "'", "value");
     }
   }
   if (parts.size() > 3) {

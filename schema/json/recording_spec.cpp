@@ -1,6 +1,6 @@
 #include "schema/json/recording_spec.hpp"
 
-#include "core/signal/number.hpp"
+#include "core/signal/text.hpp"
 
 namespace driftlab {
 namespace {
@@ -157,11 +157,7 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
 
 Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
   std::map<std::string, ColumnRole> columns;
-  std::size_t start = 0;
-  while (start <= text.size()) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    const std::string_view entry = text.substr(start, comma - start);
-    start = comma + 1;
+  for (const std::string_view entry : split(text, ',')) {
     const std::size_t equals = entry.find('=');
     if (entry.empty() || equals == std::string_view::npos || equals == 0) {
       return fail(ErrorCode::InvalidArgument,
@@ -171,20 +167,20 @@ Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
                   {{"parameter", "columns"}});
     }
     const std::string name(entry.substr(0, equals));
-    std::string_view rest = entry.substr(equals + 1);
-    const std::size_t first = std::min(rest.find(':'), rest.size());
+    const std::vector<std::string_view> parts = split(entry.substr(equals + 1), ':');
     ColumnRole role;
     auto named = [&](Error error) { return fail(std::move(error).with("column", name)); };
-    auto quantity = parse_quantity(rest.substr(0, first));
+    if (parts.size() > 3) {
+      return named({ErrorCode::InvalidArgument, "The column '" + name + "' has too many parts.", {}});
+    }
+    auto quantity = parse_quantity(parts[0]);
     if (!quantity) {
       return named(quantity.error());
     }
     role.quantity = *quantity;
-    rest = first < rest.size() ? rest.substr(first + 1) : std::string_view{};
-    const std::size_t second = std::min(rest.find(':'), rest.size());
-    role.axis = rest.substr(0, second);
-    if (second < rest.size()) {
-      auto unit = parse_unit(rest.substr(second + 1));
+    role.axis = parts.size() > 1 ? parts[1] : std::string_view{};
+    if (parts.size() > 2) {
+      auto unit = parse_unit(parts[2]);
       if (!unit) {
         return named(unit.error());
       }

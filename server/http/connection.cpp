@@ -1,0 +1,432 @@
+#include "server/http/connection.hpp"
+
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace driftlab::server {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr std::size_t kPiece = 256 * 1024;
+constexpr double kSlowestBytesPerSecond = 64.0 * 1024.0;
+constexpr auto kBodyGrace = 30s;
+constexpr auto kLongestWait = 60s;
+
+auto into(boost::system::error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
+
+HeadView head_of(const http::request<http::buffer_body>& message) {
+  HeadView head;
+  head.version = message.version();
+  head.method = {message.method_string().data(), message.method_string().size()};
+  head.target = {message.target().data(), message.target().size()};
+  for (const auto& field : message) {
+    std::string name(field.name_string());
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    head.headers.emplace_back(std::move(name), std::string(field.value()));
+  }
+  return head;
+}
+
+/// Seconds of `Prefer: wait=n` (RFC 7240), at most a minute.
+std::chrono::seconds preferred_wait(const Request& request) {
+  const auto prefer = request.header("prefer");
+  const std::size_t at = prefer ? prefer->find("wait=") : std::string_view::npos;
+  if (at == std::string_view::npos) {
+    return 0s;
+  }
+  int seconds = 0;
+  const std::string_view digits = prefer->substr(at + 5);
+  std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+  return std::clamp<std::chrono::seconds>(std::chrono::seconds(seconds), 0s, kLongestWait);
+}
+
+/// Counts an upload in for as long as it lives.
+struct UploadSlot {
+  std::atomic<std::size_t>& running;
+  explicit UploadSlot(std::atomic<std::size_t>& counter) : running(counter) { running.fetch_add(1); }
+  UploadSlot(const UploadSlot&) = delete;
+  UploadSlot& operator=(const UploadSlot&) = delete;
+  ~UploadSlot() { running.fetch_sub(1); }
+};
+
+}  // namespace
+
+Connection::Connection(asio::ip::tcp::socket socket, ConnectionShared& shared)
+    : stream_(std::move(socket)),
+      buffer_(shared.options.limits.header_bytes + kPiece),
+      shared_(shared),
+      chunk_(kPiece) {
+  boost::system::error_code error;
+  const auto peer = stream_.socket().remote_endpoint(error);
+  address_ = error ? "" : peer.address().to_string();
+}
+
+asio::awaitable<void> Connection::run() {
+  for (int served = 0; served < shared_.options.limits.requests_per_connection && !shared_.stopping; ++served) {
+    Parser parser;
+    parser.header_limit(static_cast<std::uint32_t>(shared_.options.limits.header_bytes));
+    parser.body_limit(boost::none);
+    const bool read = co_await read_header(parser);
+    if (!read) {
+      break;
+    }
+    const bool again = co_await answer(parser);
+    if (!again) {
+      break;
+    }
+  }
+  boost::system::error_code ignored;
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+}
+
+void Connection::close_if_idle() {
+  if (idle_) {
+    stream_.cancel();
+  }
+}
+
+asio::awaitable<bool> Connection::read_header(Parser& parser) {
+  boost::system::error_code error;
+  if (buffer_.size() == 0) {
+    stream_.expires_after(60s);
+    idle_ = true;
+    const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(16 * 1024), into(error));
+    idle_ = false;
+    if (error) {
+      co_return false;
+    }
+    buffer_.commit(count);
+  }
+  started_ = std::chrono::steady_clock::now();
+  route_.clear();
+  bytes_in_ = 0;
+  stream_.expires_after(10s);
+  co_await http::async_read_header(stream_, buffer_, parser, into(error));
+  if (!error) {
+    co_return true;
+  }
+  const bool gone = error == http::error::end_of_stream || error == beast::error::timeout ||
+                    error == asio::error::connection_reset || error == asio::error::operation_aborted ||
+                    error == http::error::partial_message || error == asio::error::eof;
+  if (!gone) {
+    Request request;
+    request.request_id = shared_.hooks.make_request_id();
+    Response response =
+        error == http::error::header_limit || error == http::error::buffer_overflow
+            ? problem_response(HttpFault::HeaderTooLarge, "The request header is larger than 16 KiB.")
+            : problem_response(HttpFault::BadRequest, "The request is not well-formed HTTP: " + error.message() + ".");
+    co_await send(request, std::move(response), false);
+    co_await linger();
+  }
+  co_return false;
+}
+
+asio::awaitable<bool> Connection::answer(Parser& parser) {
+  HeadView head = head_of(parser.get());
+  const bool keep_alive = parser.get().keep_alive();
+  Request request;
+  request.method = head.method;
+  request.target = head.target;
+  const GuardVerdict verdict = inspect(head, shared_.options.guard);
+  request.headers = std::move(head.headers);
+  const auto given_id = request.header("x-request-id");
+  request.request_id = given_id && is_request_id(*given_id) ? std::string(*given_id) : shared_.hooks.make_request_id();
+  wants_continue_ = verdict.expects_continue;
+
+  std::optional<Response> refusal = verdict.refusal;
+  auto target = parse_target(request.target);
+  Router::Match match;
+  if (!refusal && !target) {
+    refusal = problem_response(HttpFault::BadRequest, "The request target is malformed.");
+  }
+  if (!refusal) {
+    request.path = std::move(target->path);
+    request.query = std::move(target->query);
+    match = shared_.router.match(request.method, request.path);
+    request.parameters = std::move(match.parameters);
+    if (match.allowed.empty()) {
+      refusal = problem_response(HttpFault::NoSuchResource, "There is no resource at " + request.path + ".");
+    } else if (match.route == nullptr) {
+      refusal = problem_response(HttpFault::MethodNotAllowed, "The resource has no method " + request.method + ".");
+      std::string allow;
+      for (const std::string_view method : match.allowed) {
+        allow += (allow.empty() ? "" : ", ") + std::string(method);
+      }
+      refusal->headers.emplace_back("Allow", allow);
+    }
+  }
+  if (refusal) {
+    const bool intact = verdict.content_length == 0 && !verdict.refusal;
+    const bool sent = co_await send(request, std::move(*refusal), intact && keep_alive);
+    if (!intact) {
+      co_await linger();
+    }
+    co_return sent&& intact&& keep_alive;
+  }
+
+  route_ = match.route->pattern;
+  if (const auto* const upload = std::get_if<UploadHandler>(&match.route->handler)) {
+    co_return co_await answer_upload(parser, *upload, request) && keep_alive;
+  }
+  if (const auto* const events = std::get_if<EventHandler>(&match.route->handler)) {
+    co_return co_await answer_events(*events, request);
+  }
+  co_return co_await answer_plain(parser, *match.route, request) && keep_alive;
+}
+
+asio::awaitable<std::optional<std::size_t>> Connection::read_piece(Parser& parser) {
+  if (wants_continue_) {
+    wants_continue_ = false;
+    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+    boost::system::error_code error;
+    stream_.expires_after(60s);
+    co_await asio::async_write(stream_, asio::buffer(kContinue), into(error));
+  }
+  if (bytes_in_ == 0) {
+    body_started_ = std::chrono::steady_clock::now();
+  }
+  while (!parser.is_done()) {
+    auto& body = parser.get().body();
+    body.data = chunk_.data();
+    body.size = chunk_.size();
+    boost::system::error_code error;
+    stream_.expires_after(kBodyGrace);
+    co_await http::async_read(stream_, buffer_, parser, into(error));
+    if (error && error != http::error::need_buffer) {
+      co_return std::nullopt;
+    }
+    const std::size_t count = chunk_.size() - body.size;
+    bytes_in_ += count;
+    const auto elapsed = std::chrono::steady_clock::now() - body_started_;
+    const double seconds = std::chrono::duration<double>(elapsed).count();
+    if (elapsed > kBodyGrace && static_cast<double>(bytes_in_) < kSlowestBytesPerSecond * seconds) {
+      co_return std::nullopt;
+    }
+    if (count > 0) {
+      co_return count;
+    }
+  }
+  co_return 0;
+}
+
+asio::awaitable<bool> Connection::answer_plain(Parser& parser, const Route& route, Request& request) {
+  const auto declared = parser.content_length();
+  if (declared && *declared > shared_.options.limits.document_bytes) {
+    co_await send(request, problem_response(HttpFault::BodyTooLarge, "A document may have 1 MiB at most."), false);
+    co_await linger();
+    co_return false;
+  }
+  while (true) {
+    const auto count = co_await read_piece(parser);
+    if (!count) {
+      co_await send(request, problem_response(HttpFault::IncompleteBody, "The body ended before Content-Length."),
+                    false);
+      co_return false;
+    }
+    if (*count == 0) {
+      break;
+    }
+    request.body.append(reinterpret_cast<const char*>(chunk_.data()), *count);
+  }
+  auto work = [this, &route, &request] { return shared_.hooks.dispatch(route, request); };
+  auto outcome = co_await shared_.handlers.run(work);
+  Response response =
+      outcome ? std::move(*outcome) : problem_response(HttpFault::Busy, "Too many requests are waiting.");
+  if (!response.pending_job.empty() && preferred_wait(request) > 0s) {
+    response = co_await wait_for_job(route, request, std::move(response));
+  }
+  co_return co_await send(request, std::move(response), true);
+}
+
+asio::awaitable<Response> Connection::wait_for_job(const Route& route, const Request& request, Response response) {
+  const auto deadline = std::chrono::steady_clock::now() + preferred_wait(request);
+  const auto executor = co_await asio::this_coro::executor;
+  const auto listener = shared_.bell.listen(response.pending_job, executor);
+  while (!response.pending_job.empty() && !shared_.stopping) {
+    const auto left = deadline - std::chrono::steady_clock::now();
+    if (left <= 0s) {
+      break;
+    }
+    co_await listener->wait(std::min<std::chrono::steady_clock::duration>(left, 1s));
+    auto work = [this, &route, &request] { return shared_.hooks.dispatch(route, request); };
+    auto outcome = co_await shared_.handlers.run(work);
+    if (outcome) {
+      response = std::move(*outcome);
+    }
+  }
+  co_return response;
+}
+
+asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
+  const auto refuse = [&](Response response) -> asio::awaitable<bool> {
+    co_await send(request, std::move(response), false);
+    co_await linger();
+    co_return false;
+  };
+  if (parser.content_length().value_or(0) > shared_.options.limits.upload_bytes) {
+    co_return co_await refuse(problem_response(
+        HttpFault::BodyTooLarge,
+        "An upload may have " + std::to_string(shared_.options.limits.upload_bytes) + " bytes at most."));
+  }
+  if (shared_.uploads_running >= shared_.options.limits.concurrent_uploads) {
+    co_return co_await refuse(problem_response(HttpFault::Busy, "Too many uploads are running."));
+  }
+  const UploadSlot slot(shared_.uploads_running);
+  auto begin = [&handler, &request] { return handler(request); };
+  auto begun = co_await shared_.uploads.run(begin);
+  if (!begun || !*begun) {
+    co_return co_await refuse(begun ? problem_response(begun->error())
+                                    : problem_response(HttpFault::Busy, "Too many uploads are waiting."));
+  }
+  std::unique_ptr<UploadSession> session = std::move(**begun);
+  while (true) {
+    const auto count = co_await read_piece(parser);
+    if (!count) {
+      session.reset();
+      co_await send(
+          request,
+          problem_response(HttpFault::IncompleteBody,
+                           "The upload ended, or stalled, before Content-Length bytes had arrived; nothing was kept."),
+          false);
+      co_return false;
+    }
+    if (*count == 0) {
+      break;
+    }
+    auto append = [this, &session, size = *count] { return session->append({chunk_.data(), size}); };
+    auto appended = co_await shared_.uploads.run(append);
+    if (!appended || !*appended) {
+      session.reset();
+      co_return co_await refuse(appended ? problem_response(appended->error())
+                                         : problem_response(HttpFault::Busy, "Too many uploads are waiting."));
+    }
+  }
+  auto finish = [&session] { return session->finish(); };
+  auto finished = co_await shared_.uploads.run(finish);
+  session.reset();
+  Response response = !finished               ? problem_response(HttpFault::Busy, "Too many uploads are waiting.")
+                      : finished->has_value() ? std::move(**finished)
+                                              : problem_response(finished->error());
+  co_return co_await send(request, std::move(response), true);
+}
+
+asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, const Request& request) {
+  auto begin = [&handler, &request] { return handler(request); };
+  auto begun = co_await shared_.handlers.run(begin);
+  if (!begun || !*begun) {
+    Response refusal =
+        begun ? problem_response(begun->error()) : problem_response(HttpFault::Busy, "Too many requests.");
+    co_return co_await send(request, std::move(refusal), true);
+  }
+  const std::unique_ptr<EventSource> source = std::move(**begun);
+  const auto executor = co_await asio::this_coro::executor;
+  const auto listener = shared_.bell.listen(source->job_id(), executor);
+  std::string text =
+      "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-cache\r\nX-Accel-Buffering: no\r\n"
+      "X-Content-Type-Options: nosniff\r\nConnection: close\r\nX-Request-Id: " +
+      request.request_id + "\r\n\r\nretry: 3000\n\n";
+  auto last_sent = std::chrono::steady_clock::now();
+  bool last = request.method == "HEAD";
+  while (true) {
+    if (!last) {
+      auto look = [&source] { return source->next(); };
+      auto batch = co_await shared_.handlers.run(look);
+      if (batch && *batch) {
+        text += (*batch)->text;
+        last = (*batch)->last;
+      }
+    }
+    if (text.empty() && std::chrono::steady_clock::now() - last_sent > 15s) {
+      text = ": still here\n\n";
+    }
+    if (!text.empty()) {
+      boost::system::error_code error;
+      stream_.expires_after(60s);
+      co_await asio::async_write(stream_, asio::buffer(text), into(error));
+      if (error) {
+        break;
+      }
+      last_sent = std::chrono::steady_clock::now();
+      text.clear();
+    }
+    if (last || shared_.stopping) {
+      break;
+    }
+    co_await listener->wait(1s);
+  }
+  Response summary;
+  log(request, summary);
+  co_return false;
+}
+
+asio::awaitable<bool> Connection::send(const Request& request, Response response, bool keep_alive) {
+  shared_.hooks.complete(request, response);
+  log(request, response);
+  http::response<http::string_body> message;
+  message.version(11);
+  message.result(static_cast<unsigned>(response.status));
+  message.keep_alive(keep_alive && !shared_.stopping);
+  if (!response.body.empty() || response.status != 304) {
+    message.set(http::field::content_type, response.content_type);
+  }
+  message.set("X-Request-Id", request.request_id);
+  message.set("X-Content-Type-Options", "nosniff");
+  message.set("Content-Security-Policy", "default-src 'self'; frame-ancestors 'none'");
+  message.set("Referrer-Policy", "no-referrer");
+  if (!response.has_header("Cache-Control")) {
+    message.set(http::field::cache_control, "no-cache");
+  }
+  for (const auto& [name, value] : response.headers) {
+    message.set(name, value);
+  }
+  const std::size_t length = response.body.size();
+  if (request.method != "HEAD") {
+    message.body() = std::move(response.body);
+  }
+  if (response.status != 204 && response.status != 304) {
+    message.content_length(length);
+  }
+  http::response_serializer<http::string_body> serializer(message);
+  serializer.split(request.method == "HEAD");
+  boost::system::error_code error;
+  stream_.expires_after(60s);
+  if (request.method == "HEAD") {
+    co_await http::async_write_header(stream_, serializer, into(error));
+  } else {
+    co_await http::async_write(stream_, serializer, into(error));
+  }
+  co_return !error && message.keep_alive();
+}
+
+asio::awaitable<void> Connection::linger() {
+  boost::system::error_code error;
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  const auto until = std::chrono::steady_clock::now() + 2s;
+  while (!error && std::chrono::steady_clock::now() < until) {
+    stream_.expires_at(until);
+    co_await stream_.async_read_some(asio::buffer(chunk_), into(error));
+  }
+}
+
+void Connection::log(const Request& request, const Response& response) {
+  if (!shared_.hooks.log) {
+    return;
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_, response.body.size(), seconds,
+                     request.request_id, address_});
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,70 @@
+#pragma once
+/// One client connection as a coroutine: header, guard, route, body, answer; again until it closes.
+#include "server/http/offload.hpp"
+#include "server/http/server.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/parser.hpp>
+
+#include <atomic>
+#include <memory>
+
+namespace driftlab::server {
+
+/// What connections share. Outlives them all.
+struct ConnectionShared {
+  const HttpOptions& options;
+  const Router& router;
+  Bell& bell;
+  const HttpHooks& hooks;
+  BoundedPool& handlers;
+  BoundedPool& uploads;
+  std::atomic<bool>& stopping;
+  std::atomic<std::size_t>& uploads_running;
+};
+
+class Connection {
+ public:
+  Connection(boost::asio::ip::tcp::socket socket, ConnectionShared& shared);
+  /// Runs until the connection closes. Never throws.
+  boost::asio::awaitable<void> run();
+  /// Closes a connection that waits for its next request. On the connection's own executor.
+  void close_if_idle();
+  [[nodiscard]] boost::asio::any_io_executor executor() { return stream_.get_executor(); }
+
+ private:
+  using Parser = boost::beast::http::request_parser<boost::beast::http::buffer_body>;
+
+  /// Waits for a header. False: closed, timed out, or answered with a problem.
+  boost::asio::awaitable<bool> read_header(Parser& parser);
+  /// Answers the request whose header was read. False: the connection must close.
+  boost::asio::awaitable<bool> answer(Parser& parser);
+  boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
+  boost::asio::awaitable<bool> answer_upload(Parser& parser, const UploadHandler& handler, Request& request);
+  boost::asio::awaitable<bool> answer_events(const EventHandler& handler, const Request& request);
+  /// `Prefer: wait=n`: asks again whenever the job moves, until the answer is final or n seconds are over.
+  boost::asio::awaitable<Response> wait_for_job(const Route& route, const Request& request, Response response);
+  /// Next piece of the body into `chunk_`. Its size; 0 at the end; nothing if the client is gone or too slow.
+  boost::asio::awaitable<std::optional<std::size_t>> read_piece(Parser& parser);
+  boost::asio::awaitable<bool> send(const Request& request, Response response, bool keep_alive);
+  /// Reads on for a moment after an early answer, so that the client sees it before the connection resets.
+  boost::asio::awaitable<void> linger();
+  void log(const Request& request, const Response& response);
+
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer buffer_;
+  ConnectionShared& shared_;
+  std::string address_;
+  std::vector<std::byte> chunk_;
+  std::string route_;
+  std::uint64_t bytes_in_ = 0;
+  std::chrono::steady_clock::time_point started_;
+  std::chrono::steady_clock::time_point body_started_;
+  bool wants_continue_ = false;
+  bool idle_ = false;
+};
+
+}  // namespace driftlab::server

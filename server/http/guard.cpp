@@ -1,0 +1,88 @@
+#include "server/http/guard.hpp"
+
+#include <boost/beast/core/string.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace driftlab::server {
+namespace {
+
+std::string_view host_name(std::string_view host) {
+  if (host.starts_with('[')) {
+    return host.substr(0, std::min(host.find(']'), host.size() - 1) + 1);
+  }
+  return host.substr(0, host.find(':'));
+}
+
+bool is_sole(std::string_view name) {
+  return name == "host" || name == "content-length" || name == "content-type" || name == "authorization" ||
+         name == "transfer-encoding";
+}
+
+GuardVerdict refuse(HttpFault fault, std::string detail) {
+  GuardVerdict verdict;
+  verdict.refusal = problem_response(fault, std::move(detail));
+  return verdict;
+}
+
+}  // namespace
+
+bool is_request_id(std::string_view text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
+  });
+}
+
+GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
+  GuardVerdict verdict;
+  std::vector<std::string_view> seen;
+  std::optional<std::string_view> host;
+  for (const auto& [name, value] : head.headers) {
+    if (is_sole(name)) {
+      if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
+        return refuse(name == "host" ? HttpFault::HostNotAllowed : HttpFault::BadRequest,
+                      "The header " + name + " is given more than once.");
+      }
+      seen.push_back(name);
+    }
+    if (name == "host") {
+      host = value;
+    } else if (name == "transfer-encoding") {
+      return refuse(HttpFault::LengthRequired, "Bodies need Content-Length; Transfer-Encoding is not taken.");
+    } else if (name == "content-length") {
+      const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), verdict.content_length);
+      if (error != std::errc{} || stop != value.data() + value.size() || value.empty()) {
+        return refuse(HttpFault::BadRequest, "Content-Length must be a whole number of bytes.");
+      }
+    } else if (name == "expect") {
+      if (!boost::beast::iequals(value, "100-continue")) {
+        return refuse(HttpFault::BadRequest, "The only expectation that is met is 100-continue.");
+      }
+      verdict.expects_continue = true;
+    }
+  }
+  if (head.target.size() > limits.target_bytes) {
+    return refuse(HttpFault::TargetTooLong, "The request target is longer than 8 KiB.");
+  }
+  if (!host) {
+    return refuse(HttpFault::HostNotAllowed, "A Host header is needed.");
+  }
+  std::string name(host_name(*host));
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(limits.hosts.begin(), limits.hosts.end(), name) == limits.hosts.end()) {
+    return refuse(HttpFault::HostNotAllowed, "The daemon does not answer for the host '" + name + "'.");
+  }
+  if (head.version != 11 && verdict.content_length > 0) {
+    return refuse(HttpFault::BadRequest, "A request body needs HTTP/1.1.");
+  }
+  const bool may_have_body = head.method == "POST" || head.method == "PUT" || head.method == "PATCH";
+  if (may_have_body && std::find(seen.begin(), seen.end(), "content-length") == seen.end()) {
+    return refuse(HttpFault::LengthRequired, "The request needs Content-Length.");
+  }
+  return verdict;
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,41 @@
+#pragma once
+/// The header guard: decides from the header alone, before a byte of the body is read, whether a request may go on.
+///
+/// Beast 1.81 accepts requests that proxies and servers read differently (request smuggling): `Transfer-Encoding` of
+/// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all. It is a pure function and
+/// has a fuzz target.
+#include "server/http/problem.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace driftlab::server {
+
+struct HeadView {
+  unsigned version = 11;
+  std::string_view method;
+  std::string_view target;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< names in lower case, in order, repeats kept
+};
+
+struct GuardLimits {
+  std::size_t target_bytes = 8 * 1024;
+  std::vector<std::string> hosts;  ///< allowed names, lower case, without port
+};
+
+struct GuardVerdict {
+  std::optional<Response> refusal;  ///< a problem; the connection closes after it
+  std::uint64_t content_length = 0;
+  bool expects_continue = false;
+};
+
+[[nodiscard]] GuardVerdict inspect(const HeadView& head, const GuardLimits& limits);
+
+/// `[A-Za-z0-9._-]{1,64}`: a request id that a client may choose.
+[[nodiscard]] bool is_request_id(std::string_view text);
+
+}  // namespace driftlab::server

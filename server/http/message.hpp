@@ -1,0 +1,56 @@
+#pragma once
+/// Requests and responses as handlers see them: plain values, free of sockets.
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace driftlab::server {
+
+/// A request whose header has passed the guard (server/http/guard.hpp) and matched a route.
+struct Request {
+  std::string method;
+  std::string target;                                        ///< as sent
+  std::string path;                                          ///< decoded
+  std::vector<std::string> parameters;                       ///< values of {…} in the route, in order
+  std::vector<std::pair<std::string, std::string>> query;    ///< decoded, in order
+  std::vector<std::pair<std::string, std::string>> headers;  ///< names in lower case
+  std::string body;                                          ///< empty for uploads, which stream
+  std::string request_id;
+
+  /// First value of a header (name in lower case), or nothing.
+  [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;
+  /// First value of a query parameter, or nothing.
+  [[nodiscard]] std::optional<std::string_view> parameter(std::string_view name) const;
+};
+
+struct Response {
+  int status = 200;
+  std::string content_type = "application/json";
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::string body;
+  /// A job whose next event may change this answer: a client that sent `Prefer: wait=` gets it then.
+  std::string pending_job;
+
+  [[nodiscard]] bool has_header(std::string_view name) const;
+};
+
+/// The media type of `offered` that an Accept header likes best (RFC 9110 section 12.5.1); the first for no header;
+/// nothing if none is acceptable.
+[[nodiscard]] std::optional<std::string_view> negotiate(std::optional<std::string_view> accept,
+                                                        const std::vector<std::string_view>& offered);
+
+/// Percent-decoding of a query component (`+` is a space) or a path; nothing if malformed.
+[[nodiscard]] std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
+
+/// Splits a target into decoded path and query. Nothing if malformed. Tolerates characters such as `^` that people type
+/// unescaped.
+struct Target {
+  std::string path;
+  std::vector<std::pair<std::string, std::string>> query;
+};
+[[nodiscard]] std::optional<Target> parse_target(std::string_view target);
+
+}  // namespace driftlab::server

@@ -1,0 +1,253 @@
+#include "server/http/problem.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace driftlab::server {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string slug_of(ErrorCode code) {
+  std::string slug(name_of(code));
+  std::replace(slug.begin(), slug.end(), '_', '-');
+  return slug;
+}
+
+std::string_view slug_of(HttpFault fault) {
+  switch (fault) {
+    case HttpFault::BadRequest:
+      return "bad-request";
+    case HttpFault::HostNotAllowed:
+      return "host-not-allowed";
+    case HttpFault::NoSuchResource:
+      return "no-such-resource";
+    case HttpFault::MethodNotAllowed:
+      return "method-not-allowed";
+    case HttpFault::NotAcceptable:
+      return "not-acceptable";
+    case HttpFault::LengthRequired:
+      return "length-required";
+    case HttpFault::BodyTooLarge:
+      return "body-too-large";
+    case HttpFault::TargetTooLong:
+      return "target-too-long";
+    case HttpFault::UnsupportedMediaType:
+      return "unsupported-media-type";
+    case HttpFault::UnknownParameter:
+      return "unknown-parameter";
+    case HttpFault::PreconditionFailed:
+      return "precondition-failed";
+    case HttpFault::PreconditionRequired:
+      return "precondition-required";
+    case HttpFault::HeaderTooLarge:
+      return "header-too-large";
+    case HttpFault::DigestMismatch:
+      return "digest-mismatch";
+    case HttpFault::IncompleteBody:
+      return "incomplete-body";
+    case HttpFault::IdempotencyKeyReused:
+      return "idempotency-key-reused";
+    case HttpFault::IdempotencyInFlight:
+      return "idempotency-in-flight";
+    case HttpFault::Busy:
+      return "busy";
+    case HttpFault::NotReady:
+      return "not-ready";
+  }
+  return "internal";
+}
+
+/// A field value that is a whole number appears as one.
+Json field_value(const std::string& text) {
+  std::int64_t number = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && stop == text.data() + text.size() && !text.empty()) {
+    return number;
+  }
+  return text;
+}
+
+std::string render(const ProblemType& type, std::string_view code, const std::string& detail,
+                   const std::vector<ErrorField>& fields) {
+  Json document{{"type", "/problems/" + std::string(type.slug)},
+                {"title", type.title},
+                {"status", type.status},
+                {"detail", detail},
+                {"code", code},
+                {"retryable", type.retryable}};
+  Json errors = Json::array();
+  Json where = Json::object();
+  for (const ErrorField& field : fields) {
+    if (field.name.starts_with('/')) {
+      errors.push_back(Json{{"pointer", field.name}, {"code", code}, {"detail", field.value}});
+    } else {
+      where[field.name] = field_value(field.value);
+    }
+  }
+  if (!where.empty()) {
+    document["where"] = std::move(where);
+  }
+  document["errors"] = std::move(errors);
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Response respond(const ProblemType& type, std::string body) {
+  Response response;
+  response.status = type.status;
+  response.content_type = "application/problem+json";
+  response.body = std::move(body);
+  if (type.status == 503 || type.status == 429) {
+    response.headers.emplace_back("Retry-After", "1");
+  }
+  return response;
+}
+
+}  // namespace
+
+const std::vector<ProblemType>& problem_types() {
+  static const std::vector<ProblemType> types{
+      // --- one per ErrorCode
+      {"invalid-argument", 400, "Invalid argument", false,
+       "A setting or parameter is missing, outside its range, or contradicts another. The detail names it; correct it "
+       "and "
+       "send the request again."},
+      {"unknown-unit", 400, "Unknown unit", false,
+       "A unit symbol is not one that driftlab knows. The detail lists the known ones; see /docs/units."},
+      {"unknown-quantity", 400, "Unknown quantity", false,
+       "A quantity is not one of the study specification. The detail lists the known ones."},
+      {"unknown-condition", 400, "Unknown dynamic condition", false,
+       "The dynamic condition is not one of the study specification. The detail lists the known ones."},
+      {"unit-mismatch", 400, "Unit does not measure the quantity", false,
+       "A unit was given for a quantity that it cannot measure, for example deg/s for a specific force."},
+      {"unknown-column", 422, "Column not in the file", false,
+       "The metadata name a column that the file does not have. The detail lists the columns that are there."},
+      {"duplicate-column", 422, "Duplicate column", false,
+       "Two columns of the file share a name, or two columns claim the same quantity and axis."},
+      {"empty-input", 400, "Empty input", false, "No bytes were sent. Check the file name (curl needs @ before it)."},
+      {"no-samples", 422, "No samples", false, "The file has a header and nothing under it."},
+      {"too-few-samples", 422, "Too few samples", false,
+       "The recording, or what trims and gaps leave of it, is too short for the analysis asked for."},
+      {"ragged-row", 422, "Ragged row", false,
+       "A row has more or fewer fields than the header. `where` gives row and count; the upload left nothing behind."},
+      {"not-a-number", 422, "Text where a number belongs", false,
+       "A field is not a decimal number. `where` gives row and column."},
+      {"non-finite", 422, "NaN or infinity", false,
+       "A field is NaN or infinite. `where` gives row and column. Remove the row, or leave it out with a time column "
+       "that shows "
+       "the gap."},
+      {"out-of-range", 422, "Number out of range", false,
+       "A number is too large for double precision, or its square is. `where` gives row and column."},
+      {"non-monotonic-time", 422, "Time runs backwards", false,
+       "The time column steps backwards at the row given in `where`. Sort or split the recording."},
+      {"inconsistent-sampling", 422, "Sampling is not clear", false,
+       "Neither a rate nor a time column was given, or the two contradict each other. State rate_hz, or a time column "
+       "with its "
+       "unit."},
+      {"truncated", 422, "Data end early", false,
+       "The data end before the header or the compression says they should."},
+      {"shape-mismatch", 422, "Header and data disagree", false,
+       "The header declares a shape that the bytes after it do not have."},
+      {"unsupported-format", 415, "Not a recording format", false,
+       "The bytes are no format that driftlab reads. It reads CSV with a header row and NumPy .npy, each also "
+       "compressed by gzip, "
+       "xz or zstd."},
+      {"unsupported-type", 415, "Unsupported element type", false,
+       "The format is known, but its element type or layout is not read. Save as float32 or float64."},
+      {"corrupt-compression", 422, "Compressed data are damaged", false, "The compressed stream does not decompress."},
+      {"decompression-limit", 413, "Expands beyond its budget", false,
+       "The compressed stream expands far beyond what recordings do, and was given up. Upload it uncompressed if it is "
+       "real."},
+      {"limit-exceeded", 413, "Limit exceeded", false, "A stated limit is exceeded; the detail names it."},
+      {"parse-error", 400, "Document cannot be read", false, "The JSON document or query does not parse."},
+      {"io", 500, "Input/output error", true, "The operating system refused to read or write. See the daemon's log."},
+      {"disk-full", 507, "Disk full", true,
+       "There is no space left where the daemon keeps its data. Nothing was stored."},
+      {"not-found", 404, "Not found", false, "The named object does not exist."},
+      {"conflict", 409, "Conflict", false,
+       "The object exists with other content, or changed in the meantime. The detail names the way out."},
+      {"cancelled", 409, "Cancelled", false, "The work was cancelled on request."},
+      {"internal", 500, "Internal error", true, "An invariant did not hold. Please report it with the request id."},
+      // --- one per HttpFault
+      {"bad-request", 400, "Bad request", false,
+       "The request is not well-formed HTTP, or a header contradicts another."},
+      {"host-not-allowed", 400, "Host not allowed", false,
+       "The Host header is missing, repeated, or names a host that the daemon was not told to answer for "
+       "(--allow-host)."},
+      {"no-such-resource", 404, "No such resource", false, "No resource has this path; /openapi.json lists them all."},
+      {"method-not-allowed", 405, "Method not allowed", false,
+       "The resource has no such method; Allow lists those it has."},
+      {"not-acceptable", 406, "Not acceptable", false, "None of the media types in Accept is offered here."},
+      {"length-required", 411, "Length required", false,
+       "A request body needs Content-Length; Transfer-Encoding is not taken."},
+      {"body-too-large", 413, "Body too large", false, "The body is larger than this resource takes."},
+      {"target-too-long", 400, "Target too long", false, "The request target is longer than 8 KiB."},
+      {"unsupported-media-type", 415, "Unsupported media type", false,
+       "The resource does not take bodies of this type."},
+      {"unknown-parameter", 400, "Unknown query parameter", false,
+       "The query holds a parameter that this resource does not have; the detail lists those it has."},
+      {"precondition-failed", 412, "Precondition failed", false,
+       "The object changed since it was read. Read it again and repeat the change with the new ETag."},
+      {"precondition-required", 428, "Precondition required", false,
+       "Changing or deleting needs If-Match with the ETag of the object as it was read."},
+      {"header-too-large", 431, "Header too large", false, "The request header is larger than 16 KiB."},
+      {"digest-mismatch", 400, "Digest mismatch", false,
+       "The bytes received do not have the digest that Repr-Digest states. Nothing was stored; send them again."},
+      {"incomplete-body", 400, "Incomplete body", true,
+       "The connection ended, or stalled, before Content-Length bytes had arrived. Nothing was stored."},
+      {"idempotency-key-reused", 422, "Idempotency key used for another request", false,
+       "The Idempotency-Key was used within 24 h for a request with another method, path or body."},
+      {"idempotency-in-flight", 409, "Request still running", true,
+       "A request with this Idempotency-Key is running; ask again in a moment."},
+      {"busy", 503, "Busy", true, "Too much is being asked at once. Retry-After says when to come back."},
+      {"not-ready", 503, "Not ready", true, "The daemon is starting, stopping, or its store or disk does not answer."},
+  };
+  return types;
+}
+
+const std::vector<HttpFault>& all_http_faults() {
+  static const std::vector<HttpFault> all = [] {
+    std::vector<HttpFault> faults;
+    for (int i = 0; i <= static_cast<int>(HttpFault::NotReady); ++i) {
+      faults.push_back(static_cast<HttpFault>(i));
+    }
+    return faults;
+  }();
+  return all;
+}
+
+const ProblemType* find_problem_type(std::string_view slug) {
+  for (const ProblemType& type : problem_types()) {
+    if (type.slug == slug) {
+      return &type;
+    }
+  }
+  return nullptr;
+}
+
+const ProblemType& problem_type(ErrorCode code) {
+  const ProblemType* const type = find_problem_type(slug_of(code));
+  return type != nullptr ? *type : *find_problem_type("internal");
+}
+
+const ProblemType& problem_type(HttpFault fault) {
+  const ProblemType* const type = find_problem_type(slug_of(fault));
+  return type != nullptr ? *type : *find_problem_type("internal");
+}
+
+std::string problem_document(const Error& error) {
+  return render(problem_type(error.code), name_of(error.code), error.message, error.fields);
+}
+
+Response problem_response(const Error& error) { return respond(problem_type(error.code), problem_document(error)); }
+
+Response problem_response(HttpFault fault, std::string detail) {
+  const ProblemType& type = problem_type(fault);
+  std::string code(type.slug);
+  std::replace(code.begin(), code.end(), '-', '_');
+  return respond(type, render(type, code, detail, {}));
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,73 @@
+#pragma once
+/// The route table: what the daemon answers to. schema/openapi.yaml says the same, and a test compares the two.
+#include "core/signal/result.hpp"
+#include "server/http/message.hpp"
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace driftlab::server {
+
+/// A plain request: the whole answer from the whole request, on a pool thread; may block on store and disk.
+using Handler = std::function<Result<Response>(const Request&)>;
+
+/// A body that streams in. All calls come from pool threads, one after the other. Destroyed without `finish`: nothing
+/// is left.
+class UploadSession {
+ public:
+  UploadSession() = default;
+  UploadSession(const UploadSession&) = delete;
+  UploadSession& operator=(const UploadSession&) = delete;
+  virtual ~UploadSession() = default;
+  [[nodiscard]] virtual Status append(std::span<const std::byte> bytes) = 0;
+  [[nodiscard]] virtual Result<Response> finish() = 0;
+};
+using UploadHandler = std::function<Result<std::unique_ptr<UploadSession>>(const Request&)>;
+
+/// A server-sent event stream (HTML standard 9.2) about one job.
+class EventSource {
+ public:
+  EventSource() = default;
+  EventSource(const EventSource&) = delete;
+  EventSource& operator=(const EventSource&) = delete;
+  virtual ~EventSource() = default;
+  struct Batch {
+    std::string text;   ///< complete events, ready to send; may be empty
+    bool last = false;  ///< nothing will follow
+  };
+  /// Events since the last call. On a pool thread.
+  [[nodiscard]] virtual Result<Batch> next() = 0;
+  [[nodiscard]] virtual const std::string& job_id() const = 0;
+};
+using EventHandler = std::function<Result<std::unique_ptr<EventSource>>(const Request&)>;
+
+struct Route {
+  std::string_view method;
+  std::string_view pattern;             ///< `/v1/devices/{id}`
+  std::string_view operation_id;        ///< as in openapi.yaml
+  std::vector<std::string_view> query;  ///< parameters it takes; any other is refused
+  std::variant<Handler, UploadHandler, EventHandler> handler;
+};
+
+class Router {
+ public:
+  void add(Route route);
+  [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
+
+  struct Match {
+    const Route* route = nullptr;  ///< nullptr: no such method, or no such path
+    std::vector<std::string> parameters;
+    std::vector<std::string_view> allowed;  ///< methods of that path; empty: no such path
+  };
+  [[nodiscard]] Match match(std::string_view method, std::string_view path) const;
+
+ private:
+  std::vector<Route> routes_;
+};
+
+}  // namespace driftlab::server

@@ -1,0 +1,189 @@
+#include "server/http/server.hpp"
+
+#include "server/http/connection.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/strand.hpp>
+
+#include <condition_variable>
+#include <list>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace driftlab::server {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+struct HttpServer::Shared {
+  Shared(HttpOptions given, const Router& router, Bell& bell_in, HttpHooks given_hooks)
+      : options(std::move(given)),
+        hooks(std::move(given_hooks)),
+        bell(bell_in),
+        handlers(static_cast<std::size_t>(options.handler_threads), 256),
+        uploads(static_cast<std::size_t>(options.upload_threads), 1024),
+        connection_shared{options, router, bell_in, hooks, handlers, uploads, stopping, uploads_running},
+        work(asio::make_work_guard(io)),
+        acceptor(io) {}
+
+  asio::awaitable<void> accept();
+  asio::awaitable<void> serve(tcp::socket socket, std::string address);
+  void close_idle_connections();
+  [[nodiscard]] bool admit(const std::string& address);
+
+  HttpOptions options;
+  HttpHooks hooks;
+  Bell& bell;
+  std::atomic<bool> stopping{false};
+  std::atomic<std::size_t> uploads_running{0};
+  BoundedPool handlers;
+  BoundedPool uploads;
+  ConnectionShared connection_shared;
+  asio::io_context io;
+  asio::executor_work_guard<asio::io_context::executor_type> work;
+  tcp::acceptor acceptor;
+  std::vector<std::thread> threads;
+  std::mutex mutex;
+  std::condition_variable idle;
+  std::map<std::string, std::size_t> per_address;
+  std::list<std::weak_ptr<Connection>> connections;
+  std::size_t open = 0;
+};
+
+bool HttpServer::Shared::admit(const std::string& address) {
+  const std::lock_guard lock(mutex);
+  if (open >= options.limits.connections || per_address[address] >= options.limits.connections_per_address) {
+    return false;
+  }
+  ++open;
+  ++per_address[address];
+  return true;
+}
+
+asio::awaitable<void> HttpServer::Shared::serve(tcp::socket socket, std::string address) {
+  auto connection = std::make_shared<Connection>(std::move(socket), connection_shared);
+  {
+    const std::lock_guard lock(mutex);
+    std::erase_if(connections, [](const auto& entry) { return entry.expired(); });
+    connections.push_back(connection);
+  }
+  try {
+    co_await connection->run();
+  } catch (const std::exception&) {
+    // A connection that fails in an unforeseen way closes; the daemon goes on.
+  }
+  connection.reset();
+  const std::lock_guard lock(mutex);
+  --open;
+  if (--per_address[address] == 0) {
+    per_address.erase(address);
+  }
+  idle.notify_all();
+}
+
+void HttpServer::Shared::close_idle_connections() {
+  const std::lock_guard lock(mutex);
+  for (const auto& entry : connections) {
+    if (auto connection = entry.lock()) {
+      const auto executor = connection->executor();
+      asio::post(executor, [connection = std::move(connection)] { connection->close_if_idle(); });
+    }
+  }
+}
+
+asio::awaitable<void> HttpServer::Shared::accept() {
+  while (!stopping) {
+    boost::system::error_code error;
+    tcp::socket socket(asio::make_strand(io));
+    co_await acceptor.async_accept(socket, asio::redirect_error(asio::use_awaitable, error));
+    if (error == asio::error::operation_aborted) {
+      co_return;
+    }
+    if (error) {
+      // Out of descriptors, or the client left before it was accepted: wait a moment and go on.
+      asio::steady_timer pause(io, std::chrono::milliseconds(20));
+      co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, error));
+      continue;
+    }
+    const auto peer = socket.remote_endpoint(error);
+    const std::string address = error ? std::string() : peer.address().to_string();
+    if (!admit(address)) {
+      continue;  // closes the socket
+    }
+    socket.set_option(tcp::no_delay(true), error);
+    const auto strand = socket.get_executor();
+    asio::co_spawn(strand, serve(std::move(socket), address), asio::detached);
+  }
+}
+
+HttpServer::HttpServer(HttpOptions options, const Router& router, Bell& bell, HttpHooks hooks)
+    : shared_(std::make_unique<Shared>(std::move(options), router, bell, std::move(hooks))) {}
+
+HttpServer::~HttpServer() { stop(std::chrono::milliseconds(0)); }
+
+Status HttpServer::start() {
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(shared_->options.address, error);
+  if (error) {
+    return fail(ErrorCode::InvalidArgument, "The address '" + shared_->options.address + "' is not an IP address.",
+                {{"parameter", "listen"}});
+  }
+  const tcp::endpoint endpoint(address, shared_->options.port);
+  tcp::acceptor& acceptor = shared_->acceptor;
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) {
+    acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    acceptor.bind(endpoint, error);
+  }
+  if (!error) {
+    acceptor.listen(asio::socket_base::max_listen_connections, error);
+  }
+  if (error) {
+    return fail(ErrorCode::Io,
+                "Cannot listen on " + shared_->options.address + ":" + std::to_string(shared_->options.port) + ": " +
+                    error.message() + ".",
+                {{"parameter", "listen"}});
+  }
+  asio::co_spawn(shared_->io, shared_->accept(), asio::detached);
+  for (int i = 0; i < shared_->options.io_threads; ++i) {
+    shared_->threads.emplace_back([this] { shared_->io.run(); });
+  }
+  return {};
+}
+
+std::uint16_t HttpServer::port() const {
+  boost::system::error_code error;
+  return shared_->acceptor.local_endpoint(error).port();
+}
+
+void HttpServer::stop(std::chrono::milliseconds grace) {
+  if (shared_->threads.empty()) {
+    return;
+  }
+  shared_->stopping = true;
+  asio::post(shared_->io, [this] {
+    boost::system::error_code ignored;
+    shared_->acceptor.close(ignored);
+  });
+  shared_->bell.ring_all();
+  shared_->close_idle_connections();
+  {
+    std::unique_lock lock(shared_->mutex);
+    shared_->idle.wait_for(lock, grace, [&] { return shared_->open == 0; });
+  }
+  shared_->work.reset();
+  shared_->io.stop();
+  for (std::thread& thread : shared_->threads) {
+    thread.join();
+  }
+  shared_->threads.clear();
+  shared_->handlers.join();
+  shared_->uploads.join();
+}
+
+}  // namespace driftlab::server

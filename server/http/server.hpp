@@ -1,0 +1,88 @@
+#pragma once
+/// The HTTP server: Boost.Beast on Asio coroutines. One strand per connection; I/O threads never block: handlers,
+/// uploads and event sources run on bounded pools.
+///
+/// Limits (service-conventions section 5): header 16 KiB, target 8 KiB, JSON body 1 MiB, upload 8 GiB streamed in 256
+/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: idle 60 s, header 10 s, body
+/// 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the connection closes.
+#include "server/http/bell.hpp"
+#include "server/http/guard.hpp"
+#include "server/http/router.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace driftlab::server {
+
+struct HttpLimits {
+  std::size_t header_bytes = 16 * 1024;
+  std::uint64_t document_bytes = 1024 * 1024;
+  std::uint64_t upload_bytes = 8ULL * 1024 * 1024 * 1024;
+  std::size_t connections = 1024;
+  std::size_t connections_per_address = 64;
+  int requests_per_connection = 100;
+  std::size_t concurrent_uploads = 16;
+};
+
+struct HttpOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8477;
+  int io_threads = 2;
+  int handler_threads = 4;
+  int upload_threads = 2;
+  HttpLimits limits;
+  GuardLimits guard;
+};
+
+/// One finished request, for the access log.
+struct AccessRecord {
+  std::string method;
+  std::string route;  ///< template, or empty where none matched
+  std::string target;
+  int status = 0;
+  std::uint64_t bytes_in = 0;
+  std::uint64_t bytes_out = 0;
+  double seconds = 0.0;
+  std::string request_id;
+  std::string address;
+};
+
+/// What the server needs from the daemon.
+struct HttpHooks {
+  /// Runs a plain route on a pool thread: checks, handler, ETag, idempotency.
+  std::function<Response(const Route&, const Request&)> dispatch;
+  /// Adds request id and instance to a problem document.
+  std::function<void(const Request&, Response&)> complete;
+  /// A fresh request id.
+  std::function<std::string()> make_request_id;
+  /// May be empty. Called from I/O threads; must not block.
+  std::function<void(const AccessRecord&)> log;
+};
+
+class HttpServer {
+ public:
+  /// `router` and `bell` must outlive the server.
+  HttpServer(HttpOptions options, const Router& router, Bell& bell, HttpHooks hooks);
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+  ~HttpServer();
+
+  /// Binds and starts the I/O threads. Errors: Io (address in use, not permitted), InvalidArgument (address).
+  [[nodiscard]] Status start();
+  /// The port bound, useful when 0 was asked for.
+  [[nodiscard]] std::uint16_t port() const;
+  /// Stops accepting, lets running requests finish for up to `grace`, closes event streams, joins. Idempotent.
+  void stop(std::chrono::milliseconds grace);
+
+ private:
+  struct Shared;
+  std::unique_ptr<Shared> shared_;
+};
+
+}  // namespace driftlab::server
