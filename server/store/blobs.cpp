@@ -1,5 +1,9 @@
 #include "server/store/blobs.hpp"
 
+#include "server/store/crash_point.hpp"
+#include "server/store/digest.hpp"
+#include "server/store/files.hpp"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -8,12 +12,9 @@
 #include <atomic>
 #include <cerrno>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <system_error>
-
-#include "server/store/crash_point.hpp"
-#include "server/store/digest.hpp"
-#include "server/store/files.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -127,7 +128,7 @@ Status IncomingFile::keep() {
 
 /// Modification time in microseconds; nothing where the file is absent.
 std::optional<UtcMicros> modified_at(const fs::path& path) {
-  struct ::stat found {};
+  struct ::stat found{};
   if (::stat(path.c_str(), &found) != 0) {
     return std::nullopt;
   }
@@ -229,7 +230,7 @@ Result<std::vector<std::string>> BlobDirectory::hashes_older_than(UtcMicros befo
 }
 
 Result<BlobStore::Space> BlobDirectory::space() const {
-  struct ::statvfs found {};
+  struct ::statvfs found{};
   if (::statvfs(root_.c_str(), &found) != 0) {
     return fail(file_error(errno, "examine the file system of", root_));
   }

@@ -54,8 +54,8 @@ class BlobStore {
   [[nodiscard]] virtual std::filesystem::path columns_path(std::string_view sha256) const = 0;
   /// Removes both files of a blob. Absent: success.
   [[nodiscard]] virtual Status remove(std::string_view sha256) = 0;
-  /// Removes both files if both are still older than `before`; true if removed. For the sweeper: a blob that is kept again
-  /// meanwhile stays.
+  /// Removes both files if both are still older than `before`; true if removed. For the sweeper: a blob that is kept
+  /// again meanwhile stays.
   [[nodiscard]] virtual Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) = 0;
   /// Hashes of all blob files older than `before`. For the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> hashes_older_than(UtcMicros before) = 0;
@@ -67,8 +67,8 @@ class BlobStore {
   [[nodiscard]] virtual Result<Space> space() const = 0;
 };
 
-/// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Holds a lock on the directory while
-/// it lives. Errors: Io; Conflict where another daemon has the directory.
+/// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Holds a lock on the directory
+/// while it lives. Errors: Io; Conflict where another daemon has the directory.
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blob_directory(const std::filesystem::path& root);
 
 }  // namespace driftlab::server

@@ -28,11 +28,11 @@ std::string rfc3339(UtcMicros time) {
   const std::chrono::year_month_day date{day};
   const std::chrono::hh_mm_ss of_day{std::chrono::floor<std::chrono::milliseconds>(instant - day)};
   std::array<char, 64> text{};
-  const int length = std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ",
-                                   static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                                   static_cast<unsigned>(date.day()), static_cast<int>(of_day.hours().count()),
-                                   static_cast<int>(of_day.minutes().count()), static_cast<int>(of_day.seconds().count()),
-                                   static_cast<int>(of_day.subseconds().count()));
+  const int length =
+      std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ", static_cast<int>(date.year()),
+                    static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                    static_cast<int>(of_day.hours().count()), static_cast<int>(of_day.minutes().count()),
+                    static_cast<int>(of_day.seconds().count()), static_cast<int>(of_day.subseconds().count()));
   return {text.data(), static_cast<std::size_t>(length)};
 }
 

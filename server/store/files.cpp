@@ -29,7 +29,7 @@ Error file_error(int error_number, std::string_view doing, const std::filesystem
 }
 
 Status make_directories(const std::filesystem::path& path) {
-  struct ::stat found {};
+  struct ::stat found{};
   if (::stat(path.c_str(), &found) == 0) {
     return S_ISDIR(found.st_mode) ? Status{} : fail(file_error(ENOTDIR, "use", path));
   }
@@ -104,7 +104,7 @@ bool is_network_file_system(long type) {
 }
 
 Status require_local_file_system(const std::filesystem::path& directory) {
-  struct ::statfs found {};
+  struct ::statfs found{};
   if (::statfs(directory.c_str(), &found) != 0) {
     return fail(file_error(errno, "examine the file system of", directory));
   }

@@ -1,10 +1,10 @@
 #pragma once
 /// The few system calls that durability rests on, with their errors as sentences.
+#include "core/signal/result.hpp"
+
 #include <filesystem>
 #include <string_view>
 #include <utility>
-
-#include "core/signal/result.hpp"
 
 namespace driftlab::server {
 
@@ -28,7 +28,8 @@ class FileHandle {
   int descriptor_ = -1;
 };
 
-/// What `errno` = `error_number` means for `path`: DiskFull for a full disk, an exceeded quota or file-size limit, else Io.
+/// What `errno` = `error_number` means for `path`: DiskFull for a full disk, an exceeded quota or file-size limit, else
+/// Io.
 [[nodiscard]] Error file_error(int error_number, std::string_view doing, const std::filesystem::path& path);
 
 /// Makes the directory and its parents (mode 0700), durably. Errors: Io, DiskFull.
@@ -47,7 +48,8 @@ class FileHandle {
 /// process dies. Errors: Conflict, naming the holder's process; Io.
 [[nodiscard]] Result<FileHandle> lock_directory(const std::filesystem::path& directory, std::string_view name);
 
-/// True for a file-system type (statfs f_type) that several machines can share: shared memory and locks do not hold there.
+/// True for a file-system type (statfs f_type) that several machines can share: shared memory and locks do not hold
+/// there.
 [[nodiscard]] bool is_network_file_system(long type);
 
 /// Errors: Io, where `directory` lies on a network file system, or cannot be examined.

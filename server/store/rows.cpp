@@ -7,11 +7,11 @@ namespace driftlab::server {
 namespace {
 
 constexpr std::array<std::pair<JobState, std::string_view>, 6> kStates = {{{JobState::Queued, "queued"},
-                                                                          {JobState::Running, "running"},
-                                                                          {JobState::Succeeded, "succeeded"},
-                                                                          {JobState::Failed, "failed"},
-                                                                          {JobState::Cancelled, "cancelled"},
-                                                                          {JobState::Dead, "dead"}}};
+                                                                           {JobState::Running, "running"},
+                                                                           {JobState::Succeeded, "succeeded"},
+                                                                           {JobState::Failed, "failed"},
+                                                                           {JobState::Cancelled, "cancelled"},
+                                                                           {JobState::Dead, "dead"}}};
 
 }  // namespace
 

@@ -1,0 +1,128 @@
+#include "server/store/retry_policy.hpp"
+#include "server/store/sqlite/job_rows.hpp"
+
+namespace driftlab::server::tables {
+namespace {
+
+constexpr std::string_view kSelect = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs";
+constexpr std::string_view kById = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE id = ?";
+constexpr std::string_view kEqualJob =
+    "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
+constexpr std::string_view kInsert =
+    "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
+    "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7)";
+constexpr std::string_view kAttempts = "SELECT problem_json FROM job_attempts WHERE job_id = ? ORDER BY attempt";
+constexpr std::string_view kEvents =
+    "SELECT sequence, type, state, stage, progress, attempt, at FROM job_events WHERE job_id = ? AND sequence > ? "
+    "ORDER BY sequence LIMIT ?";
+constexpr std::string_view kAddEvent =
+    "INSERT INTO job_events (job_id, type, state, stage, progress, attempt, at) "
+    "SELECT id, ?2, state, stage, progress, attempt, ?3 FROM jobs WHERE id = ?1";
+
+std::string read_text(const Statement& row) { return row.text(0); }
+
+JobEvent read_event(const Statement& row) {
+  JobEvent event;
+  event.sequence = row.integer(0);
+  event.type = row.text(1);
+  event.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  event.stage = row.text(3);
+  event.progress = row.real(4);
+  event.attempt = row.integer(5);
+  event.at = row.integer(6);
+  return event;
+}
+
+}  // namespace
+
+Job read_job(const Statement& row) {
+  Job job;
+  job.id = row.text(0);
+  job.kind = row.text(1);
+  job.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  job.stage = row.text(3);
+  job.progress = row.real(4);
+  job.priority = static_cast<int>(row.integer(5));
+  job.attempt = row.integer(6);
+  job.failures = static_cast<int>(row.integer(7));
+  job.max_failures = static_cast<int>(row.integer(8));
+  job.unique_key = row.text(9);
+  job.request_json = row.text(10);
+  job.cancel_requested = row.integer(11) != 0;
+  job.run_at = row.integer(12);
+  job.lease_expires_at = row.optional_integer(13);
+  job.created_at = row.integer(14);
+  job.started_at = row.optional_integer(15);
+  job.finished_at = row.optional_integer(16);
+  job.problem_json = row.text(17);
+  return job;
+}
+
+Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now) {
+  if (job.priority < 0 || job.priority > 9) {
+    return fail(ErrorCode::InvalidArgument, "A priority is a number from 0 to 9.", {{"parameter", "priority"}});
+  }
+  if (job.kind.empty() || job.unique_key.empty()) {
+    return fail(ErrorCode::InvalidArgument, "A job needs a kind and a unique key.", {{"parameter", "unique_key"}});
+  }
+  Statement equal = connection.prepare(kEqualJob);
+  equal.bind(job.unique_key);
+  Result<std::optional<Job>> existing = first_row(equal, read_job);
+  if (!existing) {
+    return fail(existing.error());
+  }
+  if (*existing) {
+    return EnqueuedJob{std::move(**existing), false};
+  }
+  const std::string id = make_id("job", now);
+  Status inserted = connection.prepare(kInsert)
+                        .bind(id, job.kind, job.priority, kMaxFailures, job.unique_key, job.request_json, now)
+                        .run();
+  if (inserted) {
+    inserted = add_event(connection, id, "state", now);
+  }
+  if (!inserted) {
+    return fail(inserted.error());
+  }
+  return tables::job(connection, id).map([](Job made) { return EnqueuedJob{std::move(made), true}; });
+}
+
+Result<Job> job(Connection& connection, std::string_view id) {
+  Statement statement = connection.prepare(kById);
+  statement.bind(id);
+  Result<std::optional<Job>> found = first_row(statement, read_job);
+  if (!found) {
+    return fail(found.error());
+  }
+  if (!*found) {
+    return fail(ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}});
+  }
+  Statement attempts = connection.prepare(kAttempts);
+  attempts.bind(id);
+  Result<std::vector<std::string>> problems = all_rows(attempts, read_text);
+  if (!problems) {
+    return fail(problems.error());
+  }
+  (*found)->attempt_problems_json = std::move(*problems);
+  return std::move(**found);
+}
+
+Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {
+  FilteredQuery query(kSelect);
+  query.where("kind = ?", filter.kind);
+  query.where("state = ?", filter.state ? std::optional<std::string>(name_of(*filter.state)) : std::nullopt);
+  return query.read_page(connection, page, read_job);
+}
+
+Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id, std::int64_t sequence,
+                                           int limit) {
+  Statement statement = connection.prepare(kEvents);
+  statement.bind(job_id, sequence, limit);
+  return all_rows(statement, read_event);
+}
+
+Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now) {
+  return connection.prepare(kAddEvent).bind(job_id, type, now).run();
+}
+
+}  // namespace driftlab::server::tables

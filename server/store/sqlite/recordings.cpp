@@ -1,0 +1,222 @@
+#include "server/store/sqlite/tables.hpp"
+
+namespace driftlab::server::tables {
+namespace {
+
+constexpr std::string_view kSelectBlob =
+    "SELECT sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at FROM blobs "
+    "WHERE sha256 = ?";
+constexpr std::string_view kInsertBlob =
+    "INSERT INTO blobs (sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (sha256) DO NOTHING";
+constexpr std::string_view kBlobHashes = "SELECT sha256 FROM blobs ORDER BY sha256";
+constexpr std::string_view kRemoveUnusedBlob =
+    "DELETE FROM blobs WHERE sha256 = ?1 AND NOT EXISTS (SELECT 1 FROM recordings WHERE blob_sha256 = ?1)";
+
+constexpr std::string_view kSelect =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at "
+    "FROM recordings";
+constexpr std::string_view kById =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at "
+    "FROM recordings WHERE id = ?";
+constexpr std::string_view kByDeviceAndBlob =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at "
+    "FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
+constexpr std::string_view kInsert =
+    "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
+    "updated_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr std::string_view kUpdate =
+    "UPDATE recordings SET metadata_json = ?2, condition = ?3, quality_json = ?4, revision = ?5, updated_at = ?6 "
+    "WHERE id = ?1";
+constexpr std::string_view kRemove = "DELETE FROM recordings WHERE id = ?";
+constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
+/// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
+constexpr std::string_view kLiveJob =
+    "SELECT id FROM jobs WHERE state IN ('queued', 'running') AND instr(request_json, ?) > 0 LIMIT 1";
+constexpr std::string_view kRemoveDocuments =
+    "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?)";
+
+Blob read_blob(const Statement& row) {
+  Blob blob;
+  blob.sha256 = row.text(0);
+  blob.bytes = row.integer(1);
+  blob.format = row.text(2);
+  blob.compression = row.text(3);
+  blob.rows = row.integer(4);
+  blob.columns_json = row.text(5);
+  blob.notes_json = row.text(6);
+  blob.created_at = row.integer(7);
+  return blob;
+}
+
+Recording read_recording(const Statement& row) {
+  Recording recording;
+  recording.id = row.text(0);
+  recording.device_id = row.text(1);
+  recording.blob_sha256 = row.text(2);
+  recording.revision = row.integer(3);
+  recording.metadata_json = row.text(4);
+  recording.condition = row.text(5);
+  recording.quality_json = row.text(6);
+  recording.created_at = row.integer(7);
+  recording.updated_at = row.integer(8);
+  return recording;
+}
+
+std::string read_text(const Statement& row) { return row.text(0); }
+
+Status insert_blob(Connection& connection, const Blob& blob, UtcMicros now) {
+  return connection.prepare(kInsertBlob)
+      .bind(blob.sha256, blob.bytes, blob.format, blob.compression, blob.rows, blob.columns_json, blob.notes_json, now)
+      .run();
+}
+
+Status require_device(Connection& connection, const std::string& device_id) {
+  Statement statement = connection.prepare(kDeviceExists);
+  const Result<bool> exists = statement.bind(device_id).step();
+  if (!exists) {
+    return fail(exists.error());
+  }
+  if (!*exists) {
+    return fail(ErrorCode::NotFound, "There is no device \"" + device_id + "\".", {{"device", device_id}});
+  }
+  return {};
+}
+
+tl::unexpected<Error> stale(const Recording& found) {
+  return fail(ErrorCode::Conflict, "The recording was changed by somebody else in the meantime.",
+              {{"revision", std::to_string(found.revision)}});
+}
+
+}  // namespace
+
+Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256) {
+  Statement statement = connection.prepare(kSelectBlob);
+  statement.bind(sha256);
+  return first_row(statement, read_blob);
+}
+
+Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob, const Recording& recording,
+                                       UtcMicros now) {
+  if (Status known = require_device(connection, recording.device_id); !known) {
+    return fail(known.error());
+  }
+  Statement statement = connection.prepare(kByDeviceAndBlob);
+  statement.bind(recording.device_id, blob.sha256);
+  Result<std::optional<Recording>> existing = first_row(statement, read_recording);
+  if (!existing) {
+    return fail(existing.error());
+  }
+  if (*existing) {
+    if ((*existing)->metadata_json != recording.metadata_json || (*existing)->condition != recording.condition) {
+      return fail(ErrorCode::Conflict,
+                  "The device has these bytes already, as recording " + (*existing)->id +
+                      " with other metadata; change that one instead.",
+                  {{"recording_id", (*existing)->id}});
+    }
+    return RecordingOutcome{std::move(**existing), false};
+  }
+  if (Status inserted = insert_blob(connection, blob, now); !inserted) {
+    return fail(inserted.error());
+  }
+  Recording made = recording;
+  if (made.id.empty()) {
+    made.id = make_id("rec", now);
+  }
+  made.blob_sha256 = blob.sha256;
+  made.revision = 1;
+  made.created_at = now;
+  made.updated_at = now;
+  Status inserted = connection.prepare(kInsert)
+                        .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json,
+                              made.condition, made.quality_json, made.created_at, made.updated_at)
+                        .run();
+  if (!inserted) {
+    return fail(inserted.error());
+  }
+  return RecordingOutcome{std::move(made), true};
+}
+
+Result<Recording> recording(Connection& connection, std::string_view id) {
+  Statement statement = connection.prepare(kById);
+  statement.bind(id);
+  Result<std::optional<Recording>> found = first_row(statement, read_recording);
+  if (!found) {
+    return fail(found.error());
+  }
+  if (!*found) {
+    return fail(ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".",
+                {{"recording", std::string(id)}});
+  }
+  return std::move(**found);
+}
+
+Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {
+  FilteredQuery query(kSelect);
+  query.where("device_id = ?", filter.device_id);
+  query.where("condition = ?", filter.condition);
+  return query.read_page(connection, page, read_recording);
+}
+
+Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,
+                                   UtcMicros now) {
+  Result<Recording> found = recording(connection, changed.id);
+  if (!found) {
+    return found;
+  }
+  if (found->revision != expected_revision) {
+    return stale(*found);
+  }
+  Recording revised = std::move(*found);
+  revised.metadata_json = changed.metadata_json;
+  revised.condition = changed.condition;
+  revised.quality_json = changed.quality_json;
+  revised.revision += 1;
+  revised.updated_at = now;
+  Status updated = connection.prepare(kUpdate)
+                       .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json,
+                             revised.revision, revised.updated_at)
+                       .run();
+  if (!updated) {
+    return fail(updated.error());
+  }
+  return revised;
+}
+
+Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision) {
+  const Result<Recording> found = recording(connection, id);
+  if (!found) {
+    return fail(found.error());
+  }
+  if (found->revision != expected_revision) {
+    return stale(*found);
+  }
+  Statement statement = connection.prepare(kLiveJob);
+  statement.bind(id);
+  const Result<std::optional<std::string>> user = first_row(statement, read_text);
+  if (!user) {
+    return fail(user.error());
+  }
+  if (*user) {
+    return fail(ErrorCode::Conflict, "Job " + **user + " is using the recording; wait for it or cancel it.",
+                {{"job", **user}});
+  }
+  if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
+    return removed;
+  }
+  return connection.prepare(kRemove).bind(id).run();
+}
+
+Result<std::vector<std::string>> blob_hashes(Connection& connection) {
+  Statement statement = connection.prepare(kBlobHashes);
+  return all_rows(statement, read_text);
+}
+
+Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256) {
+  if (Status removed = connection.prepare(kRemoveUnusedBlob).bind(sha256).run(); !removed) {
+    return fail(removed.error());
+  }
+  return connection.changes() > 0;
+}
+
+}  // namespace driftlab::server::tables

@@ -1,0 +1,221 @@
+#include "server/store/sqlite/sqlite_store.hpp"
+
+#include "server/store/files.hpp"
+#include "server/store/sqlite/reader_pool.hpp"
+#include "server/store/sqlite/tables.hpp"
+#include "server/store/sqlite/writer.hpp"
+
+#include <sqlite3.h>
+
+#include <random>
+
+namespace driftlab::server {
+namespace {
+
+/// Hands every method to a reader or to the writer. The work itself is in the files named after resources.
+class OpenedStore final : public SqliteStore {
+ public:
+  OpenedStore(FileHandle lock, SqliteFacts facts, const Clock& clock, std::uint64_t jitter_seed,
+              std::unique_ptr<Connection> writer, std::unique_ptr<ReaderPool> readers)
+      : lock_(std::move(lock)),
+        facts_(std::move(facts)),
+        clock_(clock),
+        jitter_(jitter_seed),
+        writer_(std::move(writer)),
+        readers_(std::move(readers)) {}
+
+  [[nodiscard]] const SqliteFacts& facts() const override { return facts_; }
+  [[nodiscard]] Status copy_to(const std::filesystem::path& target) override {
+    return readers_->borrow([&](Connection& c) { return copy_database(c, target); });
+  }
+  [[nodiscard]] Status ping() override {
+    return readers_->read([](Connection& c) -> Status {
+      const auto one = c.query_integer("SELECT 1 FROM schema_migrations LIMIT 1");
+      return one ? Status{} : fail(one.error());
+    });
+  }
+
+  [[nodiscard]] Result<DeviceOutcome> ensure_device(const Device& device) override {
+    return writer_.write([&](Connection& c) { return tables::ensure_device(c, device, now()); });
+  }
+  [[nodiscard]] Result<Device> device(std::string_view id_or_name) override {
+    return readers_->read([&](Connection& c) { return tables::device(c, id_or_name); });
+  }
+  [[nodiscard]] Result<std::vector<Device>> devices(const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::devices(c, page); });
+  }
+  [[nodiscard]] Result<Device> update_device(std::string_view id, const DeviceChange& change,
+                                             std::int64_t expected_revision) override {
+    return writer_.write([&](Connection& c) { return tables::update_device(c, id, change, expected_revision, now()); });
+  }
+
+  [[nodiscard]] Result<std::optional<Blob>> blob(std::string_view sha256) override {
+    return readers_->read([&](Connection& c) { return tables::blob(c, sha256); });
+  }
+  [[nodiscard]] Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) override {
+    return writer_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now()); });
+  }
+  [[nodiscard]] Result<Recording> recording(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::recording(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::recordings(c, filter, page); });
+  }
+  [[nodiscard]] Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) override {
+    return writer_.write([&](Connection& c) { return tables::revise_recording(c, changed, expected_revision, now()); });
+  }
+  [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
+    return writer_.write([&](Connection& c) { return tables::remove_recording(c, id, expected_revision); });
+  }
+  [[nodiscard]] Result<std::vector<std::string>> blob_hashes() override {
+    return readers_->read([](Connection& c) { return tables::blob_hashes(c); });
+  }
+  [[nodiscard]] Result<bool> remove_unused_blob(std::string_view sha256) override {
+    return writer_.write([&](Connection& c) { return tables::remove_unused_blob(c, sha256); });
+  }
+
+  [[nodiscard]] Result<EnqueuedJob> enqueue(const NewJob& job) override {
+    return writer_.write([&](Connection& c) { return tables::enqueue(c, job, now()); });
+  }
+  [[nodiscard]] Result<Job> job(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::job(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
+  }
+  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros) override {
+    return writer_.write([&](Connection& c) { return tables::claim(c, lease_micros, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override {
+    return writer_.write([&](Connection& c) { return tables::renew(c, lease, lease_micros, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
+                                                    double progress) override {
+    return writer_.write([&](Connection& c) { return tables::report_progress(c, lease, stage, progress, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> succeed(const Lease& lease, const JobResults& results) override {
+    return writer_.write([&](Connection& c) { return tables::succeed(c, lease, results, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> fail_attempt(const Lease& lease, const AttemptFailure& failure) override {
+    return writer_.write([&](Connection& c) { return tables::fail_attempt(c, lease, failure, jitter_, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> acknowledge_cancel(const Lease& lease) override {
+    return writer_.write([&](Connection& c) { return tables::acknowledge_cancel(c, lease, now()); });
+  }
+  [[nodiscard]] Result<LeaseStatus> release(const Lease& lease) override {
+    return writer_.write([&](Connection& c) { return tables::release(c, lease, now()); });
+  }
+  [[nodiscard]] Result<Job> request_cancel(std::string_view id) override {
+    return writer_.write([&](Connection& c) { return tables::request_cancel(c, id, now()); });
+  }
+  [[nodiscard]] Result<int> rescue_expired() override {
+    return writer_.write([&](Connection& c) {
+      const UtcMicros time = now();
+      return tables::end_leases(c, time, time);
+    });
+  }
+  [[nodiscard]] Result<int> end_all_leases() override {
+    return writer_.write([&](Connection& c) { return tables::end_leases(c, std::nullopt, now()); });
+  }
+  [[nodiscard]] Result<std::vector<JobEvent>> events_after(std::string_view job_id, std::int64_t sequence,
+                                                           int limit) override {
+    return readers_->read([&](Connection& c) { return tables::events_after(c, job_id, sequence, limit); });
+  }
+
+  [[nodiscard]] Result<std::string> result_document(std::string_view job_id) override {
+    return readers_->read([&](Connection& c) { return tables::result_document(c, job_id); });
+  }
+  [[nodiscard]] Result<Fit> fit(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::fit(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::fits(c, filter, page); });
+  }
+  [[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
+                                                                          std::string_view quantity,
+                                                                          std::string_view axis) override {
+    return readers_->read([&](Connection& c) { return tables::latest_channel_results(c, device_id, quantity, axis); });
+  }
+
+  [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) override {
+    return readers_->read([&](Connection& c) { return tables::idempotent_reply(c, key, now()); });
+  }
+  [[nodiscard]] Status remember_reply(const IdempotentReply& reply) override {
+    return writer_.write([&](Connection& c) { return tables::remember_reply(c, reply, now()); });
+  }
+  [[nodiscard]] Result<int> forget_old_replies() override {
+    return writer_.write([&](Connection& c) { return tables::forget_old_replies(c, now()); });
+  }
+
+ private:
+  [[nodiscard]] UtcMicros now() const { return clock_.now(); }
+
+  // Destroyed from below: readers first, so that the writer's connection is the last and empties the log; then the
+  // lock.
+  FileHandle lock_;
+  SqliteFacts facts_;
+  const Clock& clock_;
+  std::mt19937_64 jitter_;  ///< used by the writing thread alone
+  Writer writer_;
+  std::unique_ptr<ReaderPool> readers_;
+};
+
+/// 3.7.0 to 3.51.2: https://sqlite.org/wal.html
+bool has_wal_reset_bug(int version_number) { return version_number >= 3'007'000 && version_number < 3'051'003; }
+
+Status prepare_directory(const std::filesystem::path& directory) {
+  if (Status made = make_directories(directory); !made) {
+    return made;
+  }
+  return require_local_file_system(directory);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::path& directory, const Clock& clock,
+                                                       SqliteOptions options) {
+  if (Status prepared = prepare_directory(directory); !prepared) {
+    return fail(prepared.error());
+  }
+  Result<FileHandle> lock = lock_directory(directory, "store.lock");
+  if (!lock) {
+    return fail(lock.error());
+  }
+  SqliteFacts facts;
+  facts.version = sqlite3_libversion();
+  facts.wal_reset_bug_possible = has_wal_reset_bug(sqlite3_libversion_number());
+  facts.database = directory / "driftlab.db";
+  Result<std::unique_ptr<Connection>> writer = Connection::open(facts.database, Access::ReadWrite);
+  if (!writer) {
+    return fail(writer.error());
+  }
+  if (Status sound = check_integrity(**writer); !sound) {
+    return fail(sound.error());
+  }
+  const auto& migrations = options.migrations ? *options.migrations : embedded_migrations();
+  const Result<MigrationOutcome> migrated = migrate(**writer, migrations, directory / "backups", clock);
+  if (!migrated) {
+    return fail(migrated.error());
+  }
+  facts.schema_before = migrated->from;
+  facts.schema = migrated->to;
+  facts.backup = migrated->backup;
+  if (options.max_pages > 0) {
+    if (Status limited = (*writer)->execute("PRAGMA max_page_count=" + std::to_string(options.max_pages)); !limited) {
+      return fail(limited.error());
+    }
+  }
+  // The names of the database's files must survive power loss before anything is acknowledged.
+  if (Status synced = sync_path(directory); !synced) {
+    return fail(synced.error());
+  }
+  Result<std::unique_ptr<ReaderPool>> readers = ReaderPool::open(facts.database, options.readers);
+  if (!readers) {
+    return fail(readers.error());
+  }
+  const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
+  return std::make_unique<OpenedStore>(std::move(*lock), std::move(facts), clock, seed, std::move(*writer),
+                                       std::move(*readers));
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,144 @@
+#pragma once
+/// What each method of the store does inside a transaction: one source file per resource, with its SQL texts on top.
+///
+/// Functions take the connection of a running transaction; those that write take the time as `now`. Contracts are those
+/// of the methods of the same name in server/store/store.hpp.
+#include "core/signal/result.hpp"
+#include "server/store/sqlite/connection.hpp"
+#include "server/store/store.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::server::tables {
+
+// ---- helpers for the row readers of each file
+
+/// The first row of a query, read by `read`; nothing without rows.
+template <class Row>
+[[nodiscard]] Result<std::optional<Row>> first_row(Statement& statement, Row (*read)(const Statement&)) {
+  const Result<bool> row = statement.step();
+  if (!row) {
+    return fail(row.error());
+  }
+  return *row ? std::optional<Row>(read(statement)) : std::nullopt;
+}
+
+/// Every row of a query.
+template <class Row>
+[[nodiscard]] Result<std::vector<Row>> all_rows(Statement& statement, Row (*read)(const Statement&)) {
+  std::vector<Row> rows;
+  while (true) {
+    const Result<bool> row = statement.step();
+    if (!row) {
+      return fail(row.error());
+    }
+    if (!*row) {
+      return rows;
+    }
+    rows.push_back(read(statement));
+  }
+}
+
+/// A SELECT with those conditions that a filter asks for. Texts are constants of our own; values are bound.
+class FilteredQuery {
+ public:
+  explicit FilteredQuery(std::string_view select) : sql_(select) {}
+  /// Adds `condition`, for example "device_id = ?", if there is a value.
+  void where(std::string_view condition, const std::optional<std::string>& value) {
+    if (value) {
+      where(condition);
+      values_.push_back(*value);
+    }
+  }
+  void where(std::string_view condition) {
+    sql_.append(first_ ? " WHERE " : " AND ").append(condition);
+    first_ = false;
+  }
+  /// Ends the query as a keyset page over `id` and reads it.
+  template <class Row>
+  [[nodiscard]] Result<std::vector<Row>> read_page(Connection& connection, const Page& page,
+                                                   Row (*read)(const Statement&)) {
+    where("id > ?", page.after);
+    sql_.append(" ORDER BY id LIMIT ?");
+    Statement statement = connection.prepare(sql_);
+    for (const std::string& value : values_) {
+      statement.bind(value);
+    }
+    statement.bind(page.limit);
+    return all_rows(statement, read);
+  }
+
+ private:
+  std::string sql_;
+  std::vector<std::string> values_;
+  bool first_ = true;
+};
+
+// ---- devices
+[[nodiscard]] Result<Store::DeviceOutcome> ensure_device(Connection& connection, const Device& device, UtcMicros now);
+[[nodiscard]] Result<Device> device(Connection& connection, std::string_view id_or_name);
+[[nodiscard]] Result<std::vector<Device>> devices(Connection& connection, const Page& page);
+[[nodiscard]] Result<Device> update_device(Connection& connection, std::string_view id, const DeviceChange& change,
+                                           std::int64_t expected_revision, UtcMicros now);
+
+// ---- blobs and recordings
+[[nodiscard]] Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256);
+[[nodiscard]] Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
+                                                     const Recording& recording, UtcMicros now);
+[[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
+                                                        const Page& page);
+[[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
+                                                 std::int64_t expected_revision, UtcMicros now);
+[[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision);
+[[nodiscard]] Result<std::vector<std::string>> blob_hashes(Connection& connection);
+[[nodiscard]] Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256);
+
+// ---- jobs: asking and looking
+[[nodiscard]] Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now);
+[[nodiscard]] Result<Job> job(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page);
+[[nodiscard]] Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id,
+                                                         std::int64_t sequence, int limit);
+/// Writes the job's present state into its history. `type`: "state" or "progress".
+[[nodiscard]] Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now);
+
+// ---- jobs: working
+[[nodiscard]] Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> renew(Connection& connection, const Lease& lease, std::int64_t lease_micros,
+                                        UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> report_progress(Connection& connection, const Lease& lease, std::string_view stage,
+                                                  double progress, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const JobResults& results,
+                                          UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease,
+                                               const AttemptFailure& failure, std::mt19937_64& jitter, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> acknowledge_cancel(Connection& connection, const Lease& lease, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> release(Connection& connection, const Lease& lease, UtcMicros now);
+[[nodiscard]] Result<Job> request_cancel(Connection& connection, std::string_view id, UtcMicros now);
+/// Puts back every running job whose lease ends at `now` or before; with nothing for `deadline`: every running job.
+[[nodiscard]] Result<int> end_leases(Connection& connection, std::optional<UtcMicros> deadline, UtcMicros now);
+
+// ---- results
+[[nodiscard]] Status insert_results(Connection& connection, std::string_view job_id, const JobResults& results,
+                                    UtcMicros now);
+[[nodiscard]] Result<std::string> result_document(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<Fit> fit(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, const Page& page);
+[[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(Connection& connection,
+                                                                        std::string_view device_id,
+                                                                        std::string_view quantity,
+                                                                        std::string_view axis);
+
+// ---- idempotency
+[[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, std::string_view key,
+                                                                      UtcMicros now);
+[[nodiscard]] Status remember_reply(Connection& connection, const IdempotentReply& reply, UtcMicros now);
+[[nodiscard]] Result<int> forget_old_replies(Connection& connection, UtcMicros now);
+
+}  // namespace driftlab::server::tables

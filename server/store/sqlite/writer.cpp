@@ -1,0 +1,146 @@
+#include "server/store/sqlite/writer.hpp"
+
+#include <chrono>
+#include <exception>
+#include <string>
+
+namespace driftlab::server {
+namespace {
+
+constexpr std::size_t kQueueSize = 256;
+constexpr std::size_t kBatchSize = 64;
+constexpr std::chrono::milliseconds kBatchTime{5};
+
+/// No exception may end the writer's thread.
+Status guarded(const std::function<Status(Connection&)>& work, Connection& connection) {
+  try {
+    return work(connection);
+  } catch (const std::exception& exception) {
+    return fail(ErrorCode::Internal, std::string("A write failed: ") + exception.what() + ".");
+  }
+}
+
+}  // namespace
+
+Writer::Writer(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+Writer::~Writer() {
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    closing_ = true;
+  }
+  work_queued_.notify_all();
+  thread_.join();
+}
+
+Status Writer::submit(std::function<Status(Connection&)> work) {
+  Task task{std::move(work), {}, false};
+  std::unique_lock<std::mutex> guard(mutex_);
+  room_.wait(guard, [this] { return queue_.size() < kQueueSize; });
+  queue_.push_back(&task);
+  work_queued_.notify_one();
+  work_done_.wait(guard, [&task] { return task.done; });
+  return std::move(task.outcome);
+}
+
+Writer::Task* Writer::next(bool wait) {
+  std::unique_lock<std::mutex> guard(mutex_);
+  if (wait) {
+    work_queued_.wait(guard, [this] { return closing_ || !queue_.empty(); });
+  }
+  if (queue_.empty()) {
+    return nullptr;
+  }
+  Task* task = queue_.front();
+  queue_.pop_front();
+  room_.notify_one();
+  return task;
+}
+
+void Writer::announce(const std::vector<Task*>& tasks) {
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    for (Task* task : tasks) {
+      task->done = true;
+    }
+  }
+  work_done_.notify_all();
+}
+
+void Writer::run() {
+  while (Task* first = next(true)) {
+    announce(run_batch(first));
+  }
+}
+
+Status Writer::run_in_savepoint(Task& task) {
+  if (Status begun = connection_->prepare("SAVEPOINT task").run(); !begun) {
+    return begun;
+  }
+  task.outcome = guarded(task.work, *connection_);
+  if (!connection_->in_transaction()) {
+    return task.outcome ? fail(ErrorCode::Internal, "A write ended its transaction.") : fail(task.outcome.error());
+  }
+  if (!task.outcome) {
+    if (Status undone = connection_->prepare("ROLLBACK TO task").run(); !undone) {
+      return undone;
+    }
+  }
+  return connection_->prepare("RELEASE task").run();
+}
+
+std::vector<Writer::Task*> Writer::run_batch(Task* first) {
+  std::vector<Task*> batch = {first};
+  const auto end = std::chrono::steady_clock::now() + kBatchTime;
+  Status status = connection_->prepare("BEGIN IMMEDIATE").run();
+  if (status) {
+    status = run_in_savepoint(*first);
+  }
+  while (status && batch.size() < kBatchSize && std::chrono::steady_clock::now() < end) {
+    Task* task = next(false);
+    if (task == nullptr) {
+      break;
+    }
+    batch.push_back(task);
+    status = run_in_savepoint(*task);
+  }
+  if (status) {
+    status = connection_->prepare("COMMIT").run();
+  }
+  if (status) {
+    return batch;
+  }
+  if (connection_->in_transaction()) {
+    (void)connection_->prepare("ROLLBACK").run();
+  }
+  if (batch.size() == 1) {
+    first->outcome = std::move(status);
+    return batch;
+  }
+  for (Task* task : batch) {
+    run_alone(*task);
+  }
+  return batch;
+}
+
+void Writer::run_alone(Task& task) {
+  Status status = connection_->prepare("BEGIN IMMEDIATE").run();
+  if (status) {
+    task.outcome = guarded(task.work, *connection_);
+    if (!task.outcome) {
+      status = fail(task.outcome.error());
+    } else if (connection_->in_transaction()) {
+      status = connection_->prepare("COMMIT").run();
+    }
+  }
+  if (!status) {
+    if (connection_->in_transaction()) {
+      (void)connection_->prepare("ROLLBACK").run();
+    }
+    task.outcome = std::move(status);
+  }
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,76 @@
+#pragma once
+/// The one thread that writes: callers hand it work and wait until it is on disk.
+///
+/// Work that is queued while a transaction is being flushed is committed together in the next one (group commit): at
+/// most kBatchSize pieces or kBatchTime, whichever comes first; nobody waits for company. Each piece runs inside a
+/// savepoint, so that one that fails takes nothing of its neighbours with it. Where the whole transaction fails (a full
+/// disk), each piece is tried once more alone, so that a large one does not fail the small ones. A piece of work may
+/// therefore run twice, but what it did the first time is undone.
+#include "core/signal/result.hpp"
+#include "server/store/sqlite/connection.hpp"
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace driftlab::server {
+
+class Writer {
+ public:
+  explicit Writer(std::unique_ptr<Connection> connection);
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  /// Finishes what is queued, then closes the connection.
+  ~Writer();
+
+  /// Runs `work(connection)`, which returns a `Result`, in a transaction and returns its outcome once that is durable.
+  /// Blocks while the queue is full. Thread safe; not to be called from within `work`.
+  template <class Work>
+  [[nodiscard]] auto write(Work work) {
+    using Outcome = std::invoke_result_t<Work, Connection&>;
+    std::optional<Outcome> outcome;
+    Status committed = submit([&](Connection& connection) -> Status {
+      outcome.emplace(work(connection));
+      if (!*outcome) {
+        return fail(outcome->error());
+      }
+      return {};
+    });
+    if (!committed) {
+      return Outcome(fail(std::move(committed.error())));
+    }
+    return std::move(*outcome);
+  }
+
+ private:
+  struct Task {
+    std::function<Status(Connection&)> work;
+    Status outcome;
+    bool done = false;
+  };
+
+  [[nodiscard]] Status submit(std::function<Status(Connection&)> work);
+  void run();
+  [[nodiscard]] Task* next(bool wait);
+  [[nodiscard]] std::vector<Task*> run_batch(Task* first);
+  [[nodiscard]] Status run_in_savepoint(Task& task);
+  void run_alone(Task& task);
+  void announce(const std::vector<Task*>& tasks);
+
+  std::unique_ptr<Connection> connection_;
+  std::mutex mutex_;
+  std::condition_variable work_queued_;
+  std::condition_variable work_done_;
+  std::condition_variable room_;
+  std::deque<Task*> queue_;
+  bool closing_ = false;
+  std::thread thread_;
+};
+
+}  // namespace driftlab::server
