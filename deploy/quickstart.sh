@@ -44,7 +44,9 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[[ "$port" =~ ^[0-9]+$ ]] && [ "$port" -ge 1 ] && [ "$port" -le 65535 ] || misuse "--port $port is no port number"
+if ! [[ "$port" =~ ^[0-9]{1,5}$ ]] || [ "$port" -lt 1 ] || [ "$port" -gt 65535 ]; then
+  misuse "--port $port is no port number"
+fi
 if [ -n "$recording" ]; then
   [ -r "$recording" ] || misuse "cannot read the recording $recording"
 elif [ -n "$rate_hz$columns$condition$device" ]; then
@@ -94,8 +96,9 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 
 ready() { [ "$(curl --silent --output /dev/null --noproxy '*' --max-time 2 --write-out '%{http_code}' "$address/readyz")" = 200 ]; }
-! curl --silent --output /dev/null --noproxy '*' --max-time 2 "$address/" ||
+if (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
   fail "port $port is taken by another server; choose one with --port"
+fi
 "$bin/driftlabd" --data "$data" --listen "127.0.0.1:$port" 2>"$logs/daemon.log" &
 daemon=$!
 deadline=$((SECONDS + 30))
