@@ -53,8 +53,8 @@ class Decompressor : public ByteReader {
   virtual Status restart() = 0;
 
   [[nodiscard]] tl::unexpected<Error> corrupt(const std::string& why) const {
-    return fail(ErrorCode::CorruptCompression, "The " + std::string(name_of(kind_)) + " stream is damaged near byte " +
-                                                   std::to_string(source_.offset()) + ": " + why + ".");
+    return fail(ErrorCode::CorruptCompression,
+                "The " + std::string(name_of(kind_)) + " stream is damaged: " + why + ".");
   }
   [[nodiscard]] tl::unexpected<Error> too_much_memory() const {
     return fail(ErrorCode::DecompressionLimit,
@@ -250,7 +250,7 @@ class ZstdReader final : public Decompressor {
       if (reason == ZSTD_error_frameParameter_windowTooLarge || reason == ZSTD_error_memory_allocation) {
         return too_much_memory();
       }
-      return corrupt(::ZSTD_getErrorName(code));
+      return corrupt("its data or checksum is wrong");  // the library's own words depend on buffer sizes
     }
     return Turn{in.pos, out.pos, code == 0};
   }

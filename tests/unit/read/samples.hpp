@@ -1,0 +1,242 @@
+#pragma once
+/// Material of the reader suites: valid files of every registered format, compressors, sinks and a directory of its
+/// own.
+#include "core/read/format.hpp"
+
+#include <gtest/gtest.h>
+#include <lzma.h>
+#include <unistd.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::testing {
+
+/// Keeps what a decoder delivers, in columns.
+class KeepingSink final : public ColumnSink {
+ public:
+  Status begin(const ColumnLayout& layout) override {
+    columns.resize(layout.names.size());
+    return {};
+  }
+  Status rows(std::span<const double> values) override {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      columns[i % columns.size()].push_back(values[i]);
+    }
+    return {};
+  }
+  Status column(std::size_t index, std::span<const double> values) override {
+    columns.at(index).insert(columns.at(index).end(), values.begin(), values.end());
+    return {};
+  }
+  void note(std::string) override {}
+
+  std::vector<std::vector<double>> columns;
+};
+
+/// What came out of some bytes: the samples bit by bit, or the error.
+struct Outcome {
+  std::optional<ErrorCode> error;
+  std::string message;
+  std::vector<ErrorField> fields;
+  Decoded decoded;
+  std::vector<std::vector<std::uint64_t>> bits;
+
+  [[nodiscard]] std::string field(std::string_view name) const {
+    for (const ErrorField& field : fields) {
+      if (field.name == name) {
+        return field.value;
+      }
+    }
+    return "";
+  }
+  friend bool operator==(const Outcome& a, const Outcome& b) {
+    return a.error == b.error && a.message == b.message && a.fields == b.fields && a.bits == b.bits &&
+           a.decoded.names == b.decoded.names && a.decoded.rows == b.decoded.rows && a.decoded.notes == b.decoded.notes;
+  }
+};
+
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
+inline void PrintTo(const Outcome& outcome, std::ostream* out) {
+  if (outcome.error) {
+    *out << name_of(*outcome.error) << ": " << outcome.message;
+  } else {
+    *out << outcome.decoded.rows << " rows x " << outcome.decoded.names.size();
+  }
+}
+
+inline Outcome decode_bytes(std::string_view bytes, std::size_t piece = static_cast<std::size_t>(-1),
+                            const DecodeLimits& limits = {}) {
+  KeepingSink sink;
+  auto decoded = decode_stream(make_memory_reader(bytes, piece), sink, limits);
+  Outcome outcome;
+  if (!decoded) {
+    outcome.error = decoded.error().code;
+    outcome.message = decoded.error().message;
+    outcome.fields = decoded.error().fields;
+    return outcome;
+  }
+  outcome.decoded = *decoded;
+  for (const auto& column : sink.columns) {
+    auto& words = outcome.bits.emplace_back();
+    for (const double value : column) {
+      words.push_back(std::bit_cast<std::uint64_t>(value));
+    }
+  }
+  return outcome;
+}
+
+inline std::string gzip(std::string_view plain) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, plain.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
+  stream.avail_in = static_cast<uInt>(plain.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+inline std::string xz(std::string_view plain) {
+  std::string packed(lzma_stream_buffer_bound(plain.size()), '\0');
+  std::size_t size = 0;
+  EXPECT_EQ(lzma_easy_buffer_encode(6, LZMA_CHECK_CRC64, nullptr, reinterpret_cast<const std::uint8_t*>(plain.data()),
+                                    plain.size(), reinterpret_cast<std::uint8_t*>(packed.data()), &size, packed.size()),
+            LZMA_OK);
+  packed.resize(size);
+  return packed;
+}
+
+/// With a checksum, as zstd(1) writes it.
+inline std::string zstd(std::string_view plain) {
+  ZSTD_CCtx* const context = ZSTD_createCCtx();
+  ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+  std::string packed(ZSTD_compressBound(plain.size()), '\0');
+  const std::size_t size = ZSTD_compress2(context, packed.data(), packed.size(), plain.data(), plain.size());
+  ZSTD_freeCCtx(context);
+  EXPECT_EQ(ZSTD_isError(size), 0U);
+  packed.resize(size);
+  return packed;
+}
+
+inline std::string compress(Compression kind, std::string_view plain) {
+  switch (kind) {
+    case Compression::Gzip:
+      return gzip(plain);
+    case Compression::Xz:
+      return xz(plain);
+    case Compression::Zstd:
+      return zstd(plain);
+    case Compression::None:
+      break;
+  }
+  return std::string(plain);
+}
+
+inline constexpr std::array kCompressions{Compression::None, Compression::Gzip, Compression::Xz, Compression::Zstd};
+
+/// A .npy file: the header as numpy writes it around `dictionary`, then `data`.
+inline std::string npy(const std::string& dictionary, std::string_view data, int version = 1) {
+  std::string file = "\x93NUMPY";
+  file += static_cast<char>(version);
+  file += '\0';
+  const std::size_t front = version == 1 ? 10 : 12;
+  std::string text = dictionary;
+  while ((front + text.size() + 1) % 64 != 0) {
+    text += ' ';
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < front - 8; ++i) {
+    file += static_cast<char>((text.size() >> (8 * i)) & 0xFFU);
+  }
+  return file + text + std::string(data);
+}
+
+inline std::string npy_dictionary(const std::string& descr, bool fortran_order, const std::string& shape) {
+  return "{'descr': '" + descr + "', 'fortran_order': " + (fortran_order ? "True" : "False") + ", 'shape': " + shape +
+         ", }";
+}
+
+/// Numbers as bytes of `Float`, reversed where `swap`.
+template <class Float>
+std::string number_bytes(const std::vector<double>& values, bool swap = false) {
+  std::string bytes;
+  for (const double value : values) {
+    const auto stored = static_cast<Float>(value);
+    std::string one(reinterpret_cast<const char*>(&stored), sizeof stored);
+    bytes += swap ? std::string(one.rbegin(), one.rend()) : one;
+  }
+  return bytes;
+}
+
+inline std::vector<double> ramp(std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(0.25 * static_cast<double>(i) - 3.0);
+  }
+  return values;
+}
+
+/// Small valid files by format name. A registered format without an entry fails the malformed-input suite.
+inline std::map<std::string, std::vector<std::string>> valid_samples() {
+  return {
+      {"csv",
+       {"t,gx,gy\n0.00,1.5,-2\n0.01,1e-3,+4\n0.02,-0.125,6.\n", "gx\n1\n2\n3\n", "1,2\n3,4", "1\n2\n",
+        "\xEF\xBB\xBF# made by a logger\r\n\"time (s)\", \"gz, raw\"\r\n0, 1\r\n0.5 , \"2\"\r\n\r\n"}},
+      {"npy",
+       {npy(npy_dictionary("<f8", false, "(4, 3)"), number_bytes<double>(ramp(12))),
+        npy(npy_dictionary("<f4", false, "(5,)"), number_bytes<float>(ramp(5)), 2),
+        npy(npy_dictionary(">f8", true, "(3, 2)"), number_bytes<double>(ramp(6), true), 3)}},
+  };
+}
+
+/// A directory that goes away with its content.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "driftlab-read-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] std::vector<std::string> entries() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+inline std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace driftlab::testing
