@@ -2,12 +2,12 @@
 /// The characterisation of one channel: everything driftlab says about the stochastic errors of one sensor axis in one
 /// recording. Values only; `characterise_channel` (core/fit/characterise.hpp) makes it, schema/json writes it down
 /// (spec/results.md), the parameter table reads it. All numbers are SI: a channel of angular rate is in rad/s.
+#include "core/signal/estimate.hpp"
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/signal/estimate.hpp"
 
 namespace driftlab {
 
@@ -15,8 +15,8 @@ namespace driftlab {
 struct AllanCurve {
   std::vector<double> tau_s;
   std::vector<double> variance;
-  std::vector<Interval> ci95;    ///< of the variance
-  std::vector<double> edf;       ///< equivalent degrees of freedom of each variance
+  std::vector<Interval> ci95;  ///< of the variance
+  std::vector<double> edf;     ///< equivalent degrees of freedom of each variance
 };
 
 /// Haar MODWT wavelet variance at scales of n = 2^j samples (filter length) [channel unit^2]; AV(2^(j-1) dt) = 2 WV_j.
@@ -30,15 +30,15 @@ struct HaarCurve {
 /// One named parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says
 /// why in a sentence. Its unit is channel unit^`channel_power` * s^(second_power_halves/2).
 struct FittedParameter {
-  std::string name;              ///< `N`, `sigma`, `beta`, `K`, `R`, `Q`, `B`
-  int channel_power = 1;         ///< 0 for beta, 1 for the rest
-  int second_power_halves = 0;   ///< N: +1, K: -1, R: -2, Q: +2, sigma and B: 0, beta: -2
+  std::string name;             ///< `N`, `sigma`, `beta`, `K`, `R`, `Q`, `B`
+  int channel_power = 1;        ///< 0 for beta, 1 for the rest
+  int second_power_halves = 0;  ///< N: +1, K: -1, R: -2, Q: +2, sigma and B: 0, beta: -2
   std::optional<Estimate> estimate;
   std::string reason;
 };
 
 struct FittedProcess {
-  std::string process;           ///< registry name: `white_noise`, `gauss_markov`, ...
+  std::string process;  ///< registry name: `white_noise`, `gauss_markov`, ...
   std::vector<FittedParameter> parameters;
 };
 
@@ -51,36 +51,40 @@ struct JTest {
 
 /// One candidate model fitted by GMWM (Guerrier et al. 2013), whatever its outcome.
 struct ModelFit {
-  std::string model;             ///< `WN`, `WN+GM`, `WN+2GM+RW`, ...
+  std::string model;  ///< `WN`, `WN+GM`, `WN+2GM+RW`, ...
   bool robust = false;
-  std::vector<FittedProcess> processes;   ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
-  double objective = 0.0;        ///< weighted squared distance at the optimum (seed paper eq. 7)
-  double wic = 0.0;              ///< criterion that ranks (smaller is better)
-  std::optional<JTest> j_test;   ///< empty where no degree of freedom is left
-  std::string status;            ///< `converged`, `not_converged`, `collapsed` (a component vanished), `unidentifiable`
+  std::vector<FittedProcess>
+      processes;                ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
+  double objective = 0.0;       ///< weighted squared distance at the optimum (seed paper eq. 7)
+  double wic = 0.0;             ///< criterion that ranks (smaller is better)
+  double eq8 = 0.0;             ///< seed paper's eq. 8 with optimism 2 tr(W C W D (D'WD)^-1 D'), diagonal W
+  std::size_t parameters = 0;   ///< free parameters of the fit (those of vanished components do not count)
+  bool plausible = false;       ///< in the set of models that the data cannot tell apart (holds the truth in 85-98 %)
+  std::optional<JTest> j_test;  ///< empty where no degree of freedom is left
+  std::string status;           ///< `converged`, `not_converged`, `collapsed` (a component vanished), `unidentifiable`
   std::vector<std::string> warnings;
 };
 
 /// Coefficients of IEEE Std 952 read off the Allan variance by weighted regression. Empty: not identifiable, and
 /// `reasons` (same order Q N B K R) says why.
 struct AllanParameters {
-  std::optional<Estimate> q;     ///< quantization noise [channel unit * s]
-  std::optional<Estimate> n;     ///< angle (velocity) random walk [channel unit * sqrt(s)]
-  std::optional<Estimate> b;     ///< bias instability [channel unit]; Allan deviation floor 0.664 B
-  std::optional<Estimate> k;     ///< rate random walk [channel unit / sqrt(s)]
-  std::optional<Estimate> r;     ///< rate ramp [channel unit / s]
+  std::optional<Estimate> q;  ///< quantization noise [channel unit * s]
+  std::optional<Estimate> n;  ///< angle (velocity) random walk [channel unit * sqrt(s)]
+  std::optional<Estimate> b;  ///< bias instability [channel unit]; Allan deviation floor 0.664 B
+  std::optional<Estimate> k;  ///< rate random walk [channel unit / sqrt(s)]
+  std::optional<Estimate> r;  ///< rate ramp [channel unit / s]
   std::string q_reason, n_reason, b_reason, k_reason, r_reason;
 };
 
 struct ChannelCharacterisation {
   std::size_t samples = 0;
   double dt_s = 0.0;
-  double mean = 0.0;             ///< of the analysed samples
+  double mean = 0.0;  ///< of the analysed samples
   AllanCurve allan;
   HaarCurve haar;
   AllanParameters allan_parameters;
-  std::vector<ModelFit> fits;    ///< best first
-  std::size_t best = 0;          ///< index into fits
+  std::vector<ModelFit> fits;  ///< best first
+  std::size_t best = 0;        ///< index into fits
   std::vector<std::string> warnings;
 };
 

@@ -1,13 +1,13 @@
 #pragma once
 /// One channel in, its characterisation out: variances with intervals, Allan coefficients, ranked GMWM fits.
+#include "core/fit/characterisation.hpp"
+#include "core/signal/progress.hpp"
+#include "core/signal/result.hpp"
+
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "core/fit/characterisation.hpp"
-#include "core/signal/progress.hpp"
-#include "core/signal/result.hpp"
 
 namespace driftlab {
 
@@ -17,7 +17,7 @@ inline constexpr int kAlgorithmVersion = 1;
 struct CharacteriseOptions {
   /// Candidate models, written as in Table 3 of the seed paper (`WN`, `WN+GM`, `WN+2GM+RW`, `QN+WN+RW`, ...).
   /// The default is the nine of Table 3.
-  std::vector<std::string> models = {"WN",       "WN+GM",     "WN+GM+RW",  "WN+GM+DR",    "WN+GM+RW+DR",
+  std::vector<std::string> models = {"WN",     "WN+GM",     "WN+GM+RW",  "WN+GM+DR",    "WN+GM+RW+DR",
                                      "WN+2GM", "WN+2GM+RW", "WN+2GM+DR", "WN+2GM+RW+DR"};
   /// Seed of every random draw (bootstrap, tie breaking). The same seed gives the same bits.
   std::uint64_t seed = 1;
@@ -27,15 +27,16 @@ struct CharacteriseOptions {
 struct ChannelSamples {
   std::span<const double> values;  ///< uniform at dt_s, file unit
   double dt_s = 0.0;
-  double si_factor = 1.0;          ///< file unit -> SI; variances are computed on `values` and scaled once
+  double si_factor = 1.0;  ///< file unit -> SI; variances are computed on `values` and scaled once
 };
 
 /// Checks a model name and every setting without data. Errors: InvalidArgument, naming the parameter.
 [[nodiscard]] Status check_options(const CharacteriseOptions& options);
 
 /// Errors: TooFewSamples (fewer than 8 samples; the models need as many scales as parameters, smaller models are fitted
-/// and larger ones left out with a warning), NonFinite (naming the row), OutOfRange (squares overflow), InvalidArgument,
-/// Cancelled. A constant channel is no error: zero variances, no fit, a warning. Deterministic; one thread.
+/// and larger ones left out with a warning), NonFinite (naming the row), OutOfRange (squares overflow),
+/// InvalidArgument, Cancelled. A constant channel is no error: zero variances, no fit, a warning. Deterministic; one
+/// thread.
 [[nodiscard]] Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel,
                                                                    const CharacteriseOptions& options = {},
                                                                    const RunControl& control = {});

@@ -1,0 +1,205 @@
+#include "core/fit/characterise.hpp"
+
+#include "core/fit/allan_regression.hpp"
+#include "core/fit/candidate.hpp"
+#include "core/fit/fit_report.hpp"
+#include "core/variance/haar_covariance.hpp"
+#include "core/variance/haar_variance.hpp"
+#include "core/variance/samples.hpp"
+#include "core/variance/variance_intervals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace driftlab {
+namespace {
+
+constexpr std::size_t kFewestSamples = 8;
+constexpr std::size_t kMostModels = 64;
+/// Models whose criterion with 2p is this close to the best cannot be told apart.
+constexpr double kPlausible = 6.0;
+
+tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The characterisation was cancelled."); }
+
+Status check_channel(const ChannelSamples& channel) {
+  if (!(channel.dt_s > 0.0) || !std::isfinite(channel.dt_s)) {
+    return fail(ErrorCode::InvalidArgument, "The sample interval must be a positive number of seconds.",
+                {{"parameter", "dt_s"}});
+  }
+  if (channel.si_factor == 0.0 || !std::isfinite(channel.si_factor)) {
+    return fail(ErrorCode::InvalidArgument, "The factor to SI units must be a number other than zero.",
+                {{"parameter", "si_factor"}});
+  }
+  if (channel.values.size() < kFewestSamples) {
+    return fail(ErrorCode::TooFewSamples,
+                "A channel needs at least " + std::to_string(kFewestSamples) + " samples and has " +
+                    std::to_string(channel.values.size()) + ".",
+                {{"samples", std::to_string(channel.values.size())}, {"limit", std::to_string(kFewestSamples)}});
+  }
+  return {};
+}
+
+void store_curves(const HaarVariance& curve, const VarianceIntervals* intervals, double square_unit, double dt_s,
+                  ChannelCharacterisation& result) {
+  for (std::size_t j = 0; j < curve.scales(); ++j) {
+    const double variance = curve.variance[j] * square_unit;
+    const Interval raw = intervals != nullptr ? intervals->ci95[j] : Interval{0.0, 0.0};
+    const Interval interval{raw.low * square_unit, raw.high * square_unit};
+    const double edf = intervals != nullptr ? intervals->edf[j] : 0.0;
+    result.haar.scale.push_back(2 * curve.half[j]);
+    result.haar.variance.push_back(variance);
+    result.haar.ci95.push_back(interval);
+    result.haar.edf.push_back(edf);
+    result.allan.tau_s.push_back(static_cast<double>(curve.half[j]) * dt_s);
+    result.allan.variance.push_back(2.0 * variance);
+    result.allan.ci95.push_back({2.0 * interval.low, 2.0 * interval.high});
+    result.allan.edf.push_back(edf);
+  }
+}
+
+/// Fits every candidate that the number of scales allows; the rest are named in a warning.
+Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, const CharacteriseOptions& options,
+                                              const Eigen::VectorXd& sd, HaarCovariance& plan,
+                                              const RunControl& control, std::vector<std::string>& warnings) {
+  std::vector<Candidate> candidates;
+  std::string left_out;
+  const auto usable = static_cast<std::size_t>((moments.nu.array() > 0.0).count());
+  for (std::size_t i = 0; i < options.models.size(); ++i) {
+    if (control.stop.stop_requested()) {
+      return cancelled();
+    }
+    const ModelStructure structure = *parse_model(options.models[i]);
+    const std::string name = model_name(structure);
+    control.report("fit " + name, 0.3 + 0.5 * static_cast<double>(i) / static_cast<double>(options.models.size()));
+    if (structure.parameter_count() > usable) {
+      left_out += (left_out.empty() ? "" : ", ") + name;
+      continue;
+    }
+    const bool repeated = std::any_of(candidates.begin(), candidates.end(),
+                                      [&](const Candidate& other) { return other.structure == structure; });
+    if (!repeated) {
+      candidates.push_back(fit_candidate(moments, structure, sd, plan));
+    }
+  }
+  if (!left_out.empty()) {
+    warnings.push_back(
+        "The record is too short for these models, which have more parameters than it has scales: " + left_out + ".");
+  }
+  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.log_fit == nullptr; });
+  return candidates;
+}
+
+void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, const Eigen::VectorXd& sd) {
+  const auto largest =
+      std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.structure.parameter_count() < b.structure.parameter_count();
+      });
+  const Eigen::MatrixXd common = largest->covariance;
+  for (Candidate& candidate : candidates) {
+    candidate.eq8 = equation_8(moments, candidate.diagonal, sd, common);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    return a.criterion(moments.samples) < b.criterion(moments.samples);
+  });
+}
+
+void store_fits(std::vector<Candidate>& candidates, double unit, double samples, ChannelCharacterisation& result) {
+  double best = std::numeric_limits<double>::infinity();
+  const auto light = [](const Candidate& c) { return c.quasi_likelihood + 2.0 * static_cast<double>(c.parameters); };
+  for (const Candidate& candidate : candidates) {
+    best = std::min(best, light(candidate));
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const IntervalMethod method = i == 0 ? IntervalMethod::Profile : IntervalMethod::Preview;
+    result.fits.push_back(report_fit(candidates[i], unit, samples, method));
+    result.fits.back().plausible = light(candidates[i]) <= best + kPlausible;
+  }
+}
+
+}  // namespace
+
+Status check_options(const CharacteriseOptions& options) {
+  if (options.models.empty() || options.models.size() > kMostModels) {
+    return fail(ErrorCode::InvalidArgument, "Between 1 and " + std::to_string(kMostModels) + " models can be compared.",
+                {{"parameter", "models"}, {"limit", std::to_string(kMostModels)}});
+  }
+  for (const std::string& name : options.models) {
+    if (Result<ModelStructure> structure = parse_model(name); !structure) {
+      return fail(std::move(structure.error()));
+    }
+  }
+  return {};
+}
+
+Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel, const CharacteriseOptions& options,
+                                                     const RunControl& control) {
+  if (Status status = check_options(options); !status) {
+    return fail(std::move(status.error()));
+  }
+  if (Status status = check_channel(channel); !status) {
+    return fail(std::move(status.error()));
+  }
+  control.report("variance", 0.0);
+  const Result<SampleSummary> summary = summarise(channel.values);
+  if (!summary) {
+    return fail(summary.error());
+  }
+  ChannelCharacterisation result;
+  result.samples = channel.values.size();
+  result.dt_s = channel.dt_s;
+  result.mean = summary->mean * channel.si_factor;
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
+  HaarVariance curve = haar_variance(channel.values, summary->mean);
+  const double largest = *std::max_element(curve.variance.begin(), curve.variance.end());
+  const double unit = std::sqrt(largest);
+  const double si_unit = unit * std::fabs(channel.si_factor);
+  if (summary->constant()) {
+    std::fill(curve.variance.begin(), curve.variance.end(), 0.0);
+    store_curves(curve, nullptr, 0.0, channel.dt_s, result);
+    result.warnings.emplace_back("The channel is constant: every variance is zero and no model is fitted.");
+    result.allan_parameters.q_reason = result.allan_parameters.n_reason = result.allan_parameters.b_reason =
+        result.allan_parameters.k_reason = result.allan_parameters.r_reason = "The channel is constant.";
+    control.report("done", 1.0);
+    return result;
+  }
+  if (!std::isnormal(si_unit * si_unit) || !std::isnormal(largest)) {
+    return fail(ErrorCode::OutOfRange, "The variances of the channel are beyond the range of a double.");
+  }
+  for (double& variance : curve.variance) {  // everything below in units of the largest deviation
+    variance /= largest;
+  }
+  control.report("intervals", 0.2);
+  HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
+  const VarianceIntervals intervals = variance_intervals(curve, plan);
+  store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
+
+  const WaveletMoments moments{
+      Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
+      {plan.half().begin(), plan.half().end()},
+      static_cast<double>(curve.samples),
+      channel.dt_s};
+  const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
+  Result<std::vector<Candidate>> candidates = fit_candidates(moments, options, sd, plan, control, result.warnings);
+  if (!candidates) {
+    return fail(std::move(candidates.error()));
+  }
+  control.report("allan regression", 0.8);
+  result.allan_parameters = allan_regression(moments, sd, plan, si_unit);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
+  control.report("parameter intervals", 0.9);
+  if (!candidates->empty()) {
+    rank(*candidates, moments, sd);
+    store_fits(*candidates, si_unit, moments.samples, result);
+  } else {
+    result.warnings.emplace_back("No model could be fitted.");
+  }
+  control.report("done", 1.0);
+  return result;
+}
+
+}  // namespace driftlab

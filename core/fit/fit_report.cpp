@@ -1,0 +1,158 @@
+#include "core/fit/fit_report.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace driftlab {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A preview whose logarithm is this uncertain is no estimate.
+constexpr double kPreviewLimit = 2.0;
+
+std::string vanished(const ProcessKind& kind) {
+  return "The data show no " + std::string(kind.title) + ": the best fit has none of it.";
+}
+
+/// Interval of coordinate `k`, in the coordinate (2 ln level or ln shape).
+Interval coordinate_interval(LogFit& fit, std::size_t k, IntervalMethod method, double rise) {
+  if (method == IntervalMethod::Profile) {
+    return fit.profile(k, rise);
+  }
+  const double error = fit.sandwich()(static_cast<Eigen::Index>(k));
+  if (!(error < 2.0 * kPreviewLimit)) {
+    return {};
+  }
+  const double half_width = std::sqrt(rise) * error;
+  return {fit.best()(static_cast<Eigen::Index>(k)) - half_width, fit.best()(static_cast<Eigen::Index>(k)) + half_width};
+}
+
+struct Reported {
+  std::optional<Estimate> estimate;
+  std::string reason;
+};
+
+Reported report_parameter(Candidate& candidate, const Process& process, std::size_t active_index, std::size_t parameter,
+                          IntervalMethod method, double rise) {
+  LogFit& fit = *candidate.log_fit;
+  const auto& coordinates = fit.coordinates();
+  const auto found = std::find_if(coordinates.begin(), coordinates.end(), [&](const LogCoordinate& c) {
+    return c.process == active_index && c.parameter == parameter;
+  });
+  const auto k = static_cast<std::size_t>(found - coordinates.begin());
+  const Interval log_interval = coordinate_interval(fit, k, method, rise);
+  const double scale = parameter == 0 ? 0.5 : 1.0;
+  Reported reported;
+  const std::string name(process.kind->parameters[parameter].name);
+  const bool bounded_below = std::isfinite(log_interval.low);
+  const bool bounded_above = std::isfinite(log_interval.high);
+  if (parameter == 0 && !bounded_below) {
+    reported.reason =
+        "Not identifiable: the data are compatible with no " + std::string(process.kind->title) + " at all.";
+    return reported;
+  }
+  if (parameter > 0 && !bounded_below && !bounded_above) {
+    reported.reason = "Not identifiable: the data bound " + name + " on neither side.";
+    return reported;
+  }
+  Estimate estimate;
+  estimate.value = std::fabs(process.parameters[parameter]);
+  estimate.ci95.low = bounded_below ? std::exp(scale * log_interval.low) : -kInfinity;
+  estimate.ci95.high = bounded_above ? std::exp(scale * log_interval.high) : kInfinity;
+  if (!estimate.ci95.contains(estimate.value)) {  // the two distances disagree: the one the interval is made of speaks
+    const double at = fit.best()(static_cast<Eigen::Index>(k));
+    estimate.value = std::exp(scale * at);
+  }
+  reported.estimate = estimate;
+  return reported;
+}
+
+std::optional<JTest> j_test(const Candidate& candidate) {
+  const double dof = static_cast<double>(candidate.log_fit->scales()) - static_cast<double>(candidate.parameters);
+  if (dof < 1.0) {
+    return std::nullopt;
+  }
+  const double statistic = candidate.log_fit->minimum();
+  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), statistic));
+  return JTest{statistic, dof, p};
+}
+
+}  // namespace
+
+std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method, double rise) {
+  std::vector<FittedProcess> processes;
+  std::size_t active_index = 0;
+  for (const Process& process : candidate.fit.model) {
+    FittedProcess fitted;
+    fitted.process = process.kind->name;
+    const bool alive = process.parameters[0] > 0.0;
+    bool level_known = alive;
+    for (std::size_t k = 0; k < process.parameters.size(); ++k) {
+      const ParameterSpec& spec = process.kind->parameters[k];
+      FittedParameter parameter;
+      parameter.name = spec.name;
+      parameter.channel_power = spec.channel_power;
+      parameter.second_power_halves = spec.second_power_halves;
+      if (!alive) {
+        parameter.reason = vanished(*process.kind);
+      } else if (!level_known) {
+        parameter.reason = "Not identifiable: the data do not show that the process is there.";
+      } else {
+        Reported reported = report_parameter(candidate, process, active_index, k, method, rise);
+        level_known = k > 0 || reported.estimate.has_value();
+        parameter.reason = std::move(reported.reason);
+        parameter.estimate = reported.estimate;
+        if (parameter.estimate && spec.channel_power != 0) {
+          parameter.estimate->value *= unit;
+          parameter.estimate->ci95.low *= unit;
+          parameter.estimate->ci95.high *= unit;
+        }
+      }
+      fitted.parameters.push_back(std::move(parameter));
+    }
+    active_index += alive ? 1 : 0;
+    processes.push_back(std::move(fitted));
+  }
+  return processes;
+}
+
+ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method) {
+  ModelFit fit;
+  fit.model = model_name(candidate.structure);
+  fit.objective = candidate.fit.objective;
+  fit.wic = candidate.criterion(samples);
+  fit.eq8 = candidate.eq8;
+  fit.parameters = candidate.parameters;
+  fit.j_test = j_test(candidate);
+  fit.processes = report_processes(candidate, unit, method, kRise95);
+  bool collapsed = false;
+  bool unidentified = false;
+  for (std::size_t p = 0; p < fit.processes.size(); ++p) {
+    const bool gone = !(candidate.fit.model[p].parameters[0] > 0.0);
+    collapsed = collapsed || gone;
+    if (gone) {
+      fit.warnings.push_back(fit.processes[p].parameters.front().reason);
+      continue;
+    }
+    for (const FittedParameter& parameter : fit.processes[p].parameters) {
+      if (!parameter.estimate) {
+        unidentified = true;
+        fit.warnings.push_back(fit.processes[p].process + "." + parameter.name + ": " + parameter.reason);
+      }
+    }
+  }
+  fit.status = collapsed                 ? "collapsed"
+               : unidentified            ? "unidentifiable"
+               : candidate.fit.converged ? "converged"
+                                         : "not_converged";
+  if (fit.j_test && fit.j_test->p < 0.01) {
+    fit.warnings.emplace_back(
+        "The model does not fit the wavelet variances (J-test p < 0.01); its intervals are too short.");
+  }
+  return fit;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,336 @@
+#include "core/fit/gmwm.hpp"
+
+#include "core/fit/subset_least_squares.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <ceres/tiny_solver.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace driftlab {
+namespace {
+
+constexpr int kGridOne = 48;
+constexpr int kGridThree = 20;
+
+/// One shape of the structure: which process it belongs to, and where to look for it.
+struct ShapeSlot {
+  std::size_t process = 0;
+  double log_low = 0.0;
+  double log_high = 0.0;
+};
+
+class Search {
+ public:
+  Search(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights)
+      : moments_(moments), structure_(structure), whitening_(weights.whitening), target_(whitening_ * moments.nu) {
+    for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
+      if (structure.kinds[k]->has_shape()) {
+        const auto [low, high] = structure.kinds[k]->shape_range(moments.dt_s, moments.samples);
+        slots_.push_back({k, std::log(low), std::log(high)});
+      }
+    }
+    fixed_.resize(target_.size(), static_cast<Eigen::Index>(structure.kinds.size()));
+    for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
+      if (!structure.kinds[k]->has_shape()) {
+        fixed_.col(static_cast<Eigen::Index>(k)) = column(k, 0.0);
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t shapes() const { return slots_.size(); }
+  [[nodiscard]] const std::vector<ShapeSlot>& slots() const { return slots_; }
+  [[nodiscard]] Eigen::Index scales() const { return target_.size(); }
+
+  /// Whitened wavelet variance of process k at level 1.
+  [[nodiscard]] Eigen::VectorXd column(std::size_t k, double log_shape) const {
+    const ProcessKind* kind = structure_.kinds[k];
+    const std::array<double, 2> p{1.0, std::exp(log_shape)};
+    Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
+    for (Eigen::Index j = 0; j < raw.size(); ++j) {
+      raw(j) = kind->haar_variance({p.data(), kind->parameters.size()}, moments_.half[static_cast<std::size_t>(j)],
+                                   moments_.dt_s);
+    }
+    return whitening_ * raw;
+  }
+
+  /// d column / d log_shape.
+  [[nodiscard]] Eigen::VectorXd column_slope(std::size_t k, double log_shape) const {
+    const ProcessKind* kind = structure_.kinds[k];
+    const std::array<double, 2> p{1.0, std::exp(log_shape)};
+    Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
+    std::array<double, 2> gradient{};
+    for (Eigen::Index j = 0; j < raw.size(); ++j) {
+      kind->haar_gradient(p, moments_.half[static_cast<std::size_t>(j)], moments_.dt_s, gradient);
+      raw(j) = gradient[1] * p[1];
+    }
+    return whitening_ * raw;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd design(const Eigen::VectorXd& log_shapes) const {
+    Eigen::MatrixXd a = fixed_;
+    for (std::size_t s = 0; s < slots_.size(); ++s) {
+      a.col(static_cast<Eigen::Index>(slots_[s].process)) =
+          column(slots_[s].process, log_shapes(static_cast<Eigen::Index>(s)));
+    }
+    return a;
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
+  [[nodiscard]] const Eigen::MatrixXd& fixed() const { return fixed_; }
+
+  [[nodiscard]] Eigen::VectorXd clamped(const Eigen::VectorXd& log_shapes) const {
+    Eigen::VectorXd inside = log_shapes;
+    for (std::size_t s = 0; s < slots_.size(); ++s) {
+      const auto i = static_cast<Eigen::Index>(s);
+      inside(i) = std::clamp(inside(i), slots_[s].log_low, slots_[s].log_high);
+    }
+    return inside;
+  }
+
+ private:
+  const WaveletMoments& moments_;
+  const ModelStructure& structure_;
+  const Eigen::MatrixXd& whitening_;
+  Eigen::VectorXd target_;
+  Eigen::MatrixXd fixed_;
+  std::vector<ShapeSlot> slots_;
+};
+
+/// The projected residual as a function of the logarithms of the shapes, in the form ceres::TinySolver asks for.
+class ProjectedResidual {
+ public:
+  using Scalar = double;
+  // NOLINTNEXTLINE(readability-identifier-naming): names are Ceres'
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
+
+  explicit ProjectedResidual(const Search& search) : search_(search) {}
+  [[nodiscard]] int NumResiduals() const { return static_cast<int>(search_.scales()); }   // NOLINT
+  [[nodiscard]] int NumParameters() const { return static_cast<int>(search_.shapes()); }  // NOLINT
+
+  bool operator()(const double* log_shapes, double* residuals, double* jacobian) const {
+    const Eigen::VectorXd at =
+        search_.clamped(Eigen::Map<const Eigen::VectorXd>(log_shapes, static_cast<Eigen::Index>(search_.shapes())));
+    const Eigen::MatrixXd a = search_.design(at);
+    const SubsetSolution levels = subset_least_squares(a, search_.target());
+    Eigen::Map<Eigen::VectorXd> r(residuals, search_.scales());
+    r = search_.target() - a * levels.x;
+    if (jacobian == nullptr) {
+      return true;
+    }
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index k = 0; k < levels.x.size(); ++k) {
+      if (levels.x(k) > 0.0) {
+        active.push_back(k);
+      }
+    }
+    Eigen::MatrixXd basis(a.rows(), static_cast<Eigen::Index>(active.size()));
+    for (std::size_t k = 0; k < active.size(); ++k) {
+      basis.col(static_cast<Eigen::Index>(k)) = a.col(active[k]);
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
+    Eigen::Map<Eigen::MatrixXd> jac(jacobian, search_.scales(), static_cast<Eigen::Index>(search_.shapes()));
+    for (std::size_t s = 0; s < search_.shapes(); ++s) {
+      const auto process = static_cast<Eigen::Index>(search_.slots()[s].process);
+      const auto column = static_cast<Eigen::Index>(s);
+      const Eigen::VectorXd slope = levels.x(process) * search_.column_slope(search_.slots()[s].process, at(column));
+      jac.col(column) = active.empty() ? Eigen::VectorXd(-slope) : Eigen::VectorXd(basis * qr.solve(slope) - slope);
+    }
+    return true;
+  }
+
+ private:
+  const Search& search_;
+};
+
+struct Candidate {
+  Eigen::VectorXd log_shapes;
+  double objective = std::numeric_limits<double>::infinity();
+};
+
+/// Scans all combinations of grid points (rising within one kind) and keeps the best few that are not neighbours.
+std::vector<Candidate> scan(const Search& search, const ModelStructure& structure) {
+  const std::size_t shapes = search.shapes();
+  const int points = shapes > 2 ? kGridThree : kGridOne;
+  std::vector<std::vector<Eigen::VectorXd>> columns(shapes);
+  const auto at = [&](std::size_t s, int g) {
+    const ShapeSlot& slot = search.slots()[s];
+    return slot.log_low + (slot.log_high - slot.log_low) * g / (points - 1);
+  };
+  // One Gram matrix over the fixed columns and every grid column; slots of one kind share theirs.
+  const Eigen::Index fixed = search.fixed().cols();
+  Eigen::MatrixXd all(search.scales(), fixed + static_cast<Eigen::Index>(shapes) * points);
+  all.leftCols(fixed) = search.fixed();
+  for (std::size_t s = 0; s < shapes; ++s) {
+    all.col(static_cast<Eigen::Index>(search.slots()[s].process)).setZero();
+    for (int g = 0; g < points; ++g) {
+      all.col(fixed + static_cast<Eigen::Index>(s) * points + g) = search.column(search.slots()[s].process, at(s, g));
+    }
+  }
+  const GramProblem problem(all, search.target());
+  std::vector<Candidate> candidates;
+  std::vector<int> index(shapes, 0);
+  std::vector<std::vector<int>> tried;
+  std::vector<double> value;
+  const auto visit = [&] {
+    for (std::size_t s = 1; s < shapes; ++s) {
+      const bool same_kind =
+          structure.kinds[search.slots()[s].process] == structure.kinds[search.slots()[s - 1].process];
+      if (same_kind && index[s] >= index[s - 1]) {  // fastest (largest beta) first; equal ones are one process
+        return;
+      }
+    }
+    std::vector<Eigen::Index> picked;
+    for (Eigen::Index k = 0; k < fixed; ++k) {
+      picked.push_back(k);
+    }
+    for (std::size_t s = 0; s < shapes; ++s) {
+      picked[search.slots()[s].process] = fixed + static_cast<Eigen::Index>(s) * points + index[s];
+    }
+    tried.push_back(index);
+    value.push_back(problem.best_subset(picked).squared_residual);
+  };
+  for (;;) {
+    visit();
+    std::size_t s = 0;
+    while (s < shapes && ++index[s] == points) {
+      index[s++] = 0;
+    }
+    if (s == shapes) {
+      break;
+    }
+  }
+  std::vector<std::size_t> order(tried.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] < value[b]; });
+  std::vector<std::size_t> kept;
+  constexpr std::size_t kKeep = 6;
+  for (const std::size_t i : order) {
+    const bool fresh = std::none_of(kept.begin(), kept.end(), [&](std::size_t other) {
+      int distance = 0;
+      for (std::size_t s = 0; s < shapes; ++s) {
+        distance = std::max(distance, std::abs(tried[i][s] - tried[other][s]));
+      }
+      return distance <= 2;
+    });
+    if (fresh) {
+      kept.push_back(i);
+    }
+    if (kept.size() == kKeep) {
+      break;
+    }
+  }
+  for (const std::size_t i : kept) {
+    Candidate candidate;
+    candidate.log_shapes.resize(static_cast<Eigen::Index>(shapes));
+    for (std::size_t s = 0; s < shapes; ++s) {
+      candidate.log_shapes(static_cast<Eigen::Index>(s)) = at(s, tried[i][s]);
+    }
+    candidate.objective = value[i];
+    candidates.push_back(candidate);
+  }
+  return candidates;
+}
+
+/// Processes of one kind in a fixed order: the largest shape (fastest) first, vanished ones last.
+void sort_repeats(Model& model) {
+  std::stable_sort(model.begin(), model.end(), [](const Process& a, const Process& b) {
+    if (a.kind != b.kind) {
+      return a.kind < b.kind;  // entries of one registry, in its order
+    }
+    if ((a.parameters[0] > 0.0) != (b.parameters[0] > 0.0)) {
+      return a.parameters[0] > 0.0;
+    }
+    return a.parameters.size() > 1 && a.parameters[1] > b.parameters[1];
+  });
+}
+
+}  // namespace
+
+MomentWeights MomentWeights::from_sd(const Eigen::VectorXd& sd) {
+  return {Eigen::MatrixXd(sd.cwiseInverse().asDiagonal())};
+}
+
+MomentWeights MomentWeights::from_covariance(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd inverse = sd.cwiseInverse();
+  Eigen::MatrixXd correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  for (double ridge = 0.0;; ridge = ridge == 0.0 ? 1e-12 : 10.0 * ridge) {
+    Eigen::MatrixXd raised = correlation;
+    raised.diagonal().array() += ridge;
+    const Eigen::LLT<Eigen::MatrixXd> factor(raised);
+    if (factor.info() == Eigen::Success || ridge > 1.0) {
+      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols());
+      return {Eigen::MatrixXd(factor.matrixL().solve(identity)) * inverse.asDiagonal()};
+    }
+  }
+}
+
+Model GmwmSolution::active() const {
+  Model positive;
+  std::copy_if(model.begin(), model.end(), std::back_inserter(positive),
+               [](const Process& process) { return process.parameters[0] > 0.0; });
+  return positive;
+}
+
+Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& model) {
+  Eigen::VectorXd nu(static_cast<Eigen::Index>(moments.half.size()));
+  for (Eigen::Index j = 0; j < nu.size(); ++j) {
+    nu(j) = haar_variance(model, moments.half[static_cast<std::size_t>(j)], moments.dt_s);
+  }
+  return nu;
+}
+
+GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights) {
+  const Search search(moments, structure, weights);
+  Candidate best;
+  GmwmSolution solution;
+  solution.converged = true;
+  if (search.shapes() == 0) {
+    best.log_shapes.resize(0);
+  } else {
+    const ProjectedResidual residual(search);
+    for (Candidate candidate : scan(search, structure)) {
+      ceres::TinySolver<ProjectedResidual> solver;
+      solver.options.max_num_iterations = 60;
+      solver.options.gradient_tolerance = 1e-13;
+      solver.options.parameter_tolerance = 1e-10;
+      solver.options.function_tolerance = 1e-13 * std::max(1.0, candidate.objective);
+      solver.options.cost_threshold = 1e-300;
+      Eigen::VectorXd at = candidate.log_shapes;
+      const auto& summary = solver.Solve(residual, &at);
+      const double objective = 2.0 * summary.final_cost;
+      if (objective < candidate.objective) {
+        candidate.objective = objective;
+        candidate.log_shapes = search.clamped(at);
+      }
+      if (best.log_shapes.size() == 0 || candidate.objective < best.objective) {
+        best = candidate;
+        solution.converged = summary.status != ceres::TinySolver<ProjectedResidual>::HIT_MAX_ITERATIONS;
+      }
+    }
+  }
+  const Eigen::MatrixXd design = search.design(best.log_shapes);
+  const SubsetSolution levels = subset_least_squares(design, search.target());
+  solution.objective = (search.target() - design * levels.x).squaredNorm();
+  for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
+    Process process{structure.kinds[k], std::vector<double>(structure.kinds[k]->parameters.size(), 0.0)};
+    process.parameters[0] = std::sqrt(levels.x(static_cast<Eigen::Index>(k)));
+    for (std::size_t s = 0; s < search.shapes(); ++s) {
+      if (search.slots()[s].process == k) {
+        process.parameters[1] = std::exp(best.log_shapes(static_cast<Eigen::Index>(s)));
+      }
+    }
+    solution.model.push_back(std::move(process));
+  }
+  sort_repeats(solution.model);
+  return solution;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,291 @@
+#include "core/fit/log_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
+#include <ceres/tiny_solver.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMaxRestarts = 20;
+
+/// Residual over the free coordinates, in the form ceres::TinySolver asks for.
+class FreeResidual {
+ public:
+  using Scalar = double;
+  // NOLINTNEXTLINE(readability-identifier-naming): names are Ceres'
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
+
+  FreeResidual(const LogFit& fit, Eigen::VectorXd base, std::vector<Eigen::Index> free)
+      : fit_(fit), base_(std::move(base)), free_(std::move(free)) {}
+  [[nodiscard]] int NumResiduals() const { return static_cast<int>(fit_.scales()); }  // NOLINT
+  [[nodiscard]] int NumParameters() const { return static_cast<int>(free_.size()); }  // NOLINT
+
+  [[nodiscard]] Eigen::VectorXd full(const double* values) const {
+    Eigen::VectorXd at = base_;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      at(free_[i]) = values[i];
+    }
+    return at;
+  }
+
+  bool operator()(const double* values, double* residuals, double* jacobian) const {
+    Eigen::VectorXd r;
+    Eigen::MatrixXd all;
+    fit_.evaluate(full(values), &r, jacobian != nullptr ? &all : nullptr);
+    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
+    if (jacobian != nullptr) {
+      Eigen::Map<Eigen::MatrixXd> out(jacobian, r.size(), static_cast<Eigen::Index>(free_.size()));
+      for (std::size_t i = 0; i < free_.size(); ++i) {
+        out.col(static_cast<Eigen::Index>(i)) = all.col(free_[i]);
+      }
+    }
+    return true;
+  }
+
+ private:
+  const LogFit& fit_;
+  Eigen::VectorXd base_;
+  std::vector<Eigen::Index> free_;
+};
+
+}  // namespace
+
+LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd& covariance)
+    : moments_(moments), model_(std::move(model)) {
+  for (Eigen::Index j = 0; j < moments.nu.size(); ++j) {
+    if (moments.nu(j) > 0.0) {
+      used_.push_back(j);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(used_.size());
+  const Eigen::VectorXd fitted = modelled_variance(moments, model_);
+  Eigen::MatrixXd relative(count, count);
+  y_.resize(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      relative(i, j) = covariance(used_[i], used_[j]) / (fitted(used_[i]) * fitted(used_[j]));
+    }
+    const double half_edf = 1.0 / relative(j, j);  // eta/2 = nu^2/Var
+    y_(j) = std::log(moments.nu(used_[j])) - (boost::math::digamma(half_edf) - std::log(half_edf));
+    relative(j, j) = boost::math::trigamma(half_edf);
+  }
+  whitening_ = MomentWeights::from_covariance(relative).whitening;
+
+  const auto contribution = [&](Process process) {  // largest and smallest share of the curve at level 1
+    process.parameters[0] = 1.0;
+    std::pair<double, double> extremes{0.0, kInfinity};
+    for (const Eigen::Index j : used_) {
+      const double share =
+          process.haar_variance(moments.half[static_cast<std::size_t>(j)], moments.dt_s) / moments.nu(j);
+      extremes.first = std::max(extremes.first, share);
+      extremes.second = std::min(extremes.second, share);
+    }
+    return extremes;
+  };
+  std::vector<double> start;
+  for (std::size_t p = 0; p < model_.size(); ++p) {
+    const Process& process = model_[p];
+    const double square = process.parameters[0] * process.parameters[0];
+    const auto [most, least] = contribution(process);
+    const double at = std::log(square);
+    coordinates_.push_back(
+        {p, 0, -std::log(most) - 18.0, std::max(at, -std::log(std::max(least, most * 1e-12))) + 8.0});
+    start.push_back(at);
+  }
+  for (std::size_t p = 0; p < model_.size(); ++p) {
+    if (model_[p].kind->has_shape()) {
+      const auto [low, high] = model_[p].kind->shape_range(moments.dt_s, moments.samples);
+      coordinates_.push_back({p, 1, std::log(low), std::log(high)});
+      start.push_back(std::log(model_[p].parameters[1]));
+    }
+  }
+  best_ = Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
+  minimum_ = minimise(best_, std::nullopt);
+}
+
+Model LogFit::model_at(const Eigen::VectorXd& coordinates) const {
+  Model model = model_;
+  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+    const LogCoordinate& c = coordinates_[k];
+    const double value = std::clamp(coordinates(static_cast<Eigen::Index>(k)), c.low, c.high);
+    model[c.process].parameters[c.parameter] = c.parameter == 0 ? std::exp(0.5 * value) : std::exp(value);
+  }
+  return model;
+}
+
+double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* residual,
+                        Eigen::MatrixXd* jacobian) const {
+  const Model model = model_at(coordinates);
+  const Eigen::Index count = y_.size();
+  Eigen::VectorXd raw(count);
+  Eigen::MatrixXd slope;
+  if (jacobian != nullptr) {
+    slope.resize(count, static_cast<Eigen::Index>(coordinates_.size()));
+  }
+  std::array<double, 4> gradient{};
+  Eigen::MatrixXd part(count, static_cast<Eigen::Index>(model.size()));
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const double half = moments_.half[static_cast<std::size_t>(used_[j])];
+    double sum = 0.0;
+    for (std::size_t p = 0; p < model.size(); ++p) {
+      const double share = model[p].haar_variance(half, moments_.dt_s);
+      part(j, static_cast<Eigen::Index>(p)) = share;
+      sum += share;
+    }
+    raw(j) = y_(j) - std::log(sum);
+    if (jacobian == nullptr) {
+      continue;
+    }
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const LogCoordinate& c = coordinates_[k];
+      const double at = coordinates(static_cast<Eigen::Index>(k));
+      double value = 0.0;
+      if (c.parameter == 0) {
+        value = part(j, static_cast<Eigen::Index>(c.process)) / sum;
+      } else {
+        model[c.process].haar_gradient(half, moments_.dt_s, gradient);
+        value = gradient[1] * model[c.process].parameters[1] / sum;
+      }
+      slope(j, static_cast<Eigen::Index>(k)) = at >= c.low && at <= c.high ? -value : 0.0;
+    }
+  }
+  Eigen::VectorXd whitened = whitening_ * raw;
+  const double squared = whitened.squaredNorm();
+  if (jacobian != nullptr) {
+    *jacobian = whitening_ * slope;
+  }
+  if (residual != nullptr) {
+    *residual = std::move(whitened);
+  }
+  return squared;
+}
+
+double LogFit::minimise(Eigen::VectorXd& at, std::optional<std::size_t> fixed) const {
+  std::vector<Eigen::Index> free;
+  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+    if (!fixed || *fixed != k) {
+      free.push_back(static_cast<Eigen::Index>(k));
+    }
+  }
+  if (free.empty()) {
+    return evaluate(at, nullptr, nullptr);
+  }
+  const FreeResidual residual(*this, at, free);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    values(static_cast<Eigen::Index>(i)) = at(free[i]);
+  }
+  ceres::TinySolver<FreeResidual> solver;
+  solver.options.max_num_iterations = 80;
+  solver.options.gradient_tolerance = 1e-9;
+  solver.options.parameter_tolerance = 1e-9;
+  solver.options.function_tolerance = 1e-7;
+  solver.options.cost_threshold = 1e-14;
+  solver.options.initial_trust_region_radius = 1e2;
+  solver.Solve(residual, &values);
+  at = residual.full(values.data());
+  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    at(i) = std::clamp(at(i), coordinates_[k].low, coordinates_[k].high);
+  }
+  return evaluate(at, nullptr, nullptr);
+}
+
+Eigen::VectorXd LogFit::sandwich() const {
+  Eigen::MatrixXd jacobian;
+  evaluate(best_, nullptr, &jacobian);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
+  Eigen::VectorXd errors(static_cast<Eigen::Index>(coordinates_.size()));
+  for (Eigen::Index k = 0; k < errors.size(); ++k) {
+    double variance = 0.0;
+    for (Eigen::Index e = 0; e < errors.size(); ++e) {
+      const double loading = eigen.eigenvectors()(k, e);
+      variance += loading * loading / std::max(eigen.eigenvalues()(e), 1e-14);
+    }
+    errors(k) = std::sqrt(variance);
+  }
+  return errors;
+}
+
+double LogFit::constrained(std::size_t k, double value, Eigen::VectorXd& warm) const {
+  const auto index = static_cast<Eigen::Index>(k);
+  Eigen::VectorXd from_best = best_;
+  from_best(index) = value;
+  const double from_best_value = minimise(from_best, k);
+  warm(index) = value;
+  const double warm_value = minimise(warm, k);
+  if (from_best_value < warm_value) {
+    warm = from_best;
+    return from_best_value;
+  }
+  return warm_value;
+}
+
+Interval LogFit::profile(std::size_t k, double rise) {
+  const auto index = static_cast<Eigen::Index>(k);
+  const double guess = std::clamp(1.96 * sandwich()(index), 1e-4, 1.0);
+  Interval interval{-kInfinity, kInfinity};
+  for (const double direction : {-1.0, 1.0}) {
+    const double limit = direction < 0.0 ? coordinates_[k].low : coordinates_[k].high;
+    double inside = best_(index);
+    double outside = inside;
+    double inside_value = 0.0;
+    double outside_value = 0.0;
+    Eigen::VectorXd warm = best_;
+    bool found = false;
+    for (double step = guess; !found; step *= 1.6) {  // outwards until L has risen enough, or the range ends
+      outside = direction < 0.0 ? std::max(limit, inside - step) : std::min(limit, inside + step);
+      outside_value = constrained(k, outside, warm) - minimum_;
+      if (outside_value < -1e-4 && restarts_ < kMaxRestarts) {  // better than the best known: start again from it
+        ++restarts_;
+        best_ = warm;
+        minimum_ += outside_value;
+        return profile(k, rise);
+      }
+      found = outside_value > rise;
+      if (!found) {
+        inside = outside;
+        inside_value = outside_value;
+        if (outside == limit) {
+          break;
+        }
+      }
+    }
+    if (!found) {
+      continue;
+    }
+    for (int i = 0; i < 25 && std::fabs(outside - inside) > 2e-4 * std::max(guess, std::fabs(outside - best_(index)));
+         ++i) {
+      // Regula falsi on sqrt(L), which is nearly linear in the coordinate, kept away from the ends.
+      const double root = std::sqrt(std::max(rise, 0.0));
+      const double a = std::sqrt(std::max(inside_value, 0.0));
+      const double b = std::sqrt(outside_value);
+      const double fraction = std::clamp((root - a) / std::max(b - a, 1e-12), 0.1, 0.9);
+      const double middle = inside + fraction * (outside - inside);
+      const double value = constrained(k, middle, warm) - minimum_;
+      if (value > rise) {
+        outside = middle;
+        outside_value = value;
+      } else {
+        inside = middle;
+        inside_value = value;
+      }
+      if (std::fabs(value - rise) < 1e-3 * rise) {
+        outside = inside = middle;
+      }
+    }
+    (direction < 0.0 ? interval.low : interval.high) = 0.5 * (inside + outside);
+  }
+  return interval;
+}
+
+}  // namespace driftlab

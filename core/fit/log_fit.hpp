@@ -1,0 +1,65 @@
+#pragma once
+/// Quasi-likelihood of a model on the logarithms of the wavelet variances.
+///
+/// y_j = ln nu^_j - [psi(eta_j/2) - ln(eta_j/2)] is unbiased for ln nu_j when nu^_j is scaled chi-square with eta_j
+/// degrees of freedom; R is the relative covariance of the nu^ at the fit, its diagonal set to psi'(eta_j/2), the
+/// variance of the logarithm. L(theta) = r' R^-1 r, r = y - ln nu(theta), is chi-square(scales - parameters) at its
+/// minimum where the model is right, and its profile gives intervals that hold at scales of a few degrees of freedom,
+/// where nu^ itself is far from Gaussian.
+#include "core/fit/gmwm.hpp"
+#include "core/signal/estimate.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace driftlab {
+
+/// Coordinates of a model: ln of every squared level, then ln of every shape, in the order of the model's processes.
+struct LogCoordinate {
+  std::size_t process = 0;
+  std::size_t parameter = 0;  ///< 0: the level (the coordinate is 2 ln level), 1: the shape
+  double low = 0.0;           ///< where the search stops: the component is gone, or the record cannot tell
+  double high = 0.0;
+};
+
+class LogFit {
+ public:
+  /// `model`: the fit, positive levels only. `covariance`: of the wavelet variances under it. Scales whose variance is
+  /// 0 take no part.
+  LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd& covariance);
+
+  [[nodiscard]] const std::vector<LogCoordinate>& coordinates() const { return coordinates_; }
+  [[nodiscard]] Eigen::Index scales() const { return y_.size(); }
+  /// Where L is least, and L there.
+  [[nodiscard]] const Eigen::VectorXd& best() const { return best_; }
+  [[nodiscard]] double minimum() const { return minimum_; }
+  [[nodiscard]] Model model_at(const Eigen::VectorXd& coordinates) const;
+
+  /// Standard errors of the coordinates from the curvature, (D' R^-1 D)^-1: the fast preview. Infinite where singular.
+  [[nodiscard]] Eigen::VectorXd sandwich() const;
+
+  /// All values of coordinate `k` whose profiled L is within `rise` of the minimum; an end that the search range does
+  /// not reach is open (infinite). Also lowers best()/minimum() should a constrained fit find less.
+  [[nodiscard]] Interval profile(std::size_t k, double rise);
+
+  /// L and, where asked for, the whitened residual and its Jacobian (scales x coordinates).
+  double evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* residual, Eigen::MatrixXd* jacobian) const;
+
+ private:
+  double minimise(Eigen::VectorXd& at, std::optional<std::size_t> fixed) const;
+  double constrained(std::size_t k, double value, Eigen::VectorXd& warm) const;
+
+  const WaveletMoments& moments_;
+  Model model_;
+  std::vector<Eigen::Index> used_;
+  Eigen::VectorXd y_;
+  Eigen::MatrixXd whitening_;
+  std::vector<LogCoordinate> coordinates_;
+  Eigen::VectorXd best_;
+  double minimum_ = 0.0;
+  int restarts_ = 0;
+};
+
+}  // namespace driftlab

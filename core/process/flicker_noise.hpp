@@ -1,0 +1,43 @@
+#pragma once
+/// Flicker noise (bias instability): two-sided density B^2/(2 pi |f|) up to the Nyquist frequency, without aliasing.
+///
+/// Allan deviation floor sqrt(2 ln 2/pi) B = 0.664 B. Only its increments are stationary; it has no finite state space
+/// (the one given is a sum of Gauss-Markov processes, approximate with its stated error).
+#include "core/process/parameter.hpp"
+#include "core/process/random.hpp"
+#include "core/process/state_space.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+
+namespace driftlab {
+
+struct FlickerNoise {
+  static constexpr std::string_view kName = "flicker_noise";
+  static constexpr std::string_view kSymbol = "FN";
+  static constexpr std::string_view kTitle = "flicker noise (bias instability)";
+  static constexpr bool kRepeats = false;
+  static constexpr std::array kParameters{ParameterSpec{.name = "B"}};
+
+  double b = 1.0;  ///< [unit]
+
+  /// (B^2/pi) int_0^{pi/2} sin^4(mu) / (m^2 u sin^2 u) du, by parts: leading term Cin(2 pi m) - Cin(pi m) -> ln 2.
+  /// Relative accuracy 1e-13. m whole.
+  [[nodiscard]] double haar_variance(double m, double dt_s) const;
+  void haar_gradient(double m, double dt_s, std::span<double> out) const;
+  /// Infinite at f = 0.
+  [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
+  [[nodiscard]] std::optional<double> autocovariance(double /*lag*/, double /*dt_s*/) const { return std::nullopt; }
+  /// (2 B^2/pi) Cin(pi h), Cin(x) = int_0^x (1 - cos t)/t dt; h whole.
+  [[nodiscard]] double variogram(double lag, double dt_s) const;
+  [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
+  [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
+  /// Absent: no finite state space gives 1/f.
+  [[nodiscard]] std::optional<StateSpace> state_space(double /*dt_s*/) const { return std::nullopt; }
+  /// Circulant embedding of the stationary increments (Davies and Harte 1987; Wood and Chan 1994), started at 0:
+  /// exact second moments of all differences. O(n log n) time, 4 n complex numbers.
+  void add_path(Random& random, double dt_s, std::span<double> out) const;
+};
+
+}  // namespace driftlab

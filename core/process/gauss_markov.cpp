@@ -1,0 +1,142 @@
+#include "core/process/gauss_markov.hpp"
+
+#include "core/process/haar_differences.hpp"
+
+#include <cmath>
+
+namespace driftlab {
+namespace {
+
+/// sinh x - x without cancellation.
+double sinh_minus(double x) {
+  if (std::fabs(x) < 0.5) {
+    const double s = x * x;
+    return x * s / 6.0 *
+           (1.0 +
+            s / 20.0 * (1.0 + s / 42.0 * (1.0 + s / 72.0 * (1.0 + s / 110.0 * (1.0 + s / 156.0 * (1.0 + s / 210.0))))));
+  }
+  return std::sinh(x) - x;
+}
+
+/// p(y) = 2y - 3 + 4 e^-y - e^-2y, y >= 0, without cancellation. Series: sum_{k>=3} (-1)^k (4 - 2^k) y^k / k!.
+double haar_bump(double y) {
+  if (y < 0.5) {
+    double power = y * y * y / 6.0;  // y^k / k!
+    double two_power = 8.0;
+    double sign = -1.0;
+    double sum = 0.0;
+    for (int k = 3; k < 24; ++k) {
+      sum += sign * (4.0 - two_power) * power;
+      power *= y / (k + 1);
+      two_power *= 2.0;
+      sign = -sign;
+    }
+    return sum;
+  }
+  const double t = std::expm1(-y);
+  return 2.0 * (y + t) - t * t;
+}
+
+/// Above this x = beta dt the process is white noise to the last bit, and sinh would overflow before long.
+constexpr double kWhite = 40.0;
+
+double unit_haar_variance(double x, double m) {
+  if (x > kWhite) {
+    return 0.5 / m;
+  }
+  const double s = std::sinh(0.5 * x);
+  return (2.0 * m * sinh_minus(x) + haar_bump(m * x)) / (8.0 * m * m * s * s);
+}
+
+}  // namespace
+
+double GaussMarkov::haar_variance(double m, double dt_s) const {
+  return sigma * sigma * unit_haar_variance(beta * dt_s, m);
+}
+
+void GaussMarkov::haar_gradient(double m, double dt_s, std::span<double> out) const {
+  const double x = beta * dt_s;
+  const double unit = unit_haar_variance(x, m);
+  out[0] = 2.0 * sigma * unit;
+  if (x > kWhite) {
+    out[1] = 0.0;
+    return;
+  }
+  // d ln(numerator)/dx - d ln(denominator)/dx; p'(y) = 2 (1 - e^-y)^2.
+  const double s = std::sinh(0.5 * x);
+  const double t = std::expm1(-m * x);
+  const double numerator = 2.0 * m * sinh_minus(x) + haar_bump(m * x);
+  const double slope = (4.0 * m * s * s + 2.0 * m * t * t) / numerator - 1.0 / std::tanh(0.5 * x);
+  out[1] = sigma * sigma * unit * slope * dt_s;
+}
+
+std::optional<double> GaussMarkov::spectral_density(double f_hz, double dt_s) const {
+  const double x = beta * dt_s;
+  const double phi = std::exp(-x);
+  const double gap = -std::expm1(-x);  // 1 - phi
+  const double s = scaled_phase(f_hz * dt_s, 1.0).sine;
+  return dt_s * sigma * sigma * gap * (1.0 + phi) / (gap * gap + 4.0 * phi * s * s);
+}
+
+std::optional<double> GaussMarkov::autocovariance(double lag, double dt_s) const {
+  return sigma * sigma * std::exp(-beta * dt_s * std::fabs(lag));
+}
+
+double GaussMarkov::variogram(double lag, double dt_s) const {
+  return -2.0 * sigma * sigma * std::expm1(-beta * dt_s * std::fabs(lag));
+}
+
+double GaussMarkov::haar_cross(double mi, double mj, double h, double dt_s) const {
+  const double x = beta * dt_s;
+  if (x > kWhite) {
+    return h >= mi + mj ? 0.0
+                        : sigma * sigma * haar_cross_of(mi, mj, h, [](double lag) { return 0.5 * std::fabs(lag); });
+  }
+  const double s = std::sinh(0.5 * x);
+  const double scale = sigma * sigma / (4.0 * s * s);
+  if (h >= mi + mj) {  // only the exponential is left, and its differences are products
+    const double a = std::expm1(-x * mi);
+    const double b = std::expm1(-x * mj);
+    return -scale * std::exp(-x * (h - mi - mj)) * a * a * b * b / (4.0 * mi * mj);
+  }
+  const double reach = x * (h + mi + mj);
+  if (reach > 1.0) {
+    const double sinh_x = std::sinh(x);
+    return scale * haar_cross_of(mi, mj, h, [x, sinh_x](double lag) {
+             const double distance = std::fabs(lag);
+             return std::exp(-x * distance) + distance * sinh_x;
+           });
+  }
+  // K = cosh(xh) - [ (sinh x|h| - x|h|) - |h| (sinh x - x) ]: differences of cosh are products of sinh.
+  const double a = 2.0 * std::sinh(0.5 * x * mi);
+  const double b = 2.0 * std::sinh(0.5 * x * mj);
+  const double even = -std::cosh(x * h) * a * a * b * b / (4.0 * mi * mj);
+  const double rest = sinh_minus(x);
+  const double odd = haar_cross_of(mi, mj, h, [x, rest](double lag) {
+    const double distance = std::fabs(lag);
+    return distance * rest - sinh_minus(x * distance);
+  });
+  return scale * (even + odd);
+}
+
+std::optional<StateSpace> GaussMarkov::state_space(double dt_s) const {
+  StateSpace model;
+  model.phi = Eigen::MatrixXd::Constant(1, 1, std::exp(-beta * dt_s));
+  model.q = Eigen::MatrixXd::Constant(1, 1, -sigma * sigma * std::expm1(-2.0 * beta * dt_s));
+  model.h = Eigen::RowVectorXd::Ones(1);
+  model.mean0 = Eigen::VectorXd::Zero(1);
+  model.cov0 = Eigen::MatrixXd::Constant(1, 1, sigma * sigma);
+  return model;
+}
+
+void GaussMarkov::add_path(Random& random, double dt_s, std::span<double> out) const {
+  const double phi = std::exp(-beta * dt_s);
+  const double sd = sigma * std::sqrt(-std::expm1(-2.0 * beta * dt_s));
+  double level = sigma * random.normal();
+  for (double& value : out) {
+    value += level;
+    level = phi * level + sd * random.normal();
+  }
+}
+
+}  // namespace driftlab

@@ -1,0 +1,49 @@
+#pragma once
+/// First-order Gauss-Markov process: bias that wanders and is pulled back with the rate beta.
+///
+/// Point samples of dX = -beta X dt + sqrt(2 beta) sigma dW: an AR(1) with phi = exp(-beta dt) and stationary variance
+/// sigma^2. As beta -> 0 with 2 beta sigma^2 fixed it becomes a random walk; as beta -> infinity, white noise. The
+/// closed forms below keep 15 digits over x = beta dt from 1e-14 to 700 and scales to 2^30, where the usual form loses
+/// them all.
+#include "core/process/parameter.hpp"
+#include "core/process/random.hpp"
+#include "core/process/state_space.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace driftlab {
+
+struct GaussMarkov {
+  static constexpr std::string_view kName = "gauss_markov";
+  static constexpr std::string_view kSymbol = "GM";
+  static constexpr std::string_view kTitle = "first-order Gauss-Markov process";
+  static constexpr bool kRepeats = true;
+  static constexpr std::array kParameters{ParameterSpec{.name = "sigma"},
+                                          ParameterSpec{.name = "beta", .channel_power = 0, .second_power_halves = -2}};
+
+  double sigma = 1.0;  ///< stationary standard deviation [unit]
+  double beta = 1.0;   ///< inverse correlation time [1/s]
+
+  /// sigma^2 [2m (sinh x - x) + p(mx)] / (8 m^2 sinh^2(x/2)), p(y) = 2y - 3 + 4 e^-y - e^-2y: a sum of positive terms.
+  [[nodiscard]] double haar_variance(double m, double dt_s) const;
+  void haar_gradient(double m, double dt_s, std::span<double> out) const;
+  /// dt sigma^2 (1 - phi^2) / (1 - 2 phi cos(2 pi f dt) + phi^2).
+  [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
+  [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const;
+  [[nodiscard]] double variogram(double lag, double dt_s) const;
+  [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
+  [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
+  [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
+  /// Starts in the stationary distribution.
+  void add_path(Random& random, double dt_s, std::span<double> out) const;
+  /// Correlation times from 1/8 of a sample to a thousand records: beyond either end the process is white noise or a
+  /// random walk to nine digits.
+  [[nodiscard]] static std::pair<double, double> shape_range(double dt_s, double samples) {
+    return {1e-3 / (samples * dt_s), 8.0 / dt_s};
+  }
+};
+
+}  // namespace driftlab

@@ -1,0 +1,36 @@
+#pragma once
+/// Second differences of a lag function: how a Haar filter sees a process (estimator-notes of the design; Percival
+/// 1995).
+#include <cmath>
+
+namespace driftlab {
+
+/// -D_mi D_mj K(h) / (4 mi mj), with D_m f(h) = f(h + m) - 2 f(h) + f(h - m): the covariance of the Haar wavelet
+/// coefficients of half lengths mi and mj whose filter centres are h samples apart, for a process whose lag function K
+/// has second difference (autocovariance) gamma, or K = -V/2 summed twice for a process with stationary increments
+/// only.
+template <class LagFunction>
+[[nodiscard]] double haar_cross_of(double mi, double mj, double h, const LagFunction& k) {
+  if (mi == mj) {
+    const double sum = (k(h + 2 * mi) + k(h - 2 * mi)) - 4 * (k(h + mi) + k(h - mi)) + 6 * k(h);
+    return -sum / (4 * mi * mj);
+  }
+  const double outer = k(h + mi + mj) + k(h + mi - mj) + k(h - mi + mj) + k(h - mi - mj);
+  const double middle = k(h + mi) + k(h - mi) + k(h + mj) + k(h - mj);
+  return -(outer - 2 * middle + 4 * k(h)) / (4 * mi * mj);
+}
+
+/// sin(pi f m) for frequencies in cycles per sample and whole m up to 2^40, without losing the phase of large m.
+struct ScaledPhase {
+  double sine;
+  double cosine;
+};
+[[nodiscard]] inline ScaledPhase scaled_phase(double frequency, double m) {
+  constexpr double kPi = 3.14159265358979323846;
+  const double high = frequency * m;
+  const double low = std::fma(frequency, m, -high);
+  const double turn = std::remainder(high, 2.0) + low;
+  return {std::sin(kPi * turn), std::cos(kPi * turn)};
+}
+
+}  // namespace driftlab

@@ -1,0 +1,80 @@
+#pragma once
+/// A stochastic process as the rest of driftlab sees it: a kind from the registry and the values of its parameters.
+///
+/// Every law is per channel unit: a `Process` with level 1 in rad/s gives variances in (rad/s)^2. `half` is the half
+/// length m of a Haar filter in samples (scale n = 2m, Allan tau = m dt), any whole number up to 2^40 held in a double.
+#include "core/process/parameter.hpp"
+#include "core/process/random.hpp"
+#include "core/process/state_space.hpp"
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace driftlab {
+
+/// The laws of one kind of process, made from its value type by `kind_of` (core/process/registry.cpp). Each function
+/// takes the parameter values in declaration order. A law that does not exist for a kind returns nothing.
+struct ProcessKind {
+  std::string_view name;    ///< as in documents: white_noise, ...
+  std::string_view symbol;  ///< as in model names: WN, ...
+  std::string_view title;   ///< for people
+  bool repeats = false;     ///< may a model hold several of them?
+  std::span<const ParameterSpec> parameters;
+
+  double (*haar_variance)(std::span<const double> p, double half, double dt_s) = nullptr;
+  void (*haar_gradient)(std::span<const double> p, double half, double dt_s, std::span<double> out) = nullptr;
+  std::optional<double> (*spectral_density)(std::span<const double> p, double f_hz, double dt_s) = nullptr;
+  std::optional<double> (*autocovariance)(std::span<const double> p, double lag, double dt_s) = nullptr;
+  double (*variogram)(std::span<const double> p, double lag, double dt_s) = nullptr;
+  /// One value per lag, added times `factor` to `out`.
+  void (*add_haar_cross)(std::span<const double> p, double mi, double mj, double dt_s, std::span<const double> lags,
+                         double factor, std::span<double> out) = nullptr;
+  double (*haar_mean)(std::span<const double> p, double half, double dt_s) = nullptr;
+  std::optional<StateSpace> (*state_space)(std::span<const double> p, double dt_s) = nullptr;
+  void (*add_path)(std::span<const double> p, Random& random, double dt_s, std::span<double> out) = nullptr;
+  /// Where a record of `samples` can tell the shape parameter; {0, 0} for kinds without one.
+  std::pair<double, double> (*shape_range)(double dt_s, double samples) = nullptr;
+
+  [[nodiscard]] bool has_shape() const { return parameters.size() > 1; }
+};
+
+/// A kind with values: a value type, cheap to copy.
+struct Process {
+  const ProcessKind* kind = nullptr;
+  std::vector<double> parameters;  ///< SI, as declared by kind->parameters
+
+  /// Haar MODWT wavelet variance at scale 2 `half` [unit^2].
+  [[nodiscard]] double haar_variance(double half, double dt_s) const {
+    return kind->haar_variance(parameters, half, dt_s);
+  }
+  /// Allan variance at tau = half dt: twice the Haar wavelet variance in this normalisation.
+  [[nodiscard]] double allan_variance(double half, double dt_s) const { return 2.0 * haar_variance(half, dt_s); }
+  /// Derivatives of haar_variance by each parameter.
+  void haar_gradient(double half, double dt_s, std::span<double> out) const {
+    kind->haar_gradient(parameters, half, dt_s, out);
+  }
+  /// Two-sided density [unit^2 s] of the sampled process at |f| <= 1/(2 dt); its integral over both signs is the
+  /// variance.
+  [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const {
+    return kind->spectral_density(parameters, f_hz, dt_s);
+  }
+  /// Autocovariance at a lag in whole samples; nothing for processes that are not stationary.
+  [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const {
+    return kind->autocovariance(parameters, lag, dt_s);
+  }
+  /// E (x_{t+lag} - x_t)^2: exists for every kind.
+  [[nodiscard]] double variogram(double lag, double dt_s) const { return kind->variogram(parameters, lag, dt_s); }
+  /// Mean of the Haar coefficients of half length `half`; 0 except for deterministic trends.
+  [[nodiscard]] double haar_mean(double half, double dt_s) const { return kind->haar_mean(parameters, half, dt_s); }
+  /// State-space form; nothing where none exists (flicker noise).
+  [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const { return kind->state_space(parameters, dt_s); }
+  /// Adds one realisation to `out`, one value per sample.
+  void add_path(Random& random, double dt_s, std::span<double> out) const {
+    kind->add_path(parameters, random, dt_s, out);
+  }
+};
+
+}  // namespace driftlab

@@ -1,0 +1,68 @@
+#pragma once
+/// Turns a value type such as GaussMarkov into a ProcessKind. A value type is an aggregate of doubles, one per declared
+/// parameter and in that order, with the functions of white_noise.hpp; `static shape_range(dt_s, samples)` where it has
+/// a shape.
+#include "core/process/process.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace driftlab {
+
+namespace detail {
+
+template <class T, std::size_t... I>
+T from_values(std::span<const double> p, std::index_sequence<I...> /*indices*/) {
+  return T{p[I]...};
+}
+
+template <class T>
+T from_values(std::span<const double> p) {
+  return from_values<T>(p, std::make_index_sequence<T::kParameters.size()>{});
+}
+
+}  // namespace detail
+
+template <class T>
+[[nodiscard]] ProcessKind kind_of() {
+  using Values = std::span<const double>;
+  ProcessKind kind;
+  kind.name = T::kName;
+  kind.symbol = T::kSymbol;
+  kind.title = T::kTitle;
+  kind.repeats = T::kRepeats;
+  kind.parameters = T::kParameters;
+  kind.haar_variance = [](Values p, double half, double dt_s) {
+    return detail::from_values<T>(p).haar_variance(half, dt_s);
+  };
+  kind.haar_gradient = [](Values p, double half, double dt_s, std::span<double> out) {
+    detail::from_values<T>(p).haar_gradient(half, dt_s, out);
+  };
+  kind.spectral_density = [](Values p, double f_hz, double dt_s) {
+    return detail::from_values<T>(p).spectral_density(f_hz, dt_s);
+  };
+  kind.autocovariance = [](Values p, double lag, double dt_s) {
+    return detail::from_values<T>(p).autocovariance(lag, dt_s);
+  };
+  kind.variogram = [](Values p, double lag, double dt_s) { return detail::from_values<T>(p).variogram(lag, dt_s); };
+  kind.add_haar_cross = [](Values p, double mi, double mj, double dt_s, std::span<const double> lags, double factor,
+                           std::span<double> out) {
+    const T process = detail::from_values<T>(p);
+    for (std::size_t i = 0; i < lags.size(); ++i) {
+      out[i] += factor * process.haar_cross(mi, mj, lags[i], dt_s);
+    }
+  };
+  kind.haar_mean = [](Values p, double half, double dt_s) { return detail::from_values<T>(p).haar_mean(half, dt_s); };
+  kind.state_space = [](Values p, double dt_s) { return detail::from_values<T>(p).state_space(dt_s); };
+  kind.add_path = [](Values p, Random& random, double dt_s, std::span<double> out) {
+    detail::from_values<T>(p).add_path(random, dt_s, out);
+  };
+  if constexpr (requires { T::shape_range(1.0, 1.0); }) {
+    kind.shape_range = [](double dt_s, double samples) { return T::shape_range(dt_s, samples); };
+  } else {
+    kind.shape_range = [](double, double) { return std::pair{0.0, 0.0}; };
+  }
+  return kind;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,34 @@
+#pragma once
+/// Overlapping Allan variance and Haar MODWT wavelet variance at all octaves.
+///
+/// At half length m the wavelet coefficient is W_t = (mean of the last m samples - mean of the m before)/2, t = 2m ..
+/// N, and the unbiased MODWT estimator (Percival and Walden 2000, eq. 306b) is the mean of W_t^2 over its N - 2m + 1
+/// values. Twice that is the overlapping Allan variance at tau = m dt (NIST SP 1065 eq. 11), which therefore needs no
+/// pass of its own.
+#include "core/signal/result.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace driftlab {
+
+/// Wavelet variances [unit^2] at m = 1, 2, 4, ... ; scale j is n = 2m = 2^j samples, j = 1 .. floor(log2 N), all of
+/// them.
+struct HaarVariance {
+  std::size_t samples = 0;
+  std::vector<std::size_t> half;  ///< m
+  std::vector<double> variance;
+
+  [[nodiscard]] std::size_t scales() const { return half.size(); }
+  /// Number of coefficients behind scale index `j`.
+  [[nodiscard]] std::size_t coefficients(std::size_t j) const { return samples - 2 * half[j] + 1; }
+};
+
+/// All octaves in one pass. `samples` are used as they lie; NaN-free and bounded (summarise() checks). Sums are formed
+/// relative to `pivot` (the mean, to be accurate: then a bias of 10^6 sigma costs no digits), short scales by a pyramid
+/// of pairwise sums inside cache-sized blocks, long ones from block-ordered prefix sums. O(N log N) time, one array of
+/// N doubles of memory. Fewer than 2 samples give no scale. Same bits on every run.
+[[nodiscard]] HaarVariance haar_variance(std::span<const double> samples, double pivot);
+
+}  // namespace driftlab

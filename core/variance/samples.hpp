@@ -1,0 +1,23 @@
+#pragma once
+/// What must hold of a series before any variance is formed, and its mean without loss of digits.
+#include "core/signal/result.hpp"
+
+#include <span>
+
+namespace driftlab {
+
+struct SampleSummary {
+  double mean = 0.0;
+  double minimum = 0.0;
+  double maximum = 0.0;
+  [[nodiscard]] bool constant() const { return minimum == maximum; }
+};
+
+/// Largest magnitude accepted: the square of a sum over 10^12 such samples is still a double.
+inline constexpr double kLargestSample = 1e140;
+
+/// One read of the array. The mean is summed block by block relative to the first sample, so that a bias costs no
+/// digits. Errors: NonFinite and OutOfRange, naming the row (field `row`, counted from 1).
+[[nodiscard]] Result<SampleSummary> summarise(std::span<const double> samples);
+
+}  // namespace driftlab
