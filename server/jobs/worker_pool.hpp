@@ -3,11 +3,13 @@
 ///
 /// Lease 60 s, renewed every 15 s by a heartbeat thread; a lost lease or a cancel request stops the job through its
 /// stop token. Failed attempts are retried only for retryable codes (Io, DiskFull, Internal from std::bad_alloc). An
-/// idle worker sleeps until `wake` or one second. On `stop` running jobs get 20 s to end, then are released.
+/// idle worker sleeps until `wake` or one second. On `stop` running jobs are asked to stop and get 20 s to end, then
+/// are released. The rules of states and retries: server/jobs/README.md.
 #include "server/jobs/job_kind.hpp"
 
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace driftlab::server {
 
@@ -15,12 +17,29 @@ struct WorkerOptions {
   int threads = 2;
   std::int64_t lease_micros = 60'000'000;
   std::int64_t renew_micros = 15'000'000;
+  /// How long an idle worker sleeps when nobody wakes it.
+  std::int64_t idle_micros = 1'000'000;
+  /// How long `stop` waits for running jobs before it hands them back.
+  std::int64_t grace_micros = 20'000'000;
+  /// Progress within one stage is written at most once in this time; the first report of a stage always is.
+  std::int64_t progress_micros = 100'000;
+  /// Runs the maintenance (server/jobs/maintenance.hpp) beside the workers.
+  bool maintain = true;
+  /// Writes the problem document of a failed attempt; empty: a document with `code`, `detail` and `where`.
+  std::function<std::string(const Error&)> problem_document;
 };
+
+/// Finds the kind of a name, or nullptr.
+using JobKindLookup = std::function<const JobKind*(std::string_view name)>;
 
 class WorkerPool {
  public:
   /// `changed` is called (from any thread) with a job id after each event row of that job, so that SSE streams wake up.
+  /// Kinds come from the registry (job_kinds.cpp).
   WorkerPool(JobContext context, WorkerOptions options, std::function<void(const std::string& job_id)> changed);
+  /// The same with other kinds, for tests.
+  WorkerPool(JobContext context, WorkerOptions options, std::function<void(const std::string& job_id)> changed,
+             JobKindLookup kinds);
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
   ~WorkerPool();

@@ -1,0 +1,150 @@
+#include "server/jobs/attempt.hpp"
+
+#include "schema/json/json.hpp"
+#include "server/store/crash_point.hpp"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace driftlab::server {
+
+Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, const WorkerOptions& options,
+                 const std::function<void(const std::string&)>& changed)
+    : job_(std::move(job)),
+      lease_{job_.id, job_.attempt},
+      kind_(kind),
+      context_(context),
+      options_(options),
+      changed_(changed) {}
+
+void Attempt::run() {
+  crash_point("job.claimed");
+  if (changed_) {
+    changed_(job_.id);
+  }
+  const Result<JobResults> results = work();
+  if (results) {
+    finish(*results);
+  } else {
+    fail(results.error());
+  }
+}
+
+Result<JobResults> Attempt::work() {
+  if (kind_ == nullptr) {
+    return driftlab::fail(ErrorCode::Internal, "This daemon knows no job of kind \"" + job_.kind + "\".",
+                          {{"kind", job_.kind}});
+  }
+  RunControl control;
+  control.stop = stop_.get_token();
+  control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };
+  try {
+    return kind_->run(job_.request_json, context_, control);
+  } catch (const std::bad_alloc&) {
+    out_of_memory_ = true;
+    return driftlab::fail(ErrorCode::Internal, "There was not enough memory for the job.");
+  } catch (const std::exception& exception) {
+    return driftlab::fail(ErrorCode::Internal, std::string("The job broke off: ") + exception.what() + ".");
+  } catch (...) {
+    return driftlab::fail(ErrorCode::Internal, "The job broke off for an unknown reason.");
+  }
+}
+
+void Attempt::report(std::string_view stage, double fraction) {
+  const auto now = std::chrono::steady_clock::now();
+  const bool same_stage = reported_ && stage == stage_;
+  if (lost_ || (same_stage && now - reported_at_ < std::chrono::microseconds(options_.progress_micros))) {
+    return;
+  }
+  stage_ = stage;
+  reported_at_ = now;
+  const Result<LeaseStatus> written = context_.store.report_progress(lease_, stage, fraction);
+  announce(written);
+  if (written) {
+    learn(*written);
+  }
+  if (!std::exchange(reported_, true)) {
+    crash_point("job.working");
+  }
+}
+
+void Attempt::learn(const LeaseStatus& status) {
+  if (!status.held) {
+    lost_ = true;
+  } else if (status.cancel_requested) {
+    cancel_requested_ = true;
+  } else {
+    return;
+  }
+  stop_.request_stop();
+}
+
+void Attempt::renew() {
+  // A renewal that the store could not write is tried again at the next beat; the lease spans four of them.
+  const Result<LeaseStatus> renewed = context_.store.renew(lease_, options_.lease_micros);
+  if (renewed) {
+    learn(*renewed);
+  }
+}
+
+void Attempt::ask_to_stop() {
+  stopping_ = true;
+  stop_.request_stop();
+}
+
+void Attempt::hand_back() {
+  lost_ = true;
+  stop_.request_stop();
+  announce(context_.store.release(lease_));
+}
+
+void Attempt::finish(const JobResults& results) {
+  crash_point("job.before_finish");
+  const Result<LeaseStatus> written = context_.store.succeed(lease_, results);
+  if (!written) {
+    fail(written.error());
+    return;
+  }
+  if (written->held) {
+    crash_point("job.finished");
+  }
+  announce(written);
+}
+
+void Attempt::fail(const Error& error) {
+  if (lost_) {
+    return;
+  }
+  if (error.code == ErrorCode::Cancelled && cancel_requested_) {
+    announce(context_.store.acknowledge_cancel(lease_));
+    return;
+  }
+  if (error.code == ErrorCode::Cancelled && stopping_) {
+    announce(context_.store.release(lease_));
+    return;
+  }
+  AttemptFailure failure;
+  failure.retryable = out_of_memory_ || error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull;
+  failure.problem_json =
+      options_.problem_document ? options_.problem_document(error) : plain_problem(error, failure.retryable);
+  // Where even this cannot be written, the lease runs out and the job is tried again.
+  announce(context_.store.fail_attempt(lease_, failure));
+}
+
+void Attempt::announce(const Result<LeaseStatus>& written) {
+  if (written && written->held && changed_) {
+    changed_(job_.id);
+  }
+}
+
+std::string plain_problem(const Error& error, bool retryable) {
+  Json where = Json::object();
+  for (const ErrorField& field : error.fields) {
+    where[field.name] = field.value;
+  }
+  return to_text(Json{
+      {"code", name_of(error.code)}, {"detail", error.message}, {"retryable", retryable}, {"where", std::move(where)}});
+}
+
+}  // namespace driftlab::server

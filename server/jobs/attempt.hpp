@@ -1,0 +1,61 @@
+#pragma once
+/// One attempt at one job: from the claim to the row that says how it ended.
+///
+/// `run` belongs to a worker thread; `renew`, `ask_to_stop` and `hand_back` may be called meanwhile by others. Whatever
+/// they race for, the store decides: every write carries the attempt's number, and one that comes too late changes
+/// nothing.
+#include "server/jobs/job_kind.hpp"
+#include "server/jobs/worker_pool.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+namespace driftlab::server {
+
+class Attempt {
+ public:
+  /// `kind` may be null: the attempt then fails for good.
+  Attempt(Job job, const JobKind* kind, JobContext& context, const WorkerOptions& options,
+          const std::function<void(const std::string&)>& changed);
+
+  /// Runs the job and writes how it ended.
+  void run();
+  /// Renews the lease; learns of a lost lease or a cancel request and then stops the work.
+  void renew();
+  /// The daemon is stopping: the work is to end, and the job goes back to the queue.
+  void ask_to_stop();
+  /// The time to end is over: the job goes back to the queue now, and what the work still finds is discarded.
+  void hand_back();
+
+ private:
+  [[nodiscard]] Result<JobResults> work();
+  void report(std::string_view stage, double fraction);
+  void learn(const LeaseStatus& status);
+  void finish(const JobResults& results);
+  void fail(const Error& error);
+  void announce(const Result<LeaseStatus>& written);
+
+  const Job job_;
+  const Lease lease_;
+  const JobKind* kind_;
+  JobContext& context_;
+  const WorkerOptions& options_;
+  const std::function<void(const std::string&)>& changed_;
+  std::stop_source stop_;
+  std::atomic<bool> lost_{false};
+  std::atomic<bool> cancel_requested_{false};
+  std::atomic<bool> stopping_{false};
+  bool out_of_memory_ = false;
+  bool reported_ = false;
+  std::string stage_;
+  std::chrono::steady_clock::time_point reported_at_;
+};
+
+/// The document kept for a failed attempt when the daemon gives no better one.
+[[nodiscard]] std::string plain_problem(const Error& error, bool retryable);
+
+}  // namespace driftlab::server

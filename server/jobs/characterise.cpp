@@ -1,0 +1,196 @@
+#include "server/jobs/characterise.hpp"
+
+#include "core/read/column_file.hpp"
+#include "schema/json/characterisation.hpp"
+#include "schema/json/characterise_recording.hpp"
+#include "schema/json/recording_spec.hpp"
+
+namespace driftlab::server {
+namespace {
+
+constexpr std::size_t kMostRecordings = 100;
+
+/// Ids of the recordings asked for, without repeats, in the order given.
+std::vector<std::string> recording_ids(const Json& inputs, Faults& faults) {
+  std::vector<std::string> ids;
+  ObjectReader reader(inputs, "/inputs", faults);
+  const Json* const list = reader.member("recordings");
+  reader.reject_unknown();
+  if (list == nullptr || !list->is_array() || list->empty() || list->size() > kMostRecordings) {
+    faults.add("/inputs/recordings", ErrorCode::InvalidArgument, "Name 1 to 100 recordings by their ids.");
+    return ids;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const Json& id = (*list)[i];
+    if (!id.is_string() || !is_id(id.get<std::string>(), "rec")) {
+      faults.add("/inputs/recordings/" + std::to_string(i), ErrorCode::InvalidArgument,
+                 "A recording id looks like rec_01H….");
+    } else if (std::find(ids.begin(), ids.end(), id.get<std::string>()) == ids.end()) {
+      ids.push_back(id.get<std::string>());
+    }
+  }
+  return ids;
+}
+
+/// The compiler's view of the machine: results name it, because other instruction sets may round differently.
+std::string_view instruction_set() {
+#if defined(__x86_64__)
+  return "x86-64";
+#elif defined(__aarch64__)
+  return "aarch64";
+#else
+  return "other";
+#endif
+}
+
+class Characterise final : public JobKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "characterise"; }
+
+  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
+                                                      JobContext& context) const override {
+    auto inputs = parse_json(inputs_json);
+    auto parameters = parse_json(parameters_json);
+    if (!inputs || !parameters) {
+      return fail(inputs ? parameters.error() : inputs.error());
+    }
+    Faults faults;
+    const std::vector<std::string> ids = recording_ids(*inputs, faults);
+    const CharacteriseOptions options = characterise_options_from_json(*parameters, "/parameters", faults);
+    Json pinned = Json::array();
+    for (const std::string& id : ids) {
+      auto recording = context.store.recording(id);
+      if (!recording) {
+        if (recording.error().code != ErrorCode::NotFound) {
+          return fail(recording.error());
+        }
+        faults.add("/inputs/recordings", ErrorCode::NotFound, "There is no recording " + id + ".");
+        continue;
+      }
+      pinned.push_back(Json{{"id", id}, {"revision", recording->revision}});
+    }
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    return canonical_text(Json{{"kind", name()},
+                               {"inputs", {{"recordings", std::move(pinned)}}},
+                               {"parameters", to_json(options)},
+                               {"algorithm_version", kAlgorithmVersion}});
+  }
+
+  [[nodiscard]] Result<JobResults> run(std::string_view request_json, JobContext& context,
+                                       const RunControl& control) const override {
+    auto request = parse_json(request_json);
+    if (!request) {
+      return fail(request.error());
+    }
+    Faults faults;
+    const CharacteriseOptions options = characterise_options_from_json((*request)["parameters"], "/parameters", faults);
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    const Json& inputs = (*request)["inputs"]["recordings"];
+    JobResults results;
+    std::vector<Json> documents;
+    for (const Json& input : inputs) {
+      const auto done = static_cast<double>(documents.size());
+      RunControl part;
+      part.stop = control.stop;
+      part.progress = [&](std::string_view stage, double fraction) {
+        control.report(stage, (done + fraction) / static_cast<double>(inputs.size()));
+      };
+      auto document = run_one(input, options, context, part, results);
+      if (!document) {
+        return fail(Error(document.error()).with("recording", input["id"].get<std::string>()));
+      }
+      documents.push_back(std::move(*document));
+    }
+    results.document_json = to_text(characterisation_document(std::move(documents)));
+    return results;
+  }
+
+ private:
+  [[nodiscard]] static Result<Json> run_one(const Json& input, const CharacteriseOptions& options, JobContext& context,
+                                            const RunControl& control, JobResults& results) {
+    auto recording = context.store.recording(input["id"].get<std::string>());
+    if (!recording) {
+      return fail(recording.error());
+    }
+    if (recording->revision != input["revision"].get<std::int64_t>()) {
+      return fail(ErrorCode::Conflict,
+                  "The recording " + recording->id + " was revised after the job was queued; queue it again.");
+    }
+    auto metadata = parse_json(recording->metadata_json);
+    if (!metadata) {
+      return fail(metadata.error());
+    }
+    Faults faults;
+    const RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
+    if (!columns) {
+      return fail(columns.error());
+    }
+    auto view =
+        view_recording(spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
+    if (!view) {
+      return fail(view.error());
+    }
+    auto document = characterise_recording(recording->id, spec, *view, options, control);
+    if (document) {
+      collect(*recording, *document, options, context, results);
+    }
+    return document;
+  }
+
+  /// Rows for the store: one per channel and one per fit.
+  static void collect(const Recording& recording, const Json& document, const CharacteriseOptions& options,
+                      JobContext& context, JobResults& results) {
+    Json settings = to_json(options);
+    settings["algorithm_version"] = kAlgorithmVersion;
+    settings["instruction_set"] = instruction_set();
+    settings["driftlab_version"] = DRIFTLAB_VERSION;
+    const UtcMicros now = context.clock.now();
+    for (const Json& channel : document["channels"]) {
+      ChannelResult row;
+      row.id = make_id("chr", now);
+      row.device_id = recording.device_id;
+      row.recording_id = recording.id;
+      row.recording_revision = recording.revision;
+      row.channel = channel["channel"].get<std::string>();
+      row.quantity = channel["quantity"].get<std::string>();
+      row.axis = channel["axis"].is_string() ? channel["axis"].get<std::string>() : "";
+      row.condition = recording.condition;
+      row.document_json = to_text(channel);
+      row.settings_json = to_text(settings);
+      row.created_at = now;
+      int rank = 0;
+      for (const Json& model : channel["fits"]) {
+        Fit fit;
+        fit.id = make_id("fit", now);
+        fit.channel_result_id = row.id;
+        fit.device_id = row.device_id;
+        fit.recording_id = row.recording_id;
+        fit.recording_revision = row.recording_revision;
+        fit.channel = row.channel;
+        fit.quantity = row.quantity;
+        fit.axis = row.axis;
+        fit.condition = row.condition;
+        fit.model = model["model"].get<std::string>();
+        fit.rank = rank++;
+        fit.document_json = to_text(model);
+        fit.created_at = now;
+        results.fits.push_back(std::move(fit));
+      }
+      results.channels.push_back(std::move(row));
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<JobKind> make_characterise_kind() { return std::make_unique<Characterise>(); }
+
+}  // namespace driftlab::server

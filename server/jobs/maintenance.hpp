@@ -1,0 +1,51 @@
+#pragma once
+/// What has to be done now and then, whoever works: expired leases, old replies, files without rows.
+#include "core/signal/result.hpp"
+#include "server/store/blobs.hpp"
+#include "server/store/store.hpp"
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace driftlab::server {
+
+struct MaintenanceOptions {
+  std::int64_t rescue_micros = 5'000'000;    ///< between looks for expired leases
+  std::int64_t tidy_micros = 3'600'000'000;  ///< between removals of old replies and of files without rows
+};
+
+/// Blob files older than 24 h that no row names, removed. How many. An upload of the same bytes at the same moment
+/// keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.
+[[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now);
+
+/// One thread. A task that fails is tried again at its next turn; the store's state says what is left to do.
+class Maintenance {
+ public:
+  /// `rescued` is called when jobs went back to the queue. References must outlive this object.
+  Maintenance(Store& store, BlobStore& blobs, const Clock& clock, MaintenanceOptions options,
+              std::function<void()> rescued);
+  Maintenance(const Maintenance&) = delete;
+  Maintenance& operator=(const Maintenance&) = delete;
+  ~Maintenance();
+
+  void start();
+  void stop();
+
+ private:
+  void run();
+
+  Store& store_;
+  BlobStore& blobs_;
+  const Clock& clock_;
+  const MaintenanceOptions options_;
+  const std::function<void()> rescued_;
+  std::mutex mutex_;
+  std::condition_variable stopped_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace driftlab::server

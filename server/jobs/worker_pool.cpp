@@ -1,0 +1,172 @@
+#include "server/jobs/worker_pool.hpp"
+
+#include "server/jobs/attempt.hpp"
+#include "server/jobs/maintenance.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace driftlab::server {
+
+struct WorkerPool::Implementation {
+  Implementation(JobContext job_context, WorkerOptions worker_options,
+                 std::function<void(const std::string&)> on_change, JobKindLookup lookup)
+      : context(job_context),
+        options(std::move(worker_options)),
+        changed(std::move(on_change)),
+        kinds(std::move(lookup)),
+        maintenance(context.store, context.blobs, context.clock, {}, [this] { wake(); }) {}
+
+  void start();
+  void stop();
+  void wake();
+  void work();
+  void beat();
+  [[nodiscard]] std::vector<std::shared_ptr<Attempt>> attempts();
+  /// Runs the next job if one is due. False: none was, or the store did not answer.
+  [[nodiscard]] bool run_next();
+
+  JobContext context;
+  const WorkerOptions options;
+  const std::function<void(const std::string&)> changed;
+  const JobKindLookup kinds;
+  Maintenance maintenance;
+
+  std::mutex mutex;
+  std::condition_variable woken;    ///< workers and the heartbeat wait for it
+  std::condition_variable drained;  ///< `stop` waits for it
+  std::vector<std::shared_ptr<Attempt>> running;
+  std::uint64_t wakes = 0;
+  bool stopping = false;
+  bool beating = true;
+  std::vector<std::thread> workers;
+  std::thread heart;
+};
+
+void WorkerPool::Implementation::start() {
+  heart = std::thread([this] { beat(); });
+  for (int i = 0; i < options.threads; ++i) {
+    workers.emplace_back([this] { work(); });
+  }
+  if (options.maintain) {
+    maintenance.start();
+  }
+}
+
+void WorkerPool::Implementation::wake() {
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    ++wakes;
+  }
+  woken.notify_all();
+}
+
+std::vector<std::shared_ptr<Attempt>> WorkerPool::Implementation::attempts() {
+  const std::lock_guard<std::mutex> guard(mutex);
+  return running;
+}
+
+void WorkerPool::Implementation::work() {
+  std::unique_lock<std::mutex> guard(mutex);
+  while (!stopping) {
+    const std::uint64_t seen = wakes;
+    guard.unlock();
+    const bool worked = run_next();
+    guard.lock();
+    if (!worked) {
+      woken.wait_for(guard, std::chrono::microseconds(options.idle_micros),
+                     [this, seen] { return stopping || wakes != seen; });
+    }
+  }
+}
+
+bool WorkerPool::Implementation::run_next() {
+  Result<std::optional<Job>> claimed = context.store.claim(options.lease_micros);
+  if (!claimed || !*claimed) {
+    return false;
+  }
+  const JobKind* kind = kinds((*claimed)->kind);
+  const auto attempt = std::make_shared<Attempt>(std::move(**claimed), kind, context, options, changed);
+  bool too_late = false;
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    running.push_back(attempt);
+    too_late = stopping;
+  }
+  if (too_late) {
+    attempt->ask_to_stop();
+  }
+  attempt->run();
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    running.erase(std::find(running.begin(), running.end(), attempt));
+  }
+  drained.notify_all();
+  return true;
+}
+
+void WorkerPool::Implementation::beat() {
+  std::unique_lock<std::mutex> guard(mutex);
+  std::uint64_t seen = wakes;
+  while (beating) {
+    woken.wait_for(guard, std::chrono::microseconds(options.renew_micros),
+                   [this, &seen] { return !beating || wakes != seen; });
+    seen = wakes;
+    guard.unlock();
+    for (const auto& attempt : attempts()) {
+      attempt->renew();
+    }
+    guard.lock();
+  }
+}
+
+void WorkerPool::Implementation::stop() {
+  std::unique_lock<std::mutex> guard(mutex);
+  stopping = true;
+  guard.unlock();
+  woken.notify_all();
+  for (const auto& attempt : attempts()) {
+    attempt->ask_to_stop();
+  }
+  guard.lock();
+  drained.wait_for(guard, std::chrono::microseconds(options.grace_micros), [this] { return running.empty(); });
+  guard.unlock();
+  for (const auto& attempt : attempts()) {
+    attempt->hand_back();
+  }
+  for (std::thread& worker : workers) {
+    worker.join();
+  }
+  workers.clear();
+  guard.lock();
+  beating = false;
+  guard.unlock();
+  woken.notify_all();
+  if (heart.joinable()) {
+    heart.join();
+  }
+  maintenance.stop();
+}
+
+WorkerPool::WorkerPool(JobContext context, WorkerOptions options,
+                       std::function<void(const std::string& job_id)> changed, JobKindLookup kinds)
+    : implementation_(
+          std::make_unique<Implementation>(context, std::move(options), std::move(changed), std::move(kinds))) {}
+
+WorkerPool::~WorkerPool() { stop(); }
+
+void WorkerPool::start() { implementation_->start(); }
+void WorkerPool::wake() { implementation_->wake(); }
+void WorkerPool::stop() { implementation_->stop(); }
+
+int WorkerPool::busy() const {
+  const std::lock_guard<std::mutex> guard(implementation_->mutex);
+  return static_cast<int>(implementation_->running.size());
+}
+
+}  // namespace driftlab::server
