@@ -58,9 +58,11 @@ class WatchingSink final : public ColumnSink {
   Decoded decoded_;
 };
 
+/// The surest format; nullptr if none is, or none is certain and the bytes are those of a foreign format.
 const Format* recognise(std::string_view head) {
   const Format* best = nullptr;
-  int score = 0;
+  constexpr int kCertain = 100;
+  int score = recognise_foreign(head) ? kCertain - 1 : 0;
   for (const Format* const format : all_formats()) {
     const int sure = format->sniff(head);
     if (sure > score) {

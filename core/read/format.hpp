@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,7 +50,7 @@ struct Format {
   std::string_view description;  ///< for people: "comma-separated values"
 
   /// How sure `head` (the first bytes of the decompressed file, up to kSniffBytes) is of this format: 0 no, 100 certain
-  /// (a magic number). The surest format decodes.
+  /// (a magic number). The surest format decodes; one that is not certain yields to the signature of a foreign format.
   int (*sniff)(std::string_view head);
 
   /// Streams the samples of `source`, which stands at its first byte, into `sink`. Returns an error or has consumed the
@@ -62,6 +63,9 @@ inline constexpr std::size_t kSniffBytes = 64 * 1024;
 
 /// Every registered format, once.
 [[nodiscard]] std::span<const Format* const> all_formats();
+
+/// The name of a format that driftlab knows but does not read, by its magic number: "a ZIP archive", "an HDF5 file".
+[[nodiscard]] std::optional<std::string> recognise_foreign(std::string_view head);
 
 /// What unreadable bytes look like, as the end of a sentence: "a ZIP archive", "a MATLAB 5 file", "a PX4 ULog flight
 /// log", "semicolon-separated text", "binary data".

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -85,7 +87,7 @@ std::string describe_text(std::string_view head) {
 
 }  // namespace
 
-std::string describe_unknown(std::string_view head) {
+std::optional<std::string> recognise_foreign(std::string_view head) {
   for (const Signature& signature : kSignatures) {
     if (head.size() >= signature.offset && head.substr(signature.offset).starts_with(signature.magic)) {
       return std::string(signature.name);
@@ -97,8 +99,15 @@ std::string describe_unknown(std::string_view head) {
   if (const Compression nested = sniff_compression(head); nested != Compression::None) {
     return "a " + std::string(name_of(nested)) + " file inside a compressed file; compress once";
   }
-  const std::string_view sample = head.substr(0, 512);
-  return sample.find('\0') != std::string_view::npos ? "binary data" : describe_text(head);
+  return std::nullopt;
+}
+
+std::string describe_unknown(std::string_view head) {
+  if (auto foreign = recognise_foreign(head)) {
+    return std::move(*foreign);
+  }
+  const bool binary = head.substr(0, 512).find('\0') != std::string_view::npos;
+  return binary ? "binary data" : describe_text(head);
 }
 
 }  // namespace driftlab
