@@ -165,6 +165,8 @@ asio::awaitable<bool> Connection::answer(Parser& parser) {
         allow += (allow.empty() ? "" : ", ") + std::string(method);
       }
       refusal->headers.emplace_back("Allow", allow);
+    } else {
+      refusal = refuse_unknown_query(*match.route, request);
     }
   }
   if (refusal) {

@@ -1,6 +1,9 @@
 #include "server/http/router.hpp"
 
 #include "core/signal/text.hpp"
+#include "server/http/problem.hpp"
+
+#include <algorithm>
 
 namespace driftlab::server {
 namespace {
@@ -27,6 +30,28 @@ std::optional<std::vector<std::string>> bind(std::string_view pattern, std::stri
 }
 
 }  // namespace
+
+std::optional<Response> refuse_unknown_query(const Route& route, const Request& request) {
+  for (std::size_t i = 0; i < request.query.size(); ++i) {
+    const std::string& name = request.query[i].first;
+    const bool known = std::find(route.query.begin(), route.query.end(), name) != route.query.end();
+    const bool again = std::any_of(request.query.begin(), request.query.begin() + static_cast<std::ptrdiff_t>(i),
+                                   [&](const auto& earlier) { return earlier.first == name; });
+    if (again) {
+      return problem_response(HttpFault::UnknownParameter, "The query parameter '" + name + "' is given twice.");
+    }
+    if (!known) {
+      std::string list;
+      for (const std::string_view allowed : route.query) {
+        list += (list.empty() ? "" : ", ") + std::string(allowed);
+      }
+      return problem_response(HttpFault::UnknownParameter,
+                              "The query parameter '" + name + "' is not known here; " +
+                                  (list.empty() ? "this resource takes none." : "known are " + list + "."));
+    }
+  }
+  return std::nullopt;
+}
 
 void Router::add(Route route) { routes_.push_back(std::move(route)); }
 

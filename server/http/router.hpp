@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +54,9 @@ struct Route {
   std::vector<std::string_view> query;  ///< parameters it takes; any other is refused
   std::variant<Handler, UploadHandler, EventHandler> handler;
 };
+
+/// The refusal of a query parameter that the route does not take, or that is given twice; nothing if all is well.
+[[nodiscard]] std::optional<Response> refuse_unknown_query(const Route& route, const Request& request);
 
 class Router {
  public:

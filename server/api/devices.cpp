@@ -1,0 +1,141 @@
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+
+namespace driftlab::server {
+namespace {
+
+Response device_response(int status, const Device& device) {
+  Response response = json_response(status, to_json(device));
+  response.headers.emplace_back("ETag", etag_of(device.id, device.revision));
+  return response;
+}
+
+/// The text members a device may have, read from a body; `labels` as canonical text.
+DeviceChange read_change(ObjectReader& reader, Faults& faults) {
+  DeviceChange change;
+  change.model = reader.text("model");
+  change.imu = reader.text("imu");
+  change.serial = reader.text("serial");
+  if (const Json* const labels = reader.member("labels")) {
+    bool sound = labels->is_object();
+    for (const auto& [name, value] : labels->items()) {
+      sound = sound && value.is_string();
+    }
+    if (sound) {
+      change.labels_json = canonical_text(*labels);
+    } else {
+      faults.add(reader.pointer("labels"), ErrorCode::InvalidArgument, "The labels must be an object of texts.");
+    }
+  }
+  return change;
+}
+
+Result<Response> create_device(ApiContext& context, const Request& request) {
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  ObjectReader reader(*body, "", faults);
+  Device device;
+  device.name = reader.required_text("name");
+  const DeviceChange members = read_change(reader, faults);
+  reader.reject_unknown();
+  if (device.name.size() > 200 || device.name.starts_with("dev_")) {
+    faults.add("/name", ErrorCode::InvalidArgument,
+               "A device name has at most 200 bytes and does not begin with dev_.");
+  }
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  device.model = members.model.value_or("");
+  device.imu = members.imu.value_or("");
+  device.serial = members.serial.value_or("");
+  device.labels_json = members.labels_json.value_or("{}");
+  auto outcome = context.store.ensure_device(device);
+  if (!outcome) {
+    return fail(outcome.error());
+  }
+  const Device& kept = outcome->device;
+  const bool same = kept.model == device.model && kept.imu == device.imu && kept.serial == device.serial &&
+                    kept.labels_json == device.labels_json;
+  if (!outcome->created && !same) {
+    return fail(ErrorCode::Conflict,
+                "The device '" + device.name + "' exists with other properties; change them with PATCH /v1/devices/" +
+                    kept.id + ".",
+                {{"device_id", kept.id}});
+  }
+  Response response = device_response(outcome->created ? 201 : 200, kept);
+  response.headers.emplace_back("Location", "/v1/devices/" + kept.id);
+  return response;
+}
+
+Result<Response> list_devices(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  auto rows = context.store.devices({page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const Device& device : *rows) {
+    items.push_back(to_json(device));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_device(ApiContext& context, const Request& request) {
+  auto device = context.store.device(request.parameters[0]);
+  if (!device) {
+    return fail(device.error());
+  }
+  return device_response(200, *device);
+}
+
+Result<Response> patch_device(ApiContext& context, const Request& request) {
+  auto device = context.store.device(request.parameters[0]);
+  if (!device) {
+    return fail(device.error());
+  }
+  const auto revision = expected_revision(request, device->id, device->revision);
+  if (!revision) {
+    return revision.error();
+  }
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  ObjectReader reader(*body, "", faults);
+  const DeviceChange change = read_change(reader, faults);
+  reader.reject_unknown();
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  auto changed = context.store.update_device(device->id, change, *revision);
+  if (!changed) {
+    return fail(changed.error());
+  }
+  return device_response(200, *changed);
+}
+
+}  // namespace
+
+void add_device_routes(Router& router, ApiContext& context) {
+  router.add({"GET", "/v1/devices", "listDevices", {"limit", "cursor"}, Handler([&](const Request& request) {
+                return list_devices(context, request);
+              })});
+  router.add({"POST", "/v1/devices", "createDevice", {}, Handler([&](const Request& request) {
+                return create_device(context, request);
+              })});
+  router.add({"GET", "/v1/devices/{id}", "getDevice", {}, Handler([&](const Request& request) {
+                return get_device(context, request);
+              })});
+  router.add({"PATCH", "/v1/devices/{id}", "changeDevice", {}, Handler([&](const Request& request) {
+                return patch_device(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,182 @@
+#include "server/api/documents.hpp"
+
+#include "core/signal/condition.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/http/problem.hpp"
+
+#include <charconv>
+
+namespace driftlab::server {
+namespace {
+
+Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc3339(*time)) : Json(nullptr); }
+
+}  // namespace
+
+Json stored(const std::string& text) {
+  auto document = parse_json(text);
+  return document ? std::move(*document) : Json(nullptr);
+}
+
+Json to_json(const Device& device) {
+  return Json{{"id", device.id},
+              {"name", device.name},
+              {"model", device.model},
+              {"imu", device.imu},
+              {"serial", device.serial},
+              {"labels", stored(device.labels_json)},
+              {"revision", device.revision},
+              {"created_at", rfc3339(device.created_at)},
+              {"updated_at", rfc3339(device.updated_at)}};
+}
+
+Json to_json(const Recording& recording, const Blob* blob) {
+  Json document{{"id", recording.id},
+                {"device", recording.device_id},
+                {"revision", recording.revision},
+                {"metadata", stored(recording.metadata_json)},
+                {"quality", stored(recording.quality_json)}};
+  if (blob != nullptr) {
+    document["file"] =
+        Json{{"sha256", blob->sha256},           {"bytes", blob->bytes}, {"format", blob->format},
+             {"compression", blob->compression}, {"rows", blob->rows},   {"columns", stored(blob->columns_json)},
+             {"notes", stored(blob->notes_json)}};
+  } else {
+    document["file"] = Json{{"sha256", recording.blob_sha256}};
+  }
+  document["created_at"] = rfc3339(recording.created_at);
+  document["updated_at"] = rfc3339(recording.updated_at);
+  return document;
+}
+
+std::string_view name_of(JobState state) {
+  switch (state) {
+    case JobState::Queued:
+      return "queued";
+    case JobState::Running:
+      return "running";
+    case JobState::Succeeded:
+      return "succeeded";
+    case JobState::Failed:
+      return "failed";
+    case JobState::Cancelled:
+      return "cancelled";
+    case JobState::Dead:
+      return "dead";
+  }
+  return "queued";
+}
+
+bool is_terminal(JobState state) { return state != JobState::Queued && state != JobState::Running; }
+
+Json to_json(const Job& job) {
+  Json document{{"id", job.id},
+                {"kind", job.kind},
+                {"state", name_of(job.state)},
+                {"stage", job.stage.empty() ? Json(nullptr) : Json(job.stage)},
+                {"progress", number(job.progress)},
+                {"attempt", job.attempt},
+                {"priority", job.priority},
+                {"cancel_requested", job.cancel_requested},
+                {"created_at", rfc3339(job.created_at)},
+                {"started_at", time_or_null(job.started_at)},
+                {"finished_at", time_or_null(job.finished_at)},
+                {"request", stored(job.request_json)}};
+  document["result"] =
+      job.state == JobState::Succeeded ? Json{{"href", "/v1/jobs/" + job.id + "/result"}} : Json(nullptr);
+  document["problem"] = job.problem_json.empty() ? Json(nullptr) : stored(job.problem_json);
+  Json attempts = Json::array();
+  for (const std::string& problem : job.attempt_problems_json) {
+    attempts.push_back(stored(problem));
+  }
+  document["failed_attempts"] = std::move(attempts);
+  return document;
+}
+
+Json to_json(const Fit& fit) {
+  Json document{{"id", fit.id},
+                {"device", fit.device_id},
+                {"recording", fit.recording_id},
+                {"recording_revision", fit.recording_revision},
+                {"job", fit.job_id},
+                {"channel", fit.channel},
+                {"quantity", fit.quantity},
+                {"axis", fit.axis.empty() ? Json(nullptr) : Json(fit.axis)}};
+  const auto condition = parse_condition(fit.condition);
+  document["condition"] = condition ? driftlab::to_json(*condition) : Json(nullptr);
+  document["rank"] = fit.rank;
+  const Json body = stored(fit.document_json);
+  for (const auto& [name, value] : body.items()) {
+    document[name] = value;
+  }
+  document["created_at"] = rfc3339(fit.created_at);
+  return document;
+}
+
+Response json_response(int status, const Json& document) {
+  Response response;
+  response.status = status;
+  response.body = to_text(document);
+  return response;
+}
+
+std::string etag_of(std::string_view id, std::int64_t revision) {
+  return "\"" + std::string(id) + "-r" + std::to_string(revision) + "\"";
+}
+
+tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
+                                                       std::int64_t current) {
+  const auto match = request.header("if-match");
+  if (!match) {
+    return tl::unexpected(problem_response(
+        HttpFault::PreconditionRequired,
+        "Send If-Match with the ETag of the object as you read it: " + etag_of(id, current) + " is the current one."));
+  }
+  if (*match == "*" || *match == etag_of(id, current)) {
+    return current;
+  }
+  return tl::unexpected(problem_response(HttpFault::PreconditionFailed,
+                                         "The object has changed; its ETag is now " + etag_of(id, current) + "."));
+}
+
+Result<Page> page_of(const Request& request) {
+  Page page;
+  if (const auto limit = request.parameter("limit")) {
+    const auto [stop, error] = std::from_chars(limit->data(), limit->data() + limit->size(), page.limit);
+    if (error != std::errc{} || stop != limit->data() + limit->size() || page.limit < 1 || page.limit > 500) {
+      return fail(ErrorCode::InvalidArgument, "The limit must be a whole number from 1 to 500.",
+                  {{"parameter", "limit"}});
+    }
+  }
+  if (const auto cursor = request.parameter("cursor")) {
+    const std::size_t underscore = cursor->find('_');
+    if (underscore == std::string_view::npos || !is_id(*cursor, cursor->substr(0, underscore))) {
+      return fail(ErrorCode::InvalidArgument, "The cursor is not one that a list gave.", {{"parameter", "cursor"}});
+    }
+    page.after = *cursor;
+  }
+  return page;
+}
+
+Response list_response(const Request& request, const Page& page, std::vector<Json> items,
+                       const std::function<std::string(std::size_t)>& id_of) {
+  const auto limit = static_cast<std::size_t>(page.limit);
+  Json next = nullptr;
+  if (items.size() > limit) {
+    next = id_of(limit - 1);
+    items.resize(limit);
+  }
+  Response response = json_response(200, Json{{"items", std::move(items)}, {"next_cursor", next}});
+  if (next.is_string()) {
+    std::string link = request.target.substr(0, request.target.find('?')) + "?";
+    for (const auto& [name, value] : request.query) {
+      if (name != "cursor") {
+        link += name + "=" + value + "&";
+      }
+    }
+    response.headers.emplace_back("Link", "<" + link + "cursor=" + next.get<std::string>() + ">; rel=\"next\"");
+  }
+  return response;
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,42 @@
+#pragma once
+/// Rows of the store as the documents that go over the wire, and the small things every resource shares.
+#include "schema/json/json.hpp"
+#include "server/http/message.hpp"
+#include "server/store/store.hpp"
+
+#include <functional>
+#include <string>
+
+namespace driftlab::server {
+
+[[nodiscard]] Json to_json(const Device& device);
+/// `blob` may be nullptr: then the members about the file are left out.
+[[nodiscard]] Json to_json(const Recording& recording, const Blob* blob);
+[[nodiscard]] Json to_json(const Job& job);
+[[nodiscard]] Json to_json(const Fit& fit);
+
+[[nodiscard]] std::string_view name_of(JobState state);
+[[nodiscard]] bool is_terminal(JobState state);
+
+[[nodiscard]] Response json_response(int status, const Json& document);
+
+/// A stored JSON text inside a document; null where it does not parse.
+[[nodiscard]] Json stored(const std::string& text);
+
+/// The ETag of a mutable object.
+[[nodiscard]] std::string etag_of(std::string_view id, std::int64_t revision);
+
+/// The revision that If-Match names. Errors for answers: precondition-required without the header, precondition-failed
+/// when it names another object. `*` is the current revision.
+[[nodiscard]] tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
+                                                                     std::int64_t current);
+
+/// `?limit=` (1 to 500, default 50) and `?cursor=`. Error: InvalidArgument naming the parameter.
+[[nodiscard]] Result<Page> page_of(const Request& request);
+
+/// {"items": [...], "next_cursor": ...} with `Link: rel="next"`, from a page that was fetched with one row more than
+/// asked.
+[[nodiscard]] Response list_response(const Request& request, const Page& page, std::vector<Json> items,
+                                     const std::function<std::string(std::size_t)>& id_of);
+
+}  // namespace driftlab::server

@@ -1,0 +1,68 @@
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+
+namespace driftlab::server {
+namespace {
+
+std::optional<std::string> text_parameter(const Request& request, std::string_view name) {
+  const auto value = request.parameter(name);
+  return value ? std::optional<std::string>(*value) : std::nullopt;
+}
+
+Result<Response> list_fits(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  FitFilter filter;
+  if (const auto name = request.parameter("device")) {
+    auto device = context.store.device(*name);
+    if (!device) {
+      return fail(device.error());
+    }
+    filter.device_id = device->id;
+  }
+  filter.recording_id = text_parameter(request, "recording");
+  filter.job_id = text_parameter(request, "job");
+  filter.quantity = text_parameter(request, "quantity");
+  filter.axis = text_parameter(request, "axis");
+  filter.model = text_parameter(request, "model");
+  if (const auto best = request.parameter("best")) {
+    if (*best != "true" && *best != "false") {
+      return fail(ErrorCode::InvalidArgument, "The parameter best is true or false.", {{"parameter", "best"}});
+    }
+    filter.best_only = *best == "true";
+  }
+  auto rows = context.store.fits(filter, {page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const Fit& fit : *rows) {
+    items.push_back(to_json(fit));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_fit(ApiContext& context, const Request& request) {
+  auto fit = context.store.fit(request.parameters[0]);
+  if (!fit) {
+    return fail(fit.error());
+  }
+  return json_response(200, to_json(*fit));
+}
+
+}  // namespace
+
+void add_fit_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/fits",
+              "listFits",
+              {"limit", "cursor", "device", "recording", "job", "quantity", "axis", "model", "best"},
+              Handler([&](const Request& request) { return list_fits(context, request); })});
+  router.add({"GET", "/v1/fits/{id}", "getFit", {}, Handler([&](const Request& request) {
+                return get_fit(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,170 @@
+#include "core/read/column_file.hpp"
+#include "core/signal/recording_view.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/api/upload.hpp"
+#include "server/http/problem.hpp"
+
+namespace driftlab::server {
+namespace {
+
+Result<Response> recording_response(ApiContext& context, int status, const Recording& recording) {
+  auto blob = context.store.blob(recording.blob_sha256);
+  if (!blob) {
+    return fail(blob.error());
+  }
+  Response response = json_response(status, to_json(recording, *blob ? &**blob : nullptr));
+  response.headers.emplace_back("ETag", etag_of(recording.id, recording.revision));
+  return response;
+}
+
+Result<Response> list_recordings(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  RecordingFilter filter;
+  if (const auto name = request.parameter("device")) {
+    auto device = context.store.device(*name);
+    if (!device) {
+      return fail(device.error());
+    }
+    filter.device_id = device->id;
+  }
+  if (const auto text = request.parameter("condition")) {
+    auto condition = parse_condition(*text);
+    if (!condition) {
+      return fail(Error(condition.error()).with("parameter", "condition"));
+    }
+    filter.condition = driftlab::to_text(*condition);
+  }
+  auto rows = context.store.recordings(filter, {page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const Recording& recording : *rows) {
+    items.push_back(to_json(recording, nullptr));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_recording(ApiContext& context, const Request& request) {
+  auto recording = context.store.recording(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  return recording_response(context, 200, *recording);
+}
+
+/// Checks changed metadata against the samples they describe. The quality as JSON text.
+Result<std::string> check_metadata(ApiContext& context, const Recording& recording, const RecordingSpec& spec) {
+  auto columns = ColumnFile::open(context.blobs.columns_path(recording.blob_sha256));
+  if (!columns) {
+    return fail(columns.error());
+  }
+  auto view =
+      view_recording(spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
+  if (!view) {
+    return fail(view.error());
+  }
+  return to_text(driftlab::to_json(view->window.quality));
+}
+
+Result<Response> patch_recording(ApiContext& context, const Request& request) {
+  auto recording = context.store.recording(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  const auto revision = expected_revision(request, recording->id, recording->revision);
+  if (!revision) {
+    return revision.error();
+  }
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  if (!body->is_object()) {
+    return fail(ErrorCode::ParseError, "The body must be an object with the members of the metadata to change.");
+  }
+  // JSON merge patch (RFC 7396) on the first level: a member given replaces the one there, null removes it.
+  Json metadata = stored(recording->metadata_json);
+  for (const auto& [name, value] : body->items()) {
+    if (value.is_null()) {
+      metadata.erase(name);
+    } else {
+      metadata[name] = value;
+    }
+  }
+  Faults faults;
+  const RecordingSpec spec = recording_spec_from_json(metadata, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  auto quality = check_metadata(context, *recording, spec);
+  if (!quality) {
+    return fail(quality.error());
+  }
+  Recording changed = *recording;
+  changed.metadata_json = canonical_text(driftlab::to_json(spec));
+  changed.condition = driftlab::to_text(spec.condition);
+  changed.quality_json = *quality;
+  if (changed.metadata_json == recording->metadata_json) {
+    return recording_response(context, 200, *recording);
+  }
+  auto revised = context.store.revise_recording(changed, *revision);
+  if (!revised) {
+    return fail(revised.error());
+  }
+  return recording_response(context, 200, *revised);
+}
+
+Result<Response> delete_recording(ApiContext& context, const Request& request) {
+  auto recording = context.store.recording(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  const auto revision = expected_revision(request, recording->id, recording->revision);
+  if (!revision) {
+    return revision.error();
+  }
+  if (auto removed = context.store.remove_recording(recording->id, *revision); !removed) {
+    return fail(removed.error());
+  }
+  // The files stay while another device's recording holds the same bytes. A failure here leaves files without a row,
+  // which the sweeper removes.
+  if (const auto unused = context.store.remove_unused_blob(recording->blob_sha256); unused && *unused) {
+    (void)context.blobs.remove(recording->blob_sha256);
+  }
+  Response response;
+  response.status = 204;
+  return response;
+}
+
+}  // namespace
+
+void add_recording_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/recordings",
+              "listRecordings",
+              {"limit", "cursor", "device", "condition"},
+              Handler([&](const Request& request) { return list_recordings(context, request); })});
+  router.add({"POST",
+              "/v1/recordings",
+              "uploadRecording",
+              {"device", "id", "condition", "axis", "value", "unit", "direction", "rate_hz", "columns", "trim_start_s",
+               "trim_end_s"},
+              UploadHandler([&](const Request& request) { return begin_upload(context, request); })});
+  router.add({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
+                return get_recording(context, request);
+              })});
+  router.add({"PATCH", "/v1/recordings/{id}", "changeRecording", {}, Handler([&](const Request& request) {
+                return patch_recording(context, request);
+              })});
+  router.add({"DELETE", "/v1/recordings/{id}", "deleteRecording", {}, Handler([&](const Request& request) {
+                return delete_recording(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,151 @@
+#include "server/api/upload_metadata.hpp"
+
+#include "core/signal/number.hpp"
+#include "schema/json/recording_spec.hpp"
+
+namespace driftlab::server {
+namespace {
+
+std::optional<std::string> text_of(const Request& request, std::string_view name) {
+  const auto value = request.parameter(name);
+  return value ? std::optional<std::string>(*value) : std::nullopt;
+}
+
+Result<std::optional<double>> number_of(const Request& request, std::string_view name, bool zero_is_fine) {
+  const auto text = request.parameter(name);
+  if (!text) {
+    return std::optional<double>();
+  }
+  const auto value = parse_double(*text);
+  const bool sound = value && *value < 1e300 && (zero_is_fine ? *value >= 0.0 : *value > 0.0);
+  if (!sound) {
+    return fail(ErrorCode::InvalidArgument,
+                "The parameter " + std::string(name) + " must be a number " +
+                    (zero_is_fine ? "of at least 0" : "greater than 0") + ", not '" + std::string(*text) + "'.",
+                {{"parameter", std::string(name)}});
+  }
+  return value;
+}
+
+tl::unexpected<Error> at(const Error& error, std::string parameter) {
+  for (const ErrorField& field : error.fields) {
+    if (field.name == "parameter") {
+      return fail(error);
+    }
+  }
+  return fail(Error(error).with("parameter", std::move(parameter)));
+}
+
+Result<Condition> condition_of(const Request& request) {
+  const auto text = request.parameter("condition");
+  if (!text || text->empty()) {
+    return fail(ErrorCode::InvalidArgument,
+                "Name the dynamic condition, for example condition=static or condition=constant_rate:z:9:deg/s.",
+                {{"parameter", "condition"}});
+  }
+  if (text->find(':') != std::string_view::npos) {
+    return parse_condition(*text);
+  }
+  WrittenCondition written;
+  written.kind = *text;
+  written.axis = text_of(request, "axis");
+  written.unit = text_of(request, "unit");
+  written.direction = text_of(request, "direction");
+  if (const auto value = request.parameter("value")) {
+    written.value = parse_double(*value);
+    if (!written.value) {
+      return fail(ErrorCode::InvalidArgument, "The value must be a number, not '" + std::string(*value) + "'.",
+                  {{"parameter", "value"}});
+    }
+  }
+  return make_condition(written);
+}
+
+Status check_device_name(const std::string& name) {
+  if (name.empty()) {
+    return fail(ErrorCode::InvalidArgument, "Name the device that made the recording: ?device=…",
+                {{"parameter", "device"}});
+  }
+  if (name.size() > 200) {
+    return fail(ErrorCode::InvalidArgument, "A device name has at most 200 bytes.", {{"parameter", "device"}});
+  }
+  return {};
+}
+
+void read_device(const Json& document, Device& device, Faults& faults) {
+  if (document.is_string()) {
+    device.name = document.get<std::string>();
+    return;
+  }
+  ObjectReader reader(document, "/device", faults);
+  device.name = reader.required_text("id");
+  device.model = reader.text("model").value_or("");
+  device.imu = reader.text("imu").value_or("");
+  device.serial = reader.text("serial").value_or("");
+  reader.reject_unknown();
+}
+
+}  // namespace
+
+Result<UploadMetadata> metadata_from_query(const Request& request) {
+  UploadMetadata metadata;
+  metadata.device.name = request.parameter("device").value_or("");
+  if (auto checked = check_device_name(metadata.device.name); !checked) {
+    return fail(checked.error());
+  }
+  auto condition = condition_of(request);
+  if (!condition) {
+    return at(condition.error(), "condition");
+  }
+  metadata.spec.condition = *condition;
+  metadata.spec.id = request.parameter("id").value_or("");
+  auto rate = number_of(request, "rate_hz", false);
+  auto start = number_of(request, "trim_start_s", true);
+  auto end = number_of(request, "trim_end_s", true);
+  for (const auto* const number : {&rate, &start, &end}) {
+    if (!*number) {
+      return fail(number->error());
+    }
+  }
+  metadata.spec.rate_hz = *rate;
+  metadata.spec.trim = {start->value_or(0.0), end->value_or(0.0)};
+  if (const auto columns = request.parameter("columns"); columns && !columns->empty()) {
+    auto roles = parse_columns(*columns);
+    if (!roles) {
+      return at(roles.error(), "columns");
+    }
+    metadata.spec.columns = std::move(*roles);
+  }
+  return metadata;
+}
+
+Result<UploadMetadata> metadata_from_json(std::string_view text, const Request& request) {
+  auto document = parse_json(text);
+  if (!document) {
+    return fail(Error(document.error()).with("part", "metadata"));
+  }
+  UploadMetadata metadata;
+  Faults faults;
+  Json recording = *document;
+  if (recording.is_object() && recording.contains("device")) {
+    read_device(recording["device"], metadata.device, faults);
+    recording.erase("device");
+  }
+  metadata.spec = recording_spec_from_json(recording, "", faults);
+  if (!faults.none()) {
+    return fail(Error(faults.error()).with("part", "metadata"));
+  }
+  if (const auto name = request.parameter("device")) {
+    if (!metadata.device.name.empty() && metadata.device.name != *name) {
+      return fail(ErrorCode::InvalidArgument, "The query and the metadata name different devices.",
+                  {{"parameter", "device"}});
+    }
+    metadata.device.name = *name;
+  }
+  if (auto checked = check_device_name(metadata.device.name); !checked) {
+    return fail(checked.error());
+  }
+  return metadata;
+}
+
+}  // namespace driftlab::server

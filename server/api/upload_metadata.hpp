@@ -1,0 +1,23 @@
+#pragma once
+/// What an upload says about its file, from the query string or from the `metadata` part.
+#include "core/signal/recording.hpp"
+#include "server/http/message.hpp"
+#include "server/store/rows.hpp"
+
+namespace driftlab::server {
+
+struct UploadMetadata {
+  Device device;  ///< only the user's members are set
+  RecordingSpec spec;
+};
+
+/// `?device=…&condition=…&rate_hz=…&columns=…&id=…&trim_start_s=…&trim_end_s=…`; the condition in its compact form
+/// (`constant_rate:z:9:deg/s`) or its parts as `condition`, `axis`, `value`, `unit`, `direction`.
+/// Errors: those of core/signal, with field "parameter".
+[[nodiscard]] Result<UploadMetadata> metadata_from_query(const Request& request);
+
+/// One recording of spec/study.md as JSON, which may also hold `device` (a name, or the `device` object of a study)
+/// where the query has none.
+[[nodiscard]] Result<UploadMetadata> metadata_from_json(std::string_view text, const Request& request);
+
+}  // namespace driftlab::server
