@@ -14,8 +14,8 @@ import tree
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
 ANALYSIS = [*CORE, "core/calibrate", "core/navigate", "core/investigate"]
-DOCUMENTS = [*ANALYSIS, "core/read", "schema/json"]
-SERVER = ["core/signal", "server/store", "server/observe"]
+DOCUMENTS = [*ANALYSIS, "core/read", "schema/json", "schema"]
+SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
     "core/read": ["core/signal"],
@@ -26,8 +26,9 @@ FLOORS: dict[str, list[str]] = {
     "core/navigate": CORE,
     "core/investigate": [*CORE, "core/calibrate", "core/navigate"],
     "schema/json": [*ANALYSIS, "core/read"],
+    "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
-    "server/observe": ["core/signal", "server/store"],
+    "server/observe": ["core/signal", "server/store", "schema/json"],
     "server/auth": SERVER,
     "server/jobs": [*DOCUMENTS, *SERVER],
     "server/http": [*SERVER, "server/auth", "schema/json"],
