@@ -36,6 +36,20 @@ constexpr std::array kStems{
     Stem{"magneticfield", Quantity::MagneticField},
 };
 
+struct UnitWord {
+  std::string_view word;
+  std::string_view symbol;
+};
+
+/// Units as they are written behind an underscore, where no slash can be.
+constexpr std::array kUnitWords{
+    UnitWord{"s", "s"},         UnitWord{"sec", "s"},      UnitWord{"ms", "ms"},       UnitWord{"us", "us"},
+    UnitWord{"ns", "ns"},       UnitWord{"dps", "deg/s"},  UnitWord{"degps", "deg/s"}, UnitWord{"degs", "deg/s"},
+    UnitWord{"radps", "rad/s"}, UnitWord{"rads", "rad/s"}, UnitWord{"mps2", "m/s^2"},  UnitWord{"ms2", "m/s^2"},
+    UnitWord{"g", "g"},         UnitWord{"mg", "mg"},      UnitWord{"degc", "degC"},   UnitWord{"c", "degC"},
+    UnitWord{"k", "K"},         UnitWord{"ut", "uT"},
+};
+
 constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
 
 std::string_view trim(std::string_view text) {
@@ -86,26 +100,6 @@ bool is_time_name(std::string_view squashed) {
   return std::find(kTimeNames.begin(), kTimeNames.end(), squashed) != kTimeNames.end();
 }
 
-/// `time_ms`, `t_s`: the unit is the last word.
-std::optional<ColumnRole> infer_time(std::string_view name, const std::optional<Unit>& bracket) {
-  const std::string squashed = squash(name);
-  if (is_time_name(squashed)) {
-    return ColumnRole{Quantity::Time, "", bracket};
-  }
-  if (squashed == "secondselapsed") {
-    return ColumnRole{Quantity::Time, "", known_unit("s")};
-  }
-  const std::size_t cut = name.find_last_of("_ ");
-  if (cut == std::string_view::npos || !is_time_name(squash(name.substr(0, cut)))) {
-    return std::nullopt;
-  }
-  const auto unit = known_unit(name.substr(cut + 1));
-  if (!unit || unit->dimension != Dimension::Time) {
-    return std::nullopt;
-  }
-  return ColumnRole{Quantity::Time, "", unit};
-}
-
 Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {
   if (stem.empty() && unit) {
     switch (unit->dimension) {
@@ -124,29 +118,59 @@ Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {
   return found == kStems.end() ? Quantity::Unspecified : found->quantity;
 }
 
+/// The role of a name from which the unit has been cut off.
+std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<Unit>& unit) {
+  const std::string squashed = squash(name);
+  if (is_time_name(squashed)) {
+    return ColumnRole{Quantity::Time, "", unit};
+  }
+  if (squashed == "secondselapsed") {
+    return ColumnRole{Quantity::Time, "", known_unit("s")};
+  }
+  if (squashed == "temp" || squashed == "temperature") {
+    return ColumnRole{Quantity::Temperature, "", unit};
+  }
+  if (squashed.empty()) {
+    return std::nullopt;
+  }
+  const std::string_view whole = squashed;
+  const std::array<std::pair<char, std::string_view>, 2> splits{
+      std::pair{whole.back(), whole.substr(0, whole.size() - 1)}, std::pair{whole.front(), whole.substr(1)}};
+  for (const auto& [axis, stem] : splits) {
+    const Quantity quantity = is_axis_letter(axis) ? quantity_of(stem, unit) : Quantity::Unspecified;
+    if (quantity != Quantity::Unspecified) {
+      return ColumnRole{quantity, std::string(1, axis), unit};
+    }
+  }
+  return std::nullopt;
+}
+
+/// `time_ms`, `gyro_x_dps`, `fx_mps2`: the last word is a unit, if what is before it is a quantity which that measures.
+std::optional<ColumnRole> infer_suffixed(std::string_view name) {
+  const std::size_t cut = name.find_last_of("_ ");
+  if (cut == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::string word = squash(name.substr(cut + 1));
+  const auto known =
+      std::find_if(kUnitWords.begin(), kUnitWords.end(), [&](const UnitWord& w) { return w.word == word; });
+  if (known == kUnitWords.end()) {
+    return std::nullopt;
+  }
+  auto role = infer_bare(name.substr(0, cut), known_unit(known->symbol));
+  return role && measures(*role->unit, role->quantity) ? role : std::nullopt;
+}
+
 }  // namespace
 
 ColumnRole infer_role(std::string_view name) {
-  const std::optional<Unit> unit = known_unit(take_bracket(name));
-  if (auto time = infer_time(name, unit)) {
-    return *time;
-  }
-  const std::string squashed = squash(name);
-  if (squashed == "temp" || squashed == "temperature") {
-    return {Quantity::Temperature, "", unit};
-  }
-  if (!squashed.empty()) {
-    const std::string_view whole = squashed;
-    const std::array<std::pair<char, std::string_view>, 2> splits{
-        std::pair{whole.back(), whole.substr(0, whole.size() - 1)}, std::pair{whole.front(), whole.substr(1)}};
-    for (const auto& [axis, stem] : splits) {
-      const Quantity quantity = is_axis_letter(axis) ? quantity_of(stem, unit) : Quantity::Unspecified;
-      if (quantity != Quantity::Unspecified) {
-        return {quantity, std::string(1, axis), unit};
-      }
+  const std::string_view bracket = take_bracket(name);
+  if (bracket.empty()) {
+    if (auto role = infer_suffixed(name)) {
+      return *role;
     }
   }
-  return {Quantity::Unspecified, "", std::nullopt};
+  return infer_bare(name, known_unit(bracket)).value_or(ColumnRole{});
 }
 
 }  // namespace driftlab

@@ -34,7 +34,7 @@ struct Trim {
 };
 
 /// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0".
-/// Empty `columns`: meaning is inferred from header names and units where they state it (see infer_roles).
+/// Empty `columns`: meaning is inferred from header names and units where they state it (core/signal/infer_role.hpp).
 struct RecordingSpec {
   std::string id;                 ///< the user's name for the recording; may be empty
   std::optional<double> rate_hz;  ///< nominal rate; needed where there is no time column
@@ -70,7 +70,7 @@ struct TimeBase {
 struct Quality {
   std::size_t samples = 0;          ///< rows of the file
   std::size_t analysed = 0;         ///< rows of the analysed part, after trims
-  std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 times its median step
+  std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 intervals of the samples they join
   std::size_t repeated_stamps = 0;  ///< steps of the time column equal to 0
   double longest_gap_s = 0.0;
   double measured_rate_hz = 0.0;   ///< (samples - 1) / (last - first stamp); 0 without a time column

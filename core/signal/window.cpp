@@ -17,8 +17,6 @@ constexpr double kRateTolerance = 0.01;
 /// Within this the stamps confirm the stated rate and 1/rate_hz is the sample interval; decimal stamps round that much.
 constexpr double kRateConfirmed = 1e-6;
 
-constexpr double kGapFactor = 1.5;
-
 std::string short_text(double value) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
@@ -93,52 +91,84 @@ Result<std::vector<double>> checked_stamps(std::span<const double> column, const
   return stamps;
 }
 
-/// Median of the steps that advance; 0 if none does. Repeated stamps would pull it to 0.
-double median_step(const std::vector<double>& stamps) {
-  std::vector<double> steps;
-  steps.reserve(stamps.size());
+/// Samples that share one stamp.
+struct Group {
+  std::size_t first = 0;
+  std::size_t count = 1;
+};
+
+std::vector<Group> group_by_stamp(const std::vector<double>& stamps) {
+  std::vector<Group> groups{{0, 1}};
   for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] > stamps[i - 1]) {
-      steps.push_back(stamps[i] - stamps[i - 1]);
+    if (stamps[i] == stamps[i - 1]) {
+      ++groups.back().count;
+    } else {
+      groups.push_back({i, 1});
     }
   }
-  if (steps.empty()) {
+  return groups;
+}
+
+/// Median over the advancing steps of step per sample, 0 if none advances. Between groups of a and b samples lie
+/// (a + b)/2 sample intervals on average, so repeated stamps (coarse clocks, FIFOs stamped at once) do not bias it.
+double median_interval(const std::vector<double>& stamps, const std::vector<Group>& groups) {
+  std::vector<double> intervals;
+  intervals.reserve(groups.size());
+  for (std::size_t g = 1; g < groups.size(); ++g) {
+    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
+    intervals.push_back(step / (0.5 * static_cast<double>(groups[g - 1].count + groups[g].count)));
+  }
+  if (intervals.empty()) {
     return 0.0;
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
 }
 
-Quality survey(const std::vector<double>& stamps, double gap_s) {
-  Quality quality;
-  quality.samples = stamps.size();
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    const double step = stamps[i] - stamps[i - 1];
-    quality.repeated_stamps += step == 0.0 ? 1 : 0;
-    if (step > gap_s) {
-      ++quality.gaps;
-      quality.longest_gap_s = std::max(quality.longest_gap_s, step);
+/// The rows before which samples are missing: a step is a gap if it exceeds what the samples of both its groups can
+/// span, a + b - 1 intervals, by more than half an interval. Without repeated stamps that is 1.5 intervals.
+std::vector<std::size_t> find_gaps(const std::vector<double>& stamps, const std::vector<Group>& groups,
+                                   double interval_s) {
+  std::vector<std::size_t> gaps;
+  for (std::size_t g = 1; g < groups.size(); ++g) {
+    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
+    if (step > (static_cast<double>(groups[g - 1].count + groups[g].count) - 0.5) * interval_s) {
+      gaps.push_back(groups[g].first);
     }
   }
-  const double span = stamps.back() - stamps.front();
-  quality.measured_rate_hz = span > 0.0 ? static_cast<double>(stamps.size() - 1) / span : 0.0;
+  return gaps;
+}
+
+Quality survey(const std::vector<double>& stamps, std::size_t groups, const std::vector<std::size_t>& gaps) {
+  Quality quality;
+  quality.samples = stamps.size();
+  quality.repeated_stamps = stamps.size() - groups;
+  quality.gaps = gaps.size();
+  for (const std::size_t row : gaps) {
+    quality.longest_gap_s = std::max(quality.longest_gap_s, stamps[row] - stamps[row - 1]);
+  }
+  quality.measured_rate_hz = static_cast<double>(stamps.size() - 1) / (stamps.back() - stamps.front());
   return quality;
 }
 
-/// The longest run of rows in [first, last) without a step over `gap_s`; the earliest of equals.
-std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<double>& stamps, std::size_t first,
-                                                    std::size_t last, double gap_s) {
+/// The longest run of rows in [first, last) without a gap; the earliest of equals.
+std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& gaps, std::size_t first,
+                                                    std::size_t last) {
   std::pair<std::size_t, std::size_t> best{first, first};
   std::size_t begin = first;
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    if (i == last || stamps[i] - stamps[i - 1] > gap_s) {
-      if (i - begin > best.second - best.first) {
-        best = {begin, i};
-      }
-      begin = i;
+  const auto close = [&](std::size_t end) {
+    if (end - begin > best.second - best.first) {
+      best = {begin, end};
+    }
+    begin = end;
+  };
+  for (const std::size_t row : gaps) {
+    if (row > first && row < last) {
+      close(row);
     }
   }
+  close(last);
   return best;
 }
 
@@ -211,15 +241,17 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
   if (!stamps) {
     return fail(stamps.error());
   }
-  const double median = median_step(*stamps);
-  if (median == 0.0) {
+  const std::vector<Group> groups = group_by_stamp(*stamps);
+  const double interval_s = median_interval(*stamps, groups);
+  if (interval_s <= 0.0) {
     return fail(ErrorCode::InconsistentSampling, "The time column never advances.");
   }
   Window window;
-  window.quality = survey(*stamps, kGapFactor * median);
+  const std::vector<std::size_t> gaps = find_gaps(*stamps, groups, interval_s);
+  window.quality = survey(*stamps, groups.size(), gaps);
   window.time.start_s = stamps->front();
   // Rows at exactly the trim stay; the slack absorbs the rounding of decimal stamps.
-  const double slack = 1e-6 * median;
+  const double slack = 1e-6 * interval_s;
   const auto begin = std::lower_bound(stamps->begin(), stamps->end(), stamps->front() + spec.trim.start_s - slack);
   const auto end = std::upper_bound(stamps->begin(), stamps->end(), stamps->back() - spec.trim.end_s + slack);
   if (end - begin < 2) {
@@ -227,7 +259,7 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
   }
   const auto first = static_cast<std::size_t>(begin - stamps->begin());
   const auto last = static_cast<std::size_t>(end - stamps->begin());
-  const auto [from, to] = longest_stretch(*stamps, first, last, kGapFactor * median);
+  const auto [from, to] = longest_stretch(gaps, first, last);
   window.first = from;
   window.count = to - from;
   window.quality.analysed = window.count;

@@ -1,0 +1,321 @@
+#include "core/signal/recording.hpp"
+
+#include "core/signal/infer_role.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+namespace driftlab {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Unit unit(const char* symbol) { return *parse_unit(symbol); }
+
+/// "angular_rate x [deg/s]", "time [-]", ...
+std::string described(const ColumnRole& role) {
+  return std::string(name_of(role.quantity)) + (role.axis.empty() ? "" : " " + role.axis) + " [" +
+         (role.unit ? role.unit->symbol : "-") + "]";
+}
+
+template <class T>
+std::string failure(const Result<T>& result) {
+  if (result) {
+    return "accepted";
+  }
+  std::string text(name_of(result.error().code));
+  for (const ErrorField& field : result.error().fields) {
+    text += " " + field.name + "=" + field.value;
+  }
+  return text;
+}
+
+TEST(InferRole, UnderstandsNamesPeopleUse) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"gx", "angular_rate x [-]"},
+      {"gyro_x", "angular_rate x [-]"},
+      {"GyroY", "angular_rate y [-]"},
+      {"Gyroscope x (rad/s)", "angular_rate x [rad/s]"},
+      {"wx [deg/s]", "angular_rate x [deg/s]"},
+      {"omega_z", "angular_rate z [-]"},
+      {"gyro_z[dps]", "angular_rate z [deg/s]"},
+      {"gyro_x_dps", "angular_rate x [deg/s]"},
+      {"wy_radps", "angular_rate y [rad/s]"},
+      {"ax", "specific_force x [-]"},
+      {"acc_x", "specific_force x [-]"},
+      {"fx", "specific_force x [-]"},
+      {"accel_z [g]", "specific_force z [g]"},
+      {"acc_z (m/s^2)", "specific_force z [m/s^2]"},
+      {"fz_mps2", "specific_force z [m/s^2]"},
+      {"x_acc", "specific_force x [-]"},
+      {"Accelerometer Z (g)", "specific_force z [g]"},
+      {"mag_x (uT)", "magnetic_field x [uT]"},
+      {"X (rad/s)", "angular_rate x [rad/s]"},
+      {"Y (m/s^2)", "specific_force y [m/s^2]"},
+      {"temp", "temperature [-]"},
+      {"Temperature (°C)", "temperature [degC]"},
+      {"temp_c", "temperature [degC]"},
+      {"t", "time [-]"},
+      {"time", "time [-]"},
+      {"timestamp", "time [-]"},
+      {"time (ms)", "time [ms]"},
+      {"Time (s)", "time [s]"},
+      {"time (sec)", "time [s]"},
+      {"time_ms", "time [ms]"},
+      {"t_us", "time [us]"},
+      {"t_s", "time [s]"},
+      {"seconds_elapsed", "time [s]"},
+      // Nothing to go by:
+      {"0", "unspecified [-]"},
+      {"", "unspecified [-]"},
+      {"()", "unspecified [-]"},
+      {"x", "unspecified [-]"},
+      {"state", "unspecified [-]"},
+      {"max", "unspecified [-]"},
+      {"rollrate", "unspecified [-]"},
+      {"acc_l_x[mg]", "unspecified [-]"},
+      {"gyro", "unspecified [-]"},
+      {"time_zone", "unspecified [-]"},
+  };
+  for (const auto& [name, expected] : cases) {
+    EXPECT_EQ(described(infer_role(name)), expected) << name;
+  }
+}
+
+TEST(AssignRoles, TakesStatedColumnsAndLeavesTheRest) {
+  RecordingSpec spec;
+  spec.columns = {{"b", {Quantity::AngularRate, "z", unit("deg/s")}}};
+  const auto roles = assign_roles(spec, {"a", "b", "gx"});
+  ASSERT_TRUE(roles);
+  EXPECT_FALSE(roles->at(0));
+  EXPECT_EQ(described(*roles->at(1)), "angular_rate z [deg/s]");
+  EXPECT_FALSE(roles->at(2));  // nothing is guessed once something is stated
+}
+
+TEST(AssignRoles, NamesTheColumnOfEveryFault) {
+  const auto with = [](const std::map<std::string, ColumnRole>& columns) {
+    RecordingSpec spec;
+    spec.columns = columns;
+    return failure(assign_roles(spec, {"a", "b"}));
+  };
+  EXPECT_EQ(with({{"c", {Quantity::Time, "", unit("s")}}}), "unknown_column column=c");
+  EXPECT_EQ(with({{"a", {Quantity::AngularRate, "x", {}}}, {"b", {Quantity::AngularRate, "x", {}}}}),
+            "duplicate_column column=b");
+  EXPECT_EQ(with({{"a", {Quantity::SpecificForce, "x", unit("deg/s")}}}), "unit_mismatch column=a unit=deg/s");
+  EXPECT_EQ(with({{"a", {Quantity::AngularRate, "", {}}}}), "invalid_argument column=a parameter=axis");
+  EXPECT_EQ(with({{"a", {Quantity::AngularRate, "north", {}}}}), "invalid_argument column=a parameter=axis");
+  EXPECT_EQ(with({{"a", {Quantity::Time, "x", {}}}}), "invalid_argument column=a parameter=axis");
+  EXPECT_EQ(with({{"a", {Quantity::Unspecified, "", {}}}, {"b", {Quantity::Unspecified, "", {}}}}), "accepted");
+}
+
+TEST(AssignRoles, InfersFromHeaderNames) {
+  const auto roles = assign_roles({}, {"time", "gx", "state"});
+  ASSERT_TRUE(roles);
+  EXPECT_EQ(described(*roles->at(0)), "time [-]");
+  EXPECT_EQ(described(*roles->at(1)), "angular_rate x [-]");
+  EXPECT_EQ(described(*roles->at(2)), "unspecified [-]");
+}
+
+TEST(AssignRoles, KeepsTheTimeColumnWhoseUnitIsKnown) {
+  const auto roles = assign_roles({}, {"time", "seconds_elapsed", "z", "y", "x"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_FALSE(roles->at(0));
+  EXPECT_EQ(described(*roles->at(1)), "time [s]");
+}
+
+TEST(AssignRoles, DoesNotGuessBetweenTwoColumnsOrAgainstAUnit) {
+  EXPECT_EQ(failure(assign_roles({}, {"gx", "gyro_x"})), "duplicate_column column=gyro_x");
+  EXPECT_EQ(failure(assign_roles({}, {"ax (deg/s)"})), "unit_mismatch column=ax (deg/s) unit=deg/s");
+}
+
+RecordingSpec at_rate(double rate_hz, Trim trim = {}) {
+  RecordingSpec spec;
+  spec.rate_hz = rate_hz;
+  spec.trim = trim;
+  return spec;
+}
+
+std::vector<double> stamps(std::size_t count, double step) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(static_cast<double>(i) * step);
+  }
+  return values;
+}
+
+Result<Window> plan(const RecordingSpec& spec, const std::vector<double>& time, const char* symbol = "s") {
+  return plan_window(spec, time.size(), time, unit(symbol));
+}
+
+TEST(PlanWindow, IsUniformWithoutATimeColumn) {
+  const auto window = plan_window(at_rate(50.0, {30.0, 20.0}), 5000, {}, Unit{});
+  ASSERT_TRUE(window);
+  EXPECT_EQ(window->time.dt_s, 1.0 / 50.0);
+  EXPECT_EQ(window->first, 1500U);
+  EXPECT_EQ(window->count, 5000U - 1500U - 1000U);
+  EXPECT_EQ(window->quality.samples, 5000U);
+  EXPECT_EQ(window->quality.analysed, 2500U);
+  EXPECT_EQ(window->quality.measured_rate_hz, 0.0);
+  EXPECT_THAT(window->quality.notes, IsEmpty());
+}
+
+TEST(PlanWindow, TrimsTheSameRowsWithAndWithoutATimeColumn) {
+  for (const Trim trim : {Trim{0.0, 0.0}, Trim{30.0, 30.0}, Trim{0.015, 0.0}, Trim{0.1, 0.3}, Trim{12.34, 7.001}}) {
+    const auto uniform = plan_window(at_rate(100.0, trim), 10000, {}, Unit{});
+    const auto stamped = plan(at_rate(100.0, trim), stamps(10000, 0.01));
+    ASSERT_TRUE(uniform && stamped);
+    EXPECT_EQ(uniform->first, stamped->first) << trim.start_s;
+    EXPECT_EQ(uniform->count, stamped->count) << trim.end_s;
+  }
+}
+
+TEST(PlanWindow, NeedsARateOrATimeColumn) {
+  EXPECT_EQ(failure(plan_window({}, 100, {}, Unit{})), "inconsistent_sampling parameter=rate_hz");
+}
+
+TEST(PlanWindow, NamesTheSettingThatIsWrong) {
+  EXPECT_EQ(failure(plan_window(at_rate(0.0), 100, {}, Unit{})), "invalid_argument parameter=rate_hz");
+  EXPECT_EQ(failure(plan_window(at_rate(-1.0), 100, {}, Unit{})), "invalid_argument parameter=rate_hz");
+  EXPECT_EQ(failure(plan_window(at_rate(std::nan("")), 100, {}, Unit{})), "invalid_argument parameter=rate_hz");
+  EXPECT_EQ(failure(plan_window(at_rate(1.0, {-1.0, 0.0}), 100, {}, Unit{})),
+            "invalid_argument parameter=trim.start_s");
+  EXPECT_EQ(failure(plan_window(at_rate(1.0, {0.0, INFINITY}), 100, {}, Unit{})),
+            "invalid_argument parameter=trim.end_s");
+}
+
+TEST(PlanWindow, RefusesWhatTheTrimsLeaveNothingOf) {
+  EXPECT_EQ(failure(plan_window(at_rate(10.0, {9.0, 1.0}), 100, {}, Unit{})), "too_few_samples parameter=trim.start_s");
+  EXPECT_EQ(failure(plan_window(at_rate(10.0, {1.0, 1e300}), 100, {}, Unit{})), "too_few_samples parameter=trim.end_s");
+  EXPECT_EQ(failure(plan(at_rate(10.0, {60.0, 0.0}), stamps(100, 0.1))), "too_few_samples parameter=trim.start_s");
+}
+
+TEST(PlanWindow, RefusesOneSample) {
+  EXPECT_EQ(failure(plan_window(at_rate(10.0), 1, {}, Unit{})), "too_few_samples");
+  EXPECT_EQ(failure(plan(at_rate(10.0), {1.0})), "too_few_samples");
+}
+
+TEST(PlanWindow, ReadsTheRateFromTheTimeColumn) {
+  const auto window = plan({}, stamps(1001, 20.0), "ms");
+  ASSERT_TRUE(window);
+  EXPECT_DOUBLE_EQ(window->time.dt_s, 0.02);
+  EXPECT_DOUBLE_EQ(window->quality.measured_rate_hz, 50.0);
+  EXPECT_EQ(window->count, 1001U);
+}
+
+TEST(PlanWindow, TakesTheStatedRateWhereTheStampsConfirmIt) {
+  // Stamps as decimal text: 0.02 i rounds, and the mean step differs from 1/50 in the last bits.
+  EXPECT_EQ(plan(at_rate(50.0), stamps(1001, 0.02))->time.dt_s, 1.0 / 50.0);
+}
+
+TEST(PlanWindow, LetsTheTimeColumnRuleWithinOnePercent) {
+  const auto window = plan(at_rate(50.0), stamps(1001, 0.0201));
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_NEAR(window->time.dt_s, 0.0201, 1e-12);
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("49.7512 Hz where 50 Hz is stated")));
+}
+
+TEST(PlanWindow, NamesBothRatesWhenTheyContradict) {
+  const auto window = plan(at_rate(50.0), stamps(1001, 0.025));
+  EXPECT_EQ(failure(window), "inconsistent_sampling parameter=rate_hz stated_hz=50 measured_hz=40");
+  EXPECT_THAT(window.error().message, HasSubstr("50 Hz"));
+  EXPECT_THAT(window.error().message, HasSubstr("40 Hz"));
+}
+
+TEST(PlanWindow, ReadsAnUnstatedTimeUnitAsSecondsOnlyIfTheRateAgrees) {
+  const auto agrees = plan(at_rate(50.0), stamps(100, 0.02), "1");
+  ASSERT_TRUE(agrees);
+  EXPECT_THAT(agrees->quality.notes, Contains(HasSubstr("no unit")));
+  const auto in_ms = plan(at_rate(50.0), stamps(100, 20.0), "1");
+  ASSERT_FALSE(in_ms);
+  EXPECT_EQ(in_ms.error().code, ErrorCode::InconsistentSampling);
+  EXPECT_THAT(in_ms.error().message, HasSubstr("In ms it would agree"));
+  const auto nothing = plan({}, stamps(100, 0.02), "1");
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().code, ErrorCode::InconsistentSampling);
+  EXPECT_THAT(nothing.error().message, HasSubstr("no unit"));
+}
+
+TEST(PlanWindow, NamesTheSampleAtWhichTimeStepsBackOrIsNoNumber) {
+  std::vector<double> time = stamps(100, 0.01);
+  time[40] = 0.2;
+  EXPECT_EQ(failure(plan({}, time)), "non_monotonic_time row=41");
+  time[40] = std::nan("");
+  EXPECT_EQ(failure(plan({}, time)), "non_finite row=41");
+  EXPECT_EQ(failure(plan({}, std::vector<double>(10, 3.0))), "inconsistent_sampling");
+}
+
+TEST(PlanWindow, CountsRepeatedStampsAndKeepsThem) {
+  std::vector<double> time = stamps(1000, 0.01);
+  time[500] = time[499];  // the step behind it is twice as long, but nothing is missing
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->count, 1000U);
+  EXPECT_EQ(window->quality.gaps, 0U);
+  EXPECT_EQ(window->quality.repeated_stamps, 1U);
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("1 time stamps repeat")));
+}
+
+TEST(PlanWindow, AnalysesTheLongestStretchWithoutAGap) {
+  // 100 samples, a gap of 5 s, 300 samples, a gap of 2 s, 200 samples.
+  std::vector<double> time;
+  double now = 10.0;
+  for (int i = 0; i < 600; ++i) {
+    now += i == 100 ? 5.0 : i == 400 ? 2.0 : 0.01;
+    time.push_back(now);
+  }
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->quality.gaps, 2U);
+  EXPECT_NEAR(window->quality.longest_gap_s, 5.0, 1e-9);
+  EXPECT_EQ(window->first, 100U);
+  EXPECT_EQ(window->count, 300U);
+  EXPECT_EQ(window->quality.samples, 600U);
+  EXPECT_NEAR(window->time.dt_s, 0.01, 1e-12);
+  EXPECT_NEAR(window->time.start_s, 10.01, 1e-12);
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("300 of 600 samples, from sample 101")));
+}
+
+TEST(PlanWindow, UnderstandsFifosStampedAtOnce) {
+  // Four samples share each stamp, every 40 ms; the eleventh FIFO is lost.
+  std::vector<double> time;
+  for (int i = 0; i < 400; ++i) {
+    time.push_back(0.04 * ((i / 4) + (i >= 40 ? 1 : 0)));
+  }
+  const auto window = plan({}, time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->quality.repeated_stamps, 300U);
+  EXPECT_EQ(window->quality.gaps, 1U);
+  EXPECT_EQ(window->first, 40U);
+  EXPECT_EQ(window->count, 360U);
+  // 359 steps over 89 FIFOs of 40 ms: the last FIFO counts at its first sample, a bias of 3 in 359.
+  EXPECT_NEAR(window->time.dt_s, 0.01, 0.01 * 3.0 / 359.0 * 1.01);
+}
+
+TEST(PlanWindow, SeesOneMissingSample) {
+  std::vector<double> time = stamps(1000, 0.01);
+  time.erase(time.begin() + 700);
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->quality.gaps, 1U);
+  EXPECT_EQ(window->count, 700U);
+}
+
+TEST(PlanWindow, MeasuresTheMeanOfCoarseStamps) {
+  // 300 Hz stamped in whole milliseconds: steps of 3 and 4 ms, median 3; the mean is right.
+  std::vector<double> time;
+  for (int i = 0; i < 3001; ++i) {
+    time.push_back(std::floor(i * 1000.0 / 300.0));
+  }
+  const auto window = plan({}, time, "ms");
+  ASSERT_TRUE(window);
+  EXPECT_EQ(window->quality.gaps, 0U);
+  // 3000 steps end on a whole millisecond, at 10 s exactly.
+  EXPECT_DOUBLE_EQ(window->time.dt_s, 10.0 / 3000.0);
+}
+
+}  // namespace
+}  // namespace driftlab

@@ -1,0 +1,68 @@
+#include "core/signal/unit.hpp"
+
+#include "core/signal/quantity.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+namespace driftlab {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Unit, ConvertsToSiAndBack) {
+  const auto si = [](const char* symbol, double value) { return parse_unit(symbol)->to_si(value); };
+  EXPECT_DOUBLE_EQ(si("deg/s", 180.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(si("deg/h", 180.0 * 3600.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(si("g", 1.0), 9.80665);
+  EXPECT_DOUBLE_EQ(si("mg", 1000.0), 9.80665);
+  EXPECT_DOUBLE_EQ(si("degC", 25.0), 298.15);
+  EXPECT_DOUBLE_EQ(si("us", 1e6), 1.0);
+  EXPECT_DOUBLE_EQ(si("ns", 1e9), 1.0);
+  EXPECT_DOUBLE_EQ(si("uT", 1e6), 1.0);
+  for (const Unit& unit : all_units()) {
+    EXPECT_NEAR(unit.from_si(unit.to_si(12.5)), 12.5, 1e-12) << unit.symbol;  // a few ulp of 300 K
+  }
+}
+
+TEST(Unit, ReadsItsOwnSymbolAndSpellingsPeopleUse) {
+  for (const Unit& unit : all_units()) {
+    EXPECT_EQ(parse_unit(unit.symbol)->symbol, unit.symbol);
+  }
+  EXPECT_EQ(parse_unit("°/s")->symbol, "deg/s");
+  EXPECT_EQ(parse_unit("dps")->symbol, "deg/s");
+  EXPECT_EQ(parse_unit("m/s2")->symbol, "m/s^2");
+  EXPECT_EQ(parse_unit("m/s²")->symbol, "m/s^2");
+  EXPECT_EQ(parse_unit("sec")->symbol, "s");
+  EXPECT_EQ(parse_unit("")->symbol, "1");
+}
+
+TEST(Unit, NamesTheUnknownSymbolAndTheKnownOnes) {
+  for (const char* const symbol : {"furlong", "G", "deg/S", " s", "M/S^2", "kg"}) {
+    const auto unit = parse_unit(symbol);
+    ASSERT_FALSE(unit) << symbol;
+    EXPECT_EQ(unit.error().code, ErrorCode::UnknownUnit);
+    EXPECT_EQ(unit.error().fields.front().value, symbol);
+    EXPECT_THAT(unit.error().message, HasSubstr("rad/s"));
+  }
+}
+
+TEST(Unit, GivesParametersTheUnitsOfTheTrade) {
+  // 1 rad/sqrt(s) = 180/pi deg * 60 /sqrt(h); IEEE Std 952 appendix C.
+  const ParameterUnit walk = lab_unit(Dimension::AngularRate, 1);
+  EXPECT_EQ(walk.symbol, "deg/sqrt(h)");
+  EXPECT_DOUBLE_EQ(walk.per_si, 180.0 / std::numbers::pi * 60.0);
+  const ParameterUnit bias = lab_unit(Dimension::AngularRate, 0);
+  EXPECT_EQ(bias.symbol, "deg/h");
+  EXPECT_DOUBLE_EQ(bias.per_si, 180.0 / std::numbers::pi * 3600.0);
+  EXPECT_EQ(lab_unit(Dimension::AngularRate, -1).symbol, "deg/h/sqrt(h)");
+  EXPECT_DOUBLE_EQ(lab_unit(Dimension::AngularRate, -1).per_si, 180.0 / std::numbers::pi * 3600.0 * 60.0);
+  EXPECT_DOUBLE_EQ(lab_unit(Dimension::SpecificForce, 1).per_si, 60.0);
+  EXPECT_DOUBLE_EQ(lab_unit(Dimension::SpecificForce, 0).per_si, 1000.0 / 9.80665);
+  EXPECT_EQ(lab_unit(Dimension::One, 1).symbol, "1*sqrt(s)");
+  EXPECT_EQ(lab_unit(Dimension::One, 1).per_si, 1.0);
+}
+
+}  // namespace
+}  // namespace driftlab
