@@ -4,6 +4,7 @@
 - A script named in a command block of README.md, CONTRIBUTING.md or schema/docs exists and is executable.
 - A --flag given to a script or a driftlab program in such a block stands in its --help. The programs are asked where
   their folder is given in $DRIFTLAB_BIN.
+- Every flag of driftlabd stands in schema/docs/operations.md, every flag of driftlab and of its subcommands in cli.md.
 - A path in `backticks` that begins with a top-level folder exists; <name> and * stand for anything.
 - A link between the pages leads somewhere.
 """
@@ -92,12 +93,31 @@ def path_faults(root: Path, page: Path, text: str) -> list[str]:
     return faults
 
 
+def subcommands_of(program: Path) -> list[str]:
+    listed = help_of(program, None).split("Subcommands:")
+    return re.findall(r"^  ([a-z][\w-]*)", listed[1], re.MULTILINE) if len(listed) == 2 else []
+
+
+def undocumented(root: Path, programs: Path) -> list[str]:
+    faults = []
+    for program, page in (("driftlabd", "operations.md"), ("driftlab", "cli.md")):
+        text = (root / "schema/docs" / page).read_text()
+        for subcommand in [None, *(subcommands_of(programs / program) if program == "driftlab" else [])]:
+            shown = help_of(programs / program, subcommand)
+            for flag in sorted(set(re.findall(r"(?<![\w-])--[a-z][\w-]+", shown)) - {"--help", "--version"}):
+                if not re.search(re.escape(flag) + r"(?![\w-])", text):
+                    faults.append(f"schema/docs/{page}: does not tell of {flag} ({program} {subcommand or ''})".replace(" )", ")"))
+            if subcommand and subcommand not in text:
+                faults.append(f"schema/docs/{page}: does not tell of {program} {subcommand}")
+    return faults
+
+
 def check(root: Path) -> list[str]:
     given = os.environ.get("DRIFTLAB_BIN")
     programs = Path(given).resolve() if given else None
     if programs is None:
         print("SKIPPED: flags of driftlab and driftlabd, for DRIFTLAB_BIN does not say where they are")
-    faults: list[str] = []
+    faults: list[str] = undocumented(root, programs) if programs and (root / "schema/docs").is_dir() else []
     readme = root / "README.md"
     if not readme.is_file():
         faults.append("README.md: is missing")

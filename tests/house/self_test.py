@@ -169,6 +169,18 @@ class Documents(Planted):
         self.refused(faults, "driftlab table has no --color")
         self.assertEqual(len(faults), 1, faults)
 
+    def test_a_flag_that_the_manual_leaves_out_is_refused(self) -> None:
+        self.plant("bin/driftlabd", "#!/bin/sh\necho '  --data TEXT  --data-sync'\n").chmod(0o755)
+        self.plant("bin/driftlab", "#!/bin/sh\n[ \"$1\" = table ] && echo '  --axis' || printf 'Subcommands:\\n  table  x\\n'\n").chmod(0o755)
+        self.plant("schema/docs/operations.md", "`--data`\n")
+        self.plant("schema/docs/cli.md", "nothing\n")
+        os.environ["DRIFTLAB_BIN"] = str(self.root / "bin")
+        self.addCleanup(os.environ.pop, "DRIFTLAB_BIN")
+        faults = documents.check(self.root)
+        for part in ("tell of --data-sync (driftlabd)", "tell of --axis (driftlab table)", "tell of driftlab table"):
+            self.refused(faults, part)
+        self.assertEqual(len(faults), 3, faults)
+
 
 if __name__ == "__main__":
     unittest.main()
