@@ -35,6 +35,8 @@ class LogFit {
   /// Where L is least, and L there.
   [[nodiscard]] const Eigen::VectorXd& best() const { return best_; }
   [[nodiscard]] double minimum() const { return minimum_; }
+  /// ln det R.
+  [[nodiscard]] double log_det() const { return -2.0 * whitening_.diagonal().array().abs().log().sum(); }
   [[nodiscard]] Model model_at(const Eigen::VectorXd& coordinates) const;
 
   /// Standard errors of the coordinates from the curvature, (D' R^-1 D)^-1: the fast preview. Infinite where singular.

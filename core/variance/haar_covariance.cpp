@@ -93,7 +93,9 @@ double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model) {
     squares += plan.weight[k] * scratch_[k] * scratch_[k];
     sum += plan.weight[k] * scratch_[k];
   }
-  return 2.0 * squares + 4.0 * mean_i * mean_j * sum;
+  // A deterministic curve would have no variance at all; its rounding is some 10^-8 of it.
+  const double rounding = i == j ? 1e-16 * std::pow(haar_variance(model, half_[i], dt_s_), 2.0) : 0.0;
+  return 2.0 * squares + 4.0 * mean_i * mean_j * sum + rounding;
 }
 
 Eigen::MatrixXd HaarCovariance::matrix(const Model& model) {

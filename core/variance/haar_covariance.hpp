@@ -26,6 +26,7 @@ class HaarCovariance {
   HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s);
 
   /// Covariance matrix of the estimated variances [unit^4], scales x scales.
+  /// Positive even for a deterministic model: 10^-16 of the squared variance stands for rounding.
   [[nodiscard]] Eigen::MatrixXd matrix(const Model& model);
 
   /// Its diagonal only: O(scales) instead of O(scales^2).

@@ -1,0 +1,213 @@
+// One suite of laws over every registered process: what it declares must agree with what it simulates and with itself.
+#include "core/process/model.hpp"
+#include "core/process/registry.hpp"
+#include "core/variance/haar_variance.hpp"
+#include "core/variance/samples.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace driftlab {
+namespace {
+
+constexpr double kDt = 0.01;
+
+/// Parameter values at which a process is tested: levels of 1.3, shapes over their range.
+std::vector<Process> examples(const ProcessKind& kind) {
+  std::vector<Process> all;
+  if (!kind.has_shape()) {
+    all.push_back({&kind, {1.3}});
+    return all;
+  }
+  for (const double shape : {0.07, 1.3, 11.0, 40.0}) {
+    all.push_back({&kind, {1.3, shape}});
+  }
+  return all;
+}
+
+class ProcessLaws : public testing::TestWithParam<std::size_t> {
+ protected:
+  [[nodiscard]] static const ProcessKind& kind() { return process_registry()[GetParam()]; }
+};
+
+TEST_P(ProcessLaws, DeclaresDistinctNamesAndBounds) {
+  EXPECT_FALSE(kind().name.empty());
+  EXPECT_FALSE(kind().symbol.empty());
+  EXPECT_FALSE(kind().title.empty());
+  ASSERT_FALSE(kind().parameters.empty());
+  EXPECT_EQ(kind().parameters[0].channel_power, 1) << "the first parameter is the level";
+  for (const ParameterSpec& spec : kind().parameters) {
+    EXPECT_LT(spec.lower, spec.upper);
+  }
+  EXPECT_EQ(find_process(kind().name), &kind());
+  EXPECT_EQ(find_process(kind().symbol), &kind());
+}
+
+TEST_P(ProcessLaws, VarianceIsProportionalToTheSquaredLevel) {
+  for (Process process : examples(kind())) {
+    const double before = process.haar_variance(8, kDt);
+    process.parameters[0] *= 2.0;
+    EXPECT_NEAR(process.haar_variance(8, kDt), 4.0 * before, 1e-13 * before);
+  }
+}
+
+TEST_P(ProcessLaws, GradientMatchesCentralDifferences) {
+  for (const Process& process : examples(kind())) {
+    for (const double m : {1.0, 3.0, 16.0, 1024.0}) {
+      std::vector<double> gradient(kind().parameters.size());
+      process.haar_gradient(m, kDt, gradient);
+      for (std::size_t k = 0; k < gradient.size(); ++k) {
+        // Truncation h^2 f'''/6: with h = 1e-5 of the value (divided by the number of turns for a sinusoid) about 1e-9
+        // of f.
+        const double turns = kind().symbol == "SIN" && k == 1 ? 1.0 + m * process.parameters[1] * kDt : 1.0;
+        const double step = 1e-5 * process.parameters[k] / turns;
+        Process up = process;
+        Process down = process;
+        up.parameters[k] += step;
+        down.parameters[k] -= step;
+        const double difference = (up.haar_variance(m, kDt) - down.haar_variance(m, kDt)) / (2.0 * step);
+        const double scale = process.haar_variance(m, kDt) / process.parameters[k] * turns;
+        EXPECT_NEAR(gradient[k], difference, 3e-7 * std::fabs(difference) + 1e-8 * scale)
+            << kind().name << " m=" << m << " parameter " << kind().parameters[k].name;
+      }
+    }
+  }
+}
+
+TEST_P(ProcessLaws, HaarVarianceIsTheSecondDifferenceOfTheVariogram) {
+  // E W^2 with W = (sum of m - sum of m before)/(2m) and sum_i c_i = 0 is -1/2 sum_ij c_i c_j V(i - j).
+  for (const Process& process : examples(kind())) {
+    for (const int m : {1, 2, 5, 16, 33}) {
+      double sum = 0.0;
+      for (int lag = -2 * m + 1; lag < 2 * m; ++lag) {
+        double pairs = 0.0;  // sum over i of c_i c_{i+lag}
+        for (int i = 0; i < 2 * m; ++i) {
+          const int other = i + lag;
+          if (other >= 0 && other < 2 * m) {
+            pairs += ((i < m) == (other < m) ? 1.0 : -1.0) / (4.0 * m * m);
+          }
+        }
+        sum -= 0.5 * pairs * process.variogram(lag, kDt);
+      }
+      EXPECT_NEAR(sum, process.haar_variance(m, kDt), 1e-10 * process.variogram(m, kDt) + 1e-14)
+          << kind().name << " m=" << m;
+    }
+  }
+}
+
+TEST_P(ProcessLaws, HaarVarianceIsTheIntegralOfTheDensity) {
+  // Seed paper eq. (6): 2 int_0^{1/2dt} S(f) sin^4(pi f m dt)/(m^2 sin^2(pi f dt)) df, midpoint rule on panels of the
+  // comb.
+  for (const Process& process : examples(kind())) {
+    if (!process.spectral_density(1.0, kDt)) {
+      continue;
+    }
+    for (const int m : {1, 4, 32}) {
+      const int points = 400000;
+      double sum = 0.0;
+      for (int i = 0; i < points; ++i) {
+        const double f = (i + 0.5) / points * 0.5 / kDt;
+        const double wide = std::sin(std::numbers::pi * f * m * kDt);
+        const double narrow = std::sin(std::numbers::pi * f * kDt);
+        sum += *process.spectral_density(f, kDt) * wide * wide * wide * wide / (m * m * narrow * narrow);
+      }
+      const double integral = 2.0 * sum * 0.5 / kDt / points;
+      EXPECT_NEAR(integral, process.haar_variance(m, kDt), 1e-6 * integral) << kind().name << " m=" << m;
+    }
+  }
+}
+
+TEST_P(ProcessLaws, CrossCovarianceAtLagZeroIsTheVariance) {
+  for (const Process& process : examples(kind())) {
+    if (process.haar_mean(1.0, kDt) != 0.0 || kind().symbol == "SIN") {
+      continue;  // deterministic: no scatter
+    }
+    for (const double m : {1.0, 2.0, 64.0, 4096.0}) {
+      const std::vector<double> lag{0.0};
+      std::vector<double> gamma{0.0};
+      kind().add_haar_cross(process.parameters, m, m, kDt, lag, 1.0, gamma);
+      const double expected = process.haar_variance(m, kDt);
+      EXPECT_NEAR(gamma[0], expected, 1e-7 * expected) << kind().name << " m=" << m;
+    }
+  }
+}
+
+TEST_P(ProcessLaws, StateSpaceHasTheSecondMomentsOfTheProcess) {
+  for (const Process& process : examples(kind())) {
+    const auto model = process.state_space(kDt);
+    if (!model) {
+      continue;
+    }
+    // E (y_L - y_0)^2 by running the moments of the pair (x_0, x_L).
+    const Eigen::Index n = model->phi.rows();
+    for (const int lag : {1, 2, 7}) {
+      Eigen::VectorXd mean = model->mean0;
+      Eigen::MatrixXd cov = model->cov0;
+      Eigen::MatrixXd cross = model->cov0;  // cov(x_L, x_0)
+      for (int t = 0; t < lag; ++t) {
+        mean = model->phi * mean;
+        cov = model->phi * cov * model->phi.transpose() + model->q;
+        cross = model->phi * cross;
+      }
+      double expected = 2.0 * model->r;
+      if (n > 0) {
+        const double step = (model->h * (mean - model->mean0))(0);
+        expected +=
+            (model->h * (cov + model->cov0 - cross - cross.transpose()) * model->h.transpose())(0) + step * step;
+      }
+      EXPECT_NEAR(expected, process.variogram(lag, kDt), 1e-9 * process.variogram(lag, kDt) + 1e-15) << kind().name;
+    }
+  }
+}
+
+TEST_P(ProcessLaws, AutocovarianceAndVariogramAgree) {
+  for (const Process& process : examples(kind())) {
+    const auto at_zero = process.autocovariance(0.0, kDt);
+    if (!at_zero) {
+      continue;
+    }
+    for (const double lag : {1.0, 2.0, 10.0}) {
+      EXPECT_NEAR(2.0 * (*at_zero - *process.autocovariance(lag, kDt)), process.variogram(lag, kDt), 1e-12 * *at_zero);
+    }
+  }
+}
+
+TEST_P(ProcessLaws, SimulationHasTheDeclaredVariance) {
+  // 400 series of 512 samples: each variance is averaged over R series, whose scatter among themselves gives the
+  // standard error; 4.5 of them is one false alarm in 10^5 per comparison.
+  constexpr std::size_t kSeries = 400;
+  constexpr std::size_t kSamples = 512;
+  for (const Process& process : examples(kind())) {
+    std::vector<double> sum(9, 0.0);
+    std::vector<double> squares(9, 0.0);
+    for (std::size_t s = 0; s < kSeries; ++s) {
+      Random random(20240611, s);
+      std::vector<double> path(kSamples, 0.0);
+      process.add_path(random, kDt, path);
+      const HaarVariance curve = haar_variance(path, path[0]);
+      ASSERT_EQ(curve.scales(), sum.size());
+      for (std::size_t j = 0; j < sum.size(); ++j) {
+        sum[j] += curve.variance[j];
+        squares[j] += curve.variance[j] * curve.variance[j];
+      }
+    }
+    for (std::size_t j = 0; j < sum.size(); ++j) {
+      const double mean = sum[j] / kSeries;
+      const double error = std::sqrt(std::max(0.0, squares[j] / kSeries - mean * mean) / kSeries);
+      const double expected = process.haar_variance(std::pow(2.0, static_cast<double>(j)), kDt);
+      EXPECT_NEAR(mean, expected, 4.5 * error + 1e-9 * expected) << kind().name << " scale " << j;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, ProcessLaws, testing::Range(std::size_t{0}, process_registry().size()),
+                         [](const testing::TestParamInfo<std::size_t>& tested) {
+                           return std::string(process_registry()[tested.param].name);
+                         });
+
+}  // namespace
+}  // namespace driftlab

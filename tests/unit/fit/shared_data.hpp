@@ -1,0 +1,69 @@
+#pragma once
+/// Recordings and reference values that are not part of the repository: found through DRIFTLAB_SHARED, default
+/// ../shared.
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::shared_data {
+
+/// The folder, or nothing, said loudly: a skipped test is not a passed one.
+inline std::optional<std::filesystem::path> folder() {
+  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): tests run one thread
+  std::filesystem::path path = stated != nullptr ? stated : "";
+  if (path.empty()) {
+    const std::filesystem::path here = std::filesystem::path(__FILE__).parent_path();
+    path = here / ".." / ".." / ".." / ".." / "shared";
+  }
+  if (std::filesystem::exists(path / "data")) {
+    return path;
+  }
+  std::cerr << "SKIPPED, NOT PASSED: no recordings at " << path << "; set DRIFTLAB_SHARED to the shared folder\n";
+  return std::nullopt;
+}
+
+/// Columns of an xz-compressed NumPy file of little-endian doubles in C order.
+inline std::vector<std::vector<double>> read_npy_xz(const std::filesystem::path& path, std::size_t columns) {
+  const std::string command = "xz -dc '" + path.string() + "'";
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  std::string bytes;
+  std::vector<char> buffer(1 << 20);
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    bytes.append(buffer.data(), count);
+  }
+  pclose(pipe);
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(i))); };
+  const std::size_t header = 10 + byte(8) + 256 * byte(9);
+  const std::size_t rows = (bytes.size() - header) / sizeof(double) / columns;
+  std::vector<double> values(rows * columns);
+  std::memcpy(values.data(), bytes.data() + header, values.size() * sizeof(double));
+  std::vector<std::vector<double>> split(columns, std::vector<double>(rows));
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      split[c][row] = values[row * columns + c];
+    }
+  }
+  return split;
+}
+
+inline nlohmann::json read_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return nlohmann::json::parse(file);
+}
+
+inline const std::vector<std::string>& adis_axes() {
+  static const std::vector<std::string> kAxes{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  return kAxes;
+}
+
+}  // namespace driftlab::shared_data

@@ -1,0 +1,115 @@
+#include "core/variance/haar_variance.hpp"
+
+#include "core/process/random.hpp"
+#include "core/variance/samples.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace driftlab {
+namespace {
+
+std::vector<double> white(std::size_t n, std::uint64_t seed, double bias = 0.0) {
+  Random random(seed);
+  std::vector<double> x(n);
+  for (double& value : x) {
+    value = bias + random.normal();
+  }
+  return x;
+}
+
+/// The definition, term by term, in long double.
+double by_definition(const std::vector<double>& x, std::size_t m) {
+  long double sum = 0.0L;
+  std::size_t count = 0;
+  for (std::size_t end = 2 * m; end <= x.size(); ++end) {
+    long double w = 0.0L;
+    for (std::size_t i = 0; i < m; ++i) {
+      w += x[end - 1 - i];
+      w -= x[end - 1 - m - i];
+    }
+    w /= 2.0L * static_cast<long double>(m);
+    sum += w * w;
+    ++count;
+  }
+  return static_cast<double>(sum / static_cast<long double>(count));
+}
+
+HaarVariance variances(const std::vector<double>& x) { return haar_variance(x, summarise(x)->mean); }
+
+TEST(HaarVariance, EqualsItsDefinitionAtEveryScale) {
+  // Lengths around the block size, powers of two and one off them.
+  for (const std::size_t n : {2U, 3U, 7U, 8U, 255U, 256U, 2047U, 2048U, 2049U, 4096U, 5000U}) {
+    const std::vector<double> x = white(n, 7 + n);
+    const HaarVariance curve = variances(x);
+    for (std::size_t j = 0; j < curve.scales(); ++j) {
+      const double expected = by_definition(x, curve.half[j]);
+      EXPECT_NEAR(curve.variance[j], expected, 1e-13 * expected) << "n=" << n << " m=" << curve.half[j];
+    }
+  }
+}
+
+TEST(HaarVariance, HasEveryScaleThatFits) {
+  for (const std::size_t n : {2U, 3U, 4U, 1023U, 1024U, 1025U}) {
+    const HaarVariance curve = variances(white(n, n));
+    EXPECT_EQ(curve.scales(), static_cast<std::size_t>(std::floor(std::log2(n)))) << n;
+    EXPECT_EQ(curve.coefficients(curve.scales() - 1), n - 2 * curve.half.back() + 1);
+  }
+  EXPECT_EQ(haar_variance(std::vector<double>{1.0}, 0.0).scales(), 0U);
+}
+
+TEST(HaarVariance, BiasOfAMillionSigmaCostsNoDigits) {
+  // The bias itself rounds each sample to 2^-33 = 1.2e-10 sigma; against the same rounded samples without it, exactly
+  // representable after subtraction, nothing further may be lost: 1e-12 is a few roundings of the sums.
+  constexpr double kBias = 1048576.0;
+  const std::vector<double> biased = white(100000, 3, kBias);
+  std::vector<double> clean = biased;
+  for (double& value : clean) {
+    value -= kBias;
+  }
+  const HaarVariance a = variances(biased);
+  const HaarVariance b = variances(clean);
+  for (std::size_t j = 0; j < a.scales(); ++j) {
+    EXPECT_NEAR(a.variance[j], b.variance[j], 1e-12 * b.variance[j]) << j;
+  }
+}
+
+TEST(HaarVariance, RampGivesItsClosedForm) {
+  // x = w t: every coefficient is w m/2.
+  std::vector<double> x(10000);
+  for (std::size_t t = 0; t < x.size(); ++t) {
+    x[t] = 5.0 + 0.25 * static_cast<double>(t);
+  }
+  const HaarVariance curve = variances(x);
+  for (std::size_t j = 0; j < curve.scales(); ++j) {
+    const double expected = std::pow(0.25 * static_cast<double>(curve.half[j]) / 2.0, 2.0);
+    EXPECT_NEAR(curve.variance[j], expected, 1e-12 * expected);
+  }
+}
+
+TEST(Samples, NamesTheFirstBadRow) {
+  std::vector<double> x = white(5000, 1);
+  x[4321] = std::nan("");
+  const auto nan = summarise(x);
+  ASSERT_FALSE(nan.has_value());
+  EXPECT_EQ(nan.error().code, ErrorCode::NonFinite);
+  EXPECT_EQ(nan.error().fields.at(0), (ErrorField{"row", "4322"}));
+  x[4321] = 0.0;
+  x[17] = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(summarise(x).error().fields.at(0), (ErrorField{"row", "18"}));
+  x[17] = 1e300;
+  EXPECT_EQ(summarise(x).error().code, ErrorCode::OutOfRange);
+}
+
+TEST(Samples, MeanKeepsItsDigitsUnderABias) {
+  std::vector<double> x(1 << 20, 0x1p40);
+  for (std::size_t i = 0; i < x.size(); i += 2) {
+    x[i] += 1.0;
+  }
+  EXPECT_EQ(summarise(x)->mean, 0x1p40 + 0.5);
+}
+
+}  // namespace
+}  // namespace driftlab
