@@ -1,5 +1,6 @@
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/http/guard.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
 
@@ -66,7 +67,9 @@ void add_etag(const Request& request, Response& response) {
     }
   }
   if (etag.empty()) {
-    etag = "\"" + sha256_hex(response.body + response.content_type).substr(0, 32) + "\"";
+    etag = '"';
+    etag.append(sha256_hex(response.body + response.content_type), 0, 32);
+    etag += '"';
     response.headers.emplace_back("ETag", etag);
   }
   const auto known = request.header("if-none-match");

@@ -49,26 +49,6 @@ Json to_json(const Recording& recording, const Blob* blob) {
   return document;
 }
 
-std::string_view name_of(JobState state) {
-  switch (state) {
-    case JobState::Queued:
-      return "queued";
-    case JobState::Running:
-      return "running";
-    case JobState::Succeeded:
-      return "succeeded";
-    case JobState::Failed:
-      return "failed";
-    case JobState::Cancelled:
-      return "cancelled";
-    case JobState::Dead:
-      return "dead";
-  }
-  return "queued";
-}
-
-bool is_terminal(JobState state) { return state != JobState::Queued && state != JobState::Running; }
-
 Json to_json(const Job& job) {
   Json document{{"id", job.id},
                 {"kind", job.kind},

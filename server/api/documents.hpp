@@ -15,9 +15,6 @@ namespace driftlab::server {
 [[nodiscard]] Json to_json(const Job& job);
 [[nodiscard]] Json to_json(const Fit& fit);
 
-[[nodiscard]] std::string_view name_of(JobState state);
-[[nodiscard]] bool is_terminal(JobState state);
-
 [[nodiscard]] Response json_response(int status, const Json& document);
 
 /// A stored JSON text inside a document; null where it does not parse.

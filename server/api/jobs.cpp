@@ -66,16 +66,6 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
   return response;
 }
 
-std::optional<JobState> parse_state(std::string_view name) {
-  for (const JobState state : {JobState::Queued, JobState::Running, JobState::Succeeded, JobState::Failed,
-                               JobState::Cancelled, JobState::Dead}) {
-    if (name_of(state) == name) {
-      return state;
-    }
-  }
-  return std::nullopt;
-}
-
 Result<Response> list_jobs(ApiContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) {
@@ -86,7 +76,7 @@ Result<Response> list_jobs(ApiContext& context, const Request& request) {
     filter.kind = *kind;
   }
   if (const auto state = request.parameter("state")) {
-    filter.state = parse_state(*state);
+    filter.state = parse_job_state(*state);
     if (!filter.state) {
       return fail(ErrorCode::InvalidArgument,
                   "The state must be queued, running, succeeded, failed, cancelled or dead.", {{"parameter", "state"}});

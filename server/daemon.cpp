@@ -1,0 +1,147 @@
+#include "server/daemon.hpp"
+
+#include "server/api/api.hpp"
+#include "server/http/problem.hpp"
+#include "server/http/server.hpp"
+#include "server/jobs/worker_pool.hpp"
+#include "server/observe/log.hpp"
+#include "server/store/sqlite/sqlite_store.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+namespace driftlab::server {
+namespace {
+
+constexpr double kLeastFreeFraction = 0.05;
+constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
+
+int worker_count(const Settings& settings) {
+  return settings.workers > 0 ? settings.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+void log_request(const AccessRecord& record) {
+  log_info("request", Json{{"method", record.method},
+                           {"route", record.route},
+                           {"target", record.target},
+                           {"status", record.status},
+                           {"bytes_in", record.bytes_in},
+                           {"bytes_out", record.bytes_out},
+                           {"seconds", record.seconds},
+                           {"request_id", record.request_id},
+                           {"address", record.address}});
+}
+
+}  // namespace
+
+/// Members in the order of construction; destruction is the reverse.
+struct Daemon::Parts {
+  Parts(std::unique_ptr<BlobStore> blobs_in, std::unique_ptr<SqliteStore> store_in,
+        std::unique_ptr<SystemClock> clock_in, WorkerOptions worker_options)
+      : clock(std::move(clock_in)),
+        blobs(std::move(blobs_in)),
+        store(std::move(store_in)),
+        workers({*store, *blobs, *clock}, std::move(worker_options), [this](const std::string& id) { bell.ring(id); }),
+        api{*store, *blobs, *clock, bell, [this] { workers.wake(); }, [this] { return not_ready_why(); }},
+        dispatcher(api) {
+    add_all_routes(router, api);
+  }
+
+  [[nodiscard]] std::string not_ready_why() const {
+    if (stopping) {
+      return "The daemon is stopping.";
+    }
+    if (!store->ping()) {
+      return "The store does not answer.";
+    }
+    const auto space = blobs->space();
+    if (!space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes)) {
+      return "The disk is nearly full.";
+    }
+    return "";
+  }
+
+  std::atomic<bool> stopping{false};
+  std::unique_ptr<SystemClock> clock;
+  std::unique_ptr<BlobStore> blobs;
+  std::unique_ptr<SqliteStore> store;
+  Bell bell;
+  WorkerPool workers;
+  ApiContext api;
+  Dispatcher dispatcher;
+  Router router;
+  std::unique_ptr<HttpServer> http;
+};
+
+Daemon::Daemon(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Daemon::~Daemon() { stop(); }
+
+Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
+  const auto address = listen_address(settings);
+  if (!address) {
+    return fail(address.error());
+  }
+  auto clock = std::make_unique<SystemClock>();
+  auto store = open_sqlite_store(settings.data, *clock);
+  if (!store) {
+    return fail(store.error());
+  }
+  const SqliteFacts& facts = (*store)->facts();
+  log_info("store opened",
+           Json{{"sqlite", facts.version},
+                {"schema_before", facts.schema_before},
+                {"schema", facts.schema},
+                {"wal_reset_bug", facts.wal_reset_bug_possible ? "present, harmless: one writer" : "absent"}});
+  auto blobs = open_blob_directory(settings.data);
+  if (!blobs) {
+    return fail(blobs.error());
+  }
+  if (auto ended = (*store)->end_all_leases(); !ended) {
+    return fail(ended.error());
+  } else if (*ended > 0) {
+    log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
+  }
+  WorkerOptions worker_options;
+  worker_options.threads = worker_count(settings);
+  worker_options.problem_document = [](const Error& error) { return problem_document(error); };
+  auto parts =
+      std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(worker_options));
+
+  HttpOptions options;
+  options.address = address->address;
+  options.port = address->port;
+  options.io_threads = settings.io_threads;
+  options.guard.hosts = allowed_hosts(settings, *address);
+  Parts* const shared = parts.get();
+  HttpHooks hooks;
+  hooks.dispatch = [shared](const Route& route, const Request& request) {
+    return shared->dispatcher.run(route, request);
+  };
+  hooks.complete = complete_problem;
+  hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
+  hooks.log = log_request;
+  parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
+  parts->workers.start();
+  if (auto started = parts->http->start(); !started) {
+    parts->workers.stop();
+    return fail(started.error());
+  }
+  log_info("listening", Json{{"address", settings.listen}, {"port", parts->http->port()}});
+  return std::unique_ptr<Daemon>(new Daemon(std::move(parts)));
+}
+
+std::uint16_t Daemon::port() const { return parts_->http->port(); }
+
+void Daemon::stop() {
+  if (parts_->stopping.exchange(true)) {
+    return;
+  }
+  log_info("stopping");
+  parts_->http->stop(std::chrono::seconds(10));
+  parts_->workers.stop();
+  log_info("stopped");
+}
+
+}  // namespace driftlab::server

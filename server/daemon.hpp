@@ -1,0 +1,28 @@
+#pragma once
+/// The daemon as one object: store, blobs, workers and HTTP, started in that order and stopped in the other.
+#include "core/signal/result.hpp"
+#include "server/settings.hpp"
+
+#include <memory>
+
+namespace driftlab::server {
+
+class Daemon {
+ public:
+  /// Opens the data directory and starts everything. Errors: those of the store, the blob directory and the listener.
+  [[nodiscard]] static Result<std::unique_ptr<Daemon>> start(const Settings& settings);
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
+  ~Daemon();
+
+  [[nodiscard]] std::uint16_t port() const;
+  /// Not ready, stop accepting, finish requests (10 s), stop workers (20 s), close the store. Idempotent.
+  void stop();
+
+ private:
+  struct Parts;
+  explicit Daemon(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace driftlab::server

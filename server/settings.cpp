@@ -1,0 +1,52 @@
+#include "server/settings.hpp"
+
+#include <boost/asio/ip/address.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace driftlab::server {
+
+Result<ListenAddress> listen_address(const Settings& settings) {
+  const std::size_t colon = settings.listen.rfind(':');
+  ListenAddress result;
+  bool sound = colon != std::string::npos && colon > 0;
+  if (sound) {
+    result.address = settings.listen.substr(0, colon);
+    if (result.address.size() > 2 && result.address.front() == '[' && result.address.back() == ']') {
+      result.address = result.address.substr(1, result.address.size() - 2);
+    }
+    const char* const end = settings.listen.data() + settings.listen.size();
+    const auto [stop, error] = std::from_chars(settings.listen.data() + colon + 1, end, result.port);
+    sound = error == std::errc{} && stop == end;
+  }
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(result.address, error);
+  if (!sound || error) {
+    return fail(
+        ErrorCode::InvalidArgument,
+        "The address to listen on is written IP:PORT, for example 127.0.0.1:8477, not '" + settings.listen + "'.",
+        {{"parameter", "listen"}});
+  }
+  if (!address.is_loopback() && !settings.insecure) {
+    return fail(
+        ErrorCode::InvalidArgument,
+        "The daemon has no TLS and no tokens yet, so it listens on loopback only; --insecure overrides this for "
+        "a network you trust.",
+        {{"parameter", "listen"}});
+  }
+  return result;
+}
+
+std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address) {
+  std::vector<std::string> hosts{"localhost", "127.0.0.1", "[::1]"};
+  hosts.push_back(address.address.find(':') == std::string::npos ? address.address : "[" + address.address + "]");
+  for (std::string host : settings.allow_host) {
+    std::transform(host.begin(), host.end(), host.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    hosts.push_back(std::move(host));
+  }
+  return hosts;
+}
+
+}  // namespace driftlab::server

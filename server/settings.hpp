@@ -1,0 +1,34 @@
+#pragma once
+/// What the daemon was told: flags, then DRIFTLAB_* variables, then defaults.
+#include "core/signal/result.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace driftlab::server {
+
+struct Settings {
+  std::filesystem::path data = "driftlab-data";
+  std::string listen = "127.0.0.1:8477";
+  std::vector<std::string> allow_host;  ///< Host names answered for, beside the address and localhost
+  int workers = 0;                      ///< 0: one per core
+  int io_threads = 2;
+  bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
+  std::string log_level = "info";
+};
+
+struct ListenAddress {
+  std::string address;
+  std::uint16_t port = 0;
+};
+
+/// `127.0.0.1:8477`, `[::1]:8477`. Refuses an address other than loopback unless `insecure`.
+/// Errors: InvalidArgument, naming the parameter.
+[[nodiscard]] Result<ListenAddress> listen_address(const Settings& settings);
+
+/// Names the daemon answers for, lower case, without port.
+[[nodiscard]] std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address);
+
+}  // namespace driftlab::server
