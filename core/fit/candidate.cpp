@@ -28,7 +28,7 @@ double log_det(const Eigen::MatrixXd& covariance, const MomentWeights& weights) 
 }  // namespace
 
 double Candidate::criterion(double samples) const {
-  return quasi_likelihood + static_cast<double>(structure.parameter_count()) * std::log(samples);
+  return log_fit->minimum() + static_cast<double>(structure.parameter_count()) * std::log(samples);
 }
 
 Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure, const Eigen::VectorXd& sd,

@@ -5,11 +5,11 @@
 /// covariance that the last fit implies (optimal weighting in two steps, Hansen 1982); quasi-likelihood on the
 /// logarithms for test and intervals.
 ///
-/// Criterion: -2 ln of the Gaussian quasi-likelihood of the wavelet variances, each model with its own covariance
-/// C(theta), plus a price per parameter of the structure, vanished ones too (a model with a dead component loses to the
-/// one without): e' C^-1 e + ln det C + p ln N. Measured on simulated phone data (N = 90,000) it finds the truth
-/// in 1.00, 0.99, 0.84 of runs for WN, WN+GM, WN+GM+RW, and invents a component in at most 1 %; the paper's equation 8
-/// finds 0.93, 0.82, 0.51. The set of models within 6 of the best by the same with 2p holds the truth in 85-98 %.
+/// Criterion: L + p ln N, with L the least squared distance on the logarithms under each model's own covariance
+/// (LogFit) and p the parameters of the structure, vanished ones too (a model with a dead component loses to the one
+/// without). It is the moment-selection criterion of BIC type (Andrews 1999; Andrews and Lu 2001) with a J statistic
+/// that is chi-square at the longest scales too. Measured on simulated phone data (N = 90,000): tests/ACCURACY.md. The
+/// set of models whose L + 2p is within 6 of the best is what the data cannot tell apart.
 #include "core/fit/gmwm.hpp"
 #include "core/fit/log_fit.hpp"
 #include "core/variance/haar_covariance.hpp"

@@ -107,7 +107,7 @@ void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, con
 void store_fits(std::vector<Candidate>& candidates, double unit, double samples, ChannelCharacterisation& result) {
   double best = std::numeric_limits<double>::infinity();
   const auto light = [](const Candidate& c) {
-    return c.quasi_likelihood + 2.0 * static_cast<double>(c.structure.parameter_count());
+    return c.log_fit->minimum() + 2.0 * static_cast<double>(c.structure.parameter_count());
   };
   for (const Candidate& candidate : candidates) {
     best = std::min(best, light(candidate));
