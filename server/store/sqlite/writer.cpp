@@ -131,8 +131,8 @@ void Writer::run_alone(Task& task) {
     task.outcome = guarded(task.work, *connection_);
     if (!task.outcome) {
       status = fail(task.outcome.error());
-    } else if (connection_->in_transaction()) {
-      status = connection_->prepare("COMMIT").run();
+    } else {
+      status = connection_->prepare("COMMIT").run();  // refused where the work ended the transaction
     }
   }
   if (!status) {
