@@ -15,7 +15,7 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
-constexpr std::size_t kMaxView = std::size_t{16} << 20;
+[[maybe_unused]] constexpr std::size_t kMaxView = std::size_t{16} << 20;
 
 double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 1.0 : std::min(1.0, static_cast<double>(part) / static_cast<double>(whole));
