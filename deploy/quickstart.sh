@@ -138,7 +138,7 @@ else
       "$bin/driftlab" simulate --preset iphone5s-z --condition "$condition" --out "$file.part" || fail "the simulation failed"
       mv "$file.part" "$file"
     fi
-    characterise "$file" "$condition" --rate-hz 100 --columns gz=angular_rate:z:deg/s >"$logs/characterise.log" ||
+    characterise "$file" "$condition" --rate-hz 100 >"$logs/characterise.log" ||
       fail "the sample could not be characterised"
   done
   say ''
