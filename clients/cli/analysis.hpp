@@ -1,0 +1,25 @@
+#pragma once
+/// Two ways to the same characterisation document: in this process, or through a daemon.
+#include "clients/cli/cli.hpp"
+#include "clients/cli/input.hpp"
+#include "core/fit/characterise.hpp"
+
+namespace driftlab::cli {
+
+/// What went wrong and how the process ends because of it.
+struct Failure {
+  Error error;
+  Exit exit = Exit::BadInput;
+};
+
+/// Decodes, maps and characterises each file here. Cancelled by interrupt_token.
+[[nodiscard]] tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options);
+
+/// Uploads each file, queues one job for all of them, follows its events and fetches its result.
+[[nodiscard]] tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const CharacteriseOptions& options,
+                                                             const std::string& server);
+
+/// Parameter tables, as text, of every sensor axis in a characterisation document, by both methods.
+[[nodiscard]] std::string tables_of(const Json& document, const std::string& device);
+
+}  // namespace driftlab::cli

@@ -1,0 +1,67 @@
+#include "clients/cli/analysis.hpp"
+
+#include <cstdio>
+#include <memory>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  FileFlags file;
+  std::string server;
+  std::vector<std::string> models;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+Exit run(const Flags& flags) {
+  CharacteriseOptions options;
+  options.seed = flags.seed;
+  if (!flags.models.empty()) {
+    options.models = flags.models;
+  }
+  if (auto checked = check_options(options); !checked) {
+    return complain(checked.error());
+  }
+  auto inputs = read_inputs(flags.files, flags.file);
+  if (!inputs) {
+    return complain(inputs.error());
+  }
+  auto document =
+      flags.server.empty() ? characterise_here(*inputs, options) : characterise_there(*inputs, options, flags.server);
+  if (!document) {
+    return complain(document.error().error, document.error().exit);
+  }
+  const std::string text = flags.json ? document->dump(2) + "\n" : tables_of(*document, inputs->device);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return Exit::Success;
+}
+
+}  // namespace
+
+void add_characterise(CLI::App& app, Command& chosen) {
+  CLI::App* const command = app.add_subcommand(
+      "characterise",
+      "Variances, Allan coefficients and ranked error models of recordings (CSV, .npy; also .gz .xz .zst) or "
+      "of a study.json");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("FILE", flags->files, "Recordings that share the flags below, or one study.json")->required();
+  command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
+  command->add_option("--columns", flags->file.columns,
+                      "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s; columns without names are 0, 1, …");
+  command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
+      ->capture_default_str();
+  command->add_option("--device", flags->file.device,
+                      "Device the recordings belong to; default: the first file's name");
+  command
+      ->add_option("--models", flags->models,
+                   "Candidate models, e.g. WN,WN+GM; default: the nine of Radi et al. (2017)")
+      ->delimiter(',');
+  command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
+  command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
+  command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,219 @@
+#include "clients/cli/http_client.hpp"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/streambuf.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/url/parse.hpp>
+#include <boost/url/url_view.hpp>
+
+#include <fstream>
+
+namespace driftlab::cli {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+
+namespace {
+
+/// One connection for one exchange.
+class Exchange {
+ public:
+  Exchange(const std::string& host, const std::string& port) : socket_(io_), host_(host), port_(port) {}
+
+  Status connect() {
+    boost::system::error_code error;
+    tcp::resolver resolver(io_);
+    const auto endpoints = resolver.resolve(host_, port_, error);
+    if (!error) {
+      asio::connect(socket_, endpoints, error);
+    }
+    return error ? lost(error) : Status{};
+  }
+
+  [[nodiscard]] tl::unexpected<Error> lost(const boost::system::error_code& error) const {
+    return fail(ErrorCode::Io,
+                "The daemon at http://" + host_ + ":" + port_ + " cannot be reached: " + error.message() + ".");
+  }
+
+  template <class Body>
+  void prepare(http::request<Body>& request) const {
+    request.version(11);
+    request.set(http::field::host, host_ + ":" + port_);
+    request.set(http::field::user_agent, "driftlab/" DRIFTLAB_VERSION);
+    request.keep_alive(false);
+  }
+
+  template <class Body>
+  Result<HttpReply> ask(http::request<Body>& request) {
+    boost::system::error_code error;
+    http::write(socket_, request, error);
+    return read_reply(error);
+  }
+
+  /// An error of the write is set aside until the reply is read: a daemon that refuses an upload early says why.
+  Result<HttpReply> read_reply(const boost::system::error_code& write_error) {
+    boost::system::error_code error;
+    boost::beast::flat_buffer buffer;
+    http::response_parser<http::string_body> parser;
+    parser.body_limit(boost::none);
+    http::read(socket_, buffer, parser, error);
+    if (error && error != http::error::end_of_stream) {
+      return lost(write_error ? write_error : error);
+    }
+    if (!parser.is_header_done()) {
+      return lost(write_error ? write_error : error);
+    }
+    const auto& message = parser.get();
+    return HttpReply{static_cast<int>(message.result_int()), std::string(message[http::field::content_type]),
+                     message.body()};
+  }
+
+  [[nodiscard]] tcp::socket& socket() { return socket_; }
+
+ private:
+  asio::io_context io_;
+  tcp::socket socket_;
+  std::string host_;
+  std::string port_;
+};
+
+}  // namespace
+
+Result<HttpClient> HttpClient::to(std::string_view server) {
+  const auto url = boost::urls::parse_uri(boost::core::string_view(server.data(), server.size()));
+  const bool sound = url && url->scheme() == "http" && !url->host().empty() && url->encoded_path().size() <= 1;
+  if (!sound) {
+    return fail(ErrorCode::InvalidArgument,
+                "The server is written http://HOST:PORT, for example http://127.0.0.1:8477, not '" +
+                    std::string(server) + "'.");
+  }
+  std::string host = url->host();
+  if (host.size() > 2 && host.front() == '[') {
+    host = host.substr(1, host.size() - 2);
+  }
+  return HttpClient(host, url->has_port() ? std::string(url->port()) : "80");
+}
+
+Result<HttpReply> HttpClient::get(const std::string& target, const std::string& accept) {
+  Exchange exchange(host_, port_);
+  if (auto connected = exchange.connect(); !connected) {
+    return fail(connected.error());
+  }
+  http::request<http::empty_body> request(http::verb::get, target, 11);
+  exchange.prepare(request);
+  request.set(http::field::accept, accept);
+  return exchange.ask(request);
+}
+
+Result<HttpReply> HttpClient::post(const std::string& target, const std::string& json) {
+  Exchange exchange(host_, port_);
+  if (auto connected = exchange.connect(); !connected) {
+    return fail(connected.error());
+  }
+  http::request<http::string_body> request(http::verb::post, target, 11);
+  exchange.prepare(request);
+  request.set(http::field::content_type, "application/json");
+  request.body() = json;
+  request.prepare_payload();
+  return exchange.ask(request);
+}
+
+Result<HttpReply> HttpClient::upload(const std::string& target, const std::filesystem::path& file,
+                                     const std::function<void(double)>& sent) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code no_size;
+  const auto size = std::filesystem::file_size(file, no_size);
+  if (!stream || no_size) {
+    return fail(ErrorCode::NotFound, "The file " + file.string() + " cannot be opened.");
+  }
+  Exchange exchange(host_, port_);
+  if (auto connected = exchange.connect(); !connected) {
+    return fail(connected.error());
+  }
+  http::request<http::empty_body> request(http::verb::post, target, 11);
+  exchange.prepare(request);
+  request.set(http::field::content_type, "application/octet-stream");
+  request.content_length(size);
+  boost::system::error_code error;
+  http::request_serializer<http::empty_body> serializer(request);
+  http::write_header(exchange.socket(), serializer, error);
+  std::vector<char> piece(256 * 1024);
+  std::uintmax_t done = 0;
+  while (!error && done < size) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto count = static_cast<std::size_t>(stream.gcount());
+    if (count == 0) {
+      return fail(ErrorCode::Io, "The file " + file.string() + " became shorter while it was sent.");
+    }
+    asio::write(exchange.socket(), asio::buffer(piece.data(), count), error);
+    done += count;
+    sent(static_cast<double>(done) / static_cast<double>(size));
+  }
+  return exchange.read_reply(error);
+}
+
+Status HttpClient::follow(const std::string& target, const std::function<bool(std::string_view)>& event) {
+  Exchange exchange(host_, port_);
+  if (auto connected = exchange.connect(); !connected) {
+    return connected;
+  }
+  http::request<http::empty_body> request(http::verb::get, target, 11);
+  exchange.prepare(request);
+  request.set(http::field::accept, "text/event-stream");
+  boost::system::error_code error;
+  http::write(exchange.socket(), request, error);
+  boost::beast::flat_buffer buffer;
+  http::response_parser<http::buffer_body> parser;
+  parser.body_limit(boost::none);
+  http::read_header(exchange.socket(), buffer, parser, error);
+  if (error) {
+    return exchange.lost(error);
+  }
+  std::string text;
+  std::vector<char> piece(16 * 1024);
+  while (!parser.is_done()) {
+    parser.get().body().data = piece.data();
+    parser.get().body().size = piece.size();
+    http::read_some(exchange.socket(), buffer, parser, error);
+    text.append(piece.data(), piece.size() - parser.get().body().size);
+    if (error && error != http::error::need_buffer) {
+      return error == http::error::end_of_stream || error == asio::error::eof ? Status{} : Status(exchange.lost(error));
+    }
+    std::size_t end = 0;
+    while ((end = text.find("\n\n")) != std::string::npos) {
+      const std::string block = text.substr(0, end);
+      text.erase(0, end + 2);
+      const std::size_t data = block.find("data: ");
+      if (data != std::string::npos && !event(std::string_view(block).substr(data + 6))) {
+        return {};
+      }
+    }
+  }
+  return {};
+}
+
+std::string percent_encode(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+                       c == '.' || c == '_' || c == '~';
+    if (plain) {
+      result += c;
+    } else {
+      result += '%';
+      result += kDigits[byte >> 4U];
+      result += kDigits[byte & 15U];
+    }
+  }
+  return result;
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,45 @@
+#pragma once
+/// The little HTTP that the command line needs: requests with bodies from memory or a file, and event streams.
+#include "core/signal/result.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace driftlab::cli {
+
+struct HttpReply {
+  int status = 0;
+  std::string content_type;
+  std::string body;
+};
+
+/// Talks to one daemon. Every failure to reach it is ErrorCode::Io, with a sentence that names the address. Not thread
+/// safe.
+class HttpClient {
+ public:
+  /// `http://127.0.0.1:8477`. Errors: InvalidArgument (not an http address).
+  [[nodiscard]] static Result<HttpClient> to(std::string_view server);
+
+  [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept = "application/json");
+  [[nodiscard]] Result<HttpReply> post(const std::string& target, const std::string& json);
+  /// Streams a file; `sent` is called with the fraction sent.
+  [[nodiscard]] Result<HttpReply> upload(const std::string& target, const std::filesystem::path& file,
+                                         const std::function<void(double)>& sent);
+  /// Follows a server-sent event stream until it closes or `event` returns false. `event` gets the data of each.
+  [[nodiscard]] Status follow(const std::string& target, const std::function<bool(std::string_view data)>& event);
+
+ private:
+  HttpClient(std::string host, std::string port) : host_(std::move(host)), port_(std::move(port)) {}
+  std::string host_;
+  std::string port_;
+};
+
+/// A query component with everything but unreserved characters percent-encoded (RFC 3986).
+[[nodiscard]] std::string percent_encode(std::string_view text);
+
+}  // namespace driftlab::cli

@@ -1,0 +1,109 @@
+#include "clients/cli/input.hpp"
+
+#include "core/signal/number.hpp"
+#include "schema/json/recording_spec.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace driftlab::cli {
+namespace {
+
+/// `static_1.csv.gz` -> `static_1`
+std::string stem_of(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return name.substr(0, name.find('.'));
+}
+
+Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
+  RecordingSpec spec;
+  if (!flags.rate_hz.empty()) {
+    spec.rate_hz = parse_double(flags.rate_hz);
+    if (!spec.rate_hz || !(*spec.rate_hz > 0.0)) {
+      return fail(ErrorCode::InvalidArgument, "--rate-hz needs a number greater than 0, not '" + flags.rate_hz + "'.");
+    }
+  }
+  if (!flags.columns.empty()) {
+    auto columns = parse_columns(flags.columns);
+    if (!columns) {
+      return fail(columns.error());
+    }
+    spec.columns = std::move(*columns);
+  }
+  auto condition = parse_condition(flags.condition);
+  if (!condition) {
+    return fail(condition.error());
+  }
+  spec.condition = *condition;
+  return spec;
+}
+
+Result<Inputs> read_study(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return fail(ErrorCode::NotFound, "The study " + path.string() + " cannot be opened.");
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document) {
+    return fail(document.error().code, path.string() + ": " + document.error().message);
+  }
+  Inputs inputs;
+  inputs.study = stem_of(path);
+  Faults faults;
+  ObjectReader reader(*document, "", faults);
+  if (const Json* const device = reader.member("device"); device != nullptr && device->is_object()) {
+    inputs.device = device->value("id", "");
+  }
+  const Json* const recordings = reader.member("recordings");
+  if (recordings == nullptr || !recordings->is_array() || recordings->empty()) {
+    faults.add("/recordings", ErrorCode::InvalidArgument, "A study needs at least one recording.");
+  } else {
+    for (std::size_t i = 0; i < recordings->size(); ++i) {
+      const std::string pointer = "/recordings/" + std::to_string(i);
+      const Json& entry = (*recordings)[i];
+      InputFile file;
+      file.spec = recording_spec_from_json(entry, pointer, faults);
+      ObjectReader named(entry, pointer, faults);
+      const std::filesystem::path relative = named.required_text("file");
+      file.path = path.parent_path() / relative;
+      if (file.spec.id.empty()) {
+        file.spec.id = stem_of(relative);
+      }
+      inputs.files.push_back(std::move(file));
+    }
+  }
+  if (!faults.none()) {
+    const Error error = faults.error();
+    return fail(error.code, path.string() + ", " + error.fields.front().name + ": " + error.message, error.fields);
+  }
+  return inputs;
+}
+
+}  // namespace
+
+Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags) {
+  if (names.size() == 1 && names.front().ends_with(".json")) {
+    auto study = read_study(names.front());
+    if (study && !flags.device.empty()) {
+      study->device = flags.device;
+    }
+    return study;
+  }
+  auto spec = spec_from_flags(flags);
+  if (!spec) {
+    return fail(spec.error());
+  }
+  Inputs inputs;
+  inputs.study = nullptr;
+  for (const std::string& name : names) {
+    InputFile file{name, *spec};
+    file.spec.id = stem_of(file.path);
+    inputs.files.push_back(std::move(file));
+  }
+  inputs.device = flags.device.empty() ? inputs.files.front().spec.id : flags.device;
+  return inputs;
+}
+
+}  // namespace driftlab::cli

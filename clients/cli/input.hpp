@@ -1,0 +1,36 @@
+#pragma once
+/// What a user hands to a command: recording files with flags, or a study document (spec/study.md) with files beside
+/// it.
+#include "core/signal/recording.hpp"
+#include "schema/json/json.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace driftlab::cli {
+
+/// Flags that describe bare files.
+struct FileFlags {
+  std::string rate_hz;
+  std::string columns;
+  std::string condition = "static";
+  std::string device;
+};
+
+struct InputFile {
+  std::filesystem::path path;
+  RecordingSpec spec;  ///< `id` is never empty
+};
+
+struct Inputs {
+  std::string device;
+  Json study;  ///< the id of the study's file, or null
+  std::vector<InputFile> files;
+};
+
+/// Reads the inputs named on the command line: one study.json, or any number of recordings that share the flags.
+/// Errors are the user's: unreadable file, malformed study, unknown unit, ...
+[[nodiscard]] Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags);
+
+}  // namespace driftlab::cli

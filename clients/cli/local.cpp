@@ -1,0 +1,132 @@
+#include "clients/cli/analysis.hpp"
+#include "clients/cli/progress.hpp"
+#include "core/read/column_file.hpp"
+#include "core/read/format.hpp"
+#include "core/signal/recording_view.hpp"
+#include "schema/json/characterisation.hpp"
+#include "schema/json/characterise_recording.hpp"
+#include "schema/json/parameter_table.hpp"
+#include "schema/json/recording_spec.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace driftlab::cli {
+namespace {
+
+/// A directory of our own for decoded columns, gone at the end.
+class Workspace {
+ public:
+  static Result<Workspace> make() {
+    std::error_code error;
+    std::string pattern = (std::filesystem::temp_directory_path(error) / "driftlab-XXXXXX").string();
+    if (error || mkdtemp(pattern.data()) == nullptr) {
+      return fail(ErrorCode::Io, "No temporary directory can be made; set TMPDIR to one that can be written.");
+    }
+    return Workspace(pattern);
+  }
+  Workspace(Workspace&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  Workspace& operator=(Workspace&&) = delete;
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  ~Workspace() {
+    if (!path_.empty()) {
+      std::error_code ignored;
+      std::filesystem::remove_all(path_, ignored);
+    }
+  }
+  [[nodiscard]] std::filesystem::path file() const { return path_ / "columns"; }
+
+ private:
+  explicit Workspace(std::filesystem::path path) : path_(std::move(path)) {}
+  std::filesystem::path path_;
+};
+
+Result<Json> characterise_file(const InputFile& file, const CharacteriseOptions& options, const Workspace& workspace,
+                               const RunControl& control) {
+  const RunControl decoding{control.stop, [&](std::string_view stage, double f) { control.report(stage, 0.3 * f); }};
+  auto decoded = decode_file(file.path, workspace.file(), {}, decoding);
+  if (!decoded) {
+    return fail(decoded.error());
+  }
+  auto columns = ColumnFile::open(workspace.file());
+  if (!columns) {
+    return fail(columns.error());
+  }
+  auto view =
+      view_recording(file.spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
+  if (!view) {
+    return fail(view.error());
+  }
+  for (const std::string& note : decoded->notes) {
+    view->window.quality.notes.push_back(note);
+  }
+  const RunControl fitting{control.stop,
+                           [&](std::string_view stage, double f) { control.report(stage, 0.3 + 0.7 * f); }};
+  return characterise_recording(file.spec.id, file.spec, *view, options, fitting);
+}
+
+}  // namespace
+
+tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options) {
+  auto workspace = Workspace::make();
+  if (!workspace) {
+    return tl::unexpected(Failure{workspace.error(), Exit::BadInput});
+  }
+  ProgressBar bar;
+  std::vector<Json> recordings;
+  for (const InputFile& file : inputs.files) {
+    const auto done = static_cast<double>(recordings.size());
+    const RunControl control{interrupt_token(), [&](std::string_view stage, double fraction) {
+                               bar.show(stage, (done + fraction) / static_cast<double>(inputs.files.size()));
+                             }};
+    auto document = characterise_file(file, options, *workspace, control);
+    if (!document) {
+      Error error = document.error();
+      error.message = file.path.string() + ": " + error.message;
+      const Exit exit = error.code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
+      return tl::unexpected(Failure{std::move(error), exit});
+    }
+    recordings.push_back(std::move(*document));
+  }
+  Json document = characterisation_document(std::move(recordings));
+  document["study"] = inputs.study;
+  return document;
+}
+
+std::string tables_of(const Json& document, const std::string& device) {
+  struct Sensor {
+    std::string quantity, axis;
+    std::vector<TableSource> sources;
+  };
+  std::vector<Sensor> sensors;
+  for (const Json& recording : document.at("recordings")) {
+    Faults ignored;
+    const std::string condition = to_text(condition_from_json(recording.at("condition"), "", ignored));
+    for (const Json& channel : recording.at("channels")) {
+      // Channels that nobody named by axis stand each for themselves.
+      const bool has_axis = channel["axis"].is_string();
+      const std::string axis = has_axis ? channel["axis"].get<std::string>() : channel["channel"].get<std::string>();
+      const std::string quantity = channel["quantity"].get<std::string>();
+      auto sensor = std::find_if(sensors.begin(), sensors.end(),
+                                 [&](const Sensor& s) { return s.quantity == quantity && s.axis == axis; });
+      if (sensor == sensors.end()) {
+        sensors.push_back({quantity, axis, {}});
+        sensor = sensors.end() - 1;
+      }
+      sensor->sources.push_back({recording["id"].get<std::string>(), condition, channel});
+    }
+  }
+  std::string text;
+  for (const Sensor& sensor : sensors) {
+    for (const TableMethod method : {TableMethod::Av, TableMethod::Gmwm}) {
+      const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
+      auto table = build_parameter_table({device, quantity, sensor.axis, method, ""}, sensor.sources);
+      text += table ? table_to_text(*table) + "\n" : table.error().message + "\n\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace driftlab::cli
