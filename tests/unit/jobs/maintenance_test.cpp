@@ -1,0 +1,80 @@
+#include "server/jobs/maintenance.hpp"
+
+#include "tests/unit/jobs/toy_world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace driftlab::server {
+namespace {
+
+Result<JobResults> nothing(const RunControl& /*control*/) { return JobResults{}; }
+
+std::string keep_blob(BlobStore& blobs, const std::string& text) {
+  const auto incoming = blobs.begin();
+  EXPECT_TRUE((*incoming)->append(std::as_bytes(std::span(text))));
+  EXPECT_TRUE((*incoming)->seal());
+  std::ofstream((*incoming)->columns_path()) << "columns";
+  EXPECT_TRUE((*incoming)->keep());
+  return (*incoming)->sha256();
+}
+
+TEST(SweepBlobs, RemovesFilesWithoutRowsAfterADay) {
+  ToyWorld world(nothing);
+  const std::string orphan = keep_blob(*world.blobs, "orphan");
+  const std::string named = keep_blob(*world.blobs, "named");
+  ASSERT_EQ(add_recording(*world.store, add_device(*world.store), "named").blob_sha256, named);
+
+  const UtcMicros now = SystemClock().now();  // files carry the machine's time
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 23 * kHour), 0);
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour), 1);
+  EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(orphan)));
+  EXPECT_FALSE(std::filesystem::exists(world.blobs->columns_path(orphan)));
+  EXPECT_TRUE(std::filesystem::exists(world.blobs->bytes_path(named)));
+  EXPECT_TRUE(std::filesystem::exists(world.blobs->columns_path(named)));
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour), 0);
+}
+
+TEST(Maintenance, RescuesForgetsAndSweepsByItself) {
+  ToyWorld world(nothing);
+  const std::string id = world.add_toy();
+  claim_one(*world.store);
+  IdempotentReply reply;
+  reply.key = "key";
+  ASSERT_TRUE(world.store->remember_reply(reply));
+  const std::string orphan = keep_blob(*world.blobs, "orphan");
+  const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 3650);
+  std::filesystem::last_write_time(world.blobs->bytes_path(orphan), long_ago);
+  std::filesystem::last_write_time(world.blobs->columns_path(orphan), long_ago);
+  world.clock.advance(24 * kHour);
+
+  Gate rescued;
+  MaintenanceOptions options;
+  options.rescue_micros = 1000;
+  Maintenance maintenance(*world.store, *world.blobs, world.clock, options, [&] { rescued.open(); });
+  maintenance.start();
+  rescued.pass();
+  EXPECT_EQ(world.store->job(id)->state, JobState::Queued);
+  maintenance.stop();
+  maintenance.stop();
+  EXPECT_EQ(*world.store->forget_old_replies(), 0) << "it was forgotten already";
+  EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(orphan)));
+}
+
+TEST(Maintenance, GivesRescuedJobsToTheWorkers) {
+  ToyWorld world(nothing);
+  const std::string id = world.add_toy();
+  claim_one(*world.store);
+  world.clock.advance(kLease);
+  WorkerOptions options = ToyWorld::quiet();
+  options.idle_micros = kHour;
+  options.maintain = true;
+  const auto pool = world.pool(options);
+  pool->start();
+  EXPECT_EQ(world.wait_for_state(id, JobState::Succeeded).attempt, 2);
+}
+
+}  // namespace
+}  // namespace driftlab::server
