@@ -5,6 +5,7 @@
 #include "core/signal/estimate.hpp"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ struct FittedParameter {
   int second_power_halves = 0;  ///< N: +1, K: -1, R: -2, Q: +2, sigma and B: 0, beta: -2
   std::optional<Estimate> estimate;
   std::string reason;
+  /// Where there is no estimate: the level is below this with 95 % confidence (infinite: nothing bounds it).
+  double upper_limit = std::numeric_limits<double>::infinity();
 };
 
 struct FittedProcess {

@@ -33,6 +33,7 @@ Interval coordinate_interval(LogFit& fit, std::size_t k, IntervalMethod method, 
 struct Reported {
   std::optional<Estimate> estimate;
   std::string reason;
+  double upper_limit = kInfinity;
 };
 
 Reported report_parameter(Candidate& candidate, const Process& process, std::size_t active_index, std::size_t parameter,
@@ -52,6 +53,7 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
   if (parameter == 0 && !bounded_below) {
     reported.reason =
         "Not identifiable: the data are compatible with no " + std::string(process.kind->title) + " at all.";
+    reported.upper_limit = bounded_above ? std::exp(scale * log_interval.high) : kInfinity;
     return reported;
   }
   if (parameter > 0 && !bounded_below && !bounded_above) {
@@ -105,6 +107,7 @@ std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, I
         level_known = k > 0 || reported.estimate.has_value();
         parameter.reason = std::move(reported.reason);
         parameter.estimate = reported.estimate;
+        parameter.upper_limit = reported.upper_limit * (spec.channel_power != 0 ? unit : 1.0);
         if (parameter.estimate && spec.channel_power != 0) {
           parameter.estimate->value *= unit;
           parameter.estimate->ci95.low *= unit;

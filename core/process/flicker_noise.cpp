@@ -210,7 +210,11 @@ double FlickerNoise::haar_cross(double mi, double mj, double h, double /*dt_s*/)
   const double reach = mi + mj;
   if (h > 8.0 * reach) {  // far lags: differences are derivatives of -V/2 ~ -ln(h)/pi, two terms of the Taylor series
     const double square = 1.0 / (h * h);
-    return -b * b * mi * mj / (4.0 * kPi) * square * (1.0 + 0.5 * (mi * mi + mj * mj) * square);
+    const double smooth = -mi * mj / (4.0 * kPi) * square * (1.0 + 0.5 * (mi * mi + mj * mj) * square);
+    // Cutting the density off at the Nyquist frequency leaves a wave of two samples, which only odd filters pass.
+    const bool odd = std::fmod(mi, 2.0) == 1.0 && std::fmod(mj, 2.0) == 1.0;
+    const double wave = std::fmod(h, 2.0) == 0.0 ? -1.0 : 1.0;
+    return b * b * (smooth + (odd ? wave * square / (mi * mj * kPi * kPi * kPi) : 0.0));
   }
   static const LagTable kTable;
   return b * b * haar_cross_of(mi, mj, h, [](double lag) { return kTable.value(std::fabs(lag)); });

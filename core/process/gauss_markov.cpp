@@ -2,6 +2,7 @@
 
 #include "core/process/haar_differences.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace driftlab {
@@ -117,6 +118,49 @@ double GaussMarkov::haar_cross(double mi, double mj, double h, double dt_s) cons
     return distance * rest - sinh_minus(x * distance);
   });
   return scale * (even + odd);
+}
+
+void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
+                                 std::span<double> out) const {
+  const double x = beta * dt_s;
+  const double s = std::sinh(0.5 * x);
+  const double scale = factor * sigma * sigma / (16.0 * s * s * mi * mj);
+  const double sinh_x = std::sinh(x);
+  const double a = std::expm1(-x * mi);
+  const double b = std::expm1(-x * mj);
+  const double far = -scale * a * a * b * b;
+  // Offsets of the nine points of the two second differences, their weights, and exp(x offset).
+  constexpr std::size_t kPoints = 9;
+  const std::array<double, kPoints> offset{0.0, mi, -mi, mj, -mj, mi + mj, mi - mj, mj - mi, -mi - mj};
+  constexpr std::array<double, kPoints> kWeight{4.0, -2.0, -2.0, -2.0, -2.0, 1.0, 1.0, 1.0, 1.0};
+  const bool bounded = x * (mi + mj) < 300.0;  // no power overflows
+  std::array<double, kPoints> growth{};
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    growth[k] = bounded ? std::exp(x * offset[k]) : 0.0;
+  }
+  for (std::size_t i = 0; i < lags.size(); ++i) {
+    const double h = lags[i];
+    const double beyond = x * (h - mi - mj);
+    if (beyond >= 0.0) {
+      if (beyond < 200.0) {
+        out[i] += far * std::exp(-beyond);
+      }
+      continue;
+    }
+    if (x > kWhite || !bounded || x * (h + mi + mj) <= 1.0) {
+      out[i] += factor * haar_cross(mi, mj, h, dt_s);
+      continue;
+    }
+    const double decay = std::exp(-x * h);
+    const double rise = 1.0 / decay;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      const double lag = h + offset[k];
+      const double power = lag >= 0.0 ? decay / growth[k] : rise * growth[k];
+      sum += kWeight[k] * (power + std::fabs(lag) * sinh_x);
+    }
+    out[i] -= scale * sum;
+  }
 }
 
 std::optional<StateSpace> GaussMarkov::state_space(double dt_s) const {

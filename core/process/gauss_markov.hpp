@@ -35,6 +35,9 @@ struct GaussMarkov {
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const;
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
+  /// haar_cross over many lags with one exponential per lag.
+  void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
+                      std::span<double> out) const;
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Starts in the stationary distribution.

@@ -1,7 +1,6 @@
 #include "core/variance/haar_covariance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace driftlab {
@@ -62,7 +61,7 @@ HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
   return plan;
 }
 
-double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model) {
+double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
   Pair& plan = pair(i, j);
   const std::size_t size = plan.lag.size();
   scratch_.assign(size, 0.0);
@@ -72,15 +71,16 @@ double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model) {
     const ProcessKind& kind = *process.kind;
     mean_i += process.haar_mean(half_[i], dt_s_);
     mean_j += process.haar_mean(half_[j], dt_s_);
-    if (kind.has_shape()) {
+    if (kind.has_shape() && !remember_shapes) {
       kind.add_haar_cross(process.parameters, half_[i], half_[j], dt_s_, plan.lag, 1.0, scratch_);
       continue;
     }
-    std::vector<double>& unit = plan.unit[&kind];
+    std::vector<double>& unit = plan.unit[{&kind, kind.has_shape() ? process.parameters[1] : 0.0}];
     if (unit.empty()) {
       unit.assign(size, 0.0);
-      constexpr std::array kUnitLevel{1.0};
-      kind.add_haar_cross(kUnitLevel, half_[i], half_[j], dt_s_, plan.lag, 1.0, unit);
+      std::vector<double> at_level_one = process.parameters;
+      at_level_one[0] = 1.0;
+      kind.add_haar_cross(at_level_one, half_[i], half_[j], dt_s_, plan.lag, 1.0, unit);
     }
     const double level = process.parameters[0] * process.parameters[0];
     for (std::size_t k = 0; k < size; ++k) {
@@ -103,7 +103,7 @@ Eigen::MatrixXd HaarCovariance::matrix(const Model& model) {
   Eigen::MatrixXd covariance(scales, scales);
   for (Eigen::Index j = 0; j < scales; ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) {
-      covariance(i, j) = entry(static_cast<std::size_t>(i), static_cast<std::size_t>(j), model);
+      covariance(i, j) = entry(static_cast<std::size_t>(i), static_cast<std::size_t>(j), model, false);
       covariance(j, i) = covariance(i, j);
     }
   }
@@ -114,7 +114,7 @@ Eigen::VectorXd HaarCovariance::diagonal(const Model& model) {
   const auto scales = static_cast<Eigen::Index>(half_.size());
   Eigen::VectorXd variances(scales);
   for (Eigen::Index j = 0; j < scales; ++j) {
-    variances(j) = entry(static_cast<std::size_t>(j), static_cast<std::size_t>(j), model);
+    variances(j) = entry(static_cast<std::size_t>(j), static_cast<std::size_t>(j), model, true);
   }
   return variances;
 }

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace driftlab {
@@ -29,7 +30,8 @@ class HaarCovariance {
   /// Positive even for a deterministic model: 10^-16 of the squared variance stands for rounding.
   [[nodiscard]] Eigen::MatrixXd matrix(const Model& model);
 
-  /// Its diagonal only: O(scales) instead of O(scales^2).
+  /// Its diagonal only: O(scales) instead of O(scales^2). Remembers every shape it is given, for models made of a fixed set
+  /// of processes.
   [[nodiscard]] Eigen::VectorXd diagonal(const Model& model);
 
   [[nodiscard]] double dt_s() const { return dt_s_; }
@@ -40,10 +42,11 @@ class HaarCovariance {
   struct Pair {
     std::vector<double> lag;
     std::vector<double> weight;  ///< quadrature weight times n_ij, both signs of the lag together, over Mi Mj
-    std::map<const ProcessKind*, std::vector<double>> unit;  ///< gamma at level 1 of kinds without shape
+    /// gamma at level 1 by kind and shape: of kinds without shape, and of the shapes that diagonal() was asked for.
+    std::map<std::pair<const ProcessKind*, double>, std::vector<double>> unit;
   };
   Pair& pair(std::size_t i, std::size_t j);
-  double entry(std::size_t i, std::size_t j, const Model& model);
+  double entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
 
   std::vector<double> half_;
   double samples_;

@@ -136,6 +136,34 @@ TEST_P(ProcessLaws, CrossCovarianceAtLagZeroIsTheVariance) {
   }
 }
 
+TEST_P(ProcessLaws, CrossCovarianceIsTheDifferenceOfTheVariogram) {
+  // gamma_ij(h) = -1/2 sum_ab c_a d_b V(distance of the two samples), filter centres h apart; over the near field, the far
+  // field and the borders between them.
+  for (const Process& process : examples(kind())) {
+    if (process.haar_mean(1.0, kDt) != 0.0 || kind().symbol == "SIN") {
+      continue;
+    }
+    for (const auto& [mi, mj] : {std::pair{1, 1}, {2, 2}, {1, 4}, {4, 16}, {8, 8}}) {
+      for (const int h : {0, 1, 2, 3, 4, 5, 8, 15, 16, 17, 20, 21, 40, 200}) {
+        double expected = 0.0;
+        for (int s = 0; s < 2 * mi; ++s) {
+          for (int t = 0; t < 2 * mj; ++t) {
+            const double sign = ((s < mi) == (t < mj) ? 1.0 : -1.0) / (4.0 * mi * mj);
+            expected -= 0.5 * sign * process.variogram(h + (s - mi) - (t - mj), kDt);
+          }
+        }
+        const std::vector<double> lag{static_cast<double>(h)};
+        std::vector<double> gamma{0.0};
+        kind().add_haar_cross(process.parameters, mi, mj, kDt, lag, 1.0, gamma);
+        const double scale = std::sqrt(process.haar_variance(mi, kDt) * process.haar_variance(mj, kDt));
+        // The far field of flicker noise is a series: it errs by less than 1 % of its own small value.
+        EXPECT_NEAR(gamma[0], expected, 1e-6 * scale + 1e-2 * std::fabs(expected) * (h > 8 * (mi + mj) ? 1.0 : 0.0))
+            << kind().name << " mi=" << mi << " mj=" << mj << " h=" << h;
+      }
+    }
+  }
+}
+
 TEST_P(ProcessLaws, StateSpaceHasTheSecondMomentsOfTheProcess) {
   for (const Process& process : examples(kind())) {
     const auto model = process.state_space(kDt);

@@ -1,0 +1,132 @@
+// How often the criteria choose the model that made the data (15 min at 100 Hz, phone-like values).
+#include "core/fit/candidate.hpp"
+#include "core/fit/characterise.hpp"
+#include "core/variance/haar_variance.hpp"
+#include "core/variance/samples.hpp"
+#include "core/variance/variance_intervals.hpp"
+#include "tests/accuracy/section.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace driftlab::accuracy {
+namespace {
+
+constexpr double kDt = 0.01;
+constexpr std::size_t kSamples = 90000;
+
+/// Seed paper Table 4, iPhone at rest, in deg/s: N, two Gauss-Markov processes; the walk's step variance 5.7e-8
+/// (deg/s)^2.
+const std::vector<double> kFast{0.0442, 1.7101};
+const std::vector<double> kSlow{0.01716, 9.7259e-3};
+
+struct Tally {
+  std::size_t truth = 0;
+  std::size_t submodel = 0;
+  std::size_t larger = 0;
+  std::size_t other = 0;
+  std::size_t held = 0;
+  std::size_t set_size = 0;
+
+  void count(const ModelStructure& chosen, const ModelStructure& truth_structure) {
+    if (chosen == truth_structure) {
+      ++truth;
+    } else if (is_nested(chosen, truth_structure)) {
+      ++submodel;
+    } else if (is_nested(truth_structure, chosen)) {
+      ++larger;
+    } else {
+      ++other;
+    }
+  }
+};
+
+}  // namespace
+
+TEST(Accuracy, CriterionFindsTheTruth) {
+  Section section("selection");
+  section.print(
+      "\n## Model selection\n\nShare [%%] of runs in which each criterion chooses the truth, a submodel, a larger "
+      "model, "
+      "another; for the default also how often its set of models holds the truth, and the set's mean size.\n\n"
+      "| truth | criterion | truth | submodel | larger | other | set holds truth | set size |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  const HaarVariance grid = haar_variance(std::vector<double>(kSamples, 0.0), 0.0);
+  HaarCovariance plan(grid.half, kSamples, kDt);
+  const std::size_t runs = repetitions(500);
+  const CharacteriseOptions options;
+  for (const char* name : {"WN", "WN+GM", "WN+GM+RW", "WN+2GM", "WN+2GM+RW"}) {
+    const ModelStructure truth = *parse_model(name);
+    Model model = model_of({{"white_noise", {1.034 / 60.0}}});
+    bool slow_next = false;
+    for (const ProcessKind* kind : truth.kinds) {
+      if (kind->symbol == "GM") {
+        model.push_back({kind, slow_next ? kSlow : kFast});
+        slow_next = true;
+      } else if (kind->symbol == "RW") {
+        model.push_back({kind, {std::sqrt(5.7e-8 / kDt)}});
+      }
+    }
+    const std::vector<std::string> criteria{"L + p ln N (default)", "L + 2p", "own quasi-likelihood + p ln N",
+                                            "equation 8, diagonal W"};
+    std::vector<Tally> tally(criteria.size());
+    for (std::size_t run = 0; run < runs; ++run) {
+      Random random(3000, run);
+      const std::vector<double> x = simulate(model, random, kDt, kSamples);
+      HaarVariance curve = haar_variance(x, summarise(x)->mean);
+      const double unit = *std::max_element(curve.variance.begin(), curve.variance.end());
+      for (double& variance : curve.variance) {
+        variance /= unit;
+      }
+      const VarianceIntervals intervals = variance_intervals(curve, plan);
+      const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
+      const WaveletMoments moments{
+          Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
+          {plan.half().begin(), plan.half().end()},
+          static_cast<double>(kSamples),
+          kDt};
+      std::vector<Candidate> candidates;
+      for (const std::string& candidate : options.models) {
+        candidates.push_back(fit_candidate(moments, *parse_model(candidate), sd, plan));
+      }
+      const Eigen::MatrixXd common = candidates.back().covariance;
+      std::vector<std::vector<double>> value(criteria.size());
+      for (const Candidate& candidate : candidates) {
+        const auto p = static_cast<double>(candidate.structure.parameter_count());
+        const double log_n = std::log(static_cast<double>(kSamples));
+        value[0].push_back(candidate.log_fit->minimum() + p * log_n);
+        value[1].push_back(candidate.log_fit->minimum() + 2.0 * p);
+        value[2].push_back(candidate.quasi_likelihood + p * log_n);
+        value[3].push_back(equation_8(moments, candidate.diagonal, sd, common) + 1e-6 * p);
+      }
+      const double lightest = *std::min_element(value[1].begin(), value[1].end());
+      for (std::size_t c = 0; c < criteria.size(); ++c) {
+        const auto best = std::min_element(value[c].begin(), value[c].end()) - value[c].begin();
+        tally[c].count(candidates[static_cast<std::size_t>(best)].structure, truth);
+      }
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const bool plausible = value[1][i] <= lightest + 6.0;
+        tally[0].set_size += plausible ? 1 : 0;
+        tally[0].held += plausible && candidates[i].structure == truth ? 1 : 0;
+      }
+    }
+    const double percent = 100.0 / static_cast<double>(runs);
+    for (std::size_t c = 0; c < criteria.size(); ++c) {
+      const Tally& t = tally[c];
+      section.print("| %s | %s | %.1f | %.1f | %.1f | %.1f |", name, criteria[c].c_str(),
+                    percent * static_cast<double>(t.truth), percent * static_cast<double>(t.submodel),
+                    percent * static_cast<double>(t.larger), percent * static_cast<double>(t.other));
+      if (c == 0) {
+        section.print(" %.1f | %.1f |\n", percent * static_cast<double>(t.held),
+                      static_cast<double>(t.set_size) / static_cast<double>(runs));
+      } else {
+        section.print(" | |\n");
+      }
+    }
+  }
+}
+
+}  // namespace driftlab::accuracy
