@@ -1,7 +1,7 @@
 #pragma once
 /// The registry of recording formats, and the one call that turns any of them into a column file.
 ///
-/// A format is one file in this folder that defines one `Format`, and one line in registry.cpp. It is recognised by
+/// A format is one file in this folder that defines one `Format`, and one line in formats.hpp. It is recognised by
 /// content, never by file name. Everything else (decompression, limits, the column file, the malformed-input suite, the
 /// fuzz target) works from that declaration.
 #include "core/read/byte_source.hpp"

@@ -1,10 +1,18 @@
 #pragma once
-/// The declarations behind registry.cpp: each format is defined in the file of its name.
+/// The registry: one line per format. The rest of the line's life is generated: its declaration here, its place in
+/// all_formats() in registry.cpp. Each format is defined in the file of its name.
 #include "core/read/format.hpp"
+
+// clang-format off
+#define DRIFTLAB_FORMATS(FORMAT) \
+  FORMAT(kCsv) /* csv.cpp */     \
+  FORMAT(kNpy) /* npy.cpp */
+// clang-format on
 
 namespace driftlab::formats {
 
-extern const Format kCsv;  ///< csv.cpp
-extern const Format kNpy;  ///< npy.cpp
+#define DRIFTLAB_DECLARE_FORMAT(name) extern const Format name;
+DRIFTLAB_FORMATS(DRIFTLAB_DECLARE_FORMAT)
+#undef DRIFTLAB_DECLARE_FORMAT
 
 }  // namespace driftlab::formats

@@ -1,16 +1,13 @@
-#include "core/read/format.hpp"
-#include "core/read/formats.hpp"
-
 #include <array>
+
+#include "core/read/formats.hpp"
 
 namespace driftlab {
 
-/// One line per format.
 std::span<const Format* const> all_formats() {
-  static constexpr std::array<const Format*, 2> kFormats{
-      &formats::kCsv,
-      &formats::kNpy,
-  };
+#define DRIFTLAB_ENTER_FORMAT(name) &formats::name,
+  static constexpr std::array kFormats{DRIFTLAB_FORMATS(DRIFTLAB_ENTER_FORMAT)};
+#undef DRIFTLAB_ENTER_FORMAT
   return kFormats;
 }
 
