@@ -1,8 +1,11 @@
+#include "core/signal/text.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
+
+#include <boost/beast/core/string.hpp>
 
 #include <algorithm>
 #include <mutex>
@@ -43,16 +46,11 @@ Response run_handler(const Handler& handler, const Request& request) {
   return answer ? std::move(*answer) : problem_response(answer.error());
 }
 
-Response replay(const IdempotentReply& reply) {
-  Response response;
-  response.status = reply.status;
-  response.body = reply.body;
-  const Json headers = stored(reply.headers_json);
-  for (const auto& [name, value] : headers.items()) {
-    response.headers.emplace_back(name, value.get<std::string>());
-  }
-  response.headers.emplace_back("Idempotency-Replayed", "true");
-  return response;
+/// application/json, application/merge-patch+json and their like; parameters such as charset do not matter.
+bool is_json(std::string_view content_type) {
+  const std::string_view type = trimmed(content_type.substr(0, content_type.find(';')));
+  const bool suffixed = type.size() > 5 && boost::beast::iequals(type.substr(type.size() - 5), "+json");
+  return suffixed || boost::beast::iequals(type, "application/json");
 }
 
 void add_etag(const Request& request, Response& response) {
@@ -82,6 +80,10 @@ void add_etag(const Request& request, Response& response) {
 }  // namespace
 
 Response Dispatcher::run(const Route& route, const Request& request) {
+  if (const auto type = request.header("content-type"); type && !request.body.empty() && !is_json(*type)) {
+    return problem_response(HttpFault::UnsupportedMediaType,
+                            "The body must be application/json, not '" + std::string(*type) + "'.");
+  }
   const auto& handler = std::get<Handler>(route.handler);
   try {
     const auto key = request.method == "POST" ? request.header("idempotency-key") : std::nullopt;
@@ -97,7 +99,7 @@ Response Dispatcher::run(const Route& route, const Request& request) {
 
 Response Dispatcher::run_idempotent(const Handler& handler, const Request& request, const std::string& key) {
   if (!is_request_id(key)) {
-    return problem_response(HttpFault::BadRequest, "An Idempotency-Key is 1 to 64 of the characters A-Z a-z 0-9 . _ -");
+    return problem_response(malformed_idempotency_key());
   }
   const InFlight flight(mutex_, in_flight_, key);
   if (!flight.first()) {
@@ -109,21 +111,12 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
     return problem_response(known.error());
   }
   if (*known) {
-    const IdempotentReply& reply = **known;
-    if (reply.method != request.method || reply.target != request.target || reply.body_sha256 != digest) {
-      return problem_response(HttpFault::IdempotencyKeyReused, "The Idempotency-Key belongs to another request.");
-    }
-    return replay(reply);
+    return replay(**known, request, digest);
   }
   Response response = run_handler(handler, request);
   if (response.status >= 200 && response.status < 300) {
-    Json headers = Json::object();
-    for (const auto& [name, value] : response.headers) {
-      headers[name] = value;
-    }
     const Status remembered =
-        context_.store.remember_reply({key, request.method, request.target, digest, response.status, to_text(headers),
-                                       response.body, context_.clock.now()});
+        context_.store.remember_reply(reply_to_remember(key, request, digest, response, context_.clock.now()));
     if (!remembered) {
       return problem_response(remembered.error());
     }
@@ -139,7 +132,7 @@ void complete_problem(const Request& request, Response& response) {
   if (!document.is_object()) {
     return;
   }
-  document["instance"] = request.path.empty() ? request.target : request.path;
+  document["instance"] = request.target.substr(0, request.target.find('?'));
   document["request_id"] = request.request_id;
   response.body = to_text(document);
 }

@@ -93,6 +93,36 @@ Json to_json(const Fit& fit) {
   return document;
 }
 
+Error malformed_idempotency_key() {
+  return {ErrorCode::InvalidArgument,
+          "An Idempotency-Key is 1 to 64 of the characters A-Z a-z 0-9 . _ -",
+          {{"parameter", "Idempotency-Key"}}};
+}
+
+Response replay(const IdempotentReply& reply, const Request& request, const std::string& body_sha256) {
+  if (reply.method != request.method || reply.target != request.target || reply.body_sha256 != body_sha256) {
+    return problem_response(HttpFault::IdempotencyKeyReused, "The Idempotency-Key belongs to another request.");
+  }
+  Response response;
+  response.status = reply.status;
+  response.body = reply.body;
+  const Json headers = stored(reply.headers_json);
+  for (const auto& [name, value] : headers.items()) {
+    response.headers.emplace_back(name, value.get<std::string>());
+  }
+  response.headers.emplace_back("Idempotency-Replayed", "true");
+  return response;
+}
+
+IdempotentReply reply_to_remember(const std::string& key, const Request& request, const std::string& body_sha256,
+                                  const Response& response, UtcMicros now) {
+  Json headers = Json::object();
+  for (const auto& [name, value] : response.headers) {
+    headers[name] = value;
+  }
+  return {key, request.method, request.target, body_sha256, response.status, to_text(headers), response.body, now};
+}
+
 Response json_response(int status, const Json& document) {
   Response response;
   response.status = status;
@@ -151,7 +181,7 @@ Response list_response(const Request& request, const Page& page, std::vector<Jso
     std::string link = request.target.substr(0, request.target.find('?')) + "?";
     for (const auto& [name, value] : request.query) {
       if (name != "cursor") {
-        link += name + "=" + value + "&";
+        link += name + "=" + percent_encode(value) + "&";
       }
     }
     response.headers.emplace_back("Link", "<" + link + "cursor=" + next.get<std::string>() + ">; rel=\"next\"");

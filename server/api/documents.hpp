@@ -15,6 +15,15 @@ namespace driftlab::server {
 [[nodiscard]] Json to_json(const Job& job);
 [[nodiscard]] Json to_json(const Fit& fit);
 
+/// What a key gets that is no `is_request_id`.
+[[nodiscard]] Error malformed_idempotency_key();
+
+/// The stored answer to the same request, marked as replayed; a problem where the key belongs to another request.
+[[nodiscard]] Response replay(const IdempotentReply& reply, const Request& request, const std::string& body_sha256);
+[[nodiscard]] IdempotentReply reply_to_remember(const std::string& key, const Request& request,
+                                                const std::string& body_sha256, const Response& response,
+                                                UtcMicros now);
+
 [[nodiscard]] Response json_response(int status, const Json& document);
 
 /// A stored JSON text inside a document; null where it does not parse.

@@ -3,9 +3,11 @@
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
 #include "core/signal/recording_view.hpp"
+#include "core/signal/text.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/upload_metadata.hpp"
+#include "server/http/guard.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/crash_point.hpp"
@@ -134,21 +136,15 @@ class RecordingUpload final : public UploadSession {
     if (!known) {
       return fail(known.error());
     }
+    // Metadata sent as a part are as much of the body as the file is.
+    const std::string digest = sha256_hex(blob_->sha256() + metadata_text_);
     if (*known) {
-      const IdempotentReply& reply = **known;
-      if (reply.method != "POST" || reply.target != request_.target || reply.body_sha256 != blob_->sha256()) {
-        return problem_response(HttpFault::IdempotencyKeyReused, "The Idempotency-Key belongs to another request.");
-      }
-      Response response;
-      response.status = reply.status;
-      response.body = reply.body;
-      response.headers.emplace_back("Idempotency-Replayed", "true");
-      return response;
+      return replay(**known, request_, digest);
     }
     auto response = record();
     if (response && response->status < 300) {
-      auto remembered = context_.store.remember_reply({key, "POST", request_.target, blob_->sha256(), response->status,
-                                                       "{}", response->body, context_.clock.now()});
+      auto remembered =
+          context_.store.remember_reply(reply_to_remember(key, request_, digest, *response, context_.clock.now()));
       if (!remembered) {
         return fail(remembered.error());
       }
@@ -248,6 +244,13 @@ class RecordingUpload final : public UploadSession {
 Result<std::unique_ptr<UploadSession>> begin_upload(ApiContext& context, const Request& request) {
   const auto type = request.header("content-type");
   const auto boundary = type ? multipart_boundary(*type) : std::nullopt;
+  if (const auto key = request.header("idempotency-key"); key && !is_request_id(*key)) {
+    return fail(malformed_idempotency_key());
+  }
+  if (type && !boundary && trimmed(*type).starts_with("multipart/")) {
+    return fail(ErrorCode::ParseError, "A multipart upload is multipart/form-data with a boundary.",
+                {{"parameter", "Content-Type"}});
+  }
   UploadMetadata metadata;
   if (!boundary) {
     auto read = metadata_from_query(request);

@@ -82,6 +82,7 @@ asio::awaitable<void> Connection::run() {
     if (!read) {
       break;
     }
+    keep_alive_ = parser.get().keep_alive() && served + 1 < shared_.options.limits.requests_per_connection;
     const bool again = co_await answer(parser);
     if (!again) {
       break;
@@ -135,7 +136,6 @@ asio::awaitable<bool> Connection::read_header(Parser& parser) {
 
 asio::awaitable<bool> Connection::answer(Parser& parser) {
   HeadView head = head_of(parser.get());
-  const bool keep_alive = parser.get().keep_alive();
   Request request;
   request.method = head.method;
   request.target = head.target;
@@ -162,7 +162,7 @@ asio::awaitable<bool> Connection::answer(Parser& parser) {
       refusal = problem_response(HttpFault::MethodNotAllowed, "The resource has no method " + request.method + ".");
       std::string allow;
       for (const std::string_view method : match.allowed) {
-        allow += (allow.empty() ? "" : ", ") + std::string(method);
+        allow += (allow.empty() ? "" : ", ") + std::string(method) + (method == "GET" ? ", HEAD" : "");
       }
       refusal->headers.emplace_back("Allow", allow);
     } else {
@@ -171,21 +171,21 @@ asio::awaitable<bool> Connection::answer(Parser& parser) {
   }
   if (refusal) {
     const bool intact = verdict.content_length == 0 && !verdict.refusal;
-    const bool sent = co_await send(request, std::move(*refusal), intact && keep_alive);
+    const bool again = co_await send(request, std::move(*refusal), intact);
     if (!intact) {
       co_await linger();
     }
-    co_return sent&& intact&& keep_alive;
+    co_return again;
   }
 
   route_ = match.route->pattern;
   if (const auto* const upload = std::get_if<UploadHandler>(&match.route->handler)) {
-    co_return co_await answer_upload(parser, *upload, request) && keep_alive;
+    co_return co_await answer_upload(parser, *upload, request);
   }
   if (const auto* const events = std::get_if<EventHandler>(&match.route->handler)) {
     co_return co_await answer_events(*events, request);
   }
-  co_return co_await answer_plain(parser, *match.route, request) && keep_alive;
+  co_return co_await answer_plain(parser, *match.route, request);
 }
 
 asio::awaitable<std::optional<std::size_t>> Connection::read_piece(Parser& parser) {
@@ -246,7 +246,9 @@ asio::awaitable<bool> Connection::answer_plain(Parser& parser, const Route& rout
   auto outcome = co_await shared_.handlers.run(work);
   Response response =
       outcome ? std::move(*outcome) : problem_response(HttpFault::Busy, "Too many requests are waiting.");
-  if (!response.pending_job.empty() && preferred_wait(request) > 0s) {
+  // Only reading is repeated while it waits: a POST asked again could queue a second job.
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (reads && !response.pending_job.empty() && preferred_wait(request) > 0s) {
     response = co_await wait_for_job(route, request, std::move(response));
   }
   co_return co_await send(request, std::move(response), true);
@@ -277,7 +279,10 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
     co_await linger();
     co_return false;
   };
-  if (parser.content_length().value_or(0) > shared_.options.limits.upload_bytes) {
+  if (!parser.content_length()) {
+    co_return co_await refuse(problem_response(HttpFault::LengthRequired, "An upload needs Content-Length."));
+  }
+  if (*parser.content_length() > shared_.options.limits.upload_bytes) {
     co_return co_await refuse(problem_response(
         HttpFault::BodyTooLarge,
         "An upload may have " + std::to_string(shared_.options.limits.upload_bytes) + " bytes at most."));
@@ -315,13 +320,45 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
                                          : problem_response(HttpFault::Busy, "Too many uploads are waiting."));
     }
   }
-  auto finish = [&session] { return session->finish(); };
+  if (surplus_follows()) {
+    session.reset();
+    co_return co_await refuse(problem_response(HttpFault::BadRequest, "More bytes follow than the Content-Length of " +
+                                                                          std::to_string(*parser.content_length()) +
+                                                                          " declares; nothing was kept."));
+  }
+  auto finish = [&session]() -> Result<Response> {
+    try {
+      return session->finish();
+    } catch (const std::bad_alloc&) {
+      return problem_response(HttpFault::Busy, "There is not enough memory for this upload now.");
+    } catch (const std::exception& unforeseen) {
+      return fail(ErrorCode::Internal, std::string("Unforeseen: ") + unforeseen.what() + ".");
+    }
+  };
   auto finished = co_await shared_.uploads.run(finish);
   session.reset();
   Response response = !finished               ? problem_response(HttpFault::Busy, "Too many uploads are waiting.")
                       : finished->has_value() ? std::move(**finished)
                                               : problem_response(finished->error());
   co_return co_await send(request, std::move(response), true);
+}
+
+bool Connection::surplus_follows() {
+  boost::system::error_code error;
+  if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
+    stream_.socket().non_blocking(true, error);
+    const std::size_t count = stream_.socket().read_some(buffer_.prepare(kPiece), error);
+    buffer_.commit(error ? 0 : count);
+  }
+  const std::string_view next(static_cast<const char*>(buffer_.data().data()), buffer_.size());
+  if (next.empty()) {
+    return false;
+  }
+  // A pipelined request begins with an upper-case method, a space and a slash.
+  const std::size_t end = std::min(next.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"), next.size());
+  const std::string_view rest = next.substr(end);
+  const bool may_be_request = end > 0 && (rest.empty() || rest == " " || rest.starts_with(" /"));
+  return !may_be_request;
 }
 
 asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, const Request& request) {
@@ -379,8 +416,8 @@ asio::awaitable<bool> Connection::send(const Request& request, Response response
   http::response<http::string_body> message;
   message.version(11);
   message.result(static_cast<unsigned>(response.status));
-  message.keep_alive(keep_alive && !shared_.stopping);
-  if (!response.body.empty() || response.status != 304) {
+  message.keep_alive(keep_alive && keep_alive_ && !shared_.stopping);
+  if (response.status != 204 && response.status != 304) {
     message.set(http::field::content_type, response.content_type);
   }
   message.set("X-Request-Id", request.request_id);

@@ -49,6 +49,9 @@ class Connection {
   boost::asio::awaitable<Response> wait_for_job(const Route& route, const Request& request, Response response);
   /// Next piece of the body into `chunk_`. Its size; 0 at the end; nothing if the client is gone or too slow.
   boost::asio::awaitable<std::optional<std::size_t>> read_piece(Parser& parser);
+  /// Bytes that are no further request came after a body: the client sent more than its Content-Length declares.
+  [[nodiscard]] bool surplus_follows();
+  /// False: the connection must close, for the answer said so or could not be sent.
   boost::asio::awaitable<bool> send(const Request& request, Response response, bool keep_alive);
   /// Reads on for a moment after an early answer, so that the client sees it before the connection resets.
   boost::asio::awaitable<void> linger();
@@ -63,6 +66,7 @@ class Connection {
   std::uint64_t bytes_in_ = 0;
   std::chrono::steady_clock::time_point started_;
   std::chrono::steady_clock::time_point body_started_;
+  bool keep_alive_ = true;  ///< the client and the limit of requests allow another one
   bool wants_continue_ = false;
   bool idle_ = false;
 };

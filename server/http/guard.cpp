@@ -15,9 +15,22 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
+/// The host of `scheme://host[:port]`; empty for `null` and whatever else is no such origin.
+std::string_view origin_host(std::string_view origin) {
+  const std::size_t slashes = origin.find("://");
+  return slashes == std::string_view::npos ? std::string_view{} : host_name(origin.substr(slashes + 3));
+}
+
+bool is_allowed(std::string_view host, const GuardLimits& limits) {
+  std::string name(host);
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(limits.hosts.begin(), limits.hosts.end(), name) != limits.hosts.end();
+}
+
 bool is_sole(std::string_view name) {
   return name == "host" || name == "content-length" || name == "content-type" || name == "authorization" ||
-         name == "transfer-encoding";
+         name == "transfer-encoding" || name == "origin";
 }
 
 GuardVerdict refuse(HttpFault fault, std::string detail) {
@@ -39,6 +52,7 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
   GuardVerdict verdict;
   std::vector<std::string_view> seen;
   std::optional<std::string_view> host;
+  std::optional<std::string_view> origin;
   for (const auto& [name, value] : head.headers) {
     if (is_sole(name)) {
       if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
@@ -49,6 +63,8 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
     }
     if (name == "host") {
       host = value;
+    } else if (name == "origin") {
+      origin = value;
     } else if (name == "transfer-encoding") {
       return refuse(HttpFault::LengthRequired, "Bodies need Content-Length; Transfer-Encoding is not taken.");
     } else if (name == "content-length") {
@@ -69,18 +85,17 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
   if (!host) {
     return refuse(HttpFault::HostNotAllowed, "A Host header is needed.");
   }
-  std::string name(host_name(*host));
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (std::find(limits.hosts.begin(), limits.hosts.end(), name) == limits.hosts.end()) {
-    return refuse(HttpFault::HostNotAllowed, "The daemon does not answer for the host '" + name + "'.");
+  if (!is_allowed(host_name(*host), limits)) {
+    return refuse(HttpFault::HostNotAllowed,
+                  "The daemon does not answer for the host '" + std::string(host_name(*host)) + "'.");
+  }
+  const bool reads = head.method == "GET" || head.method == "HEAD";
+  if (origin && !reads && !is_allowed(origin_host(*origin), limits)) {
+    return refuse(HttpFault::OriginNotAllowed,
+                  "A page of the origin '" + std::string(*origin) + "' may not change anything here.");
   }
   if (head.version != 11 && verdict.content_length > 0) {
     return refuse(HttpFault::BadRequest, "A request body needs HTTP/1.1.");
-  }
-  const bool may_have_body = head.method == "POST" || head.method == "PUT" || head.method == "PATCH";
-  if (may_have_body && std::find(seen.begin(), seen.end(), "content-length") == seen.end()) {
-    return refuse(HttpFault::LengthRequired, "The request needs Content-Length.");
   }
   return verdict;
 }

@@ -2,8 +2,9 @@
 /// The header guard: decides from the header alone, before a byte of the body is read, whether a request may go on.
 ///
 /// Beast 1.81 accepts requests that proxies and servers read differently (request smuggling): `Transfer-Encoding` of
-/// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all. It is a pure function and
-/// has a fuzz target.
+/// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all. It also refuses hosts the
+/// daemon was not told to answer for (DNS rebinding) and changes that a browser sends for a page of another origin. It
+/// is a pure function.
 #include "server/http/problem.hpp"
 
 #include <cstdint>

@@ -45,6 +45,9 @@ struct Response {
 /// Percent-decoding of a query component (`+` is a space) or a path; nothing if malformed.
 [[nodiscard]] std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 
+/// The inverse: everything but letters, digits and `-._~` becomes %XX.
+[[nodiscard]] std::string percent_encode(std::string_view text);
+
 /// Splits a target into decoded path and query. Nothing if malformed. Tolerates characters such as `^` that people type
 /// unescaped.
 struct Target {

@@ -22,6 +22,8 @@ std::string_view slug_of(HttpFault fault) {
       return "bad-request";
     case HttpFault::HostNotAllowed:
       return "host-not-allowed";
+    case HttpFault::OriginNotAllowed:
+      return "origin-not-allowed";
     case HttpFault::NoSuchResource:
       return "no-such-resource";
     case HttpFault::MethodNotAllowed:
@@ -82,7 +84,7 @@ std::string render(const ProblemType& type, std::string_view code, const std::st
   Json where = Json::object();
   for (const ErrorField& field : fields) {
     if (field.name.starts_with('/')) {
-      errors.push_back(Json{{"pointer", field.name}, {"code", code}, {"detail", field.value}});
+      errors.push_back(Json{{"pointer", field.name == "/" ? "" : field.name}, {"code", code}, {"detail", field.value}});
     } else {
       where[field.name] = field_value(field.value);
     }
@@ -176,12 +178,14 @@ const std::vector<ProblemType>& problem_types() {
       {"host-not-allowed", 400, "Host not allowed", false,
        "The Host header is missing, repeated, or names a host that the daemon was not told to answer for "
        "(--allow-host)."},
+      {"origin-not-allowed", 403, "Origin not allowed", false,
+       "A browser sent this for a page of another origin, and pages may change only the daemon they come from."},
       {"no-such-resource", 404, "No such resource", false, "No resource has this path; /openapi.json lists them all."},
       {"method-not-allowed", 405, "Method not allowed", false,
        "The resource has no such method; Allow lists those it has."},
       {"not-acceptable", 406, "Not acceptable", false, "None of the media types in Accept is offered here."},
       {"length-required", 411, "Length required", false,
-       "A request body needs Content-Length; Transfer-Encoding is not taken."},
+       "An upload needs Content-Length; Transfer-Encoding is not taken."},
       {"body-too-large", 413, "Body too large", false, "The body is larger than this resource takes."},
       {"target-too-long", 400, "Target too long", false, "The request target is longer than 8 KiB."},
       {"unsupported-media-type", 415, "Unsupported media type", false,

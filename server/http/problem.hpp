@@ -25,6 +25,7 @@ struct ProblemType {
 enum class HttpFault {
   BadRequest,
   HostNotAllowed,
+  OriginNotAllowed,
   NoSuchResource,
   MethodNotAllowed,
   NotAcceptable,
