@@ -32,10 +32,18 @@ def literal(text: str) -> str:
     return "\n    ".join(pieces)
 
 
+def served(node: object) -> object:
+    """The contract as the daemon serves it: schemas lie beside openapi.yaml here, but below /schemas/ there."""
+    if isinstance(node, dict):
+        return {key: f"schemas/{value}" if key == "$ref" and ".schema.json" in value else served(value)
+                for key, value in node.items()}
+    return [served(value) for value in node] if isinstance(node, list) else node
+
+
 def main() -> int:
     output, contract, *files = (pathlib.Path(name) for name in sys.argv[1:])
     root = contract.parent
-    entries = [("openapi.json", json.dumps(yaml.safe_load(contract.read_text("utf-8")), ensure_ascii=False))]
+    entries = [("openapi.json", json.dumps(served(yaml.safe_load(contract.read_text("utf-8"))), ensure_ascii=False))]
     for path in sorted(files):
         entries.append((path.relative_to(root).as_posix(), path.read_text("utf-8")))
     lines = ['#include "schema/contract.hpp"', "", "namespace driftlab {", "",
