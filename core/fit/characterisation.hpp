@@ -26,6 +26,20 @@ struct HaarCurve {
   std::vector<double> variance;
   std::vector<Interval> ci95;
   std::vector<double> edf;
+  /// Tukey-biweight estimate per scale, tuned to an efficiency of 0.6; empty where it is undefined (core/variance/
+  /// robust_variance.hpp). Its interval is {0, 0} there.
+  std::vector<std::optional<double>> robust_variance;
+  std::vector<Interval> robust_ci95;
+  std::vector<double> robust_efficiency;
+};
+
+/// Whether gross errors move the variances (core/variance/contamination.hpp).
+struct Contamination {
+  std::string verdict = "undecided";         ///< clean, contaminated, undecided
+  double p = 1.0;                            ///< of the test that robust and classical variance estimate the same
+  std::vector<std::size_t> disjoint_scales;  ///< scales n at which the two 95 % intervals do not meet
+  std::size_t flagged_samples = 0;           ///< first differences beyond 4.5 robust standard deviations
+  bool not_gaussian = false;                 ///< they differ by the shape of the noise, not by a few samples
 };
 
 /// One named parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says
@@ -85,6 +99,7 @@ struct ChannelCharacterisation {
   double mean = 0.0;  ///< of the analysed samples
   AllanCurve allan;
   HaarCurve haar;
+  Contamination contamination;
   AllanParameters allan_parameters;
   std::vector<ModelFit> fits;  ///< best first
   std::size_t best = 0;        ///< index into fits

@@ -3,6 +3,8 @@
 #include "core/fit/allan_regression.hpp"
 #include "core/fit/candidate.hpp"
 #include "core/fit/fit_report.hpp"
+#include "core/variance/contamination.hpp"
+#include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
@@ -56,6 +58,31 @@ void store_curves(const HaarVariance& curve, const VarianceIntervals* intervals,
     result.allan.ci95.push_back({2.0 * interval.low, 2.0 * interval.high});
     result.allan.edf.push_back(edf);
   }
+}
+
+/// Robust variances and the contamination test. `curve` is in units of `unit_square` (file unit squared).
+void store_robust(std::span<const double> samples, double mean, double unit_square, double si_square,
+                  const HaarVariance& curve, const VarianceIntervals& intervals, HaarCovariance& plan,
+                  ChannelCharacterisation& result) {
+  RobustVariance robust = robust_variance(samples, mean, curve, intervals, plan);
+  for (std::size_t j = 0; j < curve.scales(); ++j) {  // the robust equation was solved in file units
+    if (robust.variance[j]) {
+      *robust.variance[j] /= unit_square;
+      robust.ci95[j] = {robust.ci95[j].low / unit_square, robust.ci95[j].high / unit_square};
+    }
+  }
+  const ContaminationTest test = test_contamination(samples, unit_square, curve, intervals, robust, plan);
+  for (std::size_t j = 0; j < curve.scales(); ++j) {
+    const auto& value = robust.variance[j];
+    result.haar.robust_variance.push_back(value ? std::optional<double>(*value * si_square) : std::nullopt);
+    result.haar.robust_ci95.push_back({robust.ci95[j].low * si_square, robust.ci95[j].high * si_square});
+    result.haar.robust_efficiency.push_back(robust.efficiency[j]);
+  }
+  result.contamination = {.verdict = std::string(name_of(test.verdict)),
+                          .p = test.p,
+                          .disjoint_scales = test.disjoint_scales,
+                          .flagged_samples = test.flagged_coefficients,
+                          .not_gaussian = test.not_gaussian};
 }
 
 /// Fits every candidate that the number of scales allows; the rest are named in a warning.
@@ -175,7 +202,7 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   }
   control.report("intervals", 0.2);
   HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
-  const VarianceIntervals intervals = variance_intervals(curve, plan);
+  const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(channel.values));
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
 
   const WaveletMoments moments{
@@ -183,6 +210,8 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
       {plan.half().begin(), plan.half().end()},
       static_cast<double>(curve.samples),
       channel.dt_s};
+  control.report("robust variance", 0.25);
+  store_robust(channel.values, summary->mean, largest, si_unit * si_unit, curve, intervals, plan, result);
   const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
   Result<std::vector<Candidate>> candidates = fit_candidates(moments, options, sd, plan, control, result.warnings);
   if (!candidates) {

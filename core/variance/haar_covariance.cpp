@@ -9,9 +9,13 @@ namespace {
 /// Lags from 0 to `last`: every kink of gamma is one, and between them the step is the larger of mi/16 and 6 % of the
 /// distance to the nearest kink.
 std::vector<double> choose_lags(double mi, double mj, double last) {
-  std::vector<double> kinks{0.0, mi, mj - mi, mj, mj + mi, last};
-  for (double& kink : kinks) {
-    kink = std::clamp(kink, 0.0, last);
+  // Quantization noise has spikes of one lag there: the neighbours of a kink are taken too, so that it has the
+  // weight 1.
+  std::vector<double> kinks{last};
+  for (const double kink : {0.0, mi, mj - mi, mj, mj + mi}) {
+    for (const double lag : {kink - 1.0, kink, kink + 1.0}) {
+      kinks.push_back(std::clamp(lag, 0.0, last));
+    }
   }
   std::sort(kinks.begin(), kinks.end());
   kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
@@ -61,16 +65,12 @@ HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
   return plan;
 }
 
-double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
+HaarCovariance::Pair& HaarCovariance::fill(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
   Pair& plan = pair(i, j);
   const std::size_t size = plan.lag.size();
   scratch_.assign(size, 0.0);
-  double mean_i = 0.0;
-  double mean_j = 0.0;
   for (const Process& process : model) {
     const ProcessKind& kind = *process.kind;
-    mean_i += process.haar_mean(half_[i], dt_s_);
-    mean_j += process.haar_mean(half_[j], dt_s_);
     if (kind.has_shape() && !remember_shapes) {
       kind.add_haar_cross(process.parameters, half_[i], half_[j], dt_s_, plan.lag, 1.0, scratch_);
       continue;
@@ -87,15 +87,54 @@ double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, b
       scratch_[k] += level * unit[k];
     }
   }
+  return plan;
+}
+
+double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
+  const Pair& plan = fill(i, j, model, remember_shapes);
+  double mean_i = 0.0;
+  double mean_j = 0.0;
+  for (const Process& process : model) {
+    mean_i += process.haar_mean(half_[i], dt_s_);
+    mean_j += process.haar_mean(half_[j], dt_s_);
+  }
   double squares = 0.0;
   double sum = 0.0;
-  for (std::size_t k = 0; k < size; ++k) {
+  for (std::size_t k = 0; k < plan.lag.size(); ++k) {
     squares += plan.weight[k] * scratch_[k] * scratch_[k];
     sum += plan.weight[k] * scratch_[k];
   }
   // A deterministic curve would have no variance at all; its rounding is some 10^-8 of it.
   const double rounding = i == j ? 1e-16 * std::pow(haar_variance(model, half_[i], dt_s_), 2.0) : 0.0;
   return 2.0 * squares + 4.0 * mean_i * mean_j * sum + rounding;
+}
+
+std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums(std::size_t i, std::size_t j,
+                                                                                 const Model& model) {
+  std::array<double, kEvenPowers> sums{};
+  const auto variance = [&](double half) {
+    double sum = 0.0;
+    for (const Process& process : model) {
+      if (process.haar_mean(half, dt_s_) == 0.0) {
+        sum += process.haar_variance(half, dt_s_);
+      }
+    }
+    return sum;
+  };
+  const double scale = std::sqrt(variance(half_[i]) * variance(half_[j]));
+  if (!(scale > 0.0)) {
+    return sums;
+  }
+  const Pair& plan = fill(i, j, model, true);
+  for (std::size_t k = 0; k < plan.lag.size(); ++k) {
+    const double rho = scratch_[k] / scale;
+    double power = plan.weight[k];
+    for (double& sum : sums) {
+      power *= rho * rho;
+      sum += power;
+    }
+  }
+  return sums;
 }
 
 Eigen::MatrixXd HaarCovariance::matrix(const Model& model) {

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <span>
@@ -30,9 +31,14 @@ class HaarCovariance {
   /// Positive even for a deterministic model: 10^-16 of the squared variance stands for rounding.
   [[nodiscard]] Eigen::MatrixXd matrix(const Model& model);
 
-  /// Its diagonal only: O(scales) instead of O(scales^2). Remembers every shape it is given, for models made of a fixed set
-  /// of processes.
+  /// Its diagonal only: O(scales) instead of O(scales^2). Remembers every shape it is given, for models made of a fixed
+  /// set of processes.
   [[nodiscard]] Eigen::VectorXd diagonal(const Model& model);
+
+  /// S_k = 1/(Mi Mj) sum_h n_ij(h) rho_ij(h)^k for k = 2, 4, ..., 2 * kEvenPowers: what the scatter of the mean of any
+  /// even function of the coefficients is made of. rho is the correlation of the coefficients under the model.
+  static constexpr std::size_t kEvenPowers = 8;
+  [[nodiscard]] std::array<double, kEvenPowers> correlation_sums(std::size_t i, std::size_t j, const Model& model);
 
   [[nodiscard]] double dt_s() const { return dt_s_; }
   [[nodiscard]] std::span<const double> half() const { return half_; }
@@ -46,6 +52,8 @@ class HaarCovariance {
     std::map<std::pair<const ProcessKind*, double>, std::vector<double>> unit;
   };
   Pair& pair(std::size_t i, std::size_t j);
+  /// Leaves gamma_ij at the plan's lags in scratch_.
+  Pair& fill(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
   double entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
 
   std::vector<double> half_;

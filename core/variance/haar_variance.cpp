@@ -1,18 +1,11 @@
 #include "core/variance/haar_variance.hpp"
 
+#include "core/variance/wide.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-
-// One source, several instruction sets: the loops below keep eight running sums, so that every width adds in the same
-// order and gives the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__clang__)
-#define DRIFTLAB_WIDE __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define DRIFTLAB_WIDE
-#endif
 
 namespace driftlab {
 namespace {

@@ -1,6 +1,7 @@
 #include "core/variance/variance_intervals.hpp"
 
 #include "core/process/registry.hpp"
+#include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/nonnegative_least_squares.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -78,6 +79,36 @@ MixtureFit fit_mixture(const Eigen::VectorXd& nu, HaarCovariance& plan, bool wit
   return fit;
 }
 
+/// The wavelet variance of the rough part of a mixture (what first differences whiten no further) or of the smooth
+/// part.
+double part_variance(const Model& mixture, double half, double dt_s, bool rough) {
+  double sum = 0.0;
+  for (const Process& process : mixture) {
+    const bool smooth = process.kind->symbol == "RW" || process.kind->symbol == "DR" ||
+                        (process.kind->symbol == "GM" && process.parameters[1] * dt_s < 0.3);
+    if (smooth != rough) {
+      sum += process.haar_variance(half, dt_s);
+    }
+  }
+  return sum;
+}
+
+void add_kurtosis(VarianceIntervals& intervals, const HaarVariance& curve, const HaarCovariance& plan, double excess) {
+  const double rough = part_variance(intervals.mixture, 1.0, plan.dt_s(), true);
+  const double share = rough / intervals.modelled(0);
+  const bool use_rough = share >= 0.5;
+  // First differences of independent values halve the excess; those of a random walk are its innovations.
+  const double own = use_rough ? 2.0 * excess / (share * share) : excess / ((1.0 - share) * (1.0 - share));
+  const double kurtosis = std::max(own, -2.0);  // no distribution has less
+  for (Eigen::Index j = 0; j < intervals.modelled.size(); ++j) {
+    const std::size_t half = curve.half[static_cast<std::size_t>(j)];
+    const double part = part_variance(intervals.mixture, static_cast<double>(half), plan.dt_s(), use_rough);
+    const double added = kurtosis * part * part * kurtosis_share(half, curve.samples);
+    intervals.estimate_variance(j) =
+        std::max(intervals.estimate_variance(j) + added, 0.05 * intervals.estimate_variance(j));
+  }
+}
+
 constexpr double kDriftEvidence = 20.0;
 constexpr double kManyDegrees = 1e4;
 constexpr double kNormal975 = 1.959963984540054;
@@ -102,7 +133,7 @@ Interval chi_square_interval(double variance, double edf) {
   return {variance * distribution.degrees_of_freedom() / high, variance * distribution.degrees_of_freedom() / low};
 }
 
-VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan) {
+VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan, double excess) {
   const Eigen::VectorXd nu =
       Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.variance.size()));
   MixtureFit fit = fit_mixture(nu, plan, false);
@@ -114,8 +145,11 @@ VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& 
   result.mixture = std::move(fit.mixture);
   result.modelled = fit.modelled;
   result.estimate_variance = fit.variance;
+  if (excess != 0.0) {
+    add_kurtosis(result, curve, plan, excess);
+  }
   for (Eigen::Index j = 0; j < nu.size(); ++j) {
-    const double edf = 2.0 * fit.modelled(j) * fit.modelled(j) / fit.variance(j);
+    const double edf = 2.0 * result.modelled(j) * result.modelled(j) / result.estimate_variance(j);
     result.edf.push_back(edf);
     result.ci95.push_back(chi_square_interval(nu(j), edf));
   }

@@ -29,7 +29,10 @@ struct VarianceIntervals {
   Eigen::VectorXd estimate_variance;  ///< Var(nu^_j) under the mixture
 };
 
-/// `plan` must be that of the curve's scales. Needs at least one positive variance.
-[[nodiscard]] VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan);
+/// `plan` must be that of the curve's scales. Needs at least one positive variance. `excess`:
+/// difference_excess_kurtosis of the samples, 0 for Gaussian noise; its share of the scatter is laid on the part of the
+/// mixture (rough or smooth) that makes up most of the first scale.
+[[nodiscard]] VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan,
+                                                   double excess = 0.0);
 
 }  // namespace driftlab

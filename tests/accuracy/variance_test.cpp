@@ -1,4 +1,5 @@
 // Coverage of the 95 % intervals of the wavelet variance, noise model unknown.
+#include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/variance_intervals.hpp"
 #include "tests/accuracy/section.hpp"
 
@@ -68,7 +69,7 @@ TEST(Accuracy, VarianceIntervalsCoverTheTruth) {
           x = simulate(truth.model, random, kDt, samples);
         }
         const HaarVariance curve = haar_variance(x, x[0]);
-        const VarianceIntervals intervals = variance_intervals(curve, plan);
+        const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(x));
         for (std::size_t j = 0; j < curve.scales(); ++j) {
           const double expected = haar_variance(truth.model, static_cast<double>(curve.half[j]), kDt);
           hits[j] += intervals.ci95[j].contains(expected) ? 1 : 0;

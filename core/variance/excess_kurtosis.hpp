@@ -1,0 +1,21 @@
+#pragma once
+/// How far the noise is from Gaussian, and what that does to the scatter of a wavelet variance.
+///
+/// For linear noise whose innovations have excess kurtosis k4, the relative variance of nu^_j rises by k4 T_j/(M_j
+/// L_j)^2 with L = 2m the filter length and T the sum of squares of the overlap of the box of L samples with that of M
+/// coefficients (it tends to k4 N/M_j^2: the same amount at every scale, which matters where the equivalent degrees of
+/// freedom are many).
+#include <cstddef>
+#include <span>
+
+namespace driftlab {
+
+/// Excess kurtosis of the first differences of the samples, 0 where it is within two standard errors (sqrt(24/N),
+/// doubled for the correlation of neighbours) of that of a Gaussian. One read. Needs at least 3 samples; 0 for a
+/// constant.
+[[nodiscard]] double difference_excess_kurtosis(std::span<const double> samples);
+
+/// T_j/(M_j L_j)^2 for half length m: the relative variance per unit of excess kurtosis.
+[[nodiscard]] double kurtosis_share(std::size_t half, std::size_t samples);
+
+}  // namespace driftlab
