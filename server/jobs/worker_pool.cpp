@@ -86,12 +86,13 @@ void WorkerPool::Implementation::work() {
 }
 
 bool WorkerPool::Implementation::run_next() {
-  Result<std::optional<Job>> claimed = context.store.claim(options.lease_micros);
-  if (!claimed || !*claimed) {
+  // A store that does not answer is asked again like one that has nothing to do.
+  std::optional<Job> claimed = context.store.claim(options.lease_micros).value_or(std::nullopt);
+  if (!claimed) {
     return false;
   }
-  const JobKind* kind = kinds((*claimed)->kind);
-  const auto attempt = std::make_shared<Attempt>(std::move(**claimed), kind, context, options, changed);
+  const JobKind* kind = kinds(claimed->kind);
+  const auto attempt = std::make_shared<Attempt>(std::move(*claimed), kind, context, options, changed);
   bool too_late = false;
   {
     const std::lock_guard<std::mutex> guard(mutex);

@@ -135,13 +135,11 @@ std::optional<UtcMicros> modified_at(const fs::path& path) {
   return UtcMicros{found.st_mtim.tv_sec} * 1'000'000 + found.st_mtim.tv_nsec / 1000;
 }
 
-/// Moves `from` to `to`, or marks an existing `to` as new and drops `from`.
+/// Moves `from` to `to`, in place of an equal file that may be there (readers that mapped it keep theirs; a damaged one
+/// is healed). Without `from`: marks `to` as new.
 Status move_or_refresh(const fs::path& from, const fs::path& to) {
-  if (::access(to.c_str(), F_OK) == 0) {
-    if (::utimensat(AT_FDCWD, to.c_str(), nullptr, 0) != 0) {
-      return fail(file_error(errno, "mark as used", to));
-    }
-    return remove_file(from);
+  if (::access(from.c_str(), F_OK) != 0) {
+    return ::utimensat(AT_FDCWD, to.c_str(), nullptr, 0) == 0 ? Status{} : fail(file_error(errno, "mark as new", to));
   }
   if (Status made = make_directories(to.parent_path()); !made) {
     return made;

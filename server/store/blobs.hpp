@@ -38,8 +38,9 @@ class IncomingBlob {
   [[nodiscard]] virtual const std::filesystem::path& path() const = 0;
   /// Where the decoded columns are to be written; `keep` moves them in place with the bytes.
   [[nodiscard]] virtual std::filesystem::path columns_path() const = 0;
-  /// Moves bytes and columns to their final names, durably. Already there: the copy is dropped, the blob counts as new
-  /// again for the sweeper, success. Errors: DiskFull, Io; Internal where no columns were ever written.
+  /// Moves bytes and columns to their final names, durably. Already there: there is one copy still, it counts as new
+  /// again for the sweeper, success; columns need not be written again. Errors: DiskFull, Io; Internal where no columns
+  /// were ever written.
   [[nodiscard]] virtual Status keep() = 0;
 };
 

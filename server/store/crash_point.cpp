@@ -16,7 +16,7 @@ std::atomic<const std::string_view*>& armed_point() {
 }  // namespace
 
 const std::vector<std::string_view>& crash_point_names() {
-  static const std::vector<std::string_view> kNames = {
+  static const std::vector<std::string_view> names = {
       "upload.streaming",   // some bytes of an upload are on disk
       "upload.sealed",      // all bytes are flushed and hashed
       "upload.decoded",     // the decoded columns lie in incoming/
@@ -29,7 +29,7 @@ const std::vector<std::string_view>& crash_point_names() {
       "job.in_finish",      // results are written in a transaction that is not committed
       "job.finished",       // the finish is committed, nobody was told
   };
-  return kNames;
+  return names;
 }
 
 bool arm_crash_point(std::string_view name) {
@@ -37,9 +37,9 @@ bool arm_crash_point(std::string_view name) {
     armed_point().store(nullptr);
     return true;
   }
-  const auto& names = crash_point_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
+  const auto& known = crash_point_names();
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
     return false;
   }
   armed_point().store(&*found);

@@ -36,15 +36,9 @@ Device read_device(const Statement& row) {
 Result<Device> one_device(Connection& connection, std::string_view sql, std::string_view value) {
   Statement statement = connection.prepare(sql);
   statement.bind(value);
-  Result<std::optional<Device>> found = first_row(statement, read_device);
-  if (!found) {
-    return fail(found.error());
-  }
-  if (!*found) {
-    return fail(ErrorCode::NotFound, "There is no device \"" + std::string(value) + "\".",
-                {{"device", std::string(value)}});
-  }
-  return std::move(**found);
+  return one_row(
+      statement, read_device,
+      {ErrorCode::NotFound, "There is no device \"" + std::string(value) + "\".", {{"device", std::string(value)}}});
 }
 
 }  // namespace

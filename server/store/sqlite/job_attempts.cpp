@@ -61,10 +61,16 @@ HeldJob read_held(const Statement& row) {
           static_cast<int>(row.integer(3)), row.integer(4)};
 }
 
-Result<std::optional<HeldJob>> held_job(Connection& connection, const Lease& lease) {
+/// The job if the lease is still good; nothing else.
+Result<HeldJob> held_job(Connection& connection, const Lease& lease) {
   Statement statement = connection.prepare(kHeld);
   statement.bind(lease.job_id, lease.attempt);
-  return first_row(statement, read_held);
+  return one_row(statement, read_held, {ErrorCode::NotFound, "The lease is lost.", {}});
+}
+
+/// What a worker is told that asked with a lost lease, or where the database did not answer.
+Result<LeaseStatus> not_held(const Error& error) {
+  return error.code == ErrorCode::NotFound ? Result<LeaseStatus>(LeaseStatus{}) : fail(error);
 }
 
 /// Runs a fenced update that returns cancel_requested.
@@ -90,8 +96,8 @@ Result<LeaseStatus> moved(Connection& connection, Status change, const Lease& le
 
 /// running -> queued, or -> cancelled where that was asked for. Does not count as a failure.
 Status put_back(Connection& connection, std::string_view job_id, bool cancel_requested, UtcMicros now) {
-  Status change = cancel_requested ? connection.prepare(kCancel).bind(job_id, now).run()
-                                   : connection.prepare(kPutBack).bind(job_id).run();
+  const Status change = cancel_requested ? connection.prepare(kCancel).bind(job_id, now).run()
+                                         : connection.prepare(kPutBack).bind(job_id).run();
   return change ? add_event(connection, job_id, "state", now) : change;
 }
 
@@ -114,13 +120,15 @@ Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micr
     Statement update = connection.prepare(kClaim);
     update.bind(now, now + lease_micros, kLongestPauseMicros, kAgeingMicros);
     Result<std::optional<Job>> row = first_row(update, read_job);
-    if (!row || !*row) {
+    if (!row) {
       return row;
     }
     claimed = std::move(*row);
   }
-  if (Status noted = add_event(connection, claimed->id, "state", now); !noted) {
-    return fail(noted.error());
+  if (claimed) {
+    if (Status noted = add_event(connection, claimed->id, "state", now); !noted) {
+      return fail(noted.error());
+    }
   }
   return claimed;
 }
@@ -169,14 +177,11 @@ Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const Jo
 
 Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease, const AttemptFailure& failure,
                                  std::mt19937_64& jitter, UtcMicros now) {
-  const Result<std::optional<HeldJob>> found = held_job(connection, lease);
+  const Result<HeldJob> found = held_job(connection, lease);
   if (!found) {
-    return fail(found.error());
+    return not_held(found.error());
   }
-  if (!*found) {
-    return LeaseStatus{};
-  }
-  const HeldJob& job = **found;
+  const HeldJob& job = *found;
   const int failures = std::min(job.failures + 1, job.max_failures);
   const int faults = std::min(job.faults + (failure.fault_signal ? 1 : 0), kMaxFaults);
   Status change =
@@ -197,28 +202,25 @@ Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease, con
 }
 
 Result<LeaseStatus> acknowledge_cancel(Connection& connection, const Lease& lease, UtcMicros now) {
-  const Result<std::optional<HeldJob>> found = held_job(connection, lease);
+  const Result<HeldJob> found = held_job(connection, lease);
   if (!found) {
-    return fail(found.error());
+    return not_held(found.error());
   }
-  if (!*found || !(*found)->cancel_requested) {
-    return LeaseStatus{found->has_value(), false};
+  if (!found->cancel_requested) {
+    return LeaseStatus{true, false};
   }
   return moved(connection, connection.prepare(kCancel).bind(lease.job_id, now).run(), lease, true, now);
 }
 
 Result<LeaseStatus> release(Connection& connection, const Lease& lease, UtcMicros now) {
-  const Result<std::optional<HeldJob>> found = held_job(connection, lease);
+  const Result<HeldJob> found = held_job(connection, lease);
   if (!found) {
-    return fail(found.error());
+    return not_held(found.error());
   }
-  if (!*found) {
-    return LeaseStatus{};
-  }
-  if (Status back = put_back(connection, lease.job_id, (*found)->cancel_requested, now); !back) {
+  if (Status back = put_back(connection, lease.job_id, found->cancel_requested, now); !back) {
     return fail(back.error());
   }
-  return LeaseStatus{true, (*found)->cancel_requested};
+  return LeaseStatus{true, found->cancel_requested};
 }
 
 Result<Job> request_cancel(Connection& connection, std::string_view id, UtcMicros now) {

@@ -67,12 +67,12 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
   }
   Statement equal = connection.prepare(kEqualJob);
   equal.bind(job.unique_key);
-  Result<std::optional<Job>> existing = first_row(equal, read_job);
+  Result<std::vector<Job>> existing = all_rows(equal, read_job);  // one at most
   if (!existing) {
     return fail(existing.error());
   }
-  if (*existing) {
-    return EnqueuedJob{std::move(**existing), false};
+  if (!existing->empty()) {
+    return EnqueuedJob{std::move(existing->front()), false};
   }
   const std::string id = make_id("job", now);
   Status inserted = connection.prepare(kInsert)
@@ -90,12 +90,11 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
 Result<Job> job(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
-  Result<std::optional<Job>> found = first_row(statement, read_job);
+  Result<Job> found =
+      one_row(statement, read_job,
+              {ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}}});
   if (!found) {
-    return fail(found.error());
-  }
-  if (!*found) {
-    return fail(ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}});
+    return found;
   }
   Statement attempts = connection.prepare(kAttempts);
   attempts.bind(id);
@@ -103,8 +102,8 @@ Result<Job> job(Connection& connection, std::string_view id) {
   if (!problems) {
     return fail(problems.error());
   }
-  (*found)->attempt_problems_json = std::move(*problems);
-  return std::move(**found);
+  found->attempt_problems_json = std::move(*problems);
+  return found;
 }
 
 Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {

@@ -112,8 +112,8 @@ Status apply_steps(Connection& connection, const Migration& migration, const Clo
   if (!orphan) {
     return fail(orphan.error());
   }
-  if (orphan->has_value()) {
-    return fail(ErrorCode::Internal, "After the migration a row of " + **orphan + " refers to nothing.");
+  if (const std::string table = orphan->value_or(""); !table.empty()) {
+    return fail(ErrorCode::Internal, "After the migration a row of " + table + " refers to nothing.");
   }
   // A pragma takes no bound values; both are numbers of our own.
   return connection.execute("PRAGMA user_version=" + std::to_string(migration.number) +

@@ -27,7 +27,7 @@ class ReaderPool {
       return Outcome(fail(std::move(begun.error())));
     }
     Outcome outcome = work(*loan);
-    Status ended = loan->prepare("COMMIT").run();
+    const Status ended = loan->prepare("COMMIT").run();
     if (!ended && loan->in_transaction()) {
       (void)loan->prepare("ROLLBACK").run();
     }

@@ -103,18 +103,19 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
   }
   Statement statement = connection.prepare(kByDeviceAndBlob);
   statement.bind(recording.device_id, blob.sha256);
-  Result<std::optional<Recording>> existing = first_row(statement, read_recording);
+  Result<std::vector<Recording>> existing = all_rows(statement, read_recording);  // one at most
   if (!existing) {
     return fail(existing.error());
   }
-  if (*existing) {
-    if ((*existing)->metadata_json != recording.metadata_json || (*existing)->condition != recording.condition) {
+  if (!existing->empty()) {
+    Recording& same = existing->front();
+    if (same.metadata_json != recording.metadata_json || same.condition != recording.condition) {
       return fail(ErrorCode::Conflict,
-                  "The device has these bytes already, as recording " + (*existing)->id +
+                  "The device has these bytes already, as recording " + same.id +
                       " with other metadata; change that one instead.",
-                  {{"recording_id", (*existing)->id}});
+                  {{"recording_id", same.id}});
     }
-    return RecordingOutcome{std::move(**existing), false};
+    return RecordingOutcome{std::move(same), false};
   }
   if (Status inserted = insert_blob(connection, blob, now); !inserted) {
     return fail(inserted.error());
@@ -140,15 +141,9 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
 Result<Recording> recording(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
-  Result<std::optional<Recording>> found = first_row(statement, read_recording);
-  if (!found) {
-    return fail(found.error());
-  }
-  if (!*found) {
-    return fail(ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".",
-                {{"recording", std::string(id)}});
-  }
-  return std::move(**found);
+  return one_row(
+      statement, read_recording,
+      {ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".", {{"recording", std::string(id)}}});
 }
 
 Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {
@@ -193,13 +188,13 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
   }
   Statement statement = connection.prepare(kLiveJob);
   statement.bind(id);
-  const Result<std::optional<std::string>> user = first_row(statement, read_text);
-  if (!user) {
-    return fail(user.error());
+  const Result<std::vector<std::string>> users = all_rows(statement, read_text);
+  if (!users) {
+    return fail(users.error());
   }
-  if (*user) {
-    return fail(ErrorCode::Conflict, "Job " + **user + " is using the recording; wait for it or cancel it.",
-                {{"job", **user}});
+  if (!users->empty()) {
+    return fail(ErrorCode::Conflict, "Job " + users->front() + " is using the recording; wait for it or cancel it.",
+                {{"job", users->front()}});
   }
   if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
     return removed;

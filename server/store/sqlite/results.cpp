@@ -101,28 +101,16 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
 Result<std::string> result_document(Connection& connection, std::string_view job_id) {
   Statement statement = connection.prepare(kDocument);
   statement.bind(job_id);
-  Result<std::optional<std::string>> found = first_row(statement, read_text);
-  if (!found) {
-    return fail(found.error());
-  }
-  if (!*found) {
-    return fail(ErrorCode::NotFound, "Job \"" + std::string(job_id) + "\" has no result.",
-                {{"job", std::string(job_id)}});
-  }
-  return std::move(**found);
+  return one_row(
+      statement, read_text,
+      {ErrorCode::NotFound, "Job \"" + std::string(job_id) + "\" has no result.", {{"job", std::string(job_id)}}});
 }
 
 Result<Fit> fit(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kFitById);
   statement.bind(id);
-  Result<std::optional<Fit>> found = first_row(statement, read_fit);
-  if (!found) {
-    return fail(found.error());
-  }
-  if (!*found) {
-    return fail(ErrorCode::NotFound, "There is no fit \"" + std::string(id) + "\".", {{"fit", std::string(id)}});
-  }
-  return std::move(**found);
+  return one_row(statement, read_fit,
+                 {ErrorCode::NotFound, "There is no fit \"" + std::string(id) + "\".", {{"fit", std::string(id)}}});
 }
 
 Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, const Page& page) {

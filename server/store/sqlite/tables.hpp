@@ -28,6 +28,19 @@ template <class Row>
   return *row ? std::optional<Row>(read(statement)) : std::nullopt;
 }
 
+/// The first row of a query; `absent` where there is none.
+template <class Row>
+[[nodiscard]] Result<Row> one_row(Statement& statement, Row (*read)(const Statement&), Error absent) {
+  const Result<bool> row = statement.step();
+  if (!row) {
+    return fail(row.error());
+  }
+  if (!*row) {
+    return fail(std::move(absent));
+  }
+  return read(statement);
+}
+
 /// Every row of a query.
 template <class Row>
 [[nodiscard]] Result<std::vector<Row>> all_rows(Statement& statement, Row (*read)(const Statement&)) {

@@ -14,7 +14,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -34,18 +33,18 @@ class Writer {
   template <class Work>
   [[nodiscard]] auto write(Work work) {
     using Outcome = std::invoke_result_t<Work, Connection&>;
-    std::optional<Outcome> outcome;
+    Outcome outcome = fail(ErrorCode::Internal, "The write did not run.");
     Status committed = submit([&](Connection& connection) -> Status {
-      outcome.emplace(work(connection));
-      if (!*outcome) {
-        return fail(outcome->error());
+      outcome = work(connection);
+      if (!outcome) {
+        return fail(outcome.error());
       }
       return {};
     });
     if (!committed) {
       return Outcome(fail(std::move(committed.error())));
     }
-    return std::move(*outcome);
+    return outcome;
   }
 
  private:
