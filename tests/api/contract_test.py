@@ -1,0 +1,153 @@
+"""The daemon against its contract: schemas and examples are sound, and every operation gives what it lists."""
+from __future__ import annotations
+
+import unittest
+from typing import Any
+
+import jsonschema
+
+import samples
+from daemon import Answer
+from suite import DaemonTest
+
+
+def walk(node: Any, path: str = "#") -> Any:
+    yield path, node
+    children = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in children:
+        yield from walk(value, f"{path}/{key}")
+
+
+class Documents(DaemonTest):
+    def test_every_schema_is_one_and_every_reference_leads_somewhere(self) -> None:
+        for name, schema in self.contract.whole["$defs"].items():
+            with self.subTest(name=name):
+                jsonschema.Draft202012Validator.check_schema(schema)
+        for path, node in walk(self.contract.whole):
+            if isinstance(node, dict) and isinstance(node.get("$ref"), str):
+                with self.subTest(path=path):
+                    self.assertIsInstance(self.contract.resolved(node), dict)
+
+    def test_every_example_matches_its_schema(self) -> None:
+        checked = 0
+        for name, schema in self.contract.whole["$defs"].items():
+            for example in schema.get("examples", []):
+                self.contract.match(example, {"$ref": f"#/$defs/{name}"})
+                checked += 1
+        for path, node in walk({key: self.contract.whole[key] for key in ("paths", "components")}):
+            if isinstance(node, dict) and "schema" in node and "example" in node:
+                with self.subTest(path=path):
+                    self.contract.match(node["example"], node["schema"])
+                checked += 1
+        self.assertGreater(checked, 25)
+
+    def test_every_operation_is_described(self) -> None:
+        ids = []
+        for path, operations in self.contract.paths.items():
+            for method, operation in operations.items():
+                with self.subTest(operation=f"{method} {path}"):
+                    ids.append(operation["operationId"])
+                    self.assertTrue(operation["summary"])
+                    bound = [self.contract.resolved(p) for p in operation.get("parameters", [])]
+                    self.assertTrue(all(parameter["description"] for parameter in bound))
+                    in_path = {parameter["name"] for parameter in bound if parameter["in"] == "path"}
+                    self.assertEqual(in_path, {part[1:-1] for part in path.split("/") if part.startswith("{")})
+        self.assertEqual(len(ids), len(set(ids)))
+
+    def test_examples_of_requests_are_taken(self) -> None:
+        """What the contract shows as a body works as it stands, once the ids in it exist."""
+        def example(path: str, method: str) -> Any:
+            content = self.contract.paths[path][method]["requestBody"]["content"]
+            return next(iter(content.values()))["example"]
+        device = self.expect(201, self.daemon.post("/v1/devices", example("/v1/devices", "post")))
+        self.expect(200, self.daemon.request("PATCH", device.headers["location"], example("/v1/devices/{id}", "patch"), {"If-Match": "*"}))
+        recording = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=1), rate_hz=100, columns=samples.GYRO_Z))
+        change = self.daemon.request("PATCH", recording.headers["location"], example("/v1/recordings/{id}", "patch"), {"If-Match": "*"})
+        self.assertEqual(self.expect(200, change).json["metadata"]["condition"]["kind"], "constant_rate")
+        job = example("/v1/jobs", "post")
+        job["inputs"]["recordings"] = [recording.json["id"]]
+        queued = self.expect(202, self.daemon.post("/v1/jobs", job))
+        self.assertEqual(self.daemon.finished(queued.json["id"])["state"], "succeeded")
+
+
+class Requests(DaemonTest):
+    """What the schemas refuse, the daemon refuses; what they take, it takes."""
+
+    def agree(self, schema: dict[str, Any], body: Any, answer: Answer) -> None:
+        try:
+            self.contract.match(body, schema, strict=False)
+            taken = True
+        except AssertionError:
+            taken = False
+        refused = answer.status == 400
+        self.assertEqual(taken, not refused, f"schema {'takes' if taken else 'refuses'} {body}: {answer.describe()}")
+
+    def test_metadata(self) -> None:
+        good = {"device": "phone-07", "rate_hz": 100, "condition": {"kind": "static"},
+                "columns": {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}}
+        bad_conditions = [{}, {"kind": "asleep"}, {"kind": "static", "axis": "z"}, {"kind": "constant_rate"}, {"kind": "constant_rate", "axis": "z", "value": "9", "unit": "deg/s"},
+                          {"kind": "constant_rate", "axis": "w", "value": 9, "unit": "deg/s"}, {"kind": "six_position", "axis": "x"},
+                          {"kind": "six_position", "axis": "x", "direction": "sideways"}, {"kind": "profile", "value": 1}, "static", None, {"kind": "static", "x": 1}]
+        good_conditions = [{"kind": "constant_rate", "axis": "z", "value": 9, "unit": "deg/s"}, {"kind": "drive"},
+                           {"kind": "constant_angular_acceleration", "axis": "z", "value": 0.001, "unit": "rad/s^2"}]
+        documents = [good, {**good, "rate_hz": 0}, {**good, "rate_hz": "100"}, {**good, "device": {"id": "a", "model": "b"}}, {**good, "device": {"model": "b"}},
+                     {**good, "device": ""}, {**good, "device": {"id": "a", "colour": "b"}}, {**good, "trim": {"start_s": 1}}, {**good, "trim": {"start_s": -1}}, {**good, "trim": {"begin": 1}},
+                     {**good, "columns": {"gz": {"axis": "z"}}}, {**good, "columns": {"gz": {"quantity": "spin"}}}, {**good, "columns": []}, {**good, "colums": {}},
+                     {**good, "columns": {"gz": {"quantity": "angular_rate", "axis": "z"}}}, {**good, "id": "x", "file": "y"}, {**good, "id": 7},
+                     {k: v for k, v in good.items() if k != "condition"}, [], "x", 7,
+                     *({**good, "condition": condition} for condition in bad_conditions + good_conditions)]
+        import json
+        for number, document in enumerate(documents):
+            answer = self.daemon.upload_parts(("metadata", json.dumps(document).encode()), ("file", samples.gyro_csv(64, seed=number)))
+            self.agree({"$ref": "#/$defs/recording.schema.json/$defs/upload_metadata"}, document, answer)
+
+    def test_devices(self) -> None:
+        schema = {"$ref": "#/components/schemas/NewDevice"}
+        for body in ({"name": "a"}, {"name": ""}, {}, {"name": "dev_x"}, {"name": "n" * 201}, {"name": "b", "labels": {"x": "y"}}, {"name": "c", "labels": {"x": 1}},
+                     {"name": "d", "labels": []}, {"name": "e", "model": None}, {"name": "f", "modell": "g"}, {"name": "h", "imu": "i", "serial": "j"}, []):
+            self.agree(schema, body, self.daemon.post("/v1/devices", body))
+
+    def test_jobs(self) -> None:
+        recording = self.expect(201, self.daemon.upload(samples.gyro_csv(64, seed=99), rate_hz=100)).json["id"]
+        good = {"kind": "characterise", "inputs": {"recordings": [recording]}, "parameters": {"models": ["WN"]}}
+        for body in (good, {**good, "priority": 0}, {**good, "priority": 9}, {**good, "priority": -1}, {**good, "priority": 10}, {**good, "priority": 1.5}, {**good, "kind": "x"},
+                     {**good, "inputs": {}}, {**good, "inputs": []}, {**good, "inputs": {"recordings": [recording] * 101}}, {**good, "parameters": {"seed": 0}},
+                     {**good, "parameters": {"seed": -1}}, {**good, "parameters": {"seed": 0.5}}, {**good, "parameters": []}, {**good, "parameters": {"model": []}},
+                     {**good, "colour": 1}, {"kind": "characterise"}):
+            self.agree({"$ref": "#/$defs/job-request.schema.json"}, body, self.daemon.post("/v1/jobs", body))
+
+
+class Operations(DaemonTest):
+    def test_every_operation_gives_every_success_it_lists(self) -> None:
+        daemon = self.daemon
+        device = daemon.post("/v1/devices", {"name": "phone-07"})
+        daemon.post("/v1/devices", {"name": "phone-07"})
+        daemon.request("PATCH", device.headers["location"], {"serial": "1"}, {"If-Match": "*"})
+        first, second = (daemon.upload(samples.gyro_csv(seed=seed), rate_hz=100, columns=samples.GYRO_Z) for seed in (1, 2))
+        daemon.upload(samples.gyro_csv(seed=1), rate_hz=100, columns=samples.GYRO_Z)
+        daemon.request("PATCH", second.headers["location"], {"condition": {"kind": "drive"}}, {"If-Match": "*"})
+        job = daemon.characterise(first.json["id"])
+        daemon.characterise(first.json["id"])
+        daemon.finished(job.json["id"])
+        daemon.post(f"/v1/jobs/{daemon.characterise(second.json['id']).json['id']}/cancel")
+        fit = daemon.items("/v1/fits")[0]
+        daemon.finished(daemon.items("/v1/jobs")[-1]["id"])
+        daemon.request("DELETE", second.headers["location"], headers={"If-Match": "*"})
+        for media in ("application/json", "text/csv", "text/plain"):
+            daemon.get("/v1/parameter-tables?device=phone-07&axis=z", Accept=media)
+        values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
+                  "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
+        for path, operations in self.contract.paths.items():
+            if "get" in operations:
+                target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
+                target += "?device=phone-07&axis=z" if path == "/v1/parameter-tables" else ""
+                answer = self.expect(200, daemon.get(target))
+                if "etag" in answer.headers:
+                    self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))
+        listed = {(operation["operationId"], int(status)) for operations in self.contract.paths.values() for operation in operations.values()
+                  for status in operation["responses"] if int(status) < 400}
+        self.assertEqual(listed - self.contract.seen, set())
+
+
+if __name__ == "__main__":
+    unittest.main()
