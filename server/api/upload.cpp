@@ -204,13 +204,26 @@ class RecordingUpload final : public UploadSession {
     recording.quality_json = *quality;
     auto outcome = context_.store.add_recording(*blob, recording);
     if (!outcome) {
-      return fail(outcome.error());
+      return fail(naming_patch(outcome.error()));
     }
     crash_point("upload.recorded");
     Response response = json_response(outcome->created ? 201 : 200, to_json(outcome->recording, &*blob));
     response.headers.emplace_back("Location", "/v1/recordings/" + outcome->recording.id);
     response.headers.emplace_back("ETag", etag_of(outcome->recording.id, outcome->recording.revision));
     return response;
+  }
+
+  /// A conflict with a recording that is there says by which request that one is changed.
+  static Error naming_patch(Error error) {
+    for (const ErrorField& field : error.fields) {
+      if (error.code == ErrorCode::Conflict && field.name == "recording_id") {
+        error.message =
+            "The device has these bytes already with other metadata; change those with PATCH /v1/recordings/" +
+            field.value + ".";
+        break;
+      }
+    }
+    return error;
   }
 
   /// Metadata and samples must fit together before anything is kept. The recording's quality as JSON text.

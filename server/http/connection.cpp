@@ -52,15 +52,6 @@ std::chrono::seconds preferred_wait(const Request& request) {
   return std::clamp<std::chrono::seconds>(std::chrono::seconds(seconds), 0s, kLongestWait);
 }
 
-/// Counts an upload in for as long as it lives.
-struct UploadSlot {
-  std::atomic<std::size_t>& running;
-  explicit UploadSlot(std::atomic<std::size_t>& counter) : running(counter) { running.fetch_add(1); }
-  UploadSlot(const UploadSlot&) = delete;
-  UploadSlot& operator=(const UploadSlot&) = delete;
-  ~UploadSlot() { running.fetch_sub(1); }
-};
-
 }  // namespace
 
 Connection::Connection(asio::ip::tcp::socket socket, ConnectionShared& shared)
@@ -128,8 +119,7 @@ asio::awaitable<bool> Connection::read_header(Parser& parser) {
         error == http::error::header_limit || error == http::error::buffer_overflow
             ? problem_response(HttpFault::HeaderTooLarge, "The request header is larger than 16 KiB.")
             : problem_response(HttpFault::BadRequest, "The request is not well-formed HTTP: " + error.message() + ".");
-    co_await send(request, std::move(response), false);
-    co_await linger();
+    co_await refuse(request, std::move(response));
   }
   co_return false;
 }
@@ -226,15 +216,14 @@ asio::awaitable<std::optional<std::size_t>> Connection::read_piece(Parser& parse
 asio::awaitable<bool> Connection::answer_plain(Parser& parser, const Route& route, Request& request) {
   const auto declared = parser.content_length();
   if (declared && *declared > shared_.options.limits.document_bytes) {
-    co_await send(request, problem_response(HttpFault::BodyTooLarge, "A document may have 1 MiB at most."), false);
-    co_await linger();
-    co_return false;
+    Response too_large = problem_response(HttpFault::BodyTooLarge, "A document may have 1 MiB at most.");
+    co_return co_await refuse(request, std::move(too_large));
   }
   while (true) {
     const auto count = co_await read_piece(parser);
     if (!count) {
-      co_await send(request, problem_response(HttpFault::IncompleteBody, "The body ended before Content-Length."),
-                    false);
+      Response incomplete = problem_response(HttpFault::IncompleteBody, "The body ended before Content-Length.");
+      co_await send(request, std::move(incomplete), false);
       co_return false;
     }
     if (*count == 0) {
@@ -273,101 +262,18 @@ asio::awaitable<Response> Connection::wait_for_job(const Route& route, const Req
   co_return response;
 }
 
-asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
-  const auto refuse = [&](Response response) -> asio::awaitable<bool> {
-    co_await send(request, std::move(response), false);
-    co_await linger();
-    co_return false;
-  };
-  if (!parser.content_length()) {
-    co_return co_await refuse(problem_response(HttpFault::LengthRequired, "An upload needs Content-Length."));
-  }
-  if (*parser.content_length() > shared_.options.limits.upload_bytes) {
-    co_return co_await refuse(problem_response(
-        HttpFault::BodyTooLarge,
-        "An upload may have " + std::to_string(shared_.options.limits.upload_bytes) + " bytes at most."));
-  }
-  if (shared_.uploads_running >= shared_.options.limits.concurrent_uploads) {
-    co_return co_await refuse(problem_response(HttpFault::Busy, "Too many uploads are running."));
-  }
-  const UploadSlot slot(shared_.uploads_running);
-  auto begin = [&handler, &request] { return handler(request); };
-  auto begun = co_await shared_.uploads.run(begin);
-  if (!begun || !*begun) {
-    co_return co_await refuse(begun ? problem_response(begun->error())
-                                    : problem_response(HttpFault::Busy, "Too many uploads are waiting."));
-  }
-  std::unique_ptr<UploadSession> session = std::move(**begun);
-  while (true) {
-    const auto count = co_await read_piece(parser);
-    if (!count) {
-      session.reset();
-      co_await send(
-          request,
-          problem_response(HttpFault::IncompleteBody,
-                           "The upload ended, or stalled, before Content-Length bytes had arrived; nothing was kept."),
-          false);
-      co_return false;
-    }
-    if (*count == 0) {
-      break;
-    }
-    auto append = [this, &session, size = *count] { return session->append({chunk_.data(), size}); };
-    auto appended = co_await shared_.uploads.run(append);
-    if (!appended || !*appended) {
-      session.reset();
-      co_return co_await refuse(appended ? problem_response(appended->error())
-                                         : problem_response(HttpFault::Busy, "Too many uploads are waiting."));
-    }
-  }
-  if (surplus_follows()) {
-    session.reset();
-    co_return co_await refuse(problem_response(HttpFault::BadRequest, "More bytes follow than the Content-Length of " +
-                                                                          std::to_string(*parser.content_length()) +
-                                                                          " declares; nothing was kept."));
-  }
-  auto finish = [&session]() -> Result<Response> {
-    try {
-      return session->finish();
-    } catch (const std::bad_alloc&) {
-      return problem_response(HttpFault::Busy, "There is not enough memory for this upload now.");
-    } catch (const std::exception& unforeseen) {
-      return fail(ErrorCode::Internal, std::string("Unforeseen: ") + unforeseen.what() + ".");
-    }
-  };
-  auto finished = co_await shared_.uploads.run(finish);
-  session.reset();
-  Response response = !finished               ? problem_response(HttpFault::Busy, "Too many uploads are waiting.")
-                      : finished->has_value() ? std::move(**finished)
-                                              : problem_response(finished->error());
-  co_return co_await send(request, std::move(response), true);
-}
-
-bool Connection::surplus_follows() {
-  boost::system::error_code error;
-  if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
-    stream_.socket().non_blocking(true, error);
-    const std::size_t count = stream_.socket().read_some(buffer_.prepare(kPiece), error);
-    buffer_.commit(error ? 0 : count);
-  }
-  const std::string_view next(static_cast<const char*>(buffer_.data().data()), buffer_.size());
-  if (next.empty()) {
-    return false;
-  }
-  // A pipelined request begins with an upper-case method, a space and a slash.
-  const std::size_t end = std::min(next.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"), next.size());
-  const std::string_view rest = next.substr(end);
-  const bool may_be_request = end > 0 && (rest.empty() || rest == " " || rest.starts_with(" /"));
-  return !may_be_request;
+asio::awaitable<bool> Connection::refuse(const Request& request, Response response) {
+  co_await send(request, std::move(response), false);
+  co_await linger();
+  co_return false;
 }
 
 asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, const Request& request) {
   auto begin = [&handler, &request] { return handler(request); };
   auto begun = co_await shared_.handlers.run(begin);
-  if (!begun || !*begun) {
-    Response refusal =
-        begun ? problem_response(begun->error()) : problem_response(HttpFault::Busy, "Too many requests.");
-    co_return co_await send(request, std::move(refusal), true);
+  std::optional<Response> refusal = problem_of(begun);
+  if (refusal) {
+    co_return co_await send(request, std::move(*refusal), true);
   }
   const std::unique_ptr<EventSource> source = std::move(**begun);
   const auto executor = co_await asio::this_coro::executor;

@@ -1,6 +1,7 @@
 #pragma once
 /// One client connection as a coroutine: header, guard, route, body, answer; again until it closes.
 #include "server/http/offload.hpp"
+#include "server/http/problem.hpp"
 #include "server/http/server.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -13,6 +14,21 @@
 #include <memory>
 
 namespace driftlab::server {
+
+/// The answer to work that failed or found no place in its queue; nothing where it succeeded.
+///
+/// GCC 12 destroys the arms of a conditional twice where it stands inside a co_await expression. No such expression
+/// here holds one: what is awaited is made in a statement of its own.
+template <class Value>
+[[nodiscard]] std::optional<Response> problem_of(const std::optional<Result<Value>>& outcome) {
+  if (!outcome) {
+    return problem_response(HttpFault::Busy, "Too many requests are waiting.");
+  }
+  if (!*outcome) {
+    return problem_response(outcome->error());
+  }
+  return std::nullopt;
+}
 
 /// What connections share. Outlives them all.
 struct ConnectionShared {
@@ -53,6 +69,10 @@ class Connection {
   [[nodiscard]] bool surplus_follows();
   /// False: the connection must close, for the answer said so or could not be sent.
   boost::asio::awaitable<bool> send(const Request& request, Response response, bool keep_alive);
+  /// Sends a problem, lets the client read it, and closes. False.
+  boost::asio::awaitable<bool> refuse(const Request& request, Response response);
+  /// Why an upload may not even begin; nothing if it may.
+  [[nodiscard]] std::optional<Response> refuse_before_upload(const Parser& parser) const;
   /// Reads on for a moment after an early answer, so that the client sees it before the connection resets.
   boost::asio::awaitable<void> linger();
   void log(const Request& request, const Response& response);

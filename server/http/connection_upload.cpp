@@ -1,0 +1,116 @@
+// Uploads: the body of one request as it streams into a session on the upload pool.
+#include "server/http/connection.hpp"
+
+#include <algorithm>
+
+namespace driftlab::server {
+
+namespace asio = boost::asio;
+
+namespace {
+
+Result<Response> finish_upload(UploadSession& session) {
+  try {
+    return session.finish();
+  } catch (const std::bad_alloc&) {
+    return problem_response(HttpFault::Busy, "There is not enough memory for this upload now.");
+  } catch (const std::exception& unforeseen) {
+    return fail(ErrorCode::Internal, std::string("Unforeseen: ") + unforeseen.what() + ".");
+  }
+}
+
+/// Counts an upload in for as long as it lives.
+struct UploadSlot {
+  std::atomic<std::size_t>& running;
+  explicit UploadSlot(std::atomic<std::size_t>& counter) : running(counter) { running.fetch_add(1); }
+  UploadSlot(const UploadSlot&) = delete;
+  UploadSlot& operator=(const UploadSlot&) = delete;
+  ~UploadSlot() { running.fetch_sub(1); }
+};
+
+}  // namespace
+
+std::optional<Response> Connection::refuse_before_upload(const Parser& parser) const {
+  const auto declared = parser.content_length();
+  if (!declared) {
+    return problem_response(HttpFault::LengthRequired, "An upload needs Content-Length.");
+  }
+  if (*declared > shared_.options.limits.upload_bytes) {
+    return problem_response(
+        HttpFault::BodyTooLarge,
+        "An upload may have " + std::to_string(shared_.options.limits.upload_bytes) + " bytes at most.");
+  }
+  if (shared_.uploads_running >= shared_.options.limits.concurrent_uploads) {
+    return problem_response(HttpFault::Busy, "Too many uploads are running.");
+  }
+  return std::nullopt;
+}
+
+asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
+  std::optional<Response> refusal = refuse_before_upload(parser);
+  if (refusal) {
+    co_return co_await refuse(request, std::move(*refusal));
+  }
+  const UploadSlot slot(shared_.uploads_running);
+  auto begin = [&handler, &request] { return handler(request); };
+  auto begun = co_await shared_.uploads.run(begin);
+  refusal = problem_of(begun);
+  if (refusal) {
+    co_return co_await refuse(request, std::move(*refusal));
+  }
+  std::unique_ptr<UploadSession> session = std::move(**begun);
+  while (true) {
+    const auto count = co_await read_piece(parser);
+    if (!count) {
+      session.reset();
+      Response incomplete =
+          problem_response(HttpFault::IncompleteBody,
+                           "The upload ended, or stalled, before Content-Length bytes had arrived; nothing was kept.");
+      co_await send(request, std::move(incomplete), false);
+      co_return false;
+    }
+    if (*count == 0) {
+      break;
+    }
+    auto append = [this, &session, size = *count] { return session->append({chunk_.data(), size}); };
+    auto appended = co_await shared_.uploads.run(append);
+    refusal = problem_of(appended);
+    if (refusal) {
+      session.reset();
+      co_return co_await refuse(request, std::move(*refusal));
+    }
+  }
+  if (surplus_follows()) {
+    session.reset();
+    Response surplus = problem_response(HttpFault::BadRequest, "More bytes follow than the Content-Length of " +
+                                                                   std::to_string(*parser.content_length()) +
+                                                                   " declares; nothing was kept.");
+    co_return co_await refuse(request, std::move(surplus));
+  }
+  auto finish = [&session] { return finish_upload(*session); };
+  auto finished = co_await shared_.uploads.run(finish);
+  session.reset();
+  refusal = problem_of(finished);
+  Response response = refusal ? std::move(*refusal) : std::move(**finished);
+  co_return co_await send(request, std::move(response), true);
+}
+
+bool Connection::surplus_follows() {
+  boost::system::error_code error;
+  if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
+    stream_.socket().non_blocking(true, error);
+    const std::size_t count = stream_.socket().read_some(buffer_.prepare(chunk_.size()), error);
+    buffer_.commit(error ? 0 : count);
+  }
+  const std::string_view next(static_cast<const char*>(buffer_.data().data()), buffer_.size());
+  if (next.empty()) {
+    return false;
+  }
+  // A pipelined request begins with an upper-case method, a space and a slash.
+  const std::size_t end = std::min(next.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"), next.size());
+  const std::string_view rest = next.substr(end);
+  const bool may_be_request = end > 0 && (rest.empty() || rest == " " || rest.starts_with(" /"));
+  return !may_be_request;
+}
+
+}  // namespace driftlab::server
