@@ -57,6 +57,14 @@ logs=$repository/build/logs
 [ -z "$bin" ] || logs=$data/logs
 mkdir -p "$data" "$logs" || fail "cannot make the directories $data and $logs"
 
+# Asked before the long part, and again before the daemon starts.
+require_free_port() {
+  if (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
+    fail "port $port is taken by another server; choose one with --port"
+  fi
+}
+require_free_port
+
 # --- install and build ------------------------------------------------------------------------------------------------
 if [ -z "$bin" ]; then
   # shellcheck source=deploy/packages.sh
@@ -96,9 +104,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 
 ready() { [ "$(curl --silent --output /dev/null --noproxy '*' --max-time 2 --write-out '%{http_code}' "$address/readyz")" = 200 ]; }
-if (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
-  fail "port $port is taken by another server; choose one with --port"
-fi
+require_free_port
 "$bin/driftlabd" --data "$data" --listen "127.0.0.1:$port" 2>"$logs/daemon.log" &
 daemon=$!
 deadline=$((SECONDS + 30))

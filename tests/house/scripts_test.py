@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import socket
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+
+from quickstart_test import free_port
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 REAL_TOOLS = ("bash", "env", "dirname", "basename", "cat", "tail", "head", "grep", "sort", "mkdir", "nproc", "mv", "sleep", "rm")
@@ -52,6 +55,8 @@ class Scripts(unittest.TestCase):
 
     def run_script(self, script: str, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
         (self.root / "calls").write_text("")
+        if script == "deploy/quickstart.sh" and "--port" not in arguments:
+            arguments = (*arguments, "--port", str(free_port()))
         return subprocess.run([str(self.root / script), *arguments], capture_output=True, text=True, timeout=60, check=False,
                               env={"PATH": str(self.tools), "HOME": str(self.root), **environment})
 
@@ -94,7 +99,7 @@ class Scripts(unittest.TestCase):
 
     def test_misuse_ends_with_2_and_one_sentence(self) -> None:
         for script, arguments in (("tests/run.sh", ["--nonsense"]), ("tests/run.sh", ["--only"]),
-                                  ("deploy/quickstart.sh", ["--nonsense"]), ("deploy/quickstart.sh", ["--port"]),
+                                  ("deploy/quickstart.sh", ["--nonsense"]), ("deploy/quickstart.sh", ["--once", "--port"]),
                                   ("deploy/quickstart.sh", ["--port", "99999"]),
                                   ("deploy/quickstart.sh", ["--recording", "absent.csv"]),
                                   ("deploy/quickstart.sh", ["--rate-hz", "100"])):
@@ -116,6 +121,16 @@ class Scripts(unittest.TestCase):
     def test_quickstart_asks_for_no_test_packages(self) -> None:
         self.run_script("deploy/quickstart.sh", "--once", ABSENT="libgtest-dev clang-19")
         self.assertEqual(self.calls("apt-get"), [])
+
+    def test_a_taken_port_is_noticed_before_anything_is_installed_or_built(self) -> None:
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            ran = self.run_script("deploy/quickstart.sh", "--port", str(port), ABSENT="curl")
+        self.assertEqual(ran.returncode, 1)
+        self.assertIn(f"port {port} is taken", ran.stderr)
+        self.assertEqual(self.calls("apt-get") + self.calls("cmake"), [])
 
     def test_without_root_and_sudo_the_command_is_named(self) -> None:
         for script in ("tests/run.sh", "deploy/quickstart.sh"):
