@@ -54,7 +54,7 @@ class MemoryReader final : public ByteReader {
 
   Result<std::size_t> read(std::span<char> into) override {
     const std::size_t count = std::min({into.size(), rest_.size(), piece_});
-    std::copy_n(rest_.data(), count, into.data());
+    rest_.copy(into.data(), count);
     rest_.remove_prefix(count);
     return count;
   }

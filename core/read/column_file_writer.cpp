@@ -89,10 +89,10 @@ struct ColumnFileWriter::State {
   posix::FileDescriptor spool;  ///< opened by the first spill: a small table never needs it
   std::size_t spool_bytes = 0;
 
-  Status spill(GrowingColumn& column);
-  Status append(GrowingColumn& column, const double* values, std::size_t count, std::size_t step);
-  Status write_column(const GrowingColumn& column, int target, const fs::path& part) const;
-  Status write_table(int target, const fs::path& part) const;
+  [[nodiscard]] Status spill(GrowingColumn& column);
+  [[nodiscard]] Status append(GrowingColumn& column, const double* values, std::size_t count, std::size_t step);
+  [[nodiscard]] Status write_column(const GrowingColumn& column, int target, const fs::path& part) const;
+  [[nodiscard]] Status write_table(int target, const fs::path& part) const;
 };
 
 Status ColumnFileWriter::State::spill(GrowingColumn& column) {

@@ -41,7 +41,7 @@ class CsvDecoder {
   Status begin(const std::vector<std::string>& fields, bool named);
   const char* take_rows_fast(const char* p, const char* end);
   Status take_row_carefully(std::string_view line);
-  Result<double> take_cell(std::string_view cell, std::size_t column) const;
+  [[nodiscard]] Result<double> take_cell(std::string_view cell, std::size_t column) const;
   Status flush();
 
   [[nodiscard]] std::string line_name() const { return "Line " + std::to_string(line_); }

@@ -45,7 +45,7 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
   while (is_digit(*p)) {
     mantissa = mantissa * 10 + static_cast<std::uint64_t>(*p++ - '0');
   }
-  std::int64_t integer_digits = p - digits;
+  const std::int64_t integer_digits = p - digits;
   std::int64_t exponent = 0;
   if (*p == '.') {
     const char* const fraction = ++p;

@@ -2,7 +2,7 @@
 #include "core/read/format.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -83,7 +83,7 @@ class FileSink final : public ColumnSink {
     if (!writer) {
       return fail(writer.error());
     }
-    writer_.emplace(std::move(*writer));
+    writer_ = std::make_unique<ColumnFileWriter>(std::move(*writer));
     return {};
   }
   Status rows(std::span<const double> values) override { return writer_->append_rows(values); }
@@ -95,7 +95,7 @@ class FileSink final : public ColumnSink {
 
  private:
   std::filesystem::path path_;
-  std::optional<ColumnFileWriter> writer_;
+  std::unique_ptr<ColumnFileWriter> writer_;  ///< from begin() on
 };
 
 }  // namespace

@@ -59,7 +59,7 @@ struct Format {
 };
 
 /// Bytes a sniffer sees at most.
-inline constexpr std::size_t kSniffBytes = 64 * 1024;
+inline constexpr std::size_t kSniffBytes = std::size_t{64} * 1024;
 
 /// Every registered format, once.
 [[nodiscard]] std::span<const Format* const> all_formats();

@@ -26,13 +26,14 @@ Word byte_swapped(Word word) {
   return swapped;
 }
 
-/// `count` numbers at `bytes` (any alignment) as doubles. Returns whether all are finite.
+/// The numbers in `bytes` (any alignment) as doubles. Returns whether all are finite.
 template <class Float, class Word>
-bool convert(const char* bytes, std::size_t count, bool swap, double* into) {
+bool convert(std::string_view bytes, bool swap, double* into) {
   bool finite = true;
+  const std::size_t count = bytes.size() / sizeof(Word);
   for (std::size_t i = 0; i < count; ++i) {
     Word word = 0;
-    std::memcpy(&word, bytes + i * sizeof word, sizeof word);
+    std::memcpy(&word, bytes.data() + i * sizeof word, sizeof word);
     const auto value = static_cast<double>(std::bit_cast<Float>(swap ? byte_swapped(word) : word));
     finite = finite && std::isfinite(value);
     into[i] = value;
@@ -78,14 +79,14 @@ Status NpyDecoder::run() {
     const std::uint64_t left = total_ - taken_;
     std::size_t count = std::min<std::uint64_t>({view->size() / header_.item_bytes, batch.size(), left});
     count -= count % unit;
-    const bool finite = header_.item_bytes == 8
-                            ? convert<double, std::uint64_t>(view->data(), count, header_.swap, batch.data())
-                            : convert<float, std::uint32_t>(view->data(), count, header_.swap, batch.data());
+    const std::string_view bytes = view->substr(0, count * header_.item_bytes);
+    const bool finite = header_.item_bytes == 8 ? convert<double, std::uint64_t>(bytes, header_.swap, batch.data())
+                                                : convert<float, std::uint32_t>(bytes, header_.swap, batch.data());
     const std::span<const double> values(batch.data(), count);
     if (!finite) {
       return non_finite(values);
     }
-    source_.consume(count * header_.item_bytes);
+    source_.consume(bytes.size());
     if (auto status = deliver(values); !status) {
       return status;
     }

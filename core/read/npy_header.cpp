@@ -186,9 +186,8 @@ Result<std::string> take_dictionary(ByteSource& source) {
   return text;
 }
 
-Status apply_descr(const Written& written, NpyHeader& header) {
-  const std::string& descr = *written.descr;
-  const bool is_float = !written.structured && descr.size() == 3 &&
+Status apply_descr(const std::string& descr, bool structured, NpyHeader& header) {
+  const bool is_float = !structured && descr.size() == 3 &&
                         std::string_view("<>=").find(descr[0]) != std::string_view::npos && descr[1] == 'f' &&
                         (descr[2] == '4' || descr[2] == '8');
   if (!is_float) {
@@ -202,11 +201,7 @@ Status apply_descr(const Written& written, NpyHeader& header) {
   return {};
 }
 
-Status apply_shape(const Written& written, const DecodeLimits& limits, NpyHeader& header) {
-  const std::vector<std::uint64_t>& shape = *written.shape;
-  if (written.shape_overflows) {
-    return fail(ErrorCode::ShapeMismatch, "The shape in the header of the NumPy file is larger than any file.");
-  }
+Status apply_shape(const std::vector<std::uint64_t>& shape, const DecodeLimits& limits, NpyHeader& header) {
   if (shape.empty() || shape.size() > 2) {
     return fail(ErrorCode::UnsupportedType, "The NumPy array has " + std::to_string(shape.size()) +
                                                 " dimensions; a recording is samples, or samples x channels.");
@@ -245,10 +240,13 @@ Result<NpyHeader> read_npy_header(ByteSource& source, const DecodeLimits& limits
     return unreadable_header();
   }
   NpyHeader header;
-  if (auto status = apply_descr(*written, header); !status) {
+  if (auto status = apply_descr(*written->descr, written->structured, header); !status) {
     return fail(status.error());
   }
-  if (auto status = apply_shape(*written, limits, header); !status) {
+  if (written->shape_overflows) {
+    return fail(ErrorCode::ShapeMismatch, "The shape in the header of the NumPy file is larger than any file.");
+  }
+  if (auto status = apply_shape(*written->shape, limits, header); !status) {
     return fail(status.error());
   }
   header.fortran_order = *written->fortran_order && header.columns > 1;

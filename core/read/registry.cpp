@@ -1,6 +1,6 @@
-#include <array>
-
 #include "core/read/formats.hpp"
+
+#include <array>
 
 namespace driftlab {
 

@@ -157,8 +157,9 @@ std::optional<ColumnRole> infer_suffixed(std::string_view name) {
   if (known == kUnitWords.end()) {
     return std::nullopt;
   }
-  auto role = infer_bare(name.substr(0, cut), known_unit(known->symbol));
-  return role && measures(*role->unit, role->quantity) ? role : std::nullopt;
+  const std::optional<Unit> unit = known_unit(known->symbol);
+  auto role = infer_bare(name.substr(0, cut), unit);
+  return role && unit && measures(*unit, role->quantity) ? role : std::nullopt;
 }
 
 }  // namespace

@@ -10,8 +10,9 @@ namespace driftlab {
 /// The whole of `text` as a double; nothing if any character is left over, or the value is not representable.
 [[nodiscard]] inline std::optional<double> parse_double(std::string_view text) {
   double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto [stop, error] = std::from_chars(begin, end, value);
   if (error != std::errc{} || stop != end) {
     return std::nullopt;
   }

@@ -4,10 +4,7 @@
 #include "core/signal/number.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
-#include <set>
+#include <map>
 #include <utility>
 
 namespace driftlab {
@@ -30,15 +27,26 @@ tl::unexpected<Error> claimed_twice(const std::string& first, const std::string&
 Status check_distinct(const ColumnNames& names, const std::vector<std::optional<ColumnRole>>& roles) {
   std::map<std::pair<Quantity, std::string>, std::size_t> owner;
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    if (!roles[i] || (roles[i]->quantity == Quantity::Unspecified && roles[i]->axis.empty())) {
+    const ColumnRole role = roles[i].value_or(ColumnRole{});
+    if (role.quantity == Quantity::Unspecified && role.axis.empty()) {
       continue;
     }
-    const auto [seen, fresh] = owner.insert({{roles[i]->quantity, roles[i]->axis}, i});
+    const auto [seen, fresh] = owner.insert({{role.quantity, role.axis}, i});
     if (!fresh) {
-      return claimed_twice(names[seen->second], names[i], *roles[i]);
+      return claimed_twice(names[seen->second], names[i], role);
     }
   }
   return {};
+}
+
+/// The first names of a file, for an error message.
+std::string listed(const ColumnNames& names) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
+    text.append(text.empty() ? "" : ", ").append(names[i]);
+  }
+  return names.size() > kMost ? text.append(", ...") : text;
 }
 
 Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec& spec, const ColumnNames& names) {
@@ -46,12 +54,7 @@ Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec&
   for (const auto& [column, role] : spec.columns) {
     const auto found = std::find(names.begin(), names.end(), column);
     if (found == names.end()) {
-      std::string known;
-      for (std::size_t i = 0; i < names.size() && i < 20; ++i) {
-        known += (known.empty() ? "" : ", ") + names[i];
-      }
-      return fail(ErrorCode::UnknownColumn,
-                  "The file has no column '" + column + "'; it has " + known + (names.size() > 20 ? ", ..." : "") + ".",
+      return fail(ErrorCode::UnknownColumn, "The file has no column '" + column + "'; it has " + listed(names) + ".",
                   {{"column", column}});
     }
     if (auto status = check_role(column, role); !status) {
@@ -101,10 +104,11 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
   std::vector<std::optional<ColumnRole>> roles;
   if (spec.columns.empty()) {
     for (const std::string& name : names) {
-      roles.emplace_back(infer_role(name));
-      if (auto status = check_role(name, *roles.back()); !status) {
+      ColumnRole role = infer_role(name);
+      if (auto status = check_role(name, role); !status) {
         return fail(status.error());
       }
+      roles.emplace_back(std::move(role));
     }
     keep_one_time_column(roles);
   } else {
