@@ -1,17 +1,17 @@
 #include "core/variance/haar_variance.hpp"
 
-#include "core/variance/wide.hpp"
+#include "core/variance/kernels.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 namespace driftlab {
 namespace {
 
-constexpr std::size_t kLanes = 8;
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kBlock = 4096;
 /// Half lengths below this go through the pyramid, the rest through prefix sums.
 constexpr std::size_t kPyramidEnd = 512;
 
@@ -29,48 +29,6 @@ class CompensatedSum {
   double sum_ = 0.0;
   double carry_ = 0.0;
 };
-
-/// Sum of squares of now[i] - before[i]; next[i] = now[i] + before[i].
-DRIFTLAB_WIDE double pyramid_step(const double* now, const double* before, double* next, std::size_t first,
-                                  std::size_t count) {
-  for (std::size_t i = 0; i < first; ++i) {
-    next[i] = now[i] + before[i];
-  }
-  std::array<double, kLanes> sum{};
-  std::size_t i = first;
-  for (; i + kLanes <= count; i += kLanes) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const double a = now[i + k];
-      const double b = before[i + k];
-      const double d = a - b;
-      sum[k] += d * d;
-      next[i + k] = a + b;
-    }
-  }
-  for (; i < count; ++i) {
-    const double d = now[i] - before[i];
-    sum[0] += d * d;
-    next[i] = now[i] + before[i];
-  }
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
-/// Sum of squares of a[i] - 2 b[i] + c[i].
-DRIFTLAB_WIDE double second_difference_power(const double* a, const double* b, const double* c, std::size_t count) {
-  std::array<double, kLanes> sum{};
-  std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const double d = (a[i + k] - b[i + k]) - (b[i + k] - c[i + k]);
-      sum[k] += d * d;
-    }
-  }
-  for (; i < count; ++i) {
-    const double d = (a[i] - b[i]) - (b[i] - c[i]);
-    sum[0] += d * d;
-  }
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
 
 /// Short scales: level j keeps the last m sums of m samples in front of the block's own.
 class Pyramid {
@@ -94,7 +52,7 @@ class Pyramid {
       double* const past = buffer_[j].data();
       const std::size_t ready = 2 * m - 1;  // first time index with a whole filter behind it
       const std::size_t first = start >= ready ? 0 : std::min(ready - start, count);
-      power_[j].add(pyramid_step(past + m, past, buffer_[j + 1].data() + 2 * m, first, count));
+      power_[j].add(kernels().pyramid_step(past + m, past, buffer_[j + 1].data() + 2 * m, first, count));
       std::memmove(past, past + count, m * sizeof(double));
     }
   }
@@ -106,6 +64,52 @@ class Pyramid {
   std::vector<std::vector<double>> buffer_;
   std::vector<CompensatedSum> power_;
 };
+
+/// Prefix sums of a block on top of `base` (with its rounding error `carry`), both moved to the block's end. Four quarters run
+/// at once: a single running sum would wait for its own last addition.
+void extend_prefix(const double* samples, std::size_t count, double pivot, double& base, double& carry, double* out) {
+  const std::size_t quarter = count / 4;
+  std::array<double, 4> inside{};
+  for (std::size_t i = 0; i < quarter; ++i) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      inside[q] += samples[q * quarter + i] - pivot;
+      out[q * quarter + i] = inside[q];
+    }
+  }
+  for (std::size_t i = 4 * quarter; i < count; ++i) {
+    inside[3] += samples[i] - pivot;
+    out[i] = inside[3];
+  }
+  for (std::size_t q = 0; q < 4; ++q) {
+    const std::size_t end = q == 3 ? count : (q + 1) * quarter;
+    for (std::size_t i = q * quarter; i < end; ++i) {
+      out[i] = base + (out[i] + carry);
+    }
+    const double next = base + (inside[q] + carry);
+    carry = (inside[q] + carry) - (next - base);
+    base = next;
+  }
+}
+
+/// Adds the squares of the long filters that end in this block.
+void long_scales(const double* prefix, std::size_t start, std::size_t count,
+                 std::span<const std::size_t> half, std::span<CompensatedSum> power) {
+  std::size_t whole = 0;  // levels whose filter fits before every end of the block
+  while (whole < half.size() && 2 * half[whole] <= start + 1) {
+    ++whole;
+  }
+  std::array<double, 64> sum{};
+  if (whole > 0) {
+    kernels().octave_powers(prefix + start + 1, half[0], whole, count, sum.data());
+  }
+  for (std::size_t j = whole; j < half.size() && 2 * half[j] <= start + count; ++j) {
+    const std::size_t first = 2 * half[j];
+    kernels().octave_powers(prefix + first, half[j], 1, start + count - first + 1, &sum[j]);
+  }
+  for (std::size_t j = 0; j < half.size(); ++j) {
+    power[j].add(sum[j]);
+  }
+}
 
 }  // namespace
 
@@ -121,7 +125,9 @@ HaarVariance haar_variance(std::span<const double> samples, double pivot) {
   const std::size_t levels = result.half.size();
   Pyramid pyramid(short_levels);
   std::vector<CompensatedSum> power(levels);
-  std::vector<double> prefix(levels > short_levels ? n + 1 : 1, 0.0);
+  // Not initialised: every element is written before it is read, and touching 8 N bytes twice would show.
+  const auto prefix = std::make_unique_for_overwrite<double[]>(levels > short_levels ? n + 1 : 1);
+  prefix[0] = 0.0;
   double block_base = 0.0;
   double base_carry = 0.0;
   for (std::size_t start = 0; start < n; start += kBlock) {
@@ -130,24 +136,9 @@ HaarVariance haar_variance(std::span<const double> samples, double pivot) {
     if (levels == short_levels) {
       continue;
     }
-    double inside = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      inside += samples[start + i] - pivot;
-      prefix[start + i + 1] = block_base + (inside + base_carry);
-    }
-    const double next = block_base + (inside + base_carry);
-    base_carry = (inside + base_carry) - (next - block_base);
-    block_base = next;
-    for (std::size_t j = short_levels; j < levels; ++j) {
-      const std::size_t m = result.half[j];
-      const std::size_t end = start + count;
-      const std::size_t first = std::max(start + 1, 2 * m);
-      if (first > end) {
-        break;
-      }
-      const double* const now = prefix.data() + first;
-      power[j].add(second_difference_power(now, now - m, now - 2 * m, end - first + 1));
-    }
+    extend_prefix(samples.data() + start, count, pivot, block_base, base_carry, prefix.get() + start + 1);
+    long_scales(prefix.get(), start, count, std::span(result.half).subspan(short_levels),
+                std::span(power).subspan(short_levels));
   }
   for (std::size_t j = 0; j < levels; ++j) {
     const double m = static_cast<double>(result.half[j]);

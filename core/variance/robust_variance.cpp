@@ -1,102 +1,72 @@
 #include "core/variance/robust_variance.hpp"
 
-#include "core/variance/wide.hpp"
+#include "core/variance/kernels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <span>
 
 namespace driftlab {
 namespace {
 
-constexpr std::size_t kLanes = 8;
-
-/// Mean of chi(sqrt(u/nu)) over squares u.
-DRIFTLAB_WIDE double mean_chi(const double* squares, std::size_t count, double nu, double c) {
-  const double inverse = 1.0 / nu;
-  const double bound = 1.0 / (c * c * nu);
-  std::array<double, kLanes> sum{};
-  std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const double u = squares[i + k];
-      const double inside = 1.0 - u * bound;
-      const double kept = inside > 0.0 ? inside : 0.0;
-      const double square = kept * kept;
-      sum[k] += u * square * square;
-    }
-  }
-  double total = 0.0;
-  for (const double part : sum) {
-    total += part;
-  }
-  for (; i < count; ++i) {
-    const double kept = std::max(0.0, 1.0 - squares[i] * bound);
-    total += squares[i] * kept * kept * kept * kept;
-  }
-  return total * inverse / static_cast<double>(count);
-}
-
 /// Squares of every m/8-th coefficient at half length m, from prefix sums.
 void thinned_squares(const std::vector<double>& prefix, std::size_t m, std::vector<double>& squares) {
   const std::size_t stride = std::max<std::size_t>(1, m / 8);
-  const double scale = 1.0 / (2.0 * static_cast<double>(m));
-  squares.clear();
-  for (std::size_t end = 2 * m; end < prefix.size(); end += stride) {
-    const double w = ((prefix[end] - prefix[end - m]) - (prefix[end - m] - prefix[end - 2 * m])) * scale;
-    squares.push_back(w * w);
+  const double scale = 1.0 / (4.0 * static_cast<double>(m) * static_cast<double>(m));
+  squares.resize((prefix.size() - 2 * m + stride - 1) / stride);
+  if (stride == 1) {
+    kernels().square_second_differences(prefix.data() + 2 * m, prefix.data() + m, prefix.data(), squares.size(), scale,
+                                        squares.data());
+    return;
+  }
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const double* const first = prefix.data() + i * stride;
+    const double w = (first[2 * m] - first[m]) - (first[m] - first[0]);
+    squares[i] = w * w * scale;
   }
 }
 
-/// The largest root of mean chi = target, or nothing. Scanned downwards on at most some 20,000 of the squares, then
-/// refined on all of them.
-std::optional<double> upper_root(const std::vector<double>& squares, double classical, const Biweight& biweight) {
-  constexpr std::size_t kScan = 20000;
-  constexpr double kStep = 1.25;
-  std::vector<double> few;
-  const std::size_t stride = std::max<std::size_t>(1, squares.size() / kScan);
-  for (std::size_t i = 0; i < squares.size(); i += stride) {
-    few.push_back(squares[i]);
+/// mean chi - E chi as a function of nu over some of the squares.
+struct Equation {
+  std::span<const double> squares;
+  const Biweight& biweight;
+  double operator()(double nu) const {
+    const double bound = 1.0 / (biweight.c * biweight.c * nu);
+    return kernels().biweight_sum(squares.data(), squares.size(), bound) / nu / static_cast<double>(squares.size()) -
+           biweight.mean;
   }
-  const auto excess = [&](const std::vector<double>& over, double nu) {
-    return mean_chi(over.data(), over.size(), nu, biweight.c) - biweight.mean;
-  };
-  double above = 16.0 * classical;
-  double here = above;
-  bool crossed = false;
-  for (int i = 0; i < 200 && !crossed; ++i) {
-    above = here;
-    here /= kStep;
-    crossed = excess(few, here) >= 0.0;
-  }
-  if (!crossed) {
-    return std::nullopt;
-  }
-  double low = here;
-  double high = above;
-  double at_low = excess(squares, low);
-  double at_high = excess(squares, high);
-  for (int i = 0; i < 8 && at_low < 0.0; ++i) {  // the few and the many disagree by a step or two
+};
+
+/// Root in [low, high], where the equation is >= 0 at `low` and < 0 at `high`; `expand`: the ends are guesses, to be
+/// moved until they are. Illinois.
+std::optional<double> bracketed_root(const Equation& equation, double low, double high, bool expand) {
+  double at_low = equation(low);
+  double at_high = equation(high);
+  const double widen = high / low;
+  for (int i = 0; expand && i < 12 && at_low < 0.0; ++i) {
     high = low;
     at_high = at_low;
-    low /= kStep;
-    at_low = excess(squares, low);
+    low /= widen;
+    at_low = equation(low);
   }
-  for (int i = 0; i < 8 && at_high >= 0.0; ++i) {
+  for (int i = 0; expand && i < 12 && at_high >= 0.0; ++i) {
     low = high;
     at_low = at_high;
-    high *= kStep;
-    at_high = excess(squares, high);
+    high *= widen;
+    at_high = equation(high);
   }
   if (at_low < 0.0 || at_high >= 0.0) {
     return std::nullopt;
   }
-  for (int i = 0; i < 60 && high - low > 1e-9 * high; ++i) {  // Illinois
+  for (int i = 0; i < 60 && high - low > 1e-10 * high; ++i) {
     double middle = (low * at_high - high * at_low) / (at_high - at_low);
     if (!(middle > low && middle < high)) {
       middle = 0.5 * (low + high);
     }
-    const double value = excess(squares, middle);
+    const double value = equation(middle);
+    if (std::fabs(value) < 1e-10 * equation.biweight.mean) {
+      return middle;
+    }
     if (value >= 0.0) {
       low = middle;
       at_low = value;
@@ -106,11 +76,37 @@ std::optional<double> upper_root(const std::vector<double>& squares, double clas
       at_high = value;
       at_low *= 0.5;
     }
-    if (std::fabs(value) < 1e-10) {
-      return middle;
-    }
   }
   return 0.5 * (low + high);
+}
+
+/// The largest root of mean chi = E chi, or nothing. Scanned downwards and solved on at most some 20,000 of the
+/// squares, then on all of them from a bracket of that root's standard error, which takes four or five looks at the
+/// data.
+std::optional<double> upper_root(const std::vector<double>& squares, double classical, const Biweight& biweight) {
+  constexpr std::size_t kScan = 20000;
+  constexpr double kStep = 1.25;
+  std::vector<double> few;
+  const std::size_t stride = std::max<std::size_t>(1, squares.size() / kScan);
+  for (std::size_t i = 0; i < squares.size(); i += stride) {
+    few.push_back(squares[i]);
+  }
+  const Equation over_few{few, biweight};
+  double here = 16.0 * classical;
+  bool crossed = false;
+  for (int i = 0; i < 200 && !crossed; ++i) {
+    here /= kStep;
+    crossed = over_few(here) >= 0.0;
+  }
+  if (!crossed) {
+    return std::nullopt;
+  }
+  const std::optional<double> near = bracketed_root(over_few, here, here * kStep, false);
+  if (!near || stride == 1) {
+    return near;
+  }
+  const double error = 1.0 + 3.0 / std::sqrt(static_cast<double>(few.size()));
+  return bracketed_root({squares, biweight}, *near / error, *near * error, true);
 }
 
 }  // namespace
