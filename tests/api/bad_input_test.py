@@ -152,13 +152,13 @@ class Refused(DaemonTest):
         packed = io.BytesIO()
         with gzip.GzipFile(fileobj=packed, mode="wb", compresslevel=9, mtime=0) as stream:
             stream.write(header)
-            for _ in range(300):
+            for _ in range(360):
                 stream.write(zeros)
         started = time.monotonic()
         self.refused(packed.getvalue(), 413, "decompression_limit")
         rows = b"0\n" * (1 << 19)
         compressor = lzma.LZMACompressor(preset=0)
-        text = compressor.compress(b"gz\n") + b"".join(compressor.compress(rows) for _ in range(300)) + compressor.flush()
+        text = compressor.compress(b"gz\n") + b"".join(compressor.compress(rows) for _ in range(360)) + compressor.flush()
         self.refused(text, 413, "decompression_limit")
         self.refused(gzip.compress(b"gz\n" + b"1" * (64 << 20), 1), 413, "limit_exceeded")
         self.refused(gzip.compress(gzip.compress(samples.gyro_csv())), 415, "unsupported_format")

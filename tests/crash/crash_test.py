@@ -1,0 +1,184 @@
+"""kill -9 at every named point of upload, claim, work and finish, and at random; then a restart.
+
+Afterwards: nothing acknowledged is lost, no half recording is listed, no result appears twice, the same upload and the
+same job succeed, and the database is whole.
+"""
+from __future__ import annotations
+
+import hashlib
+import http.client
+import random
+import signal
+import sqlite3
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import samples
+from daemon import PROGRAM, Daemon, events
+
+MODELS = ["WN", "WN+GM"]
+LOST = (http.client.HTTPException, OSError)  # what a client sees of a daemon that dies
+
+
+def crash_points() -> list[str]:
+    return subprocess.run([PROGRAM, "crash-points"], capture_output=True, text=True, check=True).stdout.split()
+
+
+class Acknowledged:
+    """What clients were told, and what must therefore be there after any crash."""
+
+    def __init__(self) -> None:
+        self.recordings: dict[str, bytes] = {}  # id -> content
+        self.jobs: dict[str, str] = {}  # id -> the recording it is about
+        self.succeeded: dict[str, str] = {}  # id -> digest of the result that was read
+
+    def upload(self, daemon: Daemon, content: bytes) -> str:
+        answer = daemon.upload(content, rate_hz=100, columns=samples.GYRO_Z)
+        assert answer.status in (200, 201), answer.describe()
+        self.recordings[answer.json["id"]] = content
+        return str(answer.json["id"])
+
+    def queue(self, daemon: Daemon, recording: str) -> str:
+        answer = daemon.characterise(recording, models=MODELS)
+        assert answer.status in (200, 202), answer.describe()
+        self.jobs[answer.json["id"]] = recording
+        return str(answer.json["id"])
+
+    def finish(self, daemon: Daemon, job: str) -> None:
+        document = daemon.finished(job)
+        assert document["state"] == "succeeded", document
+        result = daemon.get(document["result"]["href"])
+        assert result.status == 200, result.describe()
+        self.succeeded[job] = hashlib.sha256(result.body).hexdigest()
+
+
+class CrashTest(unittest.TestCase):
+    def check(self, daemon: Daemon, told: Acknowledged) -> None:
+        """The invariants, on a daemon that was started after the crash."""
+        self.assertEqual(daemon.files("incoming"), [])
+        listed = {recording["id"]: recording for recording in daemon.items("/v1/recordings?limit=2")}
+        self.assertLessEqual(set(told.recordings), set(listed), "an acknowledged recording is lost")
+        pairs = [(recording["device"], recording["file"]["sha256"]) for recording in listed.values()]
+        self.assertEqual(len(pairs), len(set(pairs)), "a recording is there twice")
+        for identity, recording in listed.items():
+            sha256 = recording["file"]["sha256"]
+            content = (daemon.data / "blobs" / sha256[:2] / sha256).read_bytes()
+            self.assertEqual(hashlib.sha256(content).hexdigest(), sha256, "a blob is damaged")
+            self.assertIn(f"{sha256[:2]}/{sha256}.columns", daemon.files("columns"))
+            if identity in told.recordings:
+                self.assertEqual(content, told.recordings[identity])
+        jobs = {job["id"]: job for job in daemon.items("/v1/jobs?limit=2")}
+        self.assertLessEqual(set(told.jobs), set(jobs), "an acknowledged job is lost")
+        for job in jobs:  # queued again, or taken up where it was
+            told.jobs.setdefault(job, jobs[job]["request"]["inputs"]["recordings"][0]["id"])
+            before = told.succeeded.get(job)
+            told.finish(daemon, job)
+            self.assertIn(before, (None, told.succeeded[job]), "a result that was read has changed")
+        for recording in listed:  # every listed recording can be characterised, and one result is one job
+            told.finish(daemon, told.queue(daemon, recording))
+        for identity, content in list(told.recordings.items()):
+            self.assertEqual(told.upload(daemon, content), identity, "the same bytes are another recording")
+        for job in told.succeeded:
+            self.check_job(daemon, job)
+
+    def check_job(self, daemon: Daemon, job: str) -> None:
+        fits = daemon.items(f"/v1/fits?job={job}")
+        self.assertEqual(sorted(fit["model"] for fit in fits), sorted(MODELS), "results are written once")
+        states = [event.data["state"] for event in events(daemon, job) if event.type == "state"]
+        self.assertEqual(states.count("succeeded"), 1, states)
+        self.assertEqual(states[-1], "succeeded", states)
+
+    def check_at_rest(self, daemon: Daemon) -> None:
+        """Stops the daemon; then the database is whole and every row has one set of results."""
+        self.assertEqual(daemon.terminate(), 0)
+        database = sqlite3.connect(daemon.data / "driftlab.db")
+        try:
+            self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
+            self.assertEqual(database.execute("PRAGMA foreign_key_check").fetchall(), [])
+            self.assertEqual(database.execute("SELECT count(*) FROM jobs WHERE state = 'succeeded'").fetchone(),
+                             database.execute("SELECT count(*) FROM job_results").fetchone())
+            self.assertEqual(database.execute("SELECT count(*) FROM fits").fetchone()[0],
+                             len(MODELS) * database.execute("SELECT count(*) FROM job_results").fetchone()[0])
+        finally:
+            database.close()
+
+
+class NamedPoints(CrashTest):
+    def test_there_are_points_of_upload_and_of_the_job(self) -> None:
+        points = crash_points()
+        self.assertGreaterEqual(len(points), 10)
+        self.assertEqual({point.partition(".")[0] for point in points}, {"upload", "job"})
+        self.assertNotEqual(subprocess.run([PROGRAM, "--data", "/nonexistent"], env={"DRIFTLAB_CRASH_AT": "nowhere"}, capture_output=True, check=False).returncode, 0)
+
+    def crash_at(self, point: str) -> None:
+        content = samples.gyro_csv(40_000, seed=7)  # more than one piece of 256 KiB
+        with tempfile.TemporaryDirectory(prefix="driftlab-crash-") as folder:
+            data = Path(folder) / "data"
+            told = Acknowledged()
+            with Daemon(data) as daemon:  # an earlier, undisturbed life
+                told.finish(daemon, told.queue(daemon, told.upload(daemon, samples.gyro_csv(seed=1))))
+                self.assertEqual(daemon.terminate(), 0)
+            with Daemon(data, environment={"DRIFTLAB_CRASH_AT": point}) as daemon:
+                try:
+                    told.finish(daemon, told.queue(daemon, told.upload(daemon, content)))
+                except LOST:
+                    pass
+                self.assertEqual(daemon.wait(), -signal.SIGKILL, f"{point} was not reached")
+            self.assertEqual(len(told.recordings), 1 if point.startswith("upload.") else 2)
+            with Daemon(data) as daemon:
+                self.check(daemon, told)
+                recording = told.upload(daemon, content)  # acknowledged or not, it works now
+                self.assertEqual(daemon.get(f"/v1/recordings/{recording}").json["file"]["sha256"], hashlib.sha256(content).hexdigest())
+                told.finish(daemon, told.queue(daemon, recording))
+                self.assertEqual(len(daemon.items("/v1/recordings")), 2)
+                self.assertEqual(len(daemon.items("/v1/jobs")), 2, "the same job is one job, whatever crashed")
+                self.check(daemon, told)
+                self.check_at_rest(daemon)
+
+    def test_every_point(self) -> None:
+        for point in crash_points():
+            with self.subTest(point=point):
+                self.crash_at(point)
+
+
+class RandomMoments(CrashTest):
+    def test_ten_lives_of_one_directory(self) -> None:
+        """Clients upload and queue all the time; the daemon is killed after a random while, ten times over."""
+        generator = random.Random(20261121)
+        with tempfile.TemporaryDirectory(prefix="driftlab-crash-") as folder:
+            data = Path(folder) / "data"
+            told = Acknowledged()
+            for life in range(10):
+                with Daemon(data) as daemon:
+                    self.assertEqual(daemon.files("incoming"), [])
+                    stop = threading.Event()
+
+                    def client(number: int, daemon: Daemon = daemon, life: int = life) -> None:
+                        seed = 1000 * life + 100 * number
+                        while not stop.is_set():
+                            seed += 1
+                            try:
+                                told.finish(daemon, told.queue(daemon, told.upload(daemon, samples.gyro_csv(300, seed=seed))))
+                            except LOST:
+                                return
+
+                    threads = [threading.Thread(target=client, args=(number,)) for number in range(2)]
+                    for thread in threads:
+                        thread.start()
+                    time.sleep(generator.uniform(0.02, 0.5))
+                    daemon.kill()
+                    stop.set()
+                    for thread in threads:
+                        thread.join()
+            self.assertGreater(len(told.recordings), 10, "the clients did too little")
+            with Daemon(data) as daemon:
+                self.check(daemon, told)
+                self.check_at_rest(daemon)
+
+
+if __name__ == "__main__":
+    unittest.main()
