@@ -1,6 +1,7 @@
 #include "core/variance/haar_variance.hpp"
 
 #include "core/variance/kernels.hpp"
+#include "core/variance/prefix_sums.hpp"
 
 #include <algorithm>
 #include <array>
@@ -65,35 +66,9 @@ class Pyramid {
   std::vector<CompensatedSum> power_;
 };
 
-/// Prefix sums of a block on top of `base` (with its rounding error `carry`), both moved to the block's end. Four quarters run
-/// at once: a single running sum would wait for its own last addition.
-void extend_prefix(const double* samples, std::size_t count, double pivot, double& base, double& carry, double* out) {
-  const std::size_t quarter = count / 4;
-  std::array<double, 4> inside{};
-  for (std::size_t i = 0; i < quarter; ++i) {
-    for (std::size_t q = 0; q < 4; ++q) {
-      inside[q] += samples[q * quarter + i] - pivot;
-      out[q * quarter + i] = inside[q];
-    }
-  }
-  for (std::size_t i = 4 * quarter; i < count; ++i) {
-    inside[3] += samples[i] - pivot;
-    out[i] = inside[3];
-  }
-  for (std::size_t q = 0; q < 4; ++q) {
-    const std::size_t end = q == 3 ? count : (q + 1) * quarter;
-    for (std::size_t i = q * quarter; i < end; ++i) {
-      out[i] = base + (out[i] + carry);
-    }
-    const double next = base + (inside[q] + carry);
-    carry = (inside[q] + carry) - (next - base);
-    base = next;
-  }
-}
-
 /// Adds the squares of the long filters that end in this block.
-void long_scales(const double* prefix, std::size_t start, std::size_t count,
-                 std::span<const std::size_t> half, std::span<CompensatedSum> power) {
+void long_scales(const double* prefix, std::size_t start, std::size_t count, std::span<const std::size_t> half,
+                 std::span<CompensatedSum> power) {
   std::size_t whole = 0;  // levels whose filter fits before every end of the block
   while (whole < half.size() && 2 * half[whole] <= start + 1) {
     ++whole;
@@ -136,7 +111,7 @@ HaarVariance haar_variance(std::span<const double> samples, double pivot) {
     if (levels == short_levels) {
       continue;
     }
-    extend_prefix(samples.data() + start, count, pivot, block_base, base_carry, prefix.get() + start + 1);
+    extend_prefix(samples.subspan(start, count), pivot, block_base, base_carry, prefix.get() + start + 1);
     long_scales(prefix.get(), start, count, std::span(result.half).subspan(short_levels),
                 std::span(power).subspan(short_levels));
   }

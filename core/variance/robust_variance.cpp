@@ -1,16 +1,18 @@
 #include "core/variance/robust_variance.hpp"
 
 #include "core/variance/kernels.hpp"
+#include "core/variance/prefix_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 
 namespace driftlab {
 namespace {
 
 /// Squares of every m/8-th coefficient at half length m, from prefix sums.
-void thinned_squares(const std::vector<double>& prefix, std::size_t m, std::vector<double>& squares) {
+void thinned_squares(std::span<const double> prefix, std::size_t m, std::vector<double>& squares) {
   const std::size_t stride = std::max<std::size_t>(1, m / 8);
   const double scale = 1.0 / (4.0 * static_cast<double>(m) * static_cast<double>(m));
   squares.resize((prefix.size() - 2 * m + stride - 1) / stride);
@@ -113,22 +115,13 @@ std::optional<double> upper_root(const std::vector<double>& squares, double clas
 
 RobustVariance robust_variance(std::span<const double> samples, double pivot, const HaarVariance& curve,
                                const VarianceIntervals& classical, HaarCovariance& plan) {
-  std::vector<double> prefix(samples.size() + 1, 0.0);
-  double sum = 0.0;
-  double carry = 0.0;
-  for (std::size_t t = 0; t < samples.size(); ++t) {
-    const double y = (samples[t] - pivot) - carry;
-    const double next = sum + y;
-    carry = (next - sum) - y;
-    sum = next;
-    prefix[t + 1] = sum;
-  }
+  const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot);
   RobustVariance result;
   std::vector<double> squares;
   for (std::size_t j = 0; j < curve.scales(); ++j) {
     const auto sums = plan.correlation_sums(j, j, classical.mixture);
     const Biweight biweight = tune_biweight(sums);
-    thinned_squares(prefix, curve.half[j], squares);
+    thinned_squares({prefix.get(), samples.size() + 1}, curve.half[j], squares);
     const auto raw = *std::max_element(squares.begin(), squares.end());
     double mean_square = 0.0;
     for (const double square : squares) {

@@ -1,5 +1,6 @@
 // Octave variances in units of one vectorised sum of the same array ("reads"): run both, divide.
 #include "core/process/random.hpp"
+#include "core/variance/allan_variance.hpp"
 #include "core/variance/contamination.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/robust_variance.hpp"
@@ -53,8 +54,17 @@ void RobustVariances(benchmark::State& state) {  // NOLINT(readability-identifie
   }
 }
 
+void TwoHundredTaus(benchmark::State& state) {  // NOLINT(readability-identifier-naming)
+  const auto& x = series(static_cast<std::size_t>(state.range(0)));
+  const auto m = log_spaced_half_lengths(x.size(), 200);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(allan_variance(x, 0.0, m));
+  }
+}
+
 BENCHMARK(OneRead)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(OctaveVariances)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(TwoHundredTaus)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(RobustVariances)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
 }  // namespace

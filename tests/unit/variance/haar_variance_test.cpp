@@ -1,11 +1,14 @@
 #include "core/variance/haar_variance.hpp"
 
 #include "core/process/random.hpp"
+#include "core/variance/allan_variance.hpp"
 #include "core/variance/samples.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace driftlab {
@@ -74,6 +77,31 @@ TEST(HaarVariance, BiasOfAMillionSigmaCostsNoDigits) {
   for (std::size_t j = 0; j < a.scales(); ++j) {
     EXPECT_NEAR(a.variance[j], b.variance[j], 1e-12 * b.variance[j]) << j;
   }
+}
+
+TEST(AllanVariance, AnyAveragingTimeEqualsItsDefinitionAndTwiceTheWaveletVariance) {
+  const std::vector<double> x = white(9000, 21);
+  const double pivot = summarise(x)->mean;
+  const std::vector<std::size_t> m{1, 2, 3, 7, 100, 1000, 4096, 4500};
+  const std::vector<double> variances_at = allan_variance(x, pivot, m);
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    const double expected = 2.0 * by_definition(x, m[k]);
+    EXPECT_NEAR(variances_at[k], expected, 1e-12 * expected) << m[k];
+  }
+  const HaarVariance curve = variances(x);
+  const std::vector<double> octaves = allan_variance(x, pivot, curve.half);
+  for (std::size_t j = 0; j < curve.scales(); ++j) {
+    EXPECT_NEAR(octaves[j], 2.0 * curve.variance[j], 1e-12 * octaves[j]);
+  }
+}
+
+TEST(AllanVariance, LogSpacedTimesRiseFromOneToHalfTheRecord) {
+  const auto m = log_spaced_half_lengths(1000000, 200);
+  EXPECT_EQ(m.front(), 1U);
+  EXPECT_EQ(m.back(), 500000U);
+  EXPECT_TRUE(std::adjacent_find(m.begin(), m.end(), std::greater_equal<>()) == m.end());
+  EXPECT_TRUE(log_spaced_half_lengths(1, 10).empty());
+  EXPECT_EQ(log_spaced_half_lengths(2, 10), std::vector<std::size_t>{1});
 }
 
 TEST(HaarVariance, RampGivesItsClosedForm) {
