@@ -90,7 +90,7 @@ TEST(ColumnFile, HoldsThousandColumnsInBoundedBuffers) {
   }
   const auto file = ColumnFile::open(write_table(directory, names, 5000));
   ASSERT_TRUE(file);
-  const std::vector<double> values = noise(5000 * 1024);
+  const std::vector<double> values = noise(std::size_t{5000} * 1024);
   EXPECT_EQ(file->column(1023)[4999], values.back());
   EXPECT_EQ(file->column(512)[2100], values[2100 * 1024 + 512]);
 }

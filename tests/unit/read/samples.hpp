@@ -183,9 +183,9 @@ std::string number_bytes(const std::vector<double>& values, bool swap = false) {
 }
 
 inline std::vector<double> ramp(std::size_t count) {
-  std::vector<double> values;
+  std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) {
-    values.push_back(0.25 * static_cast<double>(i) - 3.0);
+    values[i] = 0.25 * static_cast<double>(i) - 3.0;
   }
   return values;
 }

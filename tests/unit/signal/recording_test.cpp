@@ -140,9 +140,9 @@ RecordingSpec at_rate(double rate_hz, Trim trim = {}) {
 }
 
 std::vector<double> stamps(std::size_t count, double step) {
-  std::vector<double> values;
+  std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) {
-    values.push_back(static_cast<double>(i) * step);
+    values[i] = static_cast<double>(i) * step;
   }
   return values;
 }
@@ -281,9 +281,10 @@ TEST(PlanWindow, AnalysesTheLongestStretchWithoutAGap) {
 
 TEST(PlanWindow, UnderstandsFifosStampedAtOnce) {
   // Four samples share each stamp, every 40 ms; the eleventh FIFO is lost.
-  std::vector<double> time;
-  for (int i = 0; i < 400; ++i) {
-    time.push_back(0.04 * ((i / 4) + (i >= 40 ? 1 : 0)));
+  std::vector<double> time(400);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const std::size_t fifo = i / 4 + (i >= 40 ? 1 : 0);
+    time[i] = 0.04 * static_cast<double>(fifo);
   }
   const auto window = plan({}, time);
   ASSERT_TRUE(window) << window.error().message;
@@ -306,9 +307,9 @@ TEST(PlanWindow, SeesOneMissingSample) {
 
 TEST(PlanWindow, MeasuresTheMeanOfCoarseStamps) {
   // 300 Hz stamped in whole milliseconds: steps of 3 and 4 ms, median 3; the mean is right.
-  std::vector<double> time;
-  for (int i = 0; i < 3001; ++i) {
-    time.push_back(std::floor(i * 1000.0 / 300.0));
+  std::vector<double> time(3001);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    time[i] = std::floor(static_cast<double>(i) * 1000.0 / 300.0);
   }
   const auto window = plan({}, time, "ms");
   ASSERT_TRUE(window);
