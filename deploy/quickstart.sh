@@ -74,9 +74,11 @@ if [ -z "$bin" ]; then
   # The suites need more packages; a tree that was configured with them keeps them.
   options=()
   [ -f "$build/CMakeCache.txt" ] || options=(-DDRIFTLAB_TESTS=OFF -DDRIFTLAB_BENCH=OFF)
-  [ -x "$build/bin/driftlabd" ] || say "Building driftlab (the first time takes some minutes)"
   (cd "$repository" && cmake --preset release "${options[@]}") >"$logs/configure.log" 2>&1 ||
     { tail -n 20 "$logs/configure.log" >&2; fail "configuring failed; the whole output is in $logs/configure.log"; }
+  # A dry run that ends otherwise means work, some minutes of it the first time.
+  [[ "$(ninja -C "$build" -n driftlab driftlabd 2>&1)" == *"no work to do." ]] ||
+    say "Building driftlab (the first time takes some minutes)"
   if [ -t 1 ]; then
     NINJA_STATUS='  [%f/%t] ' ninja -C "$build" --quiet driftlab driftlabd || fail "the build failed"
   else
