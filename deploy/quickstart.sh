@@ -76,15 +76,16 @@ if [ -z "$bin" ]; then
   [ -f "$build/CMakeCache.txt" ] || options=(-DDRIFTLAB_TESTS=OFF -DDRIFTLAB_BENCH=OFF)
   (cd "$repository" && cmake --preset release "${options[@]}") >"$logs/configure.log" 2>&1 ||
     { tail -n 20 "$logs/configure.log" >&2; fail "configuring failed; the whole output is in $logs/configure.log"; }
-  # A dry run that ends otherwise means work, some minutes of it the first time.
-  [[ "$(ninja -C "$build" -n driftlab driftlabd 2>&1)" == *"no work to do." ]] ||
-    say "Building driftlab (the first time takes some minutes)"
-  if [ -t 1 ]; then
-    NINJA_STATUS='  [%f/%t] ' ninja -C "$build" --quiet driftlab driftlabd || fail "the build failed"
+  # Said only where there is something to wait for.
+  (sleep 3 >/dev/null 2>&1 && say "Building driftlab (the first time takes some minutes)") &
+  notice=$!
+  if [ -t 1 ] && [ ! -x "$build/bin/driftlabd" ]; then
+    NINJA_STATUS='  [%f/%t] ' ninja -C "$build" --quiet driftlab driftlabd || built=no
   else
-    ninja -C "$build" driftlab driftlabd >"$logs/build.log" 2>&1 ||
-      { tail -n 40 "$logs/build.log" >&2; fail "the build failed; the whole output is in $logs/build.log"; }
+    ninja -C "$build" driftlab driftlabd >"$logs/build.log" 2>&1 || { built=no; tail -n 40 "$logs/build.log" >&2; }
   fi
+  kill "$notice" 2>/dev/null || true
+  [ -z "${built:-}" ] || fail "the build failed"
   bin=$build/bin
 fi
 for program in driftlab driftlabd; do
