@@ -1,0 +1,113 @@
+#include "server/http/guard.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace driftlab::server {
+namespace {
+
+const GuardLimits kLimits{8 * 1024, {"localhost", "127.0.0.1", "[::1]"}};
+
+HeadView head(std::string_view method, std::vector<std::pair<std::string, std::string>> headers) {
+  return {11, method, "/v1/devices", std::move(headers)};
+}
+
+/// The slug of the refusal, or an empty text.
+std::string refusal(const HeadView& view) {
+  const GuardVerdict verdict = inspect(view, kLimits);
+  if (!verdict.refusal) {
+    return "";
+  }
+  return nlohmann::json::parse(verdict.refusal->body)["code"].get<std::string>();
+}
+
+TEST(Guard, LetsAnOrdinaryRequestPass) {
+  const GuardVerdict verdict = inspect(
+      head("POST", {{"host", "localhost:8477"}, {"content-length", "12"}, {"expect", "100-continue"}}), kLimits);
+  EXPECT_FALSE(verdict.refusal);
+  EXPECT_EQ(verdict.content_length, 12U);
+  EXPECT_TRUE(verdict.expects_continue);
+}
+
+TEST(Guard, AnswersOnlyForItsOwnHosts) {
+  for (const char* const host : {"localhost", "LocalHost:1", "127.0.0.1:8477", "[::1]", "[::1]:8477"}) {
+    EXPECT_EQ(refusal(head("GET", {{"host", host}})), "") << host;
+  }
+  for (const char* const host :
+       {"", "evil.example", "localhost.evil.example", "[::1", "[", "[]", "::1", "127.0.0.1.", "a@localhost"}) {
+    EXPECT_EQ(refusal(head("GET", {{"host", host}})), "host_not_allowed") << host;
+  }
+  EXPECT_EQ(refusal(head("GET", {})), "host_not_allowed");
+}
+
+TEST(Guard, RefusesWhatMayBeGivenOnceWhenItComesTwice) {
+  EXPECT_EQ(refusal(head("GET", {{"host", "localhost"}, {"host", "localhost"}})), "host_not_allowed");
+  for (const char* const name : {"content-length", "content-type", "authorization", "origin"}) {
+    const std::string value = name == std::string("origin") ? "http://localhost" : "1";
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {name, value}, {name, value}})), "bad_request") << name;
+  }
+}
+
+TEST(Guard, RefusesEveryTransferEncodingWhateverElseIsThere) {
+  for (const char* const coding : {"chunked", "gzip", "identity", "", "chunked, gzip"}) {
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"transfer-encoding", coding}})), "length_required");
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"content-length", "4"}, {"transfer-encoding", coding}})),
+              "length_required");
+  }
+}
+
+TEST(Guard, ReadsContentLengthStrictly) {
+  for (const char* const length : {"", "-1", "+1", " 1", "1 ", "0x10", "1e3", "1,1", "18446744073709551616"}) {
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"content-length", length}})), "bad_request") << length;
+  }
+  EXPECT_EQ(inspect(head("POST", {{"host", "localhost"}, {"content-length", "18446744073709551615"}}), kLimits)
+                .content_length,
+            18446744073709551615U);
+}
+
+TEST(Guard, RefusesBodiesOfOldHttpAndLongTargets) {
+  HeadView old = head("POST", {{"host", "localhost"}, {"content-length", "1"}});
+  old.version = 10;
+  EXPECT_EQ(refusal(old), "bad_request");
+  HeadView reading = head("GET", {{"host", "localhost"}});
+  reading.version = 10;
+  EXPECT_EQ(refusal(reading), "");
+  std::string target(kLimits.target_bytes + 1, 'a');
+  target[0] = '/';
+  target[1] = '/';
+  HeadView long_target = head("GET", {{"host", "localhost"}});
+  long_target.target = target;
+  EXPECT_EQ(refusal(long_target), "target_too_long");
+  long_target.target = std::string_view(target).substr(1);
+  EXPECT_EQ(refusal(long_target), "");
+}
+
+TEST(Guard, LetsPagesOfOtherOriginsReadButChangeNothing) {
+  for (const char* const origin :
+       {"http://evil.example", "null", "", "localhost", "http://localhost.evil.example", "http://"}) {
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"origin", origin}})), "origin_not_allowed") << origin;
+    EXPECT_EQ(refusal(head("DELETE", {{"host", "localhost"}, {"origin", origin}})), "origin_not_allowed") << origin;
+    EXPECT_EQ(refusal(head("GET", {{"host", "localhost"}, {"origin", origin}})), "") << origin;
+  }
+  for (const char* const origin : {"http://localhost:8477", "https://127.0.0.1", "http://[::1]:80"}) {
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"origin", origin}})), "") << origin;
+  }
+}
+
+TEST(Guard, MeetsOneExpectationOnly) {
+  EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"expect", "100-Continue"}})), "");
+  EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"expect", "202-later"}})), "bad_request");
+}
+
+TEST(RequestId, IsShortAndPlain) {
+  EXPECT_TRUE(is_request_id("a"));
+  EXPECT_TRUE(is_request_id("Az09._-"));
+  EXPECT_TRUE(is_request_id(std::string(64, 'x')));
+  for (const std::string& text : {std::string(), std::string(65, 'x'), std::string("a b"), std::string("a\r\nb"),
+                                  std::string("é"), std::string("a\0b", 3)}) {
+    EXPECT_FALSE(is_request_id(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace driftlab::server
