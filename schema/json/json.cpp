@@ -106,6 +106,11 @@ std::string escaped(std::string_view name) {
 }  // namespace
 
 Result<Json> parse_json(std::string_view text) {
+  // nlohmann takes a zero byte for the end of its input and would ignore whatever comes after it.
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    return fail(ErrorCode::ParseError, "The JSON document cannot be read: it holds a zero byte.",
+                {{"byte", std::to_string(zero + 1)}});
+  }
   StrictSax strict;
   if (!Json::sax_parse(text, &strict)) {
     std::vector<ErrorField> fields;
