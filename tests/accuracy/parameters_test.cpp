@@ -94,6 +94,9 @@ TEST(Accuracy, ParameterIntervalsCoverTheTruth) {
       const double percent = 100.0 / static_cast<double>(runs);
       for (const Process& process : one.model) {
         for (const ParameterSpec& spec : process.kind->parameters) {
+          EXPECT_GT(percent * static_cast<double>(tally[k].profile),
+                    93.0 - 300.0 * std::sqrt(0.95 * 0.05 / static_cast<double>(runs)))
+              << one.name << " " << spec.name;
           section.print("%s %.1f/%.1f", std::string(spec.name).c_str(), percent * static_cast<double>(tally[k].profile),
                         percent * static_cast<double>(tally[k].preview));
           if (tally[k].unidentified > 0) {

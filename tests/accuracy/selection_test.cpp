@@ -114,6 +114,12 @@ TEST(Accuracy, CriterionFindsTheTruth) {
       }
     }
     const double percent = 100.0 / static_cast<double>(runs);
+    const std::map<std::string, double> promised{{"WN", 99.0}, {"WN+GM", 98.0}, {"WN+GM+RW", 83.0}};
+    const double slack = 300.0 * std::sqrt(0.05 / static_cast<double>(runs));
+    if (promised.contains(name)) {
+      EXPECT_GT(percent * static_cast<double>(tally[0].truth), promised.at(name) - slack);
+    }
+    EXPECT_GT(percent * static_cast<double>(tally[0].held), 95.0 - slack) << name;
     for (std::size_t c = 0; c < criteria.size(); ++c) {
       const Tally& t = tally[c];
       section.print("| %s | %s | %.1f | %.1f | %.1f | %.1f |", name, criteria[c].c_str(),
