@@ -19,7 +19,7 @@ import unittest
 from pathlib import Path
 
 import samples
-from daemon import Answer, Daemon, parse_answer
+from daemon import Answer, Daemon, parse_answer, read_answer
 from suite import DaemonTest
 
 TIMED = "t=time::s,gz=angular_rate:z:deg/s"
@@ -204,7 +204,7 @@ class Interrupted(DaemonTest):
         with self.daemon.connect() as connection:
             connection.sendall(self.head(len(content) + 1) + content)
             connection.shutdown(1)
-            answer = parse_answer(connection.recv(65536), "POST", self.TARGET)
+            answer = read_answer(connection, "POST", self.TARGET)
         self.contract.judge(answer)
         self.problem(400, "incomplete_body", answer)
 

@@ -213,6 +213,21 @@ def read_all(connection: socket.socket) -> bytes:
     return b"".join(pieces)
 
 
+def read_answer(connection: socket.socket, method: str = "GET", target: str = "") -> Answer:
+    """One whole answer from a bare connection that may stay open."""
+    raw = b""
+    while b"\r\n\r\n" not in raw:
+        piece = connection.recv(65536)
+        assert piece, f"closed after {raw!r}"
+        raw += piece
+    wanted = int(parse_answer(raw).headers.get("content-length", 0)) + raw.index(b"\r\n\r\n") + 4
+    while len(raw) < wanted:
+        piece = connection.recv(wanted - len(raw))
+        assert piece, f"closed after {raw!r}"
+        raw += piece
+    return parse_answer(raw, method, target)
+
+
 def parse_answer(raw: bytes, method: str = "GET", target: str = "") -> Answer:
     """The first answer in bytes read from a bare connection."""
     head, _, rest = raw.partition(b"\r\n\r\n")

@@ -6,7 +6,7 @@ import re
 import unittest
 
 import samples
-from daemon import Answer, parse_answer
+from daemon import Answer, parse_answer, read_answer
 from suite import DaemonTest
 
 
@@ -46,7 +46,7 @@ class Problems(DaemonTest):
         with d.connect() as connection:
             connection.sendall(b"POST /v1/devices HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n{")
             connection.shutdown(1)
-            answers.append(parse_answer(connection.recv(65536)))
+            answers.append(read_answer(connection))
             self.contract.check_problem(answers[-1])
         found: dict[str, Answer] = {}
         for answer in answers:

@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 
 import samples
-from daemon import PATIENCE_S, Answer, multipart, parse_answer
+from daemon import PATIENCE_S, Answer, multipart, parse_answer, read_answer
 from suite import DaemonTest
 
 METADATA = {"device": "phone-07", "rate_hz": 100,
@@ -109,7 +109,7 @@ class Metadata(DaemonTest):
             connection.sendall(head)
             for start in range(0, len(body), 7):
                 connection.sendall(body[start:start + 7])
-            answer = parse_answer(connection.recv(65536))
+            answer = read_answer(connection)
         self.expect(201, answer)
         self.assertEqual(answer.json["file"]["sha256"], hashlib.sha256(content).hexdigest())
 
