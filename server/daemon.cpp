@@ -3,6 +3,7 @@
 #include "server/api/api.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
+#include "server/jobs/fault_recorder.hpp"
 #include "server/jobs/worker_pool.hpp"
 #include "server/observe/log.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
@@ -31,6 +32,26 @@ void log_request(const AccessRecord& record) {
                            {"seconds", record.seconds},
                            {"request_id", record.request_id},
                            {"address", record.address}});
+}
+
+/// Attempts during which an earlier daemon died of a fault count against their jobs.
+Status charge_faults(Store& store, const std::filesystem::path& file) {
+  auto faults = take_recorded_faults(file);
+  if (!faults) {
+    return fail(faults.error());
+  }
+  for (const Lease& lease : *faults) {
+    AttemptFailure failure;
+    failure.problem_json =
+        problem_document({ErrorCode::Internal, "The daemon died of a fault while it ran this job.", {}});
+    failure.retryable = true;
+    failure.fault_signal = true;
+    log_warning("a job brought an earlier daemon down", Json{{"job", lease.job_id}, {"attempt", lease.attempt}});
+    if (auto failed = store.fail_attempt(lease, failure); !failed) {
+      return fail(failed.error());
+    }
+  }
+  return install_fault_recorder(file);
 }
 
 }  // namespace
@@ -97,6 +118,9 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   auto blobs = open_blob_directory(settings.data);
   if (!blobs) {
     return fail(blobs.error());
+  }
+  if (auto charged = charge_faults(**store, settings.data / "faults"); !charged) {
+    return fail(charged.error());
   }
   if (auto ended = (*store)->end_all_leases(); !ended) {
     return fail(ended.error());

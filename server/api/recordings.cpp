@@ -132,10 +132,10 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
   if (auto removed = context.store.remove_recording(recording->id, *revision); !removed) {
     return fail(removed.error());
   }
-  // The files stay while another device's recording holds the same bytes. A failure here leaves files without a row,
-  // which the sweeper removes.
-  if (const auto unused = context.store.remove_unused_blob(recording->blob_sha256); unused && *unused) {
-    (void)context.blobs.remove(recording->blob_sha256);
+  // The files stay: another device's recording may hold the same bytes, and an upload of them may be running. Without a
+  // row the sweeper removes them after a day.
+  if (const auto unused = context.store.remove_unused_blob(recording->blob_sha256); !unused) {
+    return fail(unused.error());
   }
   Response response;
   response.status = 204;

@@ -1,6 +1,7 @@
 #include "server/jobs/attempt.hpp"
 
 #include "schema/json/json.hpp"
+#include "server/jobs/fault_recorder.hpp"
 #include "server/store/crash_point.hpp"
 
 #include <exception>
@@ -39,6 +40,7 @@ Result<JobResults> Attempt::work() {
   RunControl control;
   control.stop = stop_.get_token();
   control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };
+  const FaultScope scope(lease_);
   try {
     return kind_->run(job_.request_json, context_, control);
   } catch (const std::bad_alloc&) {
