@@ -36,7 +36,7 @@ constexpr int kTabulated = 40;
 
 /// Cin(pi k) for whole k.
 double cin_pi(double k) {
-  static const std::array<double, kTabulated> kTable = [] {
+  static const std::array<double, kTabulated> shared_table = [] {
     std::array<double, kTabulated> table{};
     for (int i = 1; i < kTabulated; ++i) {
       table[i] = table[i - 1];
@@ -50,7 +50,7 @@ double cin_pi(double k) {
     return table;
   }();
   if (k < kTabulated) {
-    return kTable[static_cast<std::size_t>(k)];
+    return shared_table[static_cast<std::size_t>(k)];
   }
   // Ci(x) = -cos(x) g(x) at whole multiples of pi; g ~ 1/x^2 (1 - 3!/x^2 + 5!/x^4 - ...), x > 125.
   const double x = kPi * k;
@@ -89,8 +89,8 @@ struct Remainder {
 };
 
 const Remainder& remainder_series() {
-  static const Remainder kSeries;
-  return kSeries;
+  static const Remainder shared_series;
+  return shared_series;
 }
 
 /// int_0^{pi/2} sin^4(mu) r(u) du. sin^4 = 3/8 - cos(2mu)/2 + cos(4mu)/8; for large m by parts.
@@ -131,14 +131,14 @@ double unit_haar_variance(double m) {
 
 /// The values for m = 1 .. 63 cost a numerical integral each; they are made once.
 double cached_unit_haar_variance(double m) {
-  static const std::array<double, 64> kTable = [] {
+  static const std::array<double, 64> shared_table = [] {
     std::array<double, 64> table{};
     for (int i = 1; i < 64; ++i) {
       table[i] = unit_haar_variance(i);
     }
     return table;
   }();
-  return m < 64.0 ? kTable[static_cast<std::size_t>(m)] : unit_haar_variance(m);
+  return m < 64.0 ? shared_table[static_cast<std::size_t>(m)] : unit_haar_variance(m);
 }
 
 /// K with second difference -V/2 for B = 1: K(h) = -(1/pi) sum_{k<h} (h - k) Cin(pi k). Summed below kExact; above, by
@@ -216,8 +216,8 @@ double FlickerNoise::haar_cross(double mi, double mj, double h, double /*dt_s*/)
     const double wave = std::fmod(h, 2.0) == 0.0 ? -1.0 : 1.0;
     return b * b * (smooth + (odd ? wave * square / (mi * mj * kPi * kPi * kPi) : 0.0));
   }
-  static const LagTable kTable;
-  return b * b * haar_cross_of(mi, mj, h, [](double lag) { return kTable.value(std::fabs(lag)); });
+  static const LagTable shared_table;
+  return b * b * haar_cross_of(mi, mj, h, [](double lag) { return shared_table.value(std::fabs(lag)); });
 }
 
 void FlickerNoise::add_path(Random& random, double /*dt_s*/, std::span<double> out) const {

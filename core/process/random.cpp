@@ -16,7 +16,7 @@ struct Ziggurat {
 };
 
 const Ziggurat& ziggurat() {
-  static const Ziggurat kTable = [] {
+  static const Ziggurat shared_table = [] {
     Ziggurat table;
     double density = std::exp(-0.5 * kTailStart * kTailStart);
     table.x[0] = kLayerArea / density;  // the base layer, widened so that it also holds the tail's area
@@ -31,7 +31,7 @@ const Ziggurat& ziggurat() {
     }
     return table;
   }();
-  return kTable;
+  return shared_table;
 }
 
 /// SplitMix64, to turn neighbouring seeds and streams into unrelated words.

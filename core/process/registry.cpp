@@ -12,11 +12,11 @@
 namespace driftlab {
 
 const std::vector<ProcessKind>& process_registry() {
-  static const std::vector<ProcessKind> kRegistry{
+  static const std::vector<ProcessKind> all_kinds{
       kind_of<QuantizationNoise>(), kind_of<WhiteNoise>(),  kind_of<FlickerNoise>(), kind_of<GaussMarkov>(),
       kind_of<RandomWalk>(),        kind_of<LinearDrift>(), kind_of<Sinusoid>(),
   };
-  return kRegistry;
+  return all_kinds;
 }
 
 const ProcessKind* find_process(std::string_view name_or_symbol) {

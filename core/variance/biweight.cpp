@@ -13,14 +13,14 @@ constexpr double kLargest = 12.0;
 
 /// The expansions on a grid of c, made once: tuning is then a search in a table.
 const std::vector<Biweight>& table() {
-  static const std::vector<Biweight> kTable = [] {
+  static const std::vector<Biweight> shared_table = [] {
     std::vector<Biweight> entries;
     for (int i = 0; i < kTableSize; ++i) {
       entries.push_back(Biweight::with(kSmallest + (kLargest - kSmallest) * i / (kTableSize - 1)));
     }
     return entries;
   }();
-  return kTable;
+  return shared_table;
 }
 
 }  // namespace

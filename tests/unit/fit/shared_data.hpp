@@ -62,8 +62,8 @@ inline nlohmann::json read_json(const std::filesystem::path& path) {
 }
 
 inline const std::vector<std::string>& adis_axes() {
-  static const std::vector<std::string> kAxes{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
-  return kAxes;
+  static const std::vector<std::string> axes{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  return axes;
 }
 
 }  // namespace driftlab::shared_data
