@@ -126,8 +126,17 @@ void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, con
   for (Candidate& candidate : candidates) {
     candidate.eq8 = equation_8(moments, candidate.diagonal, sd, common);
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-    return a.criterion(moments.samples) < b.criterion(moments.samples);
+  std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    const double first = a.criterion(moments.samples);
+    const double second = b.criterion(moments.samples);
+    if (first != second) {
+      return first < second;
+    }
+    // Equal criteria: the smaller model, then the name, so that the order does not hang on the order asked for.
+    const auto key = [](const Candidate& c) {
+      return std::pair(c.structure.parameter_count(), model_name(c.structure));
+    };
+    return key(a) < key(b);
   });
 }
 

@@ -240,14 +240,17 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
 
 /// Processes of one kind in a fixed order: the largest shape (fastest) first, vanished ones last.
 void sort_repeats(Model& model) {
-  std::stable_sort(model.begin(), model.end(), [](const Process& a, const Process& b) {
+  std::sort(model.begin(), model.end(), [](const Process& a, const Process& b) {
     if (a.kind != b.kind) {
       return a.kind < b.kind;  // entries of one registry, in its order
     }
     if ((a.parameters[0] > 0.0) != (b.parameters[0] > 0.0)) {
       return a.parameters[0] > 0.0;
     }
-    return a.parameters.size() > 1 && a.parameters[1] > b.parameters[1];
+    if (a.parameters.size() > 1 && a.parameters[1] != b.parameters[1]) {
+      return a.parameters[1] > b.parameters[1];
+    }
+    return a.parameters[0] > b.parameters[0];  // equal in all parameters: interchangeable
   });
 }
 

@@ -111,7 +111,7 @@ Result<Condition> make_condition(const WrittenCondition& written) {
   if (has_value(*kind) != written.unit.has_value()) {
     return misfit(*kind, has_value(*kind) ? "needs a unit for its value" : "takes no unit", "unit");
   }
-  if (written.value) {
+  if (written.value && written.unit) {
     if (!std::isfinite(*written.value)) {
       return misfit(*kind, "needs a finite value", "value");
     }

@@ -81,7 +81,7 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
   for (std::size_t i = 0; i < roles->size(); ++i) {
     if ((*roles)[i] && (*roles)[i]->quantity == Quantity::Time) {
       time = column(i);
-      time_unit = (*roles)[i]->unit.value_or(*parse_unit("s"));
+      time_unit = (*roles)[i]->unit.value_or(Unit{});
     }
   }
   auto window = plan_window(spec, rows, time, time_unit);

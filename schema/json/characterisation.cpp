@@ -29,6 +29,27 @@ Json allan_json(const AllanCurve& curve, double factor) {
               {"edf", std::move(edf)}};
 }
 
+/// Robust variances, null where the estimator has no root. `efficiency` is the mean over the scales where it has one.
+Json robust_json(const HaarCurve& curve, double square_factor) {
+  Json variance = Json::array();
+  Json ci95 = Json::array();
+  Json efficiencies = Json::array();
+  double sum = 0.0;
+  int defined = 0;
+  for (std::size_t i = 0; i < curve.robust_variance.size(); ++i) {
+    const std::optional<double>& value = curve.robust_variance[i];
+    variance.push_back(value ? number(*value * square_factor) : Json(nullptr));
+    ci95.push_back(value ? interval(curve.robust_ci95[i], square_factor) : Json(nullptr));
+    efficiencies.push_back(value ? number(curve.robust_efficiency[i]) : Json(nullptr));
+    sum += value ? curve.robust_efficiency[i] : 0.0;
+    defined += value ? 1 : 0;
+  }
+  return Json{{"variance", std::move(variance)},
+              {"ci95", std::move(ci95)},
+              {"efficiency", defined > 0 ? number(sum / defined) : Json(nullptr)},
+              {"efficiency_by_scale", std::move(efficiencies)}};
+}
+
 Json haar_json(const HaarCurve& curve, double factor) {
   Json scale = Json::array();
   Json variance = Json::array();
@@ -38,7 +59,18 @@ Json haar_json(const HaarCurve& curve, double factor) {
     variance.push_back(number(curve.variance[i] * factor * factor));
     ci95.push_back(interval(curve.ci95[i], factor * factor));
   }
-  return Json{{"scale", std::move(scale)}, {"variance", std::move(variance)}, {"ci95", std::move(ci95)}};
+  return Json{{"scale", std::move(scale)},
+              {"variance", std::move(variance)},
+              {"ci95", std::move(ci95)},
+              {"robust", robust_json(curve, factor * factor)}};
+}
+
+Json contamination_json(const Contamination& contamination) {
+  return Json{{"verdict", contamination.verdict},
+              {"p", number(contamination.p)},
+              {"disjoint_scales", contamination.disjoint_scales},
+              {"flagged_samples", contamination.flagged_samples},
+              {"not_gaussian", contamination.not_gaussian}};
 }
 
 Json allan_parameters_json(const AllanParameters& parameters, Dimension dimension) {
@@ -102,7 +134,9 @@ Json to_json(const ModelFit& fit, const Unit& unit) {
                 {"robust", fit.robust},
                 {"processes", std::move(processes)},
                 {"objective", number(fit.objective)},
-                {"wic", number(fit.wic)}};
+                {"wic", number(fit.wic)},
+                {"equation_8", number(fit.eq8)},
+                {"plausible", fit.plausible}};
   document["j_test"] = fit.j_test ? Json{{"statistic", number(fit.j_test->statistic)},
                                          {"dof", number(fit.j_test->dof)},
                                          {"p", number(fit.j_test->p)}}
@@ -124,6 +158,7 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"mean", number(channel.mean * factor)},
                 {"allan", allan_json(channel.allan, factor)},
                 {"haar", haar_json(channel.haar, factor)},
+                {"contamination", contamination_json(channel.contamination)},
                 {"allan_parameters", allan_parameters_json(channel.allan_parameters, unit.dimension)}};
   Json fits = Json::array();
   for (const ModelFit& fit : channel.fits) {

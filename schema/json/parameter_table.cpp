@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 
 namespace driftlab {
 namespace {
@@ -174,11 +175,12 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
       row->replicates.push_back(model_cells(*fit));
     }
   }
-  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-    if (a.condition.kind != b.condition.kind) {
-      return a.condition.kind < b.condition.kind;
-    }
-    return a.condition.value.value_or(0.0) < b.condition.value.value_or(0.0);
+  // No two rows have the same text, so the order is complete.
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+    const auto key = [](const Row& row) {
+      return std::tuple(row.condition.kind, row.condition.axis, row.condition.value.value_or(0.0));
+    };
+    return key(a) != key(b) ? key(a) < key(b) : a.text < b.text;
   });
   return rows;
 }
