@@ -110,8 +110,8 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
   if (!known) {
     return problem_response(known.error());
   }
-  if (*known) {
-    return replay(**known, request, digest);
+  if (const std::optional<IdempotentReply>& reply = *known) {
+    return replay(*reply, request, digest);
   }
   Response response = run_handler(handler, request);
   if (response.status >= 200 && response.status < 300) {

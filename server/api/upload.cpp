@@ -20,7 +20,7 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::size_t kLongestMetadata = 1024 * 1024;
+constexpr std::size_t kLongestMetadata = 1024UL * 1024;
 /// Uploads need this much room beyond nothing at all, so that the database can still write.
 constexpr std::uintmax_t kLeastFreeBytes = 64ULL * 1024 * 1024;
 
@@ -138,8 +138,8 @@ class RecordingUpload final : public UploadSession {
     }
     // Metadata sent as a part are as much of the body as the file is.
     const std::string digest = sha256_hex(blob_->sha256() + metadata_text_);
-    if (*known) {
-      return replay(**known, request_, digest);
+    if (const std::optional<IdempotentReply>& reply = *known) {
+      return replay(*reply, request_, digest);
     }
     auto response = record();
     if (response && response->status < 300) {
@@ -158,9 +158,10 @@ class RecordingUpload final : public UploadSession {
     if (!known) {
       return fail(known.error());
     }
-    if (*known && ColumnFile::open(context_.blobs.columns_path(blob_->sha256()))) {
+    const std::optional<Blob>& blob = *known;
+    if (blob && ColumnFile::open(context_.blobs.columns_path(blob_->sha256()))) {
       columns_ = context_.blobs.columns_path(blob_->sha256());
-      return **known;
+      return *blob;
     }
     auto decoded = decode_file(blob_->path(), blob_->columns_path());
     if (!decoded) {

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::size_t kPiece = 256 * 1024;
+constexpr std::size_t kPiece = 256UL * 1024;
 constexpr double kSlowestBytesPerSecond = 64.0 * 1024.0;
 constexpr auto kBodyGrace = 30s;
 constexpr auto kLongestWait = 60s;
@@ -42,7 +42,10 @@ HeadView head_of(const http::request<http::buffer_body>& message) {
 /// Seconds of `Prefer: wait=n` (RFC 7240), at most a minute.
 std::chrono::seconds preferred_wait(const Request& request) {
   const auto prefer = request.header("prefer");
-  const std::size_t at = prefer ? prefer->find("wait=") : std::string_view::npos;
+  if (!prefer) {
+    return 0s;
+  }
+  const std::size_t at = prefer->find("wait=");
   if (at == std::string_view::npos) {
     return 0s;
   }
@@ -80,7 +83,7 @@ asio::awaitable<void> Connection::run() {
     }
   }
   boost::system::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  (void)stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
 
 void Connection::close_if_idle() {
@@ -94,7 +97,7 @@ asio::awaitable<bool> Connection::read_header(Parser& parser) {
   if (buffer_.size() == 0) {
     stream_.expires_after(60s);
     idle_ = true;
-    const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(16 * 1024), into(error));
+    const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(16UL * 1024), into(error));
     idle_ = false;
     if (error) {
       co_return false;
@@ -271,11 +274,11 @@ asio::awaitable<bool> Connection::refuse(const Request& request, Response respon
 asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, const Request& request) {
   auto begin = [&handler, &request] { return handler(request); };
   auto begun = co_await shared_.handlers.run(begin);
-  std::optional<Response> refusal = problem_of(begun);
-  if (refusal) {
-    co_return co_await send(request, std::move(*refusal), true);
+  auto settled = settle(std::move(begun));
+  if (!settled) {
+    co_return co_await send(request, std::move(settled.error()), true);
   }
-  const std::unique_ptr<EventSource> source = std::move(**begun);
+  const std::unique_ptr<EventSource> source = std::move(*settled);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(source->job_id(), executor);
   std::string text =
@@ -311,7 +314,7 @@ asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, con
     }
     co_await listener->wait(1s);
   }
-  Response summary;
+  const Response summary;
   log(request, summary);
   co_return false;
 }
@@ -357,7 +360,7 @@ asio::awaitable<bool> Connection::send(const Request& request, Response response
 
 asio::awaitable<void> Connection::linger() {
   boost::system::error_code error;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  (void)stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
   const auto until = std::chrono::steady_clock::now() + 2s;
   while (!error && std::chrono::steady_clock::now() < until) {
     stream_.expires_at(until);

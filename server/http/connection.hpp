@@ -15,19 +15,16 @@
 
 namespace driftlab::server {
 
-/// The answer to work that failed or found no place in its queue; nothing where it succeeded.
+/// What work gave, or the answer where it failed or found no place in its queue.
 ///
 /// GCC 12 destroys the arms of a conditional twice where it stands inside a co_await expression. No such expression
 /// here holds one: what is awaited is made in a statement of its own.
 template <class Value>
-[[nodiscard]] std::optional<Response> problem_of(const std::optional<Result<Value>>& outcome) {
+[[nodiscard]] tl::expected<Value, Response> settle(std::optional<Result<Value>> outcome) {
   if (!outcome) {
-    return problem_response(HttpFault::Busy, "Too many requests are waiting.");
+    return tl::unexpected(problem_response(HttpFault::Busy, "Too many requests are waiting."));
   }
-  if (!*outcome) {
-    return problem_response(outcome->error());
-  }
-  return std::nullopt;
+  return std::move(*outcome).map_error([](const Error& error) { return problem_response(error); });
 }
 
 /// What connections share. Outlives them all.

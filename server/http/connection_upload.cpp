@@ -54,11 +54,11 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
   const UploadSlot slot(shared_.uploads_running);
   auto begin = [&handler, &request] { return handler(request); };
   auto begun = co_await shared_.uploads.run(begin);
-  refusal = problem_of(begun);
-  if (refusal) {
-    co_return co_await refuse(request, std::move(*refusal));
+  auto settled = settle(std::move(begun));
+  if (!settled) {
+    co_return co_await refuse(request, std::move(settled.error()));
   }
-  std::unique_ptr<UploadSession> session = std::move(**begun);
+  std::unique_ptr<UploadSession> session = std::move(*settled);
   while (true) {
     const auto count = co_await read_piece(parser);
     if (!count) {
@@ -74,10 +74,10 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
     }
     auto append = [this, &session, size = *count] { return session->append({chunk_.data(), size}); };
     auto appended = co_await shared_.uploads.run(append);
-    refusal = problem_of(appended);
-    if (refusal) {
+    auto taken = settle(std::move(appended));
+    if (!taken) {
       session.reset();
-      co_return co_await refuse(request, std::move(*refusal));
+      co_return co_await refuse(request, std::move(taken.error()));
     }
   }
   if (surplus_follows()) {
@@ -90,15 +90,15 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
   auto finish = [&session] { return finish_upload(*session); };
   auto finished = co_await shared_.uploads.run(finish);
   session.reset();
-  refusal = problem_of(finished);
-  Response response = refusal ? std::move(*refusal) : std::move(**finished);
+  auto answered = settle(std::move(finished));
+  Response response = answered ? std::move(*answered) : std::move(answered.error());
   co_return co_await send(request, std::move(response), true);
 }
 
 bool Connection::surplus_follows() {
   boost::system::error_code error;
   if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
-    stream_.socket().non_blocking(true, error);
+    (void)stream_.socket().non_blocking(true, error);
     const std::size_t count = stream_.socket().read_some(buffer_.prepare(chunk_.size()), error);
     buffer_.commit(error ? 0 : count);
   }

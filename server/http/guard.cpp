@@ -33,9 +33,9 @@ bool is_sole(std::string_view name) {
          name == "transfer-encoding" || name == "origin";
 }
 
-GuardVerdict refuse(HttpFault fault, std::string detail) {
+GuardVerdict refuse(HttpFault fault, const std::string& detail) {
   GuardVerdict verdict;
-  verdict.refusal = problem_response(fault, std::move(detail));
+  verdict.refusal = problem_response(fault, detail);
   return verdict;
 }
 

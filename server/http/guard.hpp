@@ -24,7 +24,7 @@ struct HeadView {
 };
 
 struct GuardLimits {
-  std::size_t target_bytes = 8 * 1024;
+  std::size_t target_bytes = 8UL * 1024;
   std::vector<std::string> hosts;  ///< allowed names, lower case, without port
 };
 

@@ -27,8 +27,11 @@ class BoundedPool {
     auto task = [this, work = std::move(work)]() mutable -> boost::asio::awaitable<Value> {
       struct Leave {
         std::atomic<std::size_t>& waiting;
+        explicit Leave(std::atomic<std::size_t>& counter) : waiting(counter) {}
+        Leave(const Leave&) = delete;
+        Leave& operator=(const Leave&) = delete;
         ~Leave() { waiting.fetch_sub(1); }
-      } const leave{waiting_};
+      } const leave(waiting_);
       co_return work();
     };
     co_return co_await boost::asio::co_spawn(pool_.get_executor(), std::move(task), boost::asio::use_awaitable);

@@ -247,7 +247,7 @@ std::string problem_document(const Error& error) {
 
 Response problem_response(const Error& error) { return respond(problem_type(error.code), problem_document(error)); }
 
-Response problem_response(HttpFault fault, std::string detail) {
+Response problem_response(HttpFault fault, const std::string& detail) {
   const ProblemType& type = problem_type(fault);
   std::string code(type.slug);
   std::replace(code.begin(), code.end(), '-', '_');

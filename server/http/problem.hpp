@@ -57,6 +57,6 @@ enum class HttpFault {
 [[nodiscard]] std::string problem_document(const Error& error);
 
 [[nodiscard]] Response problem_response(const Error& error);
-[[nodiscard]] Response problem_response(HttpFault fault, std::string detail);
+[[nodiscard]] Response problem_response(HttpFault fault, const std::string& detail);
 
 }  // namespace driftlab::server

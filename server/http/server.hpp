@@ -21,8 +21,8 @@
 namespace driftlab::server {
 
 struct HttpLimits {
-  std::size_t header_bytes = 16 * 1024;
-  std::uint64_t document_bytes = 1024 * 1024;
+  std::size_t header_bytes = 16UL * 1024;
+  std::uint64_t document_bytes = 1024ULL * 1024;
   std::uint64_t upload_bytes = 8ULL * 1024 * 1024 * 1024;
   std::size_t connections = 1024;
   std::size_t connections_per_address = 64;

@@ -21,7 +21,8 @@ struct Described {
   std::set<std::string> query;
   friend bool operator==(const Described&, const Described&) = default;
 };
-void PrintTo(const Described& described, std::ostream* stream) {
+// GoogleTest asks for this name.
+void PrintTo(const Described& described, std::ostream* stream) {  // NOLINT(readability-identifier-naming)
   *stream << described.operation_id << "?";
   for (const std::string& name : described.query) {
     *stream << name << ",";

@@ -6,7 +6,7 @@
 namespace driftlab::server {
 namespace {
 
-const GuardLimits kLimits{8 * 1024, {"localhost", "127.0.0.1", "[::1]"}};
+const GuardLimits kLimits{8UL * 1024, {"localhost", "127.0.0.1", "[::1]"}};
 
 HeadView head(std::string_view method, std::vector<std::pair<std::string, std::string>> headers) {
   return {11, method, "/v1/devices", std::move(headers)};

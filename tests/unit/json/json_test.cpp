@@ -53,7 +53,7 @@ TEST(ParseJson, RefusesWhatParsersDisagreeAbout) {
     EXPECT_TRUE(document.error().message.ends_with('.')) << document.error().message;
   }
   EXPECT_FALSE(parse_json(std::string_view("{}\0", 3)));
-  EXPECT_FALSE(parse_json(std::string_view("{}\0{\"hidden\": 1}", 17)));
+  EXPECT_FALSE(parse_json(std::string_view("{}\0{\"hidden\": 1}", 16)));
 }
 
 TEST(ParseJson, SaysAtWhichByte) {
@@ -126,6 +126,7 @@ TEST(ObjectReader, ReportsEveryFaultAtItsPlace) {
   reader.reject_unknown();
   const Error error = faults.error();
   std::vector<std::string> pointers;
+  pointers.reserve(error.fields.size());
   for (const ErrorField& field : error.fields) {
     pointers.push_back(field.name);
   }
