@@ -154,7 +154,33 @@ struct Row {
   std::vector<std::string> recordings;
   std::vector<Cells> replicates;
   std::map<std::string, Cell> cells;
+  std::string contamination;          ///< worst verdict of the replicates; empty where none has one
+  std::vector<std::string> warnings;  ///< of the fits shown, each once
 };
+
+/// Keeps the worst verdict: contaminated before undecided before clean.
+void note_contamination(Row& row, const Json& channel) {
+  const auto found = channel.find("contamination");
+  if (found == channel.end()) {
+    return;
+  }
+  const std::string verdict = found->value("verdict", "");
+  const auto badness = [](const std::string& v) {
+    return v == "contaminated" ? 3 : v == "undecided" ? 2 : v.empty() ? 0 : 1;
+  };
+  if (badness(verdict) > badness(row.contamination)) {
+    row.contamination = verdict;
+  }
+}
+
+void note_warnings(Row& row, const Json& fit) {
+  for (const Json& warning : fit.value("warnings", Json::array())) {
+    const std::string text = warning.get<std::string>();
+    if (std::find(row.warnings.begin(), row.warnings.end(), text) == row.warnings.end()) {
+      row.warnings.push_back(text);
+    }
+  }
+}
 
 std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod method, const std::string& model) {
   std::vector<Row> rows;
@@ -169,10 +195,12 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
       row = rows.end() - 1;
     }
     row->recordings.push_back(source.recording_id);
+    note_contamination(*row, source.channel);
     if (method == TableMethod::Av) {
       row->replicates.push_back(allan_cells(source.channel));
     } else if (const Json* const fit = find_fit(source.channel, model)) {
       row->replicates.push_back(model_cells(*fit));
+      note_warnings(*row, *fit);
     }
   }
   // No two rows have the same text, so the order is complete.
@@ -240,6 +268,8 @@ Json row_json(const Row& row, const Row& first, const std::vector<std::pair<std:
   return Json{{"condition", to_json(row.condition)},
               {"label", label(row.condition)},
               {"recordings", row.recordings},
+              {"contamination", row.contamination.empty() ? Json(nullptr) : Json(row.contamination)},
+              {"warnings", row.warnings},
               {"values", std::move(values)},
               {"reasons", std::move(reasons)}};
 }

@@ -68,6 +68,21 @@ std::string unit_suffix(const Json& column, const char* open, const char* close)
   return column["unit"].is_string() ? std::string(" ") + open + column["unit"].get<std::string>() + close : "";
 }
 
+/// What a reader must know before using a row: contamination and what the fit itself says against it.
+std::string notes_of(const Json& table) {
+  std::string text;
+  for (const Json& row : table.at("rows")) {
+    const std::string label = row["label"].get<std::string>();
+    if (row.value("contamination", Json()) == "contaminated") {
+      text += "! " + label + ": gross errors move the variances of this recording.\n";
+    }
+    for (const Json& warning : row.value("warnings", Json::array())) {
+      text += "! " + label + ": " + warning.get<std::string>() + "\n";
+    }
+  }
+  return text;
+}
+
 std::string exact(const Json& value) { return value.is_number() ? to_text(value.get<double>()) : ""; }
 
 }  // namespace
@@ -148,7 +163,7 @@ std::string table_to_text(const Json& table) {
       text += rule + "\n";
     }
   }
-  return text;
+  return text + notes_of(table);
 }
 
 }  // namespace driftlab

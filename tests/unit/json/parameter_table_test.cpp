@@ -75,6 +75,26 @@ TEST(ParameterTable, PoolsReplicatesOnTheLogScale) {
   EXPECT_EQ(found["rows"][0]["recordings"].size(), 2U);
 }
 
+TEST(ParameterTable, TellsWhatSpeaksAgainstARow) {
+  // The worst verdict of the replicates stands for the row; a warning that both fits give is said once.
+  Json sound = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  sound["contamination"] = {{"verdict", "clean"}};
+  Json spoiled = sound;
+  spoiled["contamination"] = {{"verdict", "contaminated"}};
+  for (Json* const document : {&sound, &spoiled}) {
+    (*document)["fits"][0]["warnings"] = Json::array({"The model does not fit."});
+  }
+  const Json found =
+      table(request(), {{"rec_a", "static", sound}, {"rec_b", "static", spoiled}, {"rec_c", "drive", sound}});
+  EXPECT_EQ(found["rows"][0]["contamination"], "contaminated");
+  EXPECT_EQ(found["rows"][0]["warnings"], Json::array({"The model does not fit."}));
+  EXPECT_EQ(found["rows"][1]["contamination"], "clean");
+  const std::string text = table_to_text(found);
+  EXPECT_NE(text.find("! static: gross errors"), std::string::npos);
+  EXPECT_NE(text.find("! drive: The model does not fit."), std::string::npos);
+  EXPECT_EQ(text.find("! drive: gross errors"), std::string::npos);
+}
+
 TEST(ParameterTable, MarksChangesAgainstTheFirstRow) {
   const auto row = [](const char* condition, double value) {
     return TableSource{"rec", condition, channel(cell(value, value / 1.05, value * 1.05), 1, 2)};
