@@ -83,7 +83,7 @@ asio::awaitable<void> Connection::run() {
     }
   }
   boost::system::error_code ignored;
-  (void)stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
+  ignored = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
 
 void Connection::close_if_idle() {
@@ -360,7 +360,7 @@ asio::awaitable<bool> Connection::send(const Request& request, Response response
 
 asio::awaitable<void> Connection::linger() {
   boost::system::error_code error;
-  (void)stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  error = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
   const auto until = std::chrono::steady_clock::now() + 2s;
   while (!error && std::chrono::steady_clock::now() < until) {
     stream_.expires_at(until);

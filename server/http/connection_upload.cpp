@@ -98,7 +98,7 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
 bool Connection::surplus_follows() {
   boost::system::error_code error;
   if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
-    (void)stream_.socket().non_blocking(true, error);
+    error = stream_.socket().non_blocking(true, error);
     const std::size_t count = stream_.socket().read_some(buffer_.prepare(chunk_.size()), error);
     buffer_.commit(error ? 0 : count);
   }

@@ -75,7 +75,7 @@ asio::awaitable<void> HttpServer::Shared::serve(tcp::socket socket, std::string 
   try {
     co_await connection->run();
   } catch (const std::exception&) {
-    // A connection that fails in an unforeseen way closes; the daemon goes on.
+    connection.reset();  // A connection that fails in an unforeseen way closes; the daemon goes on.
   }
   connection.reset();
   const std::lock_guard lock(mutex);
@@ -115,7 +115,7 @@ asio::awaitable<void> HttpServer::Shared::accept() {
     if (!admit(address)) {
       continue;  // closes the socket
     }
-    socket.set_option(tcp::no_delay(true), error);
+    error = socket.set_option(tcp::no_delay(true), error);
     const auto strand = socket.get_executor();
     asio::co_spawn(strand, serve(std::move(socket), address), asio::detached);
   }
@@ -135,13 +135,13 @@ Status HttpServer::start() {
   }
   const tcp::endpoint endpoint(address, shared_->options.port);
   tcp::acceptor& acceptor = shared_->acceptor;
-  acceptor.open(endpoint.protocol(), error);
+  error = acceptor.open(endpoint.protocol(), error);
   if (!error) {
-    acceptor.set_option(asio::socket_base::reuse_address(true), error);
-    acceptor.bind(endpoint, error);
+    error = acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    error = acceptor.bind(endpoint, error);
   }
   if (!error) {
-    acceptor.listen(asio::socket_base::max_listen_connections, error);
+    error = acceptor.listen(asio::socket_base::max_listen_connections, error);
   }
   if (error) {
     return fail(ErrorCode::Io,
@@ -168,7 +168,7 @@ void HttpServer::stop(std::chrono::milliseconds grace) {
   shared_->stopping = true;
   asio::post(shared_->io, [this] {
     boost::system::error_code ignored;
-    shared_->acceptor.close(ignored);
+    ignored = shared_->acceptor.close(ignored);
   });
   shared_->bell.ring_all();
   shared_->close_idle_connections();

@@ -107,6 +107,16 @@ class Daemon:
             self.process.stderr.close()
         return code
 
+    def logged(self, **fields: Any) -> dict[str, Any]:
+        """The log entry with these fields; waits for it, for the log is written behind the answers."""
+        until = time.monotonic() + PATIENCE_S
+        while time.monotonic() < until:
+            for entry in list(self.log):
+                if all(entry.get(name) == value for name, value in fields.items()):
+                    return entry
+            time.sleep(0.005)
+        raise AssertionError(f"not logged: {fields}")
+
     # --- HTTP
 
     def request(self, method: str, target: str, body: Any = None, headers: dict[str, str] | None = None) -> Answer:

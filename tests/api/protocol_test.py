@@ -268,8 +268,7 @@ class Stop(unittest.TestCase):
                 while not daemon.files("incoming") and time.monotonic() < until:
                     time.sleep(0.005)
                 daemon.process.send_signal(signal.SIGTERM)
-                while not any(entry.get("event") == "stopping" for entry in daemon.log):
-                    time.sleep(0.005)
+                daemon.logged(event="stopping")
                 daemon.process.send_signal(signal.SIGTERM)
                 self.assertEqual(daemon.wait(), 128 + signal.SIGTERM)
             with Daemon(daemon.data) as again:
