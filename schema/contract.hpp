@@ -7,7 +7,7 @@
 namespace driftlab {
 
 struct ContractFile {
-  std::string_view name;   ///< `openapi.json`, `study.schema.json`, `docs/upload.md`
+  std::string_view name;  ///< `openapi.json`, `study.schema.json`, `docs/upload.md`
   std::string_view text;
 };
 

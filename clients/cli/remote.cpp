@@ -86,7 +86,7 @@ tl::expected<Json, Failure> wait_for(HttpClient& client, const std::string& job_
     auto followed = client.follow("/v1/jobs/" + job_id + "/events", [&](std::string_view data) {
       if (const auto event = parse_json(data); event && event->contains("progress")) {
         const Json& stage = (*event)["stage"];
-        bar.show(stage.is_string() ? stage.get<std::string>() : "queued",
+        bar.show(stage.is_string() ? stage.get<std::string>() : event->value("state", ""),
                  0.3 + 0.7 * (*event)["progress"].get<double>());
       }
       return !interrupt_token().stop_requested();

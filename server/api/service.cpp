@@ -50,7 +50,12 @@ Result<Response> list_docs() {
 }
 
 Result<Response> get_doc(const Request& request) {
-  const std::string_view text = contract_file("docs/" + request.parameters[0] + ".md");
+  // Pages link to each other as files do, `recordings.md`; here they have no suffix.
+  std::string_view page = request.parameters[0];
+  if (page.ends_with(".md")) {
+    page.remove_suffix(3);
+  }
+  const std::string_view text = contract_file("docs/" + std::string(page) + ".md");
   if (text.empty()) {
     return fail(ErrorCode::NotFound,
                 "There is no documentation page '" + request.parameters[0] + "'; /docs lists them.");

@@ -137,8 +137,8 @@ TEST_P(ProcessLaws, CrossCovarianceAtLagZeroIsTheVariance) {
 }
 
 TEST_P(ProcessLaws, CrossCovarianceIsTheDifferenceOfTheVariogram) {
-  // gamma_ij(h) = -1/2 sum_ab c_a d_b V(distance of the two samples), filter centres h apart; over the near field, the far
-  // field and the borders between them.
+  // gamma_ij(h) = -1/2 sum_ab c_a d_b V(distance of the two samples), filter centres h apart; over the near field, the
+  // far field and the borders between them.
   for (const Process& process : examples(kind())) {
     if (process.haar_mean(1.0, kDt) != 0.0 || kind().symbol == "SIN") {
       continue;

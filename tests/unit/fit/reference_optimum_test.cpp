@@ -14,12 +14,12 @@ namespace {
 
 const std::map<std::string, std::string>& model_names() {
   static const std::map<std::string, std::string> names{{"WN", "WN"},
-                                                         {"WN+AR1", "WN+GM"},
-                                                         {"WN+RW", "WN+RW"},
-                                                         {"WN+2AR1", "WN+2GM"},
-                                                         {"WN+AR1+RW", "WN+GM+RW"},
-                                                         {"QN+WN+AR1+RW", "QN+WN+GM+RW"},
-                                                         {"WN+AR1+DR", "WN+GM+DR"}};
+                                                        {"WN+AR1", "WN+GM"},
+                                                        {"WN+RW", "WN+RW"},
+                                                        {"WN+2AR1", "WN+2GM"},
+                                                        {"WN+AR1+RW", "WN+GM+RW"},
+                                                        {"QN+WN+AR1+RW", "QN+WN+GM+RW"},
+                                                        {"WN+AR1+DR", "WN+GM+DR"}};
   return names;
 }
 
