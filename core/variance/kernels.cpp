@@ -1,5 +1,7 @@
 #include "core/variance/kernels.hpp"
 
+#include <cstring>
+
 // NOLINTBEGIN(cppcoreguidelines-init-variables): vector types
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define DRIFTLAB_HAS_VERSIONS 1
