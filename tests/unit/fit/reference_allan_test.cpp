@@ -14,7 +14,7 @@ namespace {
 TEST(ReferenceAllan, EveryOctaveOfTheAdisRecordingsAgreesToNineDigits) {
   const auto shared = shared_data::folder();
   if (!shared) {
-    GTEST_SKIP();
+    GTEST_SKIP() << "SKIPPED: no reference values; set DRIFTLAB_SHARED to the directory that holds reference/";
   }
   const auto columns = shared_data::read_npy_xz(*shared / "data/adis_16405_imu1.npy.xz", 6);
   const auto reference = shared_data::read_json(*shared / "reference/adis_16405_imu1.oadev.json");

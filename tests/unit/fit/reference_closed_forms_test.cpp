@@ -32,7 +32,7 @@ Process process_of(const std::string& name, const nlohmann::json& params) {
 TEST(ReferenceClosedForms, TenDigitsAtEveryScaleOfEveryTable) {
   const auto shared = shared_data::folder();
   if (!shared) {
-    GTEST_SKIP();
+    GTEST_SKIP() << "SKIPPED: no reference values; set DRIFTLAB_SHARED to the directory that holds reference/";
   }
   const auto file = shared_data::read_json(*shared / "reference/theoretical_haar_wv.json");
   int compared = 0;

@@ -53,7 +53,7 @@ Problem problem_of(const nlohmann::json& axis, double samples) {
 TEST(ReferenceOptimum, NoObjectiveAboveTheBestKnownAndNoLargerModelWorse) {
   const auto shared = shared_data::folder();
   if (!shared) {
-    GTEST_SKIP();
+    GTEST_SKIP() << "SKIPPED: no reference values; set DRIFTLAB_SHARED to the directory that holds reference/";
   }
   int fits = 0;
   for (const char* recording : {"adis_16405_imu1", "adis_16405_imu2", "adis_16405_imu3", "cont.imu1"}) {
