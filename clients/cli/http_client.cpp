@@ -143,7 +143,7 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
   boost::system::error_code error;
   http::request_serializer<http::empty_body> serializer(request);
   http::write_header(exchange.socket(), serializer, error);
-  std::vector<char> piece(256 * 1024);
+  std::vector<char> piece(std::size_t{256} * 1024);
   std::uintmax_t done = 0;
   while (!error && done < size) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
@@ -176,7 +176,7 @@ Status HttpClient::follow(const std::string& target, const std::function<bool(st
     return exchange.lost(error);
   }
   std::string text;
-  std::vector<char> piece(16 * 1024);
+  std::vector<char> piece(std::size_t{16} * 1024);
   while (!parser.is_done()) {
     parser.get().body().data = piece.data();
     parser.get().body().size = piece.size();

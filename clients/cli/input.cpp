@@ -39,7 +39,7 @@ Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
 }
 
 Result<Inputs> read_study(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
+  const std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     return fail(ErrorCode::NotFound, "The study " + path.string() + " cannot be opened.");
   }
