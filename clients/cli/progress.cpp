@@ -29,8 +29,8 @@ void ProgressBar::show(std::string_view stage, double fraction) {
   for (int i = 0; i < kWidth; ++i) {
     bar += i < full ? "█" : "░";
   }
-  std::fprintf(stderr, "\r\033[K%s %3.0f %%  %.*s", bar.c_str(), 100.0 * fraction,
-               static_cast<int>(std::min<std::size_t>(stage.size(), 40)), stage.data());
+  const std::string shown(stage.substr(0, 40));
+  std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", bar.c_str(), 100.0 * fraction, shown.c_str());
   std::fflush(stderr);
 }
 

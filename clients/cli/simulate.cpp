@@ -23,9 +23,9 @@ struct Flags {
 double reference(const Condition& condition, double t_s) {
   switch (condition.kind) {
     case ConditionKind::ConstantRate:
-      return *condition.value;
+      return condition.value.value_or(0.0);
     case ConditionKind::ConstantAngularAcceleration:
-      return *condition.value * t_s;
+      return condition.value.value_or(0.0) * t_s;
     default:
       return 0.0;
   }
