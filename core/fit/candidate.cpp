@@ -33,6 +33,11 @@ double Candidate::criterion(double samples) const {
 
 Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure, const Eigen::VectorXd& sd,
                         HaarCovariance& plan) {
+  return fit_candidate(moments, structure, sd, [&](const Model& model) { return plan.matrix(model); });
+}
+
+Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure, const Eigen::VectorXd& sd,
+                        const CovarianceLaw& covariance_of) {
   Candidate candidate;
   candidate.structure = structure;
   candidate.diagonal = fit_gmwm(moments, structure, MomentWeights::from_sd(sd));
@@ -42,7 +47,7 @@ Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& str
     candidate.quasi_likelihood = std::numeric_limits<double>::infinity();
     return candidate;
   }
-  candidate.covariance = plan.matrix(active);
+  candidate.covariance = covariance_of(active);
   for (int round = 0; round < kCovarianceRounds; ++round) {
     GmwmSolution next = fit_gmwm(moments, structure, MomentWeights::from_covariance(candidate.covariance));
     if (next.active().empty()) {
@@ -50,7 +55,7 @@ Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& str
     }
     candidate.fit = std::move(next);
     active = candidate.fit.active();
-    candidate.covariance = plan.matrix(active);
+    candidate.covariance = covariance_of(active);
   }
   const MomentWeights own = MomentWeights::from_covariance(candidate.covariance);
   const Eigen::VectorXd error = moments.nu - modelled_variance(moments, active);
@@ -70,7 +75,8 @@ double equation_8(const WaveletMoments& moments, const GmwmSolution& solution, c
   for (Eigen::Index j = 0; j < derivative.rows(); ++j) {
     Eigen::Index column = 0;
     for (const Process& process : active) {
-      process.haar_gradient(moments.half[static_cast<std::size_t>(j)], moments.dt_s, gradient);
+      const auto row = static_cast<std::size_t>(j);
+      process.haar_gradient(moments.half[row], moments.dt_at(row), gradient);
       for (std::size_t k = 0; k < process.parameters.size(); ++k) {
         derivative(j, column++) = gradient[k] * weight(j);
       }

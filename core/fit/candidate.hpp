@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,6 +39,11 @@ struct Candidate {
 /// `sd`: standard deviations of the wavelet variances for the diagonal weights.
 [[nodiscard]] Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure,
                                       const Eigen::VectorXd& sd, HaarCovariance& plan);
+
+/// Covariance of the moments under a model: of one recording a HaarCovariance's, of a stack of them block by block.
+using CovarianceLaw = std::function<Eigen::MatrixXd(const Model&)>;
+[[nodiscard]] Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure,
+                                      const Eigen::VectorXd& sd, const CovarianceLaw& covariance_of);
 
 /// Seed paper eq. 8 with the optimism derived for it: (nu^ - nu)' W (nu^ - nu) + 2 tr(W C W D (D'WD)^-1 D'), W the
 /// diagonal weights, C one covariance for all candidates, D the derivatives of the active components. Never below the

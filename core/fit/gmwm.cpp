@@ -53,7 +53,7 @@ class Search {
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
     for (Eigen::Index j = 0; j < raw.size(); ++j) {
       raw(j) = kind->haar_variance({p.data(), kind->parameters.size()}, moments_.half[static_cast<std::size_t>(j)],
-                                   moments_.dt_s);
+                                   moments_.dt_at(static_cast<std::size_t>(j)));
     }
     return whitening_ * raw;
   }
@@ -65,7 +65,8 @@ class Search {
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
     std::array<double, 2> gradient{};
     for (Eigen::Index j = 0; j < raw.size(); ++j) {
-      kind->haar_gradient(p, moments_.half[static_cast<std::size_t>(j)], moments_.dt_s, gradient);
+      const auto row = static_cast<std::size_t>(j);
+      kind->haar_gradient(p, moments_.half[row], moments_.dt_at(row), gradient);
       raw(j) = gradient[1] * p[1];
     }
     return whitening_ * raw;
@@ -285,7 +286,8 @@ Model GmwmSolution::active() const {
 Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& model) {
   Eigen::VectorXd nu(static_cast<Eigen::Index>(moments.half.size()));
   for (Eigen::Index j = 0; j < nu.size(); ++j) {
-    nu(j) = haar_variance(model, moments.half[static_cast<std::size_t>(j)], moments.dt_s);
+    const auto row = static_cast<std::size_t>(j);
+    nu(j) = haar_variance(model, moments.half[row], moments.dt_at(row));
   }
   return nu;
 }

@@ -15,12 +15,16 @@
 
 namespace driftlab {
 
-/// The estimated wavelet variances and the grid they belong to.
+/// The estimated wavelet variances and the grid they belong to: one recording's, or those of several stacked one below
+/// the other (core/fit/replicates.hpp), which every estimator here takes alike.
 struct WaveletMoments {
   Eigen::VectorXd nu;
-  std::vector<double> half;  ///< half lengths m
-  double samples = 0.0;
-  double dt_s = 0.0;
+  std::vector<double> half;           ///< half lengths m
+  double samples = 0.0;               ///< of the longest recording: what the search range of a shape is taken from
+  double dt_s = 0.0;                  ///< of the finest recording
+  std::vector<double> row_dt_s = {};  ///< sample interval of each entry of a stack; empty: dt_s throughout
+
+  [[nodiscard]] double dt_at(std::size_t row) const { return row_dt_s.empty() ? dt_s : row_dt_s[row]; }
 };
 
 /// W = whitening' whitening.

@@ -84,8 +84,8 @@ LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd
     process.parameters[0] = 1.0;
     std::pair<double, double> extremes{0.0, kInfinity};
     for (const Eigen::Index j : used_) {
-      const double share =
-          process.haar_variance(moments.half[static_cast<std::size_t>(j)], moments.dt_s) / moments.nu(j);
+      const auto row = static_cast<std::size_t>(j);
+      const double share = process.haar_variance(moments.half[row], moments.dt_at(row)) / moments.nu(j);
       extremes.first = std::max(extremes.first, share);
       extremes.second = std::min(extremes.second, share);
     }
@@ -134,10 +134,12 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
   std::array<double, 4> gradient{};
   Eigen::MatrixXd part(count, static_cast<Eigen::Index>(model.size()));
   for (Eigen::Index j = 0; j < count; ++j) {
-    const double half = moments_.half[static_cast<std::size_t>(used_[j])];
+    const auto row = static_cast<std::size_t>(used_[j]);
+    const double half = moments_.half[row];
+    const double dt_s = moments_.dt_at(row);
     double sum = 0.0;
     for (std::size_t p = 0; p < model.size(); ++p) {
-      const double share = model[p].haar_variance(half, moments_.dt_s);
+      const double share = model[p].haar_variance(half, dt_s);
       part(j, static_cast<Eigen::Index>(p)) = share;
       sum += share;
     }
@@ -152,7 +154,7 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
       if (c.parameter == 0) {
         value = part(j, static_cast<Eigen::Index>(c.process)) / sum;
       } else {
-        model[c.process].haar_gradient(half, moments_.dt_s, gradient);
+        model[c.process].haar_gradient(half, dt_s, gradient);
         value = gradient[1] * model[c.process].parameters[1] / sum;
       }
       slope(j, static_cast<Eigen::Index>(k)) = at >= c.low && at <= c.high ? -value : 0.0;
@@ -198,6 +200,16 @@ double LogFit::minimise(Eigen::VectorXd& at, std::optional<std::size_t> fixed) c
     at(i) = std::clamp(at(i), coordinates_[k].low, coordinates_[k].high);
   }
   return evaluate(at, nullptr, nullptr);
+}
+
+bool LogFit::improve(Eigen::VectorXd start) {
+  const double value = minimise(start, std::nullopt);
+  if (!(value < minimum_)) {
+    return false;
+  }
+  best_ = std::move(start);
+  minimum_ = value;
+  return true;
 }
 
 Eigen::VectorXd LogFit::sandwich() const {

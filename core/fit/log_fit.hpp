@@ -37,6 +37,8 @@ class LogFit {
   [[nodiscard]] double minimum() const { return minimum_; }
   /// ln det R.
   [[nodiscard]] double log_det() const { return -2.0 * whitening_.diagonal().array().abs().log().sum(); }
+  /// Minimises once more from `start` and keeps what it finds where L is less there.
+  bool improve(Eigen::VectorXd start);
   [[nodiscard]] Model model_at(const Eigen::VectorXd& coordinates) const;
 
   /// Standard errors of the coordinates from the curvature, (D' R^-1 D)^-1: the fast preview. Infinite where singular.
