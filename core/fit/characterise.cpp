@@ -66,8 +66,8 @@ void store_robust(std::span<const double> samples, double mean, double unit_squa
                   ChannelCharacterisation& result) {
   RobustVariance robust = robust_variance(samples, mean, curve, intervals, plan);
   for (std::size_t j = 0; j < curve.scales(); ++j) {  // the robust equation was solved in file units
-    if (robust.variance[j]) {
-      *robust.variance[j] /= unit_square;
+    if (std::optional<double>& value = robust.variance[j]) {
+      *value /= unit_square;
       robust.ci95[j] = {robust.ci95[j].low / unit_square, robust.ci95[j].high / unit_square};
     }
   }

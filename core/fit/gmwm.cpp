@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace driftlab {
 namespace {
@@ -157,7 +158,6 @@ struct Candidate {
 std::vector<Candidate> scan(const Search& search, const ModelStructure& structure) {
   const std::size_t shapes = search.shapes();
   const int points = shapes > 2 ? kGridThree : kGridOne;
-  std::vector<std::vector<Eigen::VectorXd>> columns(shapes);
   const auto at = [&](std::size_t s, int g) {
     const ShapeSlot& slot = search.slots()[s];
     return slot.log_low + (slot.log_high - slot.log_low) * g / (points - 1);
@@ -185,10 +185,8 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
         return;
       }
     }
-    std::vector<Eigen::Index> picked;
-    for (Eigen::Index k = 0; k < fixed; ++k) {
-      picked.push_back(k);
-    }
+    std::vector<Eigen::Index> picked(static_cast<std::size_t>(fixed));
+    std::iota(picked.begin(), picked.end(), Eigen::Index{0});
     for (std::size_t s = 0; s < shapes; ++s) {
       picked[search.slots()[s].process] = fixed + static_cast<Eigen::Index>(s) * points + index[s];
     }
@@ -264,7 +262,7 @@ MomentWeights MomentWeights::from_sd(const Eigen::VectorXd& sd) {
 MomentWeights MomentWeights::from_covariance(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = sd.cwiseInverse();
-  Eigen::MatrixXd correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  const Eigen::MatrixXd correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
   for (double ridge = 0.0;; ridge = ridge == 0.0 ? 1e-12 : 10.0 * ridge) {
     Eigen::MatrixXd raised = correlation;
     raised.diagonal().array() += ridge;

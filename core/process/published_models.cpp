@@ -42,6 +42,7 @@ Model model_of(const Table4Row& row) {
 const std::vector<PublishedModel>& published_models() {
   static const std::vector<PublishedModel> models = [] {
     std::vector<PublishedModel> list;
+    list.reserve(kIphone5sZ.size());
     for (const Table4Row& row : kIphone5sZ) {
       list.push_back({"iphone5s-z", *parse_condition(row.condition), model_of(row)});
     }

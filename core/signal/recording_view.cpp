@@ -10,7 +10,8 @@ using Roles = std::vector<std::optional<ColumnRole>>;
 
 std::optional<std::size_t> find_role(const Roles& roles, Quantity quantity, const std::string& axis) {
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    if (roles[i] && roles[i]->quantity == quantity && roles[i]->axis == axis) {
+    const std::optional<ColumnRole>& role = roles[i];
+    if (role && role->quantity == quantity && role->axis == axis) {
       return i;
     }
   }
@@ -56,12 +57,15 @@ void subtract_moving_reference(ChannelView& channel, const RecordingSpec& spec, 
     return;
   }
   if (const auto index = find_role(roles, *reference, channel.role.axis)) {
-    channel.owned = minus_column(channel.values, unit, column(*index).subspan(window.first, window.count),
-                                 roles[*index]->unit.value_or(unit));
+    const std::optional<ColumnRole>& role = roles[*index];
+    const Unit reference_unit = role && role->unit ? *role->unit : unit;
+    channel.owned =
+        minus_column(channel.values, unit, column(*index).subspan(window.first, window.count), reference_unit);
   } else if (spec.condition.kind == ConditionKind::ConstantAngularAcceleration &&
              channel.role.quantity == Quantity::AngularRate && channel.role.axis == spec.condition.axis &&
              unit.dimension == Dimension::AngularRate) {
-    channel.owned = minus_ramp(channel.values, unit, *spec.condition.value, window.time.dt_s, window.first);
+    channel.owned =
+        minus_ramp(channel.values, unit, spec.condition.value.value_or(0.0), window.time.dt_s, window.first);
   } else {
     return;
   }
@@ -79,9 +83,10 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
   std::span<const double> time;
   Unit time_unit;
   for (std::size_t i = 0; i < roles->size(); ++i) {
-    if ((*roles)[i] && (*roles)[i]->quantity == Quantity::Time) {
+    const std::optional<ColumnRole>& role = (*roles)[i];
+    if (role && role->quantity == Quantity::Time) {
       time = column(i);
-      time_unit = (*roles)[i]->unit.value_or(Unit{});
+      time_unit = role->unit.value_or(Unit{});
     }
   }
   auto window = plan_window(spec, rows, time, time_unit);

@@ -15,6 +15,7 @@ constexpr double kLargest = 12.0;
 const std::vector<Biweight>& table() {
   static const std::vector<Biweight> shared_table = [] {
     std::vector<Biweight> entries;
+    entries.reserve(kTableSize);
     for (int i = 0; i < kTableSize; ++i) {
       entries.push_back(Biweight::with(kSmallest + (kLargest - kSmallest) * i / (kTableSize - 1)));
     }

@@ -19,10 +19,11 @@ constexpr double kFew = 0.1;
 /// Fills in who carries the excess at the first scale; true if it is a few.
 bool look_at_first_scale(std::span<const double> samples, double unit_square, const HaarVariance& curve,
                          const RobustVariance& robust, ContaminationTest& test) {
-  if (!robust.variance.front() || samples.size() < 2) {
+  const std::optional<double>& first = robust.variance.front();
+  if (!first || samples.size() < 2) {
     return false;
   }
-  const double core = *robust.variance.front();
+  const double core = *first;
   const double limit = kGross * kGross * core * unit_square;
   double kept = 0.0;
   for (std::size_t t = 1; t < samples.size(); ++t) {
@@ -85,7 +86,7 @@ ContaminationTest test_contamination(std::span<const double> samples, double uni
   Eigen::MatrixXd covariance(count, count);
   for (Eigen::Index b = 0; b < count; ++b) {
     const std::size_t j = used[static_cast<std::size_t>(b)];
-    d(b) = std::log(*robust.variance[j] / curve.variance[j]);
+    d(b) = std::log(robust.variance[j].value_or(curve.variance[j]) / curve.variance[j]);
     for (Eigen::Index a = 0; a <= b; ++a) {
       const std::size_t i = used[static_cast<std::size_t>(a)];
       const auto sums = plan.correlation_sums(i, j, classical.mixture);

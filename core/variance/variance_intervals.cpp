@@ -17,8 +17,8 @@ Model dictionary(double samples, double dt_s, bool with_drift) {
   for (const char* symbol : {"QN", "WN", "FN", "RW"}) {
     entries.push_back({find_process(symbol), {1.0}});
   }
-  for (double x = 2.0; x > 0.5 / samples; x /= 4.0) {
-    entries.push_back({find_process("GM"), {1.0, x / dt_s}});
+  for (int quarter = 0; std::ldexp(2.0, -2 * quarter) > 0.5 / samples; ++quarter) {
+    entries.push_back({find_process("GM"), {1.0, std::ldexp(2.0, -2 * quarter) / dt_s}});
   }
   if (with_drift) {
     entries.push_back({find_process("DR"), {1.0}});

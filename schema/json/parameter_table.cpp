@@ -138,7 +138,7 @@ Cell pooled(const std::vector<Cell>& replicates) {
 Json change_between(const Cell& first, const Cell& now) {
   const auto a = log_half_width(first);
   const auto b = log_half_width(now);
-  if (!a || !b) {
+  if (!a || !b || !first.value || !now.value) {
     return nullptr;
   }
   const double difference = std::log(*now.value / *first.value);

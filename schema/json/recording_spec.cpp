@@ -131,7 +131,7 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
                  "The columns must be an object keyed by column name.");
     } else {
       for (const auto& [name, role] : columns->items()) {
-        ObjectReader at(*columns, reader.pointer("columns"), faults);
+        const ObjectReader at(*columns, reader.pointer("columns"), faults);
         spec.columns[name] = role_from_json(name, role, at.pointer(name), faults);
       }
     }

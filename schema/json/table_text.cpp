@@ -93,7 +93,7 @@ std::string table_to_csv(const Json& table) {
     const std::string key = column["key"].get<std::string>();
     const std::string unit = unit_suffix(column, "[", "]");
     for (const char* const part : {"", " low", " high"}) {
-      text += "," + csv_field(key + part + unit);
+      text.append(",").append(csv_field(std::string(key).append(part).append(unit)));
     }
   }
   text += "\r\n";

@@ -34,7 +34,7 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
     faults.add("/priority", ErrorCode::InvalidArgument, "The priority is a whole number from 0 (first) to 9.");
   }
   const JobKind* const kind = find_job_kind(job.kind);
-  if (kind == nullptr && !job.kind.empty()) {
+  if (kind == nullptr && (!job.kind.empty() || faults.none())) {
     std::string known;
     for (const auto& each : job_kinds()) {
       known += (known.empty() ? "" : ", ") + std::string(each->name());
@@ -42,7 +42,7 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
     faults.add("/kind", ErrorCode::InvalidArgument,
                "The job kind '" + job.kind + "' is not known; known are " + known + ".");
   }
-  if (!faults.none()) {
+  if (kind == nullptr || !faults.none()) {
     return fail(faults.error());
   }
   JobContext job_context{context.store, context.blobs, context.clock};

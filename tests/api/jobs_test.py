@@ -99,6 +99,7 @@ class Life(JobTest):
         recording = self.recording(6)
         cases = [
             ({"kind": "nap", "inputs": {}}, 400, {"/kind"}),
+            ({"kind": "", "inputs": {}}, 400, {"/kind"}),
             ({"inputs": {"recordings": [recording]}}, 400, {"/kind"}),
             ({"kind": "characterise"}, 400, {"/inputs/recordings"}),
             ({"kind": "characterise", "inputs": {"recordings": []}}, 400, {"/inputs/recordings"}),
