@@ -9,7 +9,7 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::size_t kLongestHeader = 8 * 1024;
+constexpr std::size_t kLongestHeader = std::size_t{8} * 1024;
 
 std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));

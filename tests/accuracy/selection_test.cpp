@@ -89,6 +89,7 @@ TEST(Accuracy, CriterionFindsTheTruth) {
           static_cast<double>(kSamples),
           kDt};
       std::vector<Candidate> candidates;
+      candidates.reserve(options.models.size());
       for (const std::string& candidate : options.models) {
         candidates.push_back(fit_candidate(moments, *parse_model(candidate), sd, plan));
       }

@@ -16,7 +16,7 @@ namespace {
 class FaultRecorder : public testing::Test {
  protected:
   FaultRecorder() : file_(std::filesystem::path(testing::TempDir()) / ("faults-" + std::to_string(getpid()))) {}
-  ~FaultRecorder() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove(file_); }
 
   /// A child process that dies by `signal`, at work on `lease` or idle. What it died of.
   int die_in_child(int signal, const Lease* lease) const {
