@@ -166,6 +166,7 @@ TEST(BlobDirectory, UploadsAtOnceDoNotDisturbEachOther) {
   const TemporaryDirectory directory;
   const auto blobs = open_blobs(directory);
   std::vector<std::thread> threads;
+  threads.reserve(8);
   for (int i = 0; i < 8; ++i) {
     threads.emplace_back([&blobs, i] {
       keep_text(*blobs, "shared");
@@ -197,7 +198,7 @@ TEST(BlobDirectory, AFullDiskIsToldAndLeavesNothing) {
     }
     {
       const auto incoming = (*blobs)->begin();
-      const std::string piece(64 * 1024, 'x');
+      const std::string piece(std::size_t{64} * 1024, 'x');
       Status written;
       for (int i = 0; written && i < 64; ++i) {
         written = append_text(**incoming, piece);

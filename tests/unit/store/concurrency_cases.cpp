@@ -15,6 +15,7 @@ constexpr int kThreads = 8;
 template <class Work>
 void in_threads(Work work) {
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   for (int i = 0; i < kThreads; ++i) {
     threads.emplace_back([&work, i] { work(i); });
   }

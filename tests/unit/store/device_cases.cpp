@@ -62,6 +62,7 @@ TEST_P(DeviceStore, KeepsEveryByteOfAText) {
 
 TEST_P(DeviceStore, PagesAscendWithoutOverlapAndWithoutGaps) {
   std::vector<std::string> ids;
+  ids.reserve(7);
   for (int i = 0; i < 7; ++i) {
     ids.push_back(add_device(store(), "phone-" + std::to_string(i)).id);
   }

@@ -95,6 +95,7 @@ TEST_P(RecordingStore, ListsByDeviceAndConditionInPages) {
   const Device one = add_device(store(), "one");
   const Device two = add_device(store(), "two");
   std::vector<std::string> still;
+  still.reserve(5);
   for (int i = 0; i < 5; ++i) {
     still.push_back(add_recording(store(), one, "still" + std::to_string(i)).id);
   }

@@ -211,7 +211,7 @@ std::string fill_disk(const std::filesystem::path& disk) {
 
 TEST(SqliteStore, AFullDiskLosesNothingThatWasAcknowledged) {
   const std::string said = on_small_disk(2 << 20, [](const std::filesystem::path& disk) -> std::string {
-    std::ofstream(disk / "ballast") << std::string(512 * 1024, 'x');  // taken away later: space comes back
+    std::ofstream(disk / "ballast") << std::string(std::size_t{512} * 1024, 'x');  // taken away later: space comes back
     return fill_disk(disk);
   });
   if (said.starts_with("skip")) {
