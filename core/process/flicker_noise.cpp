@@ -2,6 +2,7 @@
 
 #include "core/process/haar_differences.hpp"
 
+#include <Eigen/QR>
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
@@ -184,6 +185,35 @@ class LagTable {
   double offset_ = 0.0;
 };
 
+/// Sum of Gauss-Markov processes in place of 1/f: x = beta dt of each and its variance for B = 1.
+struct PoleSum {
+  static constexpr int kPoles = 16;
+  static constexpr double kFastest = 2.5;
+  static constexpr double kPerDecade = 2.0;
+  static constexpr double kLowest = 1e-7;  ///< cycles a sample
+  Eigen::VectorXd x = Eigen::VectorXd(kPoles);
+  Eigen::VectorXd variance;
+  double worst = 0.0;  ///< relative error of the density
+
+  PoleSum() {
+    for (int k = 0; k < kPoles; ++k) {
+      x(k) = kFastest * std::pow(10.0, -k / kPerDecade);
+    }
+    constexpr int kPoints = 600;
+    Eigen::MatrixXd share(kPoints, kPoles);  // of the density that each pole gives at unit variance
+    for (int i = 0; i < kPoints; ++i) {
+      const double f = kLowest * std::pow(0.5 / kLowest, i / (kPoints - 1.0));
+      const double s = std::sin(kPi * f);
+      for (int k = 0; k < kPoles; ++k) {
+        const double gap = -std::expm1(-x(k));
+        share(i, k) = 2.0 * kPi * f * gap * (2.0 - gap) / (gap * gap + 4.0 * (1.0 - gap) * s * s);
+      }
+    }
+    variance = share.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(kPoints));
+    worst = (share * variance - Eigen::VectorXd::Ones(kPoints)).cwiseAbs().maxCoeff();
+  }
+};
+
 std::size_t next_power_of_two(std::size_t n) {
   std::size_t power = 1;
   while (power < n) {
@@ -218,6 +248,20 @@ double FlickerNoise::haar_cross(double mi, double mj, double h, double /*dt_s*/)
   }
   static const LagTable shared_table;
   return b * b * haar_cross_of(mi, mj, h, [](double lag) { return shared_table.value(std::fabs(lag)); });
+}
+
+std::optional<StateSpace> FlickerNoise::state_space(double dt_s) const {
+  static const PoleSum shared_poles;
+  const Eigen::VectorXd phi = (-shared_poles.x).array().exp();
+  StateSpace model;
+  model.phi = phi.asDiagonal();
+  model.cov0 = (b * b * shared_poles.variance).asDiagonal();
+  model.q = (b * b * shared_poles.variance.array() * (1.0 - phi.array().square())).matrix().asDiagonal();
+  model.h = Eigen::RowVectorXd::Ones(PoleSum::kPoles);
+  model.mean0 = Eigen::VectorXd::Zero(PoleSum::kPoles);
+  model.relative_error = shared_poles.worst;
+  model.lowest_hz = PoleSum::kLowest / dt_s;
+  return model;
 }
 
 void FlickerNoise::add_path(Random& random, double /*dt_s*/, std::span<double> out) const {

@@ -69,7 +69,7 @@ struct Process {
   [[nodiscard]] double variogram(double lag, double dt_s) const { return kind->variogram(parameters, lag, dt_s); }
   /// Mean of the Haar coefficients of half length `half`; 0 except for deterministic trends.
   [[nodiscard]] double haar_mean(double half, double dt_s) const { return kind->haar_mean(parameters, half, dt_s); }
-  /// State-space form; nothing where none exists (flicker noise).
+  /// State-space form; nothing where none exists, approximate with its error where only that does (flicker noise).
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const { return kind->state_space(parameters, dt_s); }
   /// Adds one realisation to `out`, one value per sample.
   void add_path(Random& random, double dt_s, std::span<double> out) const {

@@ -14,9 +14,10 @@ struct StateSpace {
   double r = 0.0;
   Eigen::VectorXd mean0;
   Eigen::MatrixXd cov0;
-  /// Largest relative error of the spectral density against the process, over the band that `approximate_band_hz`
-  /// spans; 0 where the model is exact.
+  /// Largest relative error of the spectral density against the process over the band from `lowest_hz` up to the
+  /// Nyquist frequency; 0 where the model is exact.
   double relative_error = 0.0;
+  double lowest_hz = 0.0;
 };
 
 }  // namespace driftlab

@@ -4,10 +4,12 @@
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
 
+#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -187,7 +189,38 @@ TEST_P(ProcessLaws, StateSpaceHasTheSecondMomentsOfTheProcess) {
         expected +=
             (model->h * (cov + model->cov0 - cross - cross.transpose()) * model->h.transpose())(0) + step * step;
       }
-      EXPECT_NEAR(expected, process.variogram(lag, kDt), 1e-9 * process.variogram(lag, kDt) + 1e-15) << kind().name;
+      // An approximate state space is held to the error that it declares.
+      const double tolerance = std::max(1e-9, model->relative_error);
+      EXPECT_NEAR(expected, process.variogram(lag, kDt), tolerance * process.variogram(lag, kDt) + 1e-15)
+          << kind().name;
+    }
+  }
+}
+
+TEST_P(ProcessLaws, StateSpaceHasTheDeclaredDensityWithinItsError) {
+  // S(f) = dt [h (e^{iw} - phi)^-1 q (e^{-iw} - phi')^-1 h' + r], 40 frequencies over eight decades.
+  for (const Process& process : examples(kind())) {
+    const auto model = process.state_space(kDt);
+    if (!model || !process.spectral_density(1.0, kDt)) {
+      continue;
+    }
+    const Eigen::Index n = model->phi.rows();
+    for (int i = 0; i < 40; ++i) {
+      const double cycles = std::max(0.5 * std::pow(10.0, -0.15 * i), 1.01 * model->lowest_hz * kDt);
+      const std::complex<double> turn = std::polar(1.0, 2.0 * std::numbers::pi * cycles);
+      const Eigen::MatrixXcd resolvent =
+          turn * Eigen::MatrixXcd::Identity(n, n) - model->phi.cast<std::complex<double>>();
+      double density = model->r;
+      if (n > 0) {
+        const Eigen::VectorXcd x = resolvent.transpose().partialPivLu().solve(Eigen::VectorXcd(model->h.transpose()));
+        density += (x.adjoint() * model->q * x).value().real();
+      }
+      const double expected = *process.spectral_density(cycles / kDt, kDt);
+      const double tolerance = std::max(1e-6, 1.001 * model->relative_error);
+      EXPECT_NEAR(kDt * density, expected, tolerance * expected) << kind().name << " at " << cycles;
+      if (cycles < 0.05) {
+        EXPECT_NEAR(kDt * density, expected, 0.016 * expected) << kind().name << " at " << cycles;
+      }
     }
   }
 }
