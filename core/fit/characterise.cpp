@@ -211,7 +211,8 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   }
   control.report("intervals", 0.2);
   HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
-  const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(channel.values));
+  const double excess = difference_excess_kurtosis(channel.values);
+  const VarianceIntervals intervals = variance_intervals(curve, plan, excess);
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
 
   const WaveletMoments moments{
@@ -220,7 +221,10 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
       static_cast<double>(curve.samples),
       channel.dt_s};
   control.report("robust variance", 0.25);
-  store_robust(channel.values, summary->mean, largest, si_unit * si_unit, curve, intervals, plan, result);
+  // Gross errors have an excess kurtosis that would leave the test no scale of many degrees of freedom: its hypothesis is
+  // Gaussian noise, and so are its degrees of freedom.
+  store_robust(channel.values, summary->mean, largest, si_unit * si_unit, curve,
+               excess == 0.0 ? intervals : variance_intervals(curve, plan), plan, result);
   const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
   Result<std::vector<Candidate>> candidates = fit_candidates(moments, options, sd, plan, control, result.warnings);
   if (!candidates) {

@@ -12,7 +12,7 @@
 namespace driftlab {
 
 /// Changes whenever the same input and settings may give other numbers; stored with every result.
-inline constexpr int kAlgorithmVersion = 1;
+inline constexpr int kAlgorithmVersion = 2;
 
 struct CharacteriseOptions {
   /// Candidate models, written as in Table 3 of the seed paper (`WN`, `WN+GM`, `WN+2GM+RW`, `QN+WN+RW`, ...).
