@@ -18,6 +18,7 @@ constexpr double kZ95 = 1.959963984540054;
 constexpr double kSize = 0.05;
 constexpr double kLeastExponent = 0.1;
 constexpr double kMostExponent = 10.0;
+constexpr int kExponents = 10;
 
 /// The points on the scale of the model.
 struct Series {
@@ -188,7 +189,9 @@ struct RelationFit {
   double deviance = std::numeric_limits<double>::infinity();
 };
 
-RelationFit fit_at(const Series& series, Relation relation, double tau2) {
+enum class Search { Coarse, Fine };
+
+RelationFit fit_at(const Series& series, Relation relation, double tau2, Search search) {
   const Eigen::VectorXd variance = series.variance.array() + tau2;
   RelationFit fit;
   if (relation == Relation::Constant) {
@@ -197,27 +200,24 @@ RelationFit fit_at(const Series& series, Relation relation, double tau2) {
   } else if (relation == Relation::Linear) {
     fit.shape = fit_shape(series, series.at, variance);
   } else {
-    constexpr int kGrid = 24;
-    double at = 0.0;
     const auto visit = [&](double ln_exponent) {
       const double exponent = std::exp(ln_exponent);
       const ShapeFit shape = fit_shape(series, series.at.array().pow(exponent).matrix(), variance);
       if (shape.chi_square < fit.shape.chi_square) {
         fit.shape = shape;
         fit.exponent = exponent;
-        at = ln_exponent;
       }
     };
     const double low = std::log(kLeastExponent);
-    double step = (std::log(kMostExponent) - low) / kGrid;
-    for (int g = 0; g <= kGrid; ++g) {
+    const double high = std::log(kMostExponent);
+    double step = (high - low) / kExponents;
+    for (int g = 0; g <= kExponents; ++g) {
       visit(low + g * step);
     }
-    for (int round = 0; round < 12; ++round) {
-      step *= 0.5;
-      const double centre = at;
-      visit(std::max(low, centre - step));
-      visit(std::min(std::log(kMostExponent), centre + step));
+    for (; search == Search::Fine && step > 0.005; step *= 0.5) {
+      const double centre = std::log(fit.exponent);
+      visit(std::max(low, centre - 0.5 * step));
+      visit(std::min(high, centre + 0.5 * step));
     }
   }
   fit.deviance = fit.shape.chi_square + variance.array().log().sum();
@@ -226,9 +226,8 @@ RelationFit fit_at(const Series& series, Relation relation, double tau2) {
 
 std::size_t parameters_of(Relation relation) { return static_cast<std::size_t>(relation) + 1; }
 
-/// Covariance of (ln low, ln high, ln exponent) at the fit, scaled up where the residuals exceed what the intervals and
-/// the spread explain.
-void store_covariance(const Series& series, double tau2, double scale_up, FittedRelation& relation) {
+/// Covariance of (ln low, ln high, ln exponent) at the fit.
+void store_covariance(const Series& series, double tau2, FittedRelation& relation) {
   const Eigen::VectorXd share = series.at.array().pow(relation.exponent);
   const Curve curve = curve_of(share, std::log(relation.low), std::log(relation.high));
   const auto count = static_cast<Eigen::Index>(parameters_of(relation.relation));
@@ -247,7 +246,7 @@ void store_covariance(const Series& series, double tau2, double scale_up, Fitted
   const Eigen::VectorXd weight = (series.variance.array() + tau2).inverse();
   Eigen::MatrixXd normal = gradient.transpose() * weight.asDiagonal() * gradient;
   normal.diagonal().array() += 1e-8 * normal.trace();  // an exponent that nothing tells has a wide interval, not none
-  const Eigen::MatrixXd covariance = scale_up * normal.inverse();
+  const Eigen::MatrixXd covariance = normal.inverse();
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < count; ++j) {
       relation.covariance[i][j] = covariance(i, j);
@@ -259,27 +258,28 @@ FittedRelation fit_relation(const Series& series, Relation kind, double scale, b
   // Most of the likelihood lies between no spread and the scatter of the points: a grid, then a finer one.
   const double scatter = (series.y.array() - series.y.mean()).square().maxCoeff();
   double best_tau2 = 0.0;
-  RelationFit best = fit_at(series, kind, 0.0);
+  RelationFit best = fit_at(series, kind, 0.0, Search::Coarse);
   const auto visit = [&](double tau2) {
-    const RelationFit fit = fit_at(series, kind, tau2);
+    const RelationFit fit = fit_at(series, kind, tau2, Search::Coarse);
     if (fit.deviance < best.deviance - 1e-9) {
       best = fit;
       best_tau2 = tau2;
     }
   };
   if (with_spread && scatter > 0.0) {
-    for (int g = 0; g <= 16; ++g) {
-      visit(scatter * std::pow(10.0, -4.0 + 0.25 * g));
+    for (int g = 0; g <= 8; ++g) {
+      visit(scatter * std::pow(10.0, -4.0 + 0.5 * g));
     }
-    for (double factor = std::pow(10.0, 0.125); best_tau2 > 0.0 && factor > 1.005; factor = std::sqrt(factor)) {
+    for (double factor = std::pow(10.0, 0.25); best_tau2 > 0.0 && factor > 1.02; factor = std::sqrt(factor)) {
       const double centre = best_tau2;
       visit(centre * factor);
       visit(centre / factor);
     }
   }
+  best = fit_at(series, kind, best_tau2, Search::Fine);
   const auto n = static_cast<double>(series.size());
   const auto shape_parameters = static_cast<double>(parameters_of(kind));
-  const double k = shape_parameters + (with_spread ? 1.0 : 0.0);
+  const double k = shape_parameters;  // the spread is a nuisance of every relation alike
   FittedRelation relation;
   relation.relation = kind;
   relation.low = std::exp(best.shape.ln_low);
@@ -293,7 +293,7 @@ FittedRelation fit_relation(const Series& series, Relation kind, double scale, b
   if (with_spread) {
     relation.quantile = boost::math::quantile(boost::math::students_t(n - shape_parameters), 0.975);
   }
-  store_covariance(series, tau2, 1.0, relation);
+  store_covariance(series, tau2, relation);
   return relation;
 }
 
@@ -336,7 +336,7 @@ Result<Trend> fit_trend(std::vector<TrendPoint> points) {
   test_monotone(series, trend);
   const bool with_spread = series.size() >= 4;
   for (const Relation kind : {Relation::Constant, Relation::Linear, Relation::Power}) {
-    const double k = static_cast<double>(parameters_of(kind)) + (with_spread ? 1.0 : 0.0);
+    const auto k = static_cast<double>(parameters_of(kind));
     if (with_spread ? n - k - 1.0 >= 1.0 : kind != Relation::Power) {
       trend.candidates.push_back(fit_relation(series, kind, trend.points.back().at, with_spread));
     }

@@ -13,7 +13,8 @@
 ///   differ at random are no trend. With two or three conditions the spread cannot be told from a trend; the test is
 ///   then the normal one of the estimates themselves, and `few` says so.
 /// - Which relation? constant f = a, linear f = a + b w, power f = a + b w^c, by the small-sample criterion AICc
-///   (Hurvich and Tsai 1989) with tau counted; below 4 points constant or linear, by the first test.
+///   (Hurvich and Tsai 1989), tau a nuisance of all alike and not counted; below 4 points constant or linear, by the
+///   first test.
 ///
 /// Measured size, power and coverage: tests/ACCURACY.md.
 #include "core/signal/estimate.hpp"

@@ -17,11 +17,11 @@ TrendPoint point(double at, double value, double relative = 0.02) {
 
 constexpr double kRates[] = {0.0, 9.0, 18.0, 36.0, 72.0, 120.0};
 
-/// Share of 1,000 random series of six conditions in which `count` says yes. `spread`: between conditions; `slope`: of
+/// Share of 400 random series of six conditions in which `count` says yes. `spread`: between conditions; `slope`: of
 /// ln value from the first to the last rank.
 template <class Count>
 double share(double spread, double slope, Count count) {
-  constexpr int kRuns = 1000;
+  constexpr int kRuns = 400;
   int hits = 0;
   for (int run = 0; run < kRuns; ++run) {
     Random random(31, static_cast<std::uint64_t>(run));
@@ -35,13 +35,13 @@ double share(double spread, double slope, Count count) {
 }
 
 TEST(Trend, EqualityHoldsItsSizeAndTheTrendDoesNotCryWolf) {
-  // 1,000 runs: a 5 % share has a standard error of 0.7 points.
+  // 400 runs: a 5 % share has a standard error of 1.1 points.
   const double moved = share(0.0, 0.0, [](const Trend& t) { return t.equal_p < 0.05; });
-  EXPECT_NEAR(moved, 0.05, 0.021);
-  EXPECT_LT(share(0.0, 0.0, [](const Trend& t) { return t.direction != 0; }), 0.07);
+  EXPECT_NEAR(moved, 0.05, 0.033);
+  EXPECT_LT(share(0.0, 0.0, [](const Trend& t) { return t.direction != 0; }), 0.08);
   // Conditions that differ at random by ten interval widths move, and have no trend.
   EXPECT_GT(share(0.3, 0.0, [](const Trend& t) { return t.equal_p < 0.05; }), 0.99);
-  EXPECT_NEAR(share(0.3, 0.0, [](const Trend& t) { return t.direction != 0; }), 0.05, 0.021);
+  EXPECT_NEAR(share(0.3, 0.0, [](const Trend& t) { return t.direction != 0; }), 0.05, 0.033);
 }
 
 TEST(Trend, FindsAMonotoneChange) {
