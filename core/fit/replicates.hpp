@@ -37,6 +37,10 @@ struct WaveletRecord {
   double dt_s = 0.0;
 };
 
+/// What a joint fit takes of a characterised channel [SI]: its wavelet variances, the robust ones where gross errors
+/// move the classical (verdict `contaminated`).
+[[nodiscard]] WaveletRecord record_of(const ChannelCharacterisation& channel);
+
 /// Do the recordings share their parameters?
 struct Agreement {
   double statistic = 0.0;
