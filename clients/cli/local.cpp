@@ -6,7 +6,8 @@
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "schema/json/parameter_table.hpp"
-#include "schema/json/recording_spec.hpp"
+#include "schema/json/pooled_sensor.hpp"
+#include "schema/json/trend_table.hpp"
 
 #include <unistd.h>
 
@@ -79,7 +80,7 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
   for (const InputFile& file : inputs.files) {
     const auto done = static_cast<double>(recordings.size());
     const RunControl control{interrupt_token(), [&](std::string_view stage, double fraction) {
-                               bar.show(stage, (done + fraction) / static_cast<double>(inputs.files.size()));
+                               bar.show(stage, 0.9 * (done + fraction) / static_cast<double>(inputs.files.size()));
                              }};
     auto document = characterise_file(file, options, *workspace, control);
     if (!document) {
@@ -92,38 +93,28 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
   }
   Json document = characterisation_document(std::move(recordings));
   document["study"] = inputs.study;
+  const RunControl control{interrupt_token(),
+                           [&](std::string_view stage, double f) { bar.show(stage, 0.9 + 0.1 * f); }};
+  if (auto added = add_summary(document, inputs.device, sensors_of(document), control); !added) {
+    return tl::unexpected(Failure{added.error(), Exit::Interrupted});
+  }
   return document;
 }
 
 std::string tables_of(const Json& document, const std::string& device) {
-  struct Sensor {
-    std::string quantity, axis;
-    std::vector<TableSource> sources;
-  };
-  std::vector<Sensor> sensors;
-  for (const Json& recording : document.at("recordings")) {
-    Faults ignored;
-    const std::string condition = to_text(condition_from_json(recording.at("condition"), "", ignored));
-    for (const Json& channel : recording.at("channels")) {
-      // Channels that nobody named by axis stand each for themselves.
-      const bool has_axis = channel["axis"].is_string();
-      const std::string axis = has_axis ? channel["axis"].get<std::string>() : channel["channel"].get<std::string>();
-      const std::string quantity = channel["quantity"].get<std::string>();
-      auto sensor = std::find_if(sensors.begin(), sensors.end(),
-                                 [&](const Sensor& s) { return s.quantity == quantity && s.axis == axis; });
-      if (sensor == sensors.end()) {
-        sensors.push_back({quantity, axis, {}});
-        sensor = sensors.end() - 1;
-      }
-      sensor->sources.push_back({recording["id"].get<std::string>(), condition, channel});
-    }
-  }
   std::string text;
-  for (const Sensor& sensor : sensors) {
+  for (const SensorSources& sensor : sensors_of(document)) {
+    const Json* const pooled = pooled_of(document, sensor);
     for (const TableMethod method : {TableMethod::Av, TableMethod::Gmwm}) {
       const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
-      auto table = build_parameter_table({device, quantity, sensor.axis, method, ""}, sensor.sources);
+      const auto table = build_parameter_table({device, quantity, sensor.axis, method, ""}, sensor.sources, pooled);
       text += table ? table_to_text(*table) + "\n" : table.error().message + "\n\n";
+      if (table && pooled != nullptr) {
+        text += trends_to_text(build_trends(*table)) + "\n";
+      }
+    }
+    if (pooled != nullptr && (*pooled)["structure"].is_object()) {
+      text += (*pooled)["structure"]["statement"].get<std::string>() + "\n\n";
     }
   }
   return text;

@@ -1,80 +1,18 @@
 #include "schema/json/parameter_table.hpp"
 
+#include "schema/json/pooled_sensor.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/table_cells.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 
 namespace driftlab {
 namespace {
-
-/// One parameter of one recording, in lab units.
-struct Cell {
-  std::optional<double> value;
-  std::optional<double> low;
-  std::optional<double> high;
-  std::string unit;
-  std::string reason;
-};
-
-using Cells = std::vector<std::pair<std::string, Cell>>;  // key -> cell, in document order
-
-std::optional<double> optional_number(const Json& value) {
-  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
-}
-
-Cell cell_of(const Json& parameter, const Json* reasons, const std::string& name) {
-  Cell cell;
-  if (parameter.is_object()) {
-    cell.value = optional_number(parameter.value("value", Json()));
-    cell.unit = parameter.value("unit", "");
-    cell.low = optional_number(parameter["ci95"][0]);
-    cell.high = optional_number(parameter["ci95"][1]);
-  } else if (reasons != nullptr && reasons->contains(name)) {
-    cell.reason = (*reasons)[name].get<std::string>();
-  }
-  return cell;
-}
-
-Cells allan_cells(const Json& channel) {
-  Cells cells;
-  const Json& parameters = channel.at("allan_parameters");
-  const auto reasons = parameters.find("reasons");
-  for (const char* const name : {"N", "B", "K", "Q", "R"}) {
-    cells.emplace_back(
-        name, cell_of(parameters.value(name, Json()), reasons == parameters.end() ? nullptr : &*reasons, name));
-  }
-  return cells;
-}
-
-const Json* find_fit(const Json& channel, const std::string& model) {
-  for (const Json& fit : channel.at("fits")) {
-    if (fit.value("model", "") == model) {
-      return &fit;
-    }
-  }
-  return nullptr;
-}
-
-Cells model_cells(const Json& fit) {
-  Cells cells;
-  std::map<std::string, int> seen;
-  for (const Json& process : fit.at("processes")) {
-    const std::string kind = process.value("process", "");
-    const int index = ++seen[kind];
-    // Gauss-Markov processes and sinusoids may occur any number of times, so they always carry a number.
-    const bool numbered = kind == "gauss_markov" || kind == "sinusoid";
-    const std::string prefix = kind + (numbered ? "_" + std::to_string(index) : "") + ".";
-    const auto reasons = process.find("reasons");
-    for (const auto& [name, parameter] : process.at("params").items()) {
-      cells.emplace_back(prefix + name, cell_of(parameter, reasons == process.end() ? nullptr : &*reasons, name));
-    }
-  }
-  return cells;
-}
 
 /// The model with the smallest sum of the criterion among those fitted to every source.
 std::string common_best_model(const std::vector<TableSource>& sources) {
@@ -97,57 +35,6 @@ std::string common_best_model(const std::vector<TableSource>& sources) {
   return best;
 }
 
-/// Half-width of the interval on the log scale; the wider side where they differ. Nothing where an end is open.
-std::optional<double> log_half_width(const Cell& cell) {
-  if (!cell.value || !cell.low || !cell.high || !(*cell.low > 0.0) || !(*cell.value > 0.0)) {
-    return std::nullopt;
-  }
-  return std::max(std::log(*cell.high / *cell.value), std::log(*cell.value / *cell.low));
-}
-
-/// Replicates of one condition: weighted mean of logs, weights 1/half-width^2. One identified replicate stands alone.
-Cell pooled(const std::vector<Cell>& replicates) {
-  double weight_sum = 0.0;
-  double log_sum = 0.0;
-  const Cell* any = nullptr;
-  int used = 0;
-  for (const Cell& cell : replicates) {
-    if (!cell.value) {
-      continue;
-    }
-    any = &cell;
-    if (const auto half = log_half_width(cell); half && *half > 0.0) {
-      const double weight = 1.0 / (*half * *half);
-      weight_sum += weight;
-      log_sum += weight * std::log(*cell.value);
-      ++used;
-    }
-  }
-  if (used < 2) {
-    return any != nullptr ? *any : replicates.front();
-  }
-  Cell result = *any;
-  const double mean = log_sum / weight_sum;
-  const double half = 1.0 / std::sqrt(weight_sum);
-  result.value = std::exp(mean);
-  result.low = std::exp(mean - half);
-  result.high = std::exp(mean + half);
-  return result;
-}
-
-Json change_between(const Cell& first, const Cell& now) {
-  const auto a = log_half_width(first);
-  const auto b = log_half_width(now);
-  if (!a || !b || !first.value || !now.value) {
-    return nullptr;
-  }
-  const double difference = std::log(*now.value / *first.value);
-  if (std::fabs(difference) <= std::hypot(*a, *b)) {
-    return "none";
-  }
-  return difference > 0.0 ? "up" : "down";
-}
-
 struct Row {
   Condition condition;
   std::string text;
@@ -156,6 +43,10 @@ struct Row {
   std::map<std::string, Cell> cells;
   std::string contamination;          ///< worst verdict of the replicates; empty where none has one
   std::vector<std::string> warnings;  ///< of the fits shown, each once
+  std::vector<std::string> members;   ///< result ids
+  std::string pooling = "single";     ///< single, average, joint
+  bool robust = false;                ///< the values come from robust variances
+  Json agreement;                     ///< of replicates
 };
 
 /// Keeps the worst verdict: contaminated before undecided before clean.
@@ -195,21 +86,19 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
       row = rows.end() - 1;
     }
     row->recordings.push_back(source.recording_id);
+    row->members.push_back(source.result_id.empty() ? source.recording_id : source.result_id);
     note_contamination(*row, source.channel);
     if (method == TableMethod::Av) {
       row->replicates.push_back(allan_cells(source.channel));
     } else if (const Json* const fit = find_fit(source.channel, model)) {
       row->replicates.push_back(model_cells(*fit));
+      row->robust = row->robust || fit->value("robust", false);
       note_warnings(*row, *fit);
     }
   }
   // No two rows have the same text, so the order is complete.
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-    const auto key = [](const Row& row) {
-      return std::tuple(row.condition.kind, row.condition.axis, row.condition.value.value_or(0.0));
-    };
-    return key(a) != key(b) ? key(a) < key(b) : a.text < b.text;
-  });
+  std::sort(rows.begin(), rows.end(),
+            [](const Row& a, const Row& b) { return comes_before(a.condition, b.condition); });
   return rows;
 }
 
@@ -269,9 +158,85 @@ Json row_json(const Row& row, const Row& first, const std::vector<std::pair<std:
               {"label", label(row.condition)},
               {"recordings", row.recordings},
               {"contamination", row.contamination.empty() ? Json(nullptr) : Json(row.contamination)},
+              {"pooling", row.pooling},
+              {"robust", row.robust},
+              {"agreement", row.agreement},
               {"warnings", row.warnings},
               {"values", std::move(values)},
               {"reasons", std::move(reasons)}};
+}
+
+/// The joint fit of a row's recordings in place of their own, where the store has it.
+void take_joint_fit(Row& row, const Json* pooled, const std::string& model) {
+  const Json* const entry = find_pooled(pooled, row.text, row.members);
+  const Json* const fit = entry != nullptr ? find_fit(*entry, model) : nullptr;
+  if (fit == nullptr) {
+    return;
+  }
+  row.replicates = {model_cells(*fit)};
+  row.robust = fit->value("robust", false);
+  row.warnings.clear();
+  note_warnings(row, *fit);
+  if (row.recordings.size() > 1) {
+    row.pooling = "joint";
+    const Json agreement = entry->value("agreement", Json());
+    row.agreement = agreement.is_object() && agreement.value("model", "") == model ? agreement : Json();
+  }
+}
+
+Json agreement_of(const Scatter& scatter) {
+  if (scatter.dof == 0) {
+    return nullptr;
+  }
+  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(scatter.dof), scatter.statistic));
+  return Json{{"model", nullptr},
+              {"statistic", number(scatter.statistic)},
+              {"dof", scatter.dof},
+              {"p", number(p)},
+              {"agree", p >= 0.05}};
+}
+
+/// One cell per column from the replicates of the row.
+void fill_cells(Row& row, const std::vector<std::pair<std::string, std::string>>& columns) {
+  Scatter scatter;
+  for (const auto& [key, unit] : columns) {
+    std::vector<Cell> replicates;
+    for (const Cells& cells : row.replicates) {
+      for (const auto& [name, cell] : cells) {
+        if (name == key) {
+          replicates.push_back(cell);
+        }
+      }
+    }
+    if (replicates.empty()) {
+      continue;
+    }
+    row.cells[key] = averaged(replicates);
+    const Scatter one = scatter_of(replicates);
+    scatter.statistic += one.statistic;
+    scatter.dof += one.dof;
+  }
+  if (row.replicates.size() > 1) {
+    row.pooling = "average";
+    row.agreement = agreement_of(scatter);
+  }
+}
+
+/// The model that the caller asked for, that was pooled over all rows, or that is best over them.
+std::string model_of(const TableRequest& request, const std::vector<TableSource>& sources, const Json* pooled) {
+  if (request.method == TableMethod::Av || !request.model.empty()) {
+    return request.method == TableMethod::Av ? "" : request.model;
+  }
+  if (pooled != nullptr && pooled->value("model", Json()).is_string()) {
+    const std::vector<Row> rows = group_rows(sources, TableMethod::Av, "");
+    const bool current = std::all_of(rows.begin(), rows.end(), [&](const Row& row) {
+      return find_pooled(pooled, row.text, row.members) != nullptr;
+    });
+    if (current) {
+      return (*pooled)["model"].get<std::string>();
+    }
+  }
+  return common_best_model(sources);
 }
 
 }  // namespace
@@ -289,18 +254,16 @@ Result<TableMethod> parse_table_method(std::string_view name) {
               {{"parameter", "method"}});
 }
 
-Result<Json> build_parameter_table(const TableRequest& request, const std::vector<TableSource>& sources) {
+Result<Json> build_parameter_table(const TableRequest& request, const std::vector<TableSource>& sources,
+                                   const Json* pooled) {
   if (sources.empty()) {
     return fail(ErrorCode::NotFound, "No characterised channel of device '" + request.device + "' is a " +
                                          std::string(sensor_of(request.quantity)) +
                                          (request.axis.empty() ? "" : " about axis " + request.axis) +
                                          "; characterise a recording of it first.");
   }
-  std::string model = request.model;
+  const std::string model = model_of(request, sources, pooled);
   if (request.method == TableMethod::Gmwm) {
-    if (model.empty()) {
-      model = common_best_model(sources);
-    }
     const bool fitted = std::any_of(sources.begin(), sources.end(), [&](const TableSource& source) {
       return find_fit(source.channel, model) != nullptr;
     });
@@ -312,21 +275,14 @@ Result<Json> build_parameter_table(const TableRequest& request, const std::vecto
     }
   }
   std::vector<Row> rows = group_rows(sources, request.method, model);
+  if (request.method == TableMethod::Gmwm) {
+    for (Row& row : rows) {
+      take_joint_fit(row, pooled, model);
+    }
+  }
   const auto columns = columns_of(rows, request.method);
   for (Row& row : rows) {
-    for (const auto& [key, unit] : columns) {
-      std::vector<Cell> replicates;
-      for (const Cells& cells : row.replicates) {
-        for (const auto& [name, cell] : cells) {
-          if (name == key) {
-            replicates.push_back(cell);
-          }
-        }
-      }
-      if (!replicates.empty()) {
-        row.cells[key] = pooled(replicates);
-      }
-    }
+    fill_cells(row, columns);
   }
   Json column_list = Json::array();
   for (const auto& [key, unit] : columns) {

@@ -74,7 +74,12 @@ std::string notes_of(const Json& table) {
   for (const Json& row : table.at("rows")) {
     const std::string label = row["label"].get<std::string>();
     if (row.value("contamination", Json()) == "contaminated") {
-      text += "! " + label + ": gross errors move the variances of this recording.\n";
+      text += "! " + label + ": gross errors move the variances of this recording" +
+              (row.value("robust", false) ? "; the values are from robust variances.\n" : ".\n");
+    }
+    if (const Json agreement = row.value("agreement", Json()); agreement.is_object() && agreement["agree"] == false) {
+      text += "! " + label + ": its recordings disagree (p = " + rounded(agreement["p"]) +
+              "); the pooled values stand for none of them.\n";
     }
     for (const Json& warning : row.value("warnings", Json::array())) {
       text += "! " + label + ": " + warning.get<std::string>() + "\n";
@@ -82,6 +87,44 @@ std::string notes_of(const Json& table) {
   }
   return text;
 }
+
+/// `*` where a note below speaks of the row itself.
+std::string marked_label(const Json& row) {
+  const Json agreement = row.value("agreement", Json());
+  const bool marked =
+      row.value("contamination", Json()) == "contaminated" || (agreement.is_object() && agreement["agree"] == false);
+  return row["label"].get<std::string>() + (marked ? " *" : "");
+}
+
+std::string heading_of(const Json& table) {
+  std::string text = table["device"].get<std::string>() + ", " + table["sensor"].get<std::string>();
+  if (table["axis"].is_string()) {
+    text += " " + table["axis"].get<std::string>();
+  }
+  return text + (table["method"] == "av"
+                     ? ", Allan variance"
+                     : ", GMWM, model " + (table["model"].is_string() ? table["model"].get<std::string>() : "?"));
+}
+
+/// Lines of the table: keys, units, one per row.
+std::vector<std::vector<std::string>> grid_of(const Json& table) {
+  std::vector<std::vector<std::string>> grid(2, {"condition"});
+  grid[1] = {""};
+  for (const Json& column : table.at("columns")) {
+    grid[0].push_back(column["key"].get<std::string>());
+    grid[1].push_back(column["unit"].is_string() ? column["unit"].get<std::string>() : "");
+  }
+  for (const Json& row : table.at("rows")) {
+    std::vector<std::string> line{marked_label(row)};
+    for (const Json& column : table.at("columns")) {
+      line.push_back(cell_text(row["values"][column["key"].get<std::string>()]));
+    }
+    grid.push_back(std::move(line));
+  }
+  return grid;
+}
+
+constexpr const char* kLegend = "value [95 % interval]; … not identifiable; ↑ ↓ changed against the first row";
 
 std::string exact(const Json& value) { return value.is_number() ? to_text(value.get<double>()) : ""; }
 
@@ -117,34 +160,14 @@ std::string table_to_csv(const Json& table) {
 }
 
 std::string table_to_text(const Json& table) {
-  std::vector<std::vector<std::string>> grid(1, {"condition"});
-  std::vector<std::string> units{""};
-  for (const Json& column : table.at("columns")) {
-    grid[0].push_back(column["key"].get<std::string>());
-    units.push_back(column["unit"].is_string() ? column["unit"].get<std::string>() : "");
-  }
-  grid.push_back(units);
-  for (const Json& row : table.at("rows")) {
-    std::vector<std::string> line{row["label"].get<std::string>()};
-    for (const Json& column : table.at("columns")) {
-      line.push_back(cell_text(row["values"][column["key"].get<std::string>()]));
-    }
-    grid.push_back(std::move(line));
-  }
+  const std::vector<std::vector<std::string>> grid = grid_of(table);
   std::vector<std::size_t> widths(grid[0].size(), 0);
   for (const auto& line : grid) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       widths[i] = std::max(widths[i], width(line[i]));
     }
   }
-  std::string text = table["device"].get<std::string>() + ", " + table["sensor"].get<std::string>();
-  if (table["axis"].is_string()) {
-    text += " " + table["axis"].get<std::string>();
-  }
-  text += table["method"] == "av"
-              ? ", Allan variance"
-              : ", GMWM, model " + (table["model"].is_string() ? table["model"].get<std::string>() : "?");
-  text += " (value [95 % interval]; … not identifiable; ↑ ↓ changed against the first row)\n\n";
+  std::string text = heading_of(table) + " (" + kLegend + ")\n\n";
   for (std::size_t r = 0; r < grid.size(); ++r) {
     std::string line;
     for (std::size_t i = 0; i < grid[r].size(); ++i) {
@@ -164,6 +187,30 @@ std::string table_to_text(const Json& table) {
     }
   }
   return text + notes_of(table);
+}
+
+std::string table_to_markdown(const Json& table) {
+  const std::vector<std::vector<std::string>> grid = grid_of(table);
+  std::string text = "**" + heading_of(table) + "** (" + kLegend + ")\n\n";
+  const auto line = [&](const auto& cell) {
+    text += "|";
+    for (std::size_t i = 0; i < grid[0].size(); ++i) {
+      text += " " + cell(i) + " |";
+    }
+    text += "\n";
+  };
+  line([&](std::size_t i) { return grid[0][i] + (grid[1][i].empty() ? "" : " [" + grid[1][i] + "]"); });
+  line([](std::size_t) { return std::string("---"); });
+  for (std::size_t r = 2; r < grid.size(); ++r) {
+    line([&](std::size_t i) { return grid[r][i]; });
+  }
+  const std::string notes = notes_of(table);
+  for (std::size_t start = 0; start < notes.size();) {
+    const std::size_t end = notes.find('\n', start);
+    text += (start == 0 ? "\n- " : "- ") + notes.substr(start + 2, end - start - 2) + "\n";
+    start = end + 1;
+  }
+  return text;
 }
 
 }  // namespace driftlab

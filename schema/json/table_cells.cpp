@@ -1,0 +1,140 @@
+#include "schema/json/table_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace driftlab {
+namespace {
+
+std::optional<double> optional_number(const Json& value) {
+  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
+}
+
+Cell cell_of(const Json& parameter, const Json* reasons, const std::string& name) {
+  Cell cell;
+  if (parameter.is_object()) {
+    cell.value = optional_number(parameter.value("value", Json()));
+    cell.unit = parameter.value("unit", "");
+    cell.low = optional_number(parameter["ci95"][0]);
+    cell.high = optional_number(parameter["ci95"][1]);
+  } else if (reasons != nullptr && reasons->contains(name)) {
+    cell.reason = (*reasons)[name].get<std::string>();
+  }
+  return cell;
+}
+
+}  // namespace
+
+Cells allan_cells(const Json& channel) {
+  Cells cells;
+  const Json& parameters = channel.at("allan_parameters");
+  const auto reasons = parameters.find("reasons");
+  for (const char* const name : {"N", "B", "K", "Q", "R"}) {
+    cells.emplace_back(
+        name, cell_of(parameters.value(name, Json()), reasons == parameters.end() ? nullptr : &*reasons, name));
+  }
+  return cells;
+}
+
+const Json* find_fit(const Json& channel, const std::string& model) {
+  for (const Json& fit : channel.at("fits")) {
+    if (fit.value("model", "") == model) {
+      return &fit;
+    }
+  }
+  return nullptr;
+}
+
+Cells model_cells(const Json& fit) {
+  Cells cells;
+  std::map<std::string, int> seen;
+  for (const Json& process : fit.at("processes")) {
+    const std::string kind = process.value("process", "");
+    const int index = ++seen[kind];
+    // Gauss-Markov processes and sinusoids may occur any number of times, so they always carry a number.
+    const bool numbered = kind == "gauss_markov" || kind == "sinusoid";
+    const std::string prefix = kind + (numbered ? "_" + std::to_string(index) : "") + ".";
+    const auto reasons = process.find("reasons");
+    for (const auto& [name, parameter] : process.at("params").items()) {
+      cells.emplace_back(prefix + name, cell_of(parameter, reasons == process.end() ? nullptr : &*reasons, name));
+    }
+  }
+  return cells;
+}
+
+std::optional<double> log_half_width(const Cell& cell) {
+  if (!cell.value || !cell.low || !cell.high || !(*cell.low > 0.0) || !(*cell.value > 0.0)) {
+    return std::nullopt;
+  }
+  return std::max(std::log(*cell.high / *cell.value), std::log(*cell.value / *cell.low));
+}
+
+Cell averaged(const std::vector<Cell>& replicates) {
+  double weight_sum = 0.0;
+  double log_sum = 0.0;
+  const Cell* any = nullptr;
+  int used = 0;
+  for (const Cell& cell : replicates) {
+    if (!cell.value) {
+      continue;
+    }
+    any = &cell;
+    if (const auto half = log_half_width(cell); half && *half > 0.0) {
+      const double weight = 1.0 / (*half * *half);
+      weight_sum += weight;
+      log_sum += weight * std::log(*cell.value);
+      ++used;
+    }
+  }
+  if (used < 2) {
+    return any != nullptr ? *any : replicates.front();
+  }
+  Cell result = *any;
+  const double mean = log_sum / weight_sum;
+  const double half = 1.0 / std::sqrt(weight_sum);
+  result.value = std::exp(mean);
+  result.low = std::exp(mean - half);
+  result.high = std::exp(mean + half);
+  return result;
+}
+
+Scatter scatter_of(const std::vector<Cell>& replicates) {
+  double weights = 0.0;
+  double logs = 0.0;
+  double squares = 0.0;
+  int used = 0;
+  for (const Cell& cell : replicates) {
+    if (const auto half = log_half_width(cell); half && *half > 0.0) {
+      constexpr double kZ95 = 1.959963984540054;
+      const double weight = kZ95 * kZ95 / (*half * *half);
+      const double y = std::log(*cell.value);
+      weights += weight;
+      logs += weight * y;
+      squares += weight * y * y;
+      ++used;
+    }
+  }
+  return used < 2 ? Scatter{} : Scatter{std::max(0.0, squares - logs * logs / weights), used - 1};
+}
+
+Json change_between(const Cell& first, const Cell& now) {
+  const auto a = log_half_width(first);
+  const auto b = log_half_width(now);
+  if (!a || !b || !first.value || !now.value) {
+    return nullptr;
+  }
+  const double difference = std::log(*now.value / *first.value);
+  if (std::fabs(difference) <= std::hypot(*a, *b)) {
+    return "none";
+  }
+  return difference > 0.0 ? "up" : "down";
+}
+
+bool comes_before(const Condition& a, const Condition& b) {
+  const auto key = [](const Condition& c) { return std::tuple(c.kind, c.axis, c.value.value_or(0.0)); };
+  return key(a) != key(b) ? key(a) < key(b) : to_text(a) < to_text(b);
+}
+
+}  // namespace driftlab
