@@ -1,9 +1,9 @@
 #pragma once
 /// The inner loops of the variances, in the widest instruction set the processor has.
 ///
-/// All versions are one source (kernels_body.inc): sums run in sixteen lanes whose order of additions is fixed, without
-/// fused multiply-add, so the bits are the same in every version; the portable one is what other processors and
-/// compilers use.
+/// All versions are one source (kernels_body.inc): sums run in lanes (sixteen or eight) whose order of additions is
+/// fixed, without fused multiply-add, so the bits are the same in every version; the portable one is what other
+/// processors and compilers use.
 #include <cstddef>
 
 namespace driftlab {
@@ -14,6 +14,10 @@ struct Kernels {
   /// For level k of `levels`, offset m 2^k: the sum over i of (now[i] - 2 now[i - m 2^k] + now[i - m 2^(k+1)])^2, added
   /// to power[k].
   void (*octave_powers)(const double* now, std::size_t m, std::size_t levels, std::size_t count, double* power);
+  /// Sum of (a[i] - 2 b[i] + c[i])^2.
+  double (*second_difference_power)(const double* a, const double* b, const double* c, std::size_t count);
+  /// Sum over i of (now[i] - 3 now[i - m] + 3 now[i - 2m] - now[i - 3m])^2.
+  double (*third_difference_power)(const double* now, std::size_t m, std::size_t count);
   /// Sum of u (1 - u bound)^4 over the u below 1/bound.
   double (*biweight_sum)(const double* u, std::size_t count, double bound);
   /// out[i] = (a[i] - 2 b[i] + c[i])^2 scale.

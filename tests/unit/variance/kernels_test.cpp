@@ -30,6 +30,15 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
     chosen.octave_powers(x.data() + 3000, 40, 5, count, p.data());
     portable.octave_powers(x.data() + 3000, 40, 5, count, q.data());
     EXPECT_EQ(p, q);
+    for (const std::size_t levels : {1U, 2U, 3U, 4U}) {
+      chosen.octave_powers(x.data() + 3000, 7, levels, count, p.data());
+      portable.octave_powers(x.data() + 3000, 7, levels, count, q.data());
+      EXPECT_EQ(p, q) << levels;
+    }
+    EXPECT_EQ(chosen.second_difference_power(x.data() + 20, x.data() + 10, x.data(), count),
+              portable.second_difference_power(x.data() + 20, x.data() + 10, x.data(), count));
+    EXPECT_EQ(chosen.third_difference_power(x.data() + 300, 10, count),
+              portable.third_difference_power(x.data() + 300, 10, count));
     std::vector<double> squares(count);
     for (std::size_t i = 0; i < count; ++i) {
       squares[i] = x[i] * x[i];
