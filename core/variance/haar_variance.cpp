@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBlock = 4096;
 /// Half lengths below this go through the pyramid, the rest through prefix sums.
-constexpr std::size_t kPyramidEnd = 512;
+constexpr std::size_t kPyramidEnd = 256;
 
 /// Neumaier's compensated sum.
 class CompensatedSum {
@@ -31,12 +31,13 @@ class CompensatedSum {
   double carry_ = 0.0;
 };
 
-/// Short scales: level j keeps the last m sums of m samples in front of the block's own.
+/// Short scales, two levels at a time: buffer j holds the sums of m = 2^j samples, of the block and of the 3m before
+/// it.
 class Pyramid {
  public:
   explicit Pyramid(std::size_t levels) : levels_(levels), buffer_(levels + 1), power_(levels) {
-    for (std::size_t j = 0; j <= levels; ++j) {
-      buffer_[j].assign((std::size_t{1} << j) + kBlock, 0.0);
+    for (std::size_t j = 0; j <= levels; j = next_of(j)) {
+      buffer_[j].assign(3 * (std::size_t{1} << j) + kBlock, 0.0);
     }
   }
 
@@ -46,21 +47,35 @@ class Pyramid {
       return;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      buffer_[0][1 + i] = samples[i] - pivot;
+      buffer_[0][3 + i] = samples[i] - pivot;
     }
-    for (std::size_t j = 0; j < levels_; ++j) {
+    for (std::size_t j = 0; j < levels_; j = next_of(j)) {
       const std::size_t m = std::size_t{1} << j;
+      const std::size_t after = next_of(j);
       double* const past = buffer_[j].data();
-      const std::size_t ready = 2 * m - 1;  // first time index with a whole filter behind it
-      const std::size_t first = start >= ready ? 0 : std::min(ready - start, count);
-      power_[j].add(kernels().pyramid_step(past + m, past, buffer_[j + 1].data() + 2 * m, first, count));
-      std::memmove(past, past + count, m * sizeof(double));
+      double* const next = buffer_[after].data() + (std::size_t{3} << after);
+      const std::array<std::size_t, 2> first{ready(start, 2 * m, count), ready(start, 4 * m, count)};
+      if (after == j + 2) {
+        std::array<double, 2> sum{};
+        kernels().pyramid_pair(past + 3 * m, m, next, first.data(), count, sum.data());
+        power_[j].add(sum[0]);
+        power_[j + 1].add(sum[1]);
+      } else {
+        power_[j].add(kernels().pyramid_step(past + 3 * m, m, next, first[0], count));
+      }
+      std::memmove(past, past + count, 3 * m * sizeof(double));
     }
   }
 
   [[nodiscard]] double power(std::size_t level) const { return power_[level].value(); }
 
  private:
+  /// The level that the step from level j ends at: two on, one where only one is left.
+  [[nodiscard]] std::size_t next_of(std::size_t j) const { return j + 1 == levels_ ? j + 1 : j + 2; }
+  /// First index in a block with a whole filter of `length` samples behind it.
+  static std::size_t ready(std::size_t start, std::size_t length, std::size_t count) {
+    return start + 1 >= length ? 0 : std::min(length - 1 - start, count);
+  }
   std::size_t levels_;
   std::vector<std::vector<double>> buffer_;
   std::vector<CompensatedSum> power_;
@@ -103,10 +118,10 @@ class PrefixHistory {
   [[nodiscard]] double at(std::size_t t) const { return marks_[t / kBlock].base; }
 
   /// So far back a filter reaches in the window; beyond, blocks are made again.
-  static constexpr std::size_t kNearPast = std::size_t{1} << 20U;
+  static constexpr std::size_t kNearPast = std::size_t{1} << 18U;
 
  private:
-  static constexpr std::size_t kWindow = std::size_t{1} << 22U;
+  static constexpr std::size_t kWindow = std::size_t{1} << 20U;
   struct Mark {
     double base;
     double carry;

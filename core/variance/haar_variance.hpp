@@ -28,9 +28,9 @@ struct HaarVariance {
 /// All octaves in one pass. `samples` are used as they lie; NaN-free and bounded (summarise() checks). Sums are formed
 /// relative to `pivot` (the mean, to be accurate: then a bias of 10^6 sigma costs no digits), short scales by a pyramid
 /// of pairwise sums inside cache-sized blocks, long ones from prefix sums. O(N) time a scale (14 to 18 vectorised sums
-/// of the array for all scales together). Memory does not grow with the record (34 MB, and 4 bytes for a thousand
-/// samples): prefix sums older than 10^6 samples are made again from the samples, so these may lie in a mapped file
-/// that is larger than the memory; blocks are read in order, at the offsets 0, 2^20, 2^21, ... behind the newest. Fewer
+/// of the array for all scales together). Memory does not grow with the record (9 MB, and 4 bytes for a thousand
+/// samples): prefix sums older than 260,000 samples are made again from the samples, so these may lie in a mapped file
+/// that is larger than the memory; blocks are read in order, at the offsets 0, 2^19, 2^20, ... behind the newest. Fewer
 /// than 2 samples give no scale. Same bits on every run. `control.stop` is polled every million samples; a stopped pass
 /// gives an empty curve, which the caller tells by asking the token.
 [[nodiscard]] HaarVariance haar_variance(std::span<const double> samples, double pivot, const RunControl& control = {});

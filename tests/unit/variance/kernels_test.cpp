@@ -21,10 +21,20 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
     std::vector<double> a(count);
     std::vector<double> b(count);
     for (const std::size_t first : {std::size_t{0}, count / 3, count}) {
-      EXPECT_EQ(chosen.pyramid_step(x.data() + 64, x.data(), a.data(), first, count),
-                portable.pyramid_step(x.data() + 64, x.data(), b.data(), first, count));
+      EXPECT_EQ(chosen.pyramid_step(x.data() + 64, 64, a.data(), first, count),
+                portable.pyramid_step(x.data() + 64, 64, b.data(), first, count));
       EXPECT_EQ(a, b);
+      const std::size_t firsts[] = {first / 2, first};
+      std::vector<double> p(2, 0.0);
+      std::vector<double> q(2, 0.0);
+      chosen.pyramid_pair(x.data() + 64, 16, a.data(), firsts, count, p.data());
+      portable.pyramid_pair(x.data() + 64, 16, b.data(), firsts, count, q.data());
+      EXPECT_EQ(a, b);
+      EXPECT_EQ(p, q);
     }
+    EXPECT_EQ(chosen.prefix_block(x.data(), count, 0.3, 7.0, 0.01, a.data()),
+              portable.prefix_block(x.data(), count, 0.3, 7.0, 0.01, b.data()));
+    EXPECT_EQ(a, b);
     std::vector<double> p(5, 0.0);
     std::vector<double> q(5, 0.0);
     chosen.octave_powers(x.data() + 3000, 40, 5, count, p.data());
