@@ -76,7 +76,7 @@ class LagPlan {
     std::vector<double> cuts;  // a stretch ends with each of these
     const double reach = end_is_kink ? 0.5 * (high - low) : high - low;
     std::vector<double> distance;
-    for (double d = first_; d < reach; d *= 4.0) {
+    for (double d = first_; d <= reach + 1.0; d *= 4.0) {
       distance.push_back(d);
     }
     for (const double d : distance) {
@@ -152,6 +152,8 @@ struct HaarCovariance::Rules {
 };
 
 HaarCovariance::~HaarCovariance() = default;
+HaarCovariance::HaarCovariance(HaarCovariance&& other) noexcept = default;
+HaarCovariance& HaarCovariance::operator=(HaarCovariance&& other) noexcept = default;
 
 HaarCovariance::HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s)
     : half_(half.begin(), half.end()),

@@ -30,6 +30,8 @@ class HaarCovariance {
   /// `half`: half lengths in samples, rising; each 2 m <= samples.
   HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s);
   ~HaarCovariance();
+  HaarCovariance(HaarCovariance&& other) noexcept;
+  HaarCovariance& operator=(HaarCovariance&& other) noexcept;
   HaarCovariance(const HaarCovariance&) = delete;
   HaarCovariance& operator=(const HaarCovariance&) = delete;
 
