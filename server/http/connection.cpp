@@ -57,7 +57,7 @@ std::chrono::seconds preferred_wait(const Request& request) {
 
 }  // namespace
 
-Connection::Connection(asio::ip::tcp::socket socket, ConnectionShared& shared)
+HttpConnection::HttpConnection(asio::ip::tcp::socket socket, ConnectionShared& shared)
     : stream_(std::move(socket)),
       buffer_(shared.options.limits.header_bytes + kPiece),
       shared_(shared),
@@ -67,7 +67,7 @@ Connection::Connection(asio::ip::tcp::socket socket, ConnectionShared& shared)
   address_ = error ? "" : peer.address().to_string();
 }
 
-asio::awaitable<void> Connection::run() {
+asio::awaitable<void> HttpConnection::run() {
   for (int served = 0; served < shared_.options.limits.requests_per_connection && !shared_.stopping; ++served) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(shared_.options.limits.header_bytes));
@@ -86,13 +86,13 @@ asio::awaitable<void> Connection::run() {
   ignored = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
 
-void Connection::close_if_idle() {
+void HttpConnection::close_if_idle() {
   if (idle_) {
     stream_.cancel();
   }
 }
 
-asio::awaitable<bool> Connection::read_header(Parser& parser) {
+asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   boost::system::error_code error;
   if (buffer_.size() == 0) {
     stream_.expires_after(60s);
@@ -127,7 +127,7 @@ asio::awaitable<bool> Connection::read_header(Parser& parser) {
   co_return false;
 }
 
-asio::awaitable<bool> Connection::answer(Parser& parser) {
+asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   HeadView head = head_of(parser.get());
   Request request;
   request.method = head.method;
@@ -181,7 +181,7 @@ asio::awaitable<bool> Connection::answer(Parser& parser) {
   co_return co_await answer_plain(parser, *match.route, request);
 }
 
-asio::awaitable<std::optional<std::size_t>> Connection::read_piece(Parser& parser) {
+asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& parser) {
   if (wants_continue_) {
     wants_continue_ = false;
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -216,7 +216,7 @@ asio::awaitable<std::optional<std::size_t>> Connection::read_piece(Parser& parse
   co_return 0;
 }
 
-asio::awaitable<bool> Connection::answer_plain(Parser& parser, const Route& route, Request& request) {
+asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& route, Request& request) {
   const auto declared = parser.content_length();
   if (declared && *declared > shared_.options.limits.document_bytes) {
     Response too_large = problem_response(HttpFault::BodyTooLarge, "A document may have 1 MiB at most.");
@@ -246,7 +246,7 @@ asio::awaitable<bool> Connection::answer_plain(Parser& parser, const Route& rout
   co_return co_await send(request, std::move(response), true);
 }
 
-asio::awaitable<Response> Connection::wait_for_job(const Route& route, const Request& request, Response response) {
+asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const Request& request, Response response) {
   const auto deadline = std::chrono::steady_clock::now() + preferred_wait(request);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(response.pending_job, executor);
@@ -265,13 +265,13 @@ asio::awaitable<Response> Connection::wait_for_job(const Route& route, const Req
   co_return response;
 }
 
-asio::awaitable<bool> Connection::refuse(const Request& request, Response response) {
+asio::awaitable<bool> HttpConnection::refuse(const Request& request, Response response) {
   co_await send(request, std::move(response), false);
   co_await linger();
   co_return false;
 }
 
-asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, const Request& request) {
+asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler, const Request& request) {
   auto begin = [&handler, &request] { return handler(request); };
   auto begun = co_await shared_.handlers.run(begin);
   auto settled = settle(std::move(begun));
@@ -319,7 +319,7 @@ asio::awaitable<bool> Connection::answer_events(const EventHandler& handler, con
   co_return false;
 }
 
-asio::awaitable<bool> Connection::send(const Request& request, Response response, bool keep_alive) {
+asio::awaitable<bool> HttpConnection::send(const Request& request, Response response, bool keep_alive) {
   shared_.hooks.complete(request, response);
   log(request, response);
   http::response<http::string_body> message;
@@ -358,7 +358,7 @@ asio::awaitable<bool> Connection::send(const Request& request, Response response
   co_return !error && message.keep_alive();
 }
 
-asio::awaitable<void> Connection::linger() {
+asio::awaitable<void> HttpConnection::linger() {
   boost::system::error_code error;
   error = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
   const auto until = std::chrono::steady_clock::now() + 2s;
@@ -368,7 +368,7 @@ asio::awaitable<void> Connection::linger() {
   }
 }
 
-void Connection::log(const Request& request, const Response& response) {
+void HttpConnection::log(const Request& request, const Response& response) {
   if (!shared_.hooks.log) {
     return;
   }

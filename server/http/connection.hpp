@@ -39,9 +39,9 @@ struct ConnectionShared {
   std::atomic<std::size_t>& uploads_running;
 };
 
-class Connection {
+class HttpConnection {
  public:
-  Connection(boost::asio::ip::tcp::socket socket, ConnectionShared& shared);
+  HttpConnection(boost::asio::ip::tcp::socket socket, ConnectionShared& shared);
   /// Runs until the connection closes. Never throws.
   boost::asio::awaitable<void> run();
   /// Closes a connection that waits for its next request. On the connection's own executor.

@@ -30,7 +30,7 @@ struct UploadSlot {
 
 }  // namespace
 
-std::optional<Response> Connection::refuse_before_upload(const Parser& parser) const {
+std::optional<Response> HttpConnection::refuse_before_upload(const Parser& parser) const {
   const auto declared = parser.content_length();
   if (!declared) {
     return problem_response(HttpFault::LengthRequired, "An upload needs Content-Length.");
@@ -46,7 +46,7 @@ std::optional<Response> Connection::refuse_before_upload(const Parser& parser) c
   return std::nullopt;
 }
 
-asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
+asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
   std::optional<Response> refusal = refuse_before_upload(parser);
   if (refusal) {
     co_return co_await refuse(request, std::move(*refusal));
@@ -95,7 +95,7 @@ asio::awaitable<bool> Connection::answer_upload(Parser& parser, const UploadHand
   co_return co_await send(request, std::move(response), true);
 }
 
-bool Connection::surplus_follows() {
+bool HttpConnection::surplus_follows() {
   boost::system::error_code error;
   if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
     error = stream_.socket().non_blocking(true, error);

@@ -51,7 +51,7 @@ struct HttpServer::Shared {
   std::mutex mutex;
   std::condition_variable idle;
   std::map<std::string, std::size_t> per_address;
-  std::list<std::weak_ptr<Connection>> connections;
+  std::list<std::weak_ptr<HttpConnection>> connections;
   std::size_t open = 0;
 };
 
@@ -66,7 +66,7 @@ bool HttpServer::Shared::admit(const std::string& address) {
 }
 
 asio::awaitable<void> HttpServer::Shared::serve(tcp::socket socket, std::string address) {
-  auto connection = std::make_shared<Connection>(std::move(socket), connection_shared);
+  auto connection = std::make_shared<HttpConnection>(std::move(socket), connection_shared);
   {
     const std::lock_guard lock(mutex);
     std::erase_if(connections, [](const auto& entry) { return entry.expired(); });
