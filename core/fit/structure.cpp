@@ -1,5 +1,8 @@
 #include "core/fit/structure.hpp"
 
+#include "core/process/model.hpp"
+#include "core/process/registry.hpp"
+
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
@@ -7,57 +10,100 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 namespace driftlab {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPositiveEvidence = 2.0;
+constexpr double kStrong = 6.0;
 constexpr double kSize = 0.05;
-
-/// ln of the mean of exp(-criterion/2).
-double log_mean_weight(const std::vector<double>& criteria) {
-  const double least = *std::min_element(criteria.begin(), criteria.end());
-  if (!std::isfinite(least)) {
-    return -kInfinity;
-  }
-  double sum = 0.0;
-  for (const double criterion : criteria) {
-    sum += std::exp(-0.5 * (criterion - least));
-  }
-  return -0.5 * least + std::log(sum / static_cast<double>(criteria.size()));
-}
 
 std::size_t least_of(const std::vector<double>& values) {
   return static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 }
 
-std::string written(const char* format, double a, double b) {
-  std::array<char, 96> buffer{};
-  const int length = std::snprintf(buffer.data(), buffer.size(), format, a, b);
+std::string written(const char* format, double value) {
+  std::array<char, 64> buffer{};
+  const int length = std::snprintf(buffer.data(), buffer.size(), format, value);
   return {buffer.data(), static_cast<std::size_t>(length)};
 }
 
+/// Criteria by condition and candidate, infinite where not fitted.
+using Criteria = std::vector<std::vector<double>>;
+
+/// Is `inner` a part of `outer`, or a limit of one? A random walk is a Gauss-Markov process whose correlation time is
+/// beyond the record.
+bool is_part(const ModelStructure& inner, const ModelStructure& outer) {
+  if (is_nested(inner, outer)) {
+    return true;
+  }
+  const ProcessKind* const walk = find_process("RW");
+  const ProcessKind* const markov = find_process("GM");
+  ModelStructure replaced = inner;
+  const auto found = std::find(replaced.kinds.begin(), replaced.kinds.end(), walk);
+  if (found == replaced.kinds.end()) {
+    return false;
+  }
+  *found = markov;
+  std::sort(replaced.kinds.begin(), replaced.kinds.end(),
+            [](const ProcessKind* a, const ProcessKind* b) { return registry_index(a) < registry_index(b); });
+  return is_nested(replaced, outer);
+}
+
+/// The smallest candidate that serves every condition, by itself or by a part of it; of equally small ones the one with
+/// the smallest sum of what serves. Nothing where a condition has no fit at all.
+std::optional<std::size_t> smallest_common(const std::vector<std::string>& names, const Criteria& criteria) {
+  std::vector<ModelStructure> structures;
+  for (const std::string& name : names) {
+    structures.push_back(parse_model(name).value_or(ModelStructure{}));
+  }
+  std::optional<std::size_t> common;
+  std::pair<std::size_t, double> least{};
+  for (std::size_t s = 0; s < names.size(); ++s) {
+    double sum = 0.0;
+    bool serves = true;
+    for (const std::vector<double>& condition : criteria) {
+      double inside = kInfinity;
+      for (std::size_t part = 0; part < names.size(); ++part) {
+        if (part == s || is_part(structures[part], structures[s])) {
+          inside = std::min(inside, condition[part]);
+        }
+      }
+      sum += inside;
+      serves = serves && std::isfinite(condition[s]) &&
+               inside <= *std::min_element(condition.begin(), condition.end()) + kStrong;
+    }
+    const std::pair key(structures[s].parameter_count(), sum);
+    if (serves && (!common || key < least)) {
+      common = s;
+      least = key;
+    }
+  }
+  return common;
+}
+
 std::string statement_of(const StructureChoice& choice, const std::vector<std::string>& names) {
-  const std::string& best = names[choice.best];
-  const std::string figures = written(" (p = %.3g, evidence %.1f)", choice.p, choice.evidence);
+  const std::string& common = names[choice.common];
+  const std::string p = " (p = " + written("%.3g", choice.p) + ")";
+  if (choice.by_condition.size() < 2) {
+    return "With one condition there is nothing to compare; its best structure is " + names[choice.best] + ".";
+  }
   switch (choice.verdict) {
-    case StructureVerdict::OneStructure:
-      return "One structure, " + best + ", describes every condition while its parameters move" + figures + ".";
     case StructureVerdict::Changes:
-      return "The structure changes with the condition: the best common one, " + best +
-             ", is worse than a structure for each" + figures + ".";
+      return "The structure changes with the condition: " + common +
+             " would serve all, but no condition shows its components together (criterion worse by " +
+             written("%.1f", choice.excess) + " or more).";
     case StructureVerdict::Undecided:
+      return "One structure, " + common + ", serves every condition better than others, but does not fit" + p +
+             ": none of the candidates may be right.";
+    case StructureVerdict::OneStructure:
       break;
   }
-  if (choice.by_condition.size() < 2) {
-    return "With one condition there is nothing to compare; its best structure is " + best + ".";
-  }
-  if (choice.p < kSize && choice.evidence > kPositiveEvidence) {
-    return "One structure, " + best + ", is preferred, but it does not fit every condition" + figures +
-           ": none of the candidates may be right.";
-  }
-  return "The data cannot tell one structure, " + best + ", from one that changes" + figures + ".";
+  const bool throughout = std::all_of(choice.by_condition.begin(), choice.by_condition.end(),
+                                      [&](std::size_t best) { return best == choice.common; });
+  return "One structure, " + common + ", describes every condition while its parameters move" + p +
+         (throughout ? "." : "; not every condition shows all of its components.");
 }
 
 }  // namespace
@@ -78,36 +124,38 @@ StructureChoice choose_structure(const std::vector<std::string>& names,
                                  const std::vector<std::vector<StructureScore>>& scores) {
   StructureChoice choice;
   choice.sum.assign(names.size(), 0.0);
-  double changing = 0.0;
+  Criteria criteria;
   for (const std::vector<StructureScore>& condition : scores) {
-    std::vector<double> criteria;
+    std::vector<double> row;
     for (std::size_t s = 0; s < names.size(); ++s) {
-      criteria.push_back(condition[s].fitted ? condition[s].criterion : kInfinity);
-      choice.sum[s] += criteria.back();
+      row.push_back(condition[s].fitted ? condition[s].criterion : kInfinity);
+      choice.sum[s] += row.back();
     }
-    choice.by_condition.push_back(least_of(criteria));
-    changing += log_mean_weight(criteria);
+    choice.by_condition.push_back(least_of(row));
+    criteria.push_back(std::move(row));
   }
   choice.best = least_of(choice.sum);
-  if (!std::isfinite(choice.sum[choice.best])) {
+  const auto common = smallest_common(names, criteria);
+  if (!common || !std::isfinite(choice.sum[choice.best])) {
     choice.statement = "No structure was fitted under every condition.";
     return choice;
   }
-  for (const std::vector<StructureScore>& condition : scores) {
-    choice.statistic += condition[choice.best].misfit;
-    choice.dof += condition[choice.best].dof;
+  choice.common = *common;
+  choice.excess = kInfinity;
+  for (std::size_t c = 0; c < scores.size(); ++c) {
+    const StructureScore& score = scores[c][choice.common];
+    choice.excess = std::min(choice.excess, score.criterion - criteria[c][choice.by_condition[c]]);
+    choice.statistic += score.misfit;
+    choice.dof += score.dof;
   }
   if (choice.dof >= 1.0) {
     choice.p = boost::math::cdf(
         boost::math::complement(boost::math::chi_squared(choice.dof), std::max(0.0, choice.statistic)));
   }
   if (scores.size() > 1) {
-    choice.evidence = 2.0 * (log_mean_weight(choice.sum) - changing);
-    if (choice.evidence < -kPositiveEvidence) {
-      choice.verdict = StructureVerdict::Changes;
-    } else if (choice.evidence > kPositiveEvidence && choice.p >= kSize) {
-      choice.verdict = StructureVerdict::OneStructure;
-    }
+    choice.verdict = choice.excess > kStrong ? StructureVerdict::Changes
+                     : choice.p < kSize      ? StructureVerdict::Undecided
+                                             : StructureVerdict::OneStructure;
   }
   choice.statement = statement_of(choice, names);
   return choice;

@@ -1,16 +1,19 @@
 #pragma once
-/// One structure for all conditions, or another one for each? The nine candidates ranked jointly, and the claim that
-/// the structure stays while its parameters move (Radi, Nassar and El-Sheimy 2017, section 5) put to the test.
+/// One structure for all conditions, or another one for each? The candidates ranked jointly, and the claim that the
+/// structure stays while its parameters move (Radi, Nassar and El-Sheimy 2017, section 5) put to the test.
 ///
-/// Parameters are free in every condition, so the joint criterion of a structure is the sum of its criteria over the
-/// conditions, and its joint misfit the sum of its least L, chi-square with the sum of their degrees of freedom where
-/// the structure is right everywhere: `p` is the probability of a larger one. A criterion of BIC type is twice the
-/// negative logarithm of a posterior weight (Schwarz 1978; for moments Andrews and Lu 2001), so with structures equally
-/// likely beforehand
-///   one     = ln 1/M sum_S exp(-1/2 sum_c crit_c(S)),   changing = sum_c ln 1/M sum_S exp(-1/2 crit_c(S)),
-/// and `evidence` = 2 (one - changing) weighs "one structure" against "each condition its own": positive speaks for
-/// one, 2 to 6 is positive evidence, above 6 strong (Kass and Raftery 1995). A record too short to tell two structures
-/// apart favours neither. Measured: tests/ACCURACY.md.
+/// Ranking. Parameters are free in every condition, so the joint criterion of a structure is the sum of its criteria
+/// over the conditions.
+///
+/// The claim. Candidates are nested: a component that one condition shows and another does not may have a level there
+/// that the record does not reach, which is a parameter that moved; a random walk is the limit of a Gauss-Markov
+/// process whose correlation time is beyond the record, and counts as a part of it. A structure therefore *serves* a
+/// condition if it or a part of it has a criterion within 6 of the best (a posterior ratio of 20; Kass and Raftery
+/// 1995: strong evidence begins there). `common` is the smallest candidate that serves every condition. The largest
+/// candidate always does, so the claim can fail only in this way: no condition shows `common` as a whole, that is,
+/// conditions want components that never occur together. `excess` is by how much the criterion of `common` exceeds the
+/// best in the condition that shows it best; above 6 the structure changes. `p` tests that `common` fits every
+/// condition: the sum of the least L, chi-square with the sum of their degrees of freedom. Measured: tests/ACCURACY.md.
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -27,9 +30,9 @@ struct StructureScore {
 };
 
 enum class StructureVerdict {
-  OneStructure,  ///< evidence above 2, and the best common structure is not rejected at 5 %
-  Changes,       ///< evidence below -2
-  Undecided,     ///< between, or preferred and yet rejected: no candidate fits every condition
+  OneStructure,  ///< `excess` is 6 at most, and `common` is not rejected at 5 %
+  Changes,       ///< `excess` is above 6
+  Undecided,     ///< one condition only, or `common` is rejected: no candidate may be right
 };
 
 /// `one_structure`, `changes`, `undecided`.
@@ -39,16 +42,17 @@ struct StructureChoice {
   std::size_t best = 0;                   ///< the candidate with the smallest sum
   std::vector<double> sum;                ///< joint criterion per candidate; infinite where a condition lacks it
   std::vector<std::size_t> by_condition;  ///< the best of each condition
-  double statistic = 0.0;                 ///< sum of the misfits of `best`
+  std::size_t common = 0;
+  double excess = 0.0;
+  double statistic = 0.0;  ///< sum of the misfits of `common`
   double dof = 0.0;
   double p = 1.0;
-  double evidence = 0.0;
   StructureVerdict verdict = StructureVerdict::Undecided;
   std::string statement;  ///< the verdict as a sentence
 };
 
-/// `scores[condition][candidate]`, all rows as long as `names`; at least one condition. Ties go to the earlier name.
-/// One condition gives no verdict: Undecided with evidence 0.
+/// `scores[condition][candidate]`, all rows as long as `names`, which are names of models; at least one condition. Ties
+/// go to the earlier name.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<std::string>& names,
                                                const std::vector<std::vector<StructureScore>>& scores);
 

@@ -291,7 +291,8 @@ Json structure_json(const StructureChoice& choice, const std::vector<std::string
               {"p", number(choice.p)},
               {"statistic", number(choice.statistic)},
               {"dof", number(choice.dof)},
-              {"evidence", number(choice.evidence)},
+              {"common", models[choice.common]},
+              {"excess", number(choice.excess)},
               {"ranking", std::move(ranking)},
               {"by_condition", std::move(by_condition)}};
 }

@@ -124,8 +124,8 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
       "at 5 "
       "%%.\n\n| truth | runs | one structure | changes | undecided | rejected |\n|---|---|---|---|---|---|\n");
   std::vector<Model> mixed = rate_models(false);
-  mixed[0].pop_back();
-  mixed[1].pop_back();  // white noise alone at rest and at 9 deg/s
+  mixed[0].back() = *make_process("linear_drift", {1e-5});  // no Gauss-Markov process at rest and at 9 deg/s
+  mixed[1].back() = *make_process("linear_drift", {1e-5});
   struct Case {
     const char* name;
     std::vector<Model> conditions;
@@ -133,7 +133,7 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
   };
   for (const Case& one :
        {Case{"WN+GM throughout", rate_models(false), true}, Case{"WN+2GM throughout", rate_models(true), true},
-        Case{"WN at rest and 9 deg/s, WN+GM above", mixed, false}}) {
+        Case{"WN+DR at rest and 9 deg/s, WN+GM above", mixed, false}}) {
     const std::size_t runs = repetitions(60);
     const Verdicts verdicts = judge(one.conditions, runs, 600);
     const double percent = 100.0 / static_cast<double>(runs);
