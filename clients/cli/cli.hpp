@@ -23,6 +23,7 @@ using Command = std::function<Exit()>;
 /// Each adds a subcommand whose choice sets `chosen`.
 void add_characterise(CLI::App& app, Command& chosen);
 void add_table(CLI::App& app, Command& chosen);
+void add_trends(CLI::App& app, Command& chosen);
 void add_simulate(CLI::App& app, Command& chosen);
 
 /// Stops on Ctrl-C: `interrupt_token` is requested at the first SIGINT or SIGTERM, the second ends the process.

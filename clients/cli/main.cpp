@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   driftlab::cli::Command chosen;
   driftlab::cli::add_characterise(app, chosen);
   driftlab::cli::add_table(app, chosen);
+  driftlab::cli::add_trends(app, chosen);
   driftlab::cli::add_simulate(app, chosen);
   try {
     app.parse(argc, argv);

@@ -19,7 +19,13 @@ struct Flags {
 };
 
 std::string media_type(const std::string& format) {
-  return format == "csv" ? "text/csv" : format == "json" ? "application/json" : "text/plain";
+  if (format == "csv") {
+    return "text/csv";
+  }
+  if (format == "markdown") {
+    return "text/markdown";
+  }
+  return format == "json" ? "application/json" : "text/plain";
 }
 
 Exit run(const Flags& flags) {
@@ -60,8 +66,8 @@ void add_table(CLI::App& app, Command& chosen) {
   command->add_option("--axis", flags->axis, "x, y or z");
   command->add_option("--method", flags->method, "gmwm or av (Allan variance)")->capture_default_str();
   command->add_option("--model", flags->model, "Model of the table; default: the best over all conditions");
-  command->add_option("--format", flags->format, "text, csv or json")
-      ->check(CLI::IsMember({"text", "csv", "json"}))
+  command->add_option("--format", flags->format, "text, csv, markdown or json")
+      ->check(CLI::IsMember({"text", "csv", "markdown", "json"}))
       ->capture_default_str();
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

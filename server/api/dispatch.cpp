@@ -144,6 +144,7 @@ void add_all_routes(Router& router, ApiContext& context) {
   add_job_routes(router, context);
   add_fit_routes(router, context);
   add_parameter_table_routes(router, context);
+  add_study_routes(router, context);
 }
 
 }  // namespace driftlab::server

@@ -4,24 +4,24 @@
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "server/jobs/pool_results.hpp"
 
 namespace driftlab::server {
 namespace {
 
 constexpr std::size_t kMostRecordings = 100;
+/// Of the progress; the rest is for what the recordings say together.
+constexpr double kRecordingsShare = 0.9;
 
 /// Ids of the recordings asked for, without repeats, in the order given.
-std::vector<std::string> recording_ids(const Json& inputs, Faults& faults) {
+std::vector<std::string> listed_ids(const Json& list, Faults& faults) {
   std::vector<std::string> ids;
-  ObjectReader reader(inputs, "/inputs", faults);
-  const Json* const list = reader.member("recordings");
-  reader.reject_unknown();
-  if (list == nullptr || !list->is_array() || list->empty() || list->size() > kMostRecordings) {
-    faults.add("/inputs/recordings", ErrorCode::InvalidArgument, "Name 1 to 100 recordings by their ids.");
+  if (!list.is_array() || list.empty() || list.size() > kMostRecordings) {
+    faults.add("/inputs/recordings", ErrorCode::InvalidArgument, "Name 1 to 100 recordings by their ids, or a study.");
     return ids;
   }
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const Json& id = (*list)[i];
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Json& id = list[i];
     if (!id.is_string() || !is_id(id.get<std::string>(), "rec")) {
       faults.add("/inputs/recordings/" + std::to_string(i), ErrorCode::InvalidArgument,
                  "A recording id looks like rec_01H….");
@@ -30,6 +30,45 @@ std::vector<std::string> recording_ids(const Json& inputs, Faults& faults) {
     }
   }
   return ids;
+}
+
+/// What a job is asked to work on: recordings by id, or a study that names them.
+struct Inputs {
+  std::vector<std::string> recordings;
+  std::string study;  ///< empty: none
+};
+
+Result<Inputs> read_inputs(const Json& document, JobContext& context, Faults& faults) {
+  Inputs inputs;
+  ObjectReader reader(document, "/inputs", faults);
+  const Json* const list = reader.member("recordings");
+  const auto study = reader.text("study");
+  reader.reject_unknown();
+  if (list != nullptr && study) {
+    faults.add("/inputs/study", ErrorCode::InvalidArgument, "Name either recordings or a study, not both.");
+    return inputs;
+  }
+  if (!study) {
+    inputs.recordings = listed_ids(list != nullptr ? *list : Json(), faults);
+    return inputs;
+  }
+  inputs.study = *study;
+  auto row = context.store.study(*study);
+  if (!row) {
+    if (row.error().code != ErrorCode::NotFound) {
+      return fail(row.error());
+    }
+    faults.add("/inputs/study", ErrorCode::NotFound, "There is no study " + *study + ".");
+    return inputs;
+  }
+  auto stored = parse_json(row->document_json);
+  if (!stored) {
+    return fail(stored.error());
+  }
+  for (const Json& entry : (*stored)["recordings"]) {
+    inputs.recordings.push_back(entry["recording"].get<std::string>());
+  }
+  return inputs;
 }
 
 /// The compiler's view of the machine: results name it, because other instruction sets may round differently.
@@ -55,10 +94,13 @@ class Characterise final : public JobKind {
       return fail(inputs ? parameters.error() : inputs.error());
     }
     Faults faults;
-    const std::vector<std::string> ids = recording_ids(*inputs, faults);
+    auto wanted = read_inputs(*inputs, context, faults);
+    if (!wanted) {
+      return fail(wanted.error());
+    }
     const CharacteriseOptions options = characterise_options_from_json(*parameters, "/parameters", faults);
     Json pinned = Json::array();
-    for (const std::string& id : ids) {
+    for (const std::string& id : wanted->recordings) {
       auto recording = context.store.recording(id);
       if (!recording) {
         if (recording.error().code != ErrorCode::NotFound) {
@@ -72,8 +114,12 @@ class Characterise final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
+    Json named{{"recordings", std::move(pinned)}};
+    if (!wanted->study.empty()) {
+      named["study"] = wanted->study;
+    }
     return canonical_text(Json{{"kind", name()},
-                               {"inputs", {{"recordings", std::move(pinned)}}},
+                               {"inputs", std::move(named)},
                                {"parameters", to_json(options)},
                                {"algorithm_version", kAlgorithmVersion}});
   }
@@ -97,7 +143,7 @@ class Characterise final : public JobKind {
       RunControl part;
       part.stop = control.stop;
       part.progress = [&](std::string_view stage, double fraction) {
-        control.report(stage, (done + fraction) / static_cast<double>(inputs.size()));
+        control.report(stage, kRecordingsShare * (done + fraction) / static_cast<double>(inputs.size()));
       };
       auto document = run_one(input, options, context, part, results);
       if (!document) {
@@ -105,7 +151,17 @@ class Characterise final : public JobKind {
       }
       documents.push_back(std::move(*document));
     }
-    results.document_json = to_text(characterisation_document(std::move(documents)));
+    Json document = characterisation_document(std::move(documents));
+    document["study"] = (*request)["inputs"].value("study", Json());
+    RunControl last;
+    last.stop = control.stop;
+    last.progress = [&](std::string_view stage, double fraction) {
+      control.report(stage, kRecordingsShare + (1.0 - kRecordingsShare) * fraction);
+    };
+    if (auto pooled = pool_results(document, context, last, results); !pooled) {
+      return fail(pooled.error());
+    }
+    results.document_json = to_text(document);
     return results;
   }
 

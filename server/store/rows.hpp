@@ -124,11 +124,29 @@ struct Fit {
   UtcMicros created_at = 0;
 };
 
+/// What all recordings of one sensor axis say together: the latest document per axis.
+struct PooledResult {
+  std::string device_id;
+  std::string quantity;
+  std::string axis;
+  std::string document_json;  ///< schema/json/pooled_sensor.hpp
+};
+
+/// A study as it was handed in: one device, some of its recordings.
+struct Study {
+  std::string id;  ///< `stu_...`
+  std::string device_id;
+  std::string unique_key;  ///< SHA-256 of the document
+  std::string document_json;
+  UtcMicros created_at = 0;
+};
+
 /// Everything a finished job writes, in the transaction that finishes it.
 struct JobResults {
   std::string document_json;  ///< the whole result, served as the job's result
   std::vector<ChannelResult> channels;
   std::vector<Fit> fits;
+  std::vector<PooledResult> pooled = {};  ///< each replaces the one of its axis
 };
 
 /// A stored answer to a POST that carried an Idempotency-Key.

@@ -160,6 +160,21 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                                   std::string_view quantity,
                                                                                   std::string_view axis) = 0;
+  /// The latest pooled document of an axis; it counts where it names the latest channel results.
+  [[nodiscard]] virtual Result<std::optional<PooledResult>> pooled_result(std::string_view device_id,
+                                                                          std::string_view quantity,
+                                                                          std::string_view axis) = 0;
+
+  // ---- studies
+  struct StudyOutcome {
+    Study study;
+    bool created = false;
+  };
+  /// The study of that unique key, added if absent.
+  [[nodiscard]] virtual Result<StudyOutcome> add_study(const Study& study) = 0;
+  [[nodiscard]] virtual Result<Study> study(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Study>> studies(const std::optional<std::string>& device_id,
+                                                           const Page& page) = 0;
 
   // ---- idempotency
   /// The stored reply for a key younger than 24 h.

@@ -133,14 +133,17 @@ class Operations(DaemonTest):
         fit = daemon.items("/v1/fits")[0]
         daemon.finished(daemon.items("/v1/jobs")[-1]["id"])
         daemon.request("DELETE", second.headers["location"], headers={"If-Match": "*"})
-        for media in ("application/json", "text/csv", "text/plain"):
+        for media in ("application/json", "text/csv", "text/plain", "text/markdown"):
             daemon.get("/v1/parameter-tables?device=phone-07&axis=z", Accept=media)
+        body = {"device": {"id": "phone-07"}, "recordings": [{"recording": first.json["id"]}]}
+        study, _ = (daemon.post("/v1/studies", body) for _ in range(2))
         values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
+                  "/v1/studies/{id}": study.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
-                target += "?device=phone-07&axis=z" if path == "/v1/parameter-tables" else ""
+                target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
                 answer = self.expect(200, daemon.get(target))
                 if "etag" in answer.headers:
                     self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))

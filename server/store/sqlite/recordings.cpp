@@ -33,6 +33,8 @@ constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
 /// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
 constexpr std::string_view kLiveJob =
     "SELECT id FROM jobs WHERE state IN ('queued', 'running') AND instr(request_json, ?) > 0 LIMIT 1";
+/// They speak of all recordings of the device together, the removed one among them.
+constexpr std::string_view kRemovePooled = "DELETE FROM pooled_results WHERE device_id = ?";
 constexpr std::string_view kRemoveDocuments =
     "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?)";
 
@@ -197,6 +199,9 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
                 {{"job", users->front()}});
   }
   if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
+    return removed;
+  }
+  if (Status removed = connection.prepare(kRemovePooled).bind(found->device_id).run(); !removed) {
     return removed;
   }
   return connection.prepare(kRemove).bind(id).run();

@@ -11,6 +11,14 @@ constexpr std::string_view kInsertChannel =
 constexpr std::string_view kInsertFit =
     "INSERT INTO fits (id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
     "axis, condition, model, rank, document_json, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr std::string_view kInsertPooled =
+    "INSERT INTO pooled_results (device_id, quantity, axis, job_id, document_json, created_at) VALUES (?, ?, ?, ?, ?, "
+    "?) ON CONFLICT (device_id, quantity, axis) DO UPDATE SET job_id = excluded.job_id, "
+    "document_json = excluded.document_json, created_at = excluded.created_at";
+constexpr std::string_view kPooled =
+    "SELECT device_id, quantity, axis, document_json FROM pooled_results WHERE device_id = ? AND quantity = ? AND axis "
+    "= "
+    "?";
 constexpr std::string_view kDocument = "SELECT document_json FROM job_results WHERE job_id = ?";
 constexpr std::string_view kSelectFit =
     "SELECT id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
@@ -70,6 +78,8 @@ ChannelResult read_channel(const Statement& row) {
   return channel;
 }
 
+PooledResult read_pooled(const Statement& row) { return {row.text(0), row.text(1), row.text(2), row.text(3)}; }
+
 Status insert_channel(Connection& connection, std::string_view job_id, const ChannelResult& channel, UtcMicros now) {
   return connection.prepare(kInsertChannel)
       .bind(channel.id, job_id, channel.device_id, channel.recording_id, channel.recording_revision, channel.channel,
@@ -95,7 +105,19 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
   for (auto fit = results.fits.begin(); inserted && fit != results.fits.end(); ++fit) {
     inserted = insert_fit(connection, job_id, *fit, now);
   }
+  for (auto pooled = results.pooled.begin(); inserted && pooled != results.pooled.end(); ++pooled) {
+    inserted = connection.prepare(kInsertPooled)
+                   .bind(pooled->device_id, pooled->quantity, pooled->axis, job_id, pooled->document_json, now)
+                   .run();
+  }
   return inserted;
+}
+
+Result<std::optional<PooledResult>> pooled_result(Connection& connection, std::string_view device_id,
+                                                  std::string_view quantity, std::string_view axis) {
+  Statement statement = connection.prepare(kPooled);
+  statement.bind(device_id, quantity, axis);
+  return first_row(statement, read_pooled);
 }
 
 Result<std::string> result_document(Connection& connection, std::string_view job_id) {

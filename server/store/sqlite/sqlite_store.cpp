@@ -137,6 +137,22 @@ class OpenedStore final : public SqliteStore {
     return readers_->read([&](Connection& c) { return tables::latest_channel_results(c, device_id, quantity, axis); });
   }
 
+  [[nodiscard]] Result<std::optional<PooledResult>> pooled_result(std::string_view device_id, std::string_view quantity,
+                                                                  std::string_view axis) override {
+    return readers_->read([&](Connection& c) { return tables::pooled_result(c, device_id, quantity, axis); });
+  }
+
+  [[nodiscard]] Result<StudyOutcome> add_study(const Study& study) override {
+    return writer_.write([&](Connection& c) { return tables::add_study(c, study, now()); });
+  }
+  [[nodiscard]] Result<Study> study(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::study(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Study>> studies(const std::optional<std::string>& device_id,
+                                                   const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::studies(c, device_id, page); });
+  }
+
   [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) override {
     return readers_->read([&](Connection& c) { return tables::idempotent_reply(c, key, now()); });
   }

@@ -147,6 +147,14 @@ class FilteredQuery {
                                                                         std::string_view device_id,
                                                                         std::string_view quantity,
                                                                         std::string_view axis);
+[[nodiscard]] Result<std::optional<PooledResult>> pooled_result(Connection& connection, std::string_view device_id,
+                                                                std::string_view quantity, std::string_view axis);
+
+// ---- studies
+[[nodiscard]] Result<Store::StudyOutcome> add_study(Connection& connection, const Study& study, UtcMicros now);
+[[nodiscard]] Result<Study> study(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Study>> studies(Connection& connection, const std::optional<std::string>& device_id,
+                                                 const Page& page);
 
 // ---- idempotency
 [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, std::string_view key,

@@ -41,7 +41,13 @@ Device fill(Store& store) {
   const Recording recording = add_recording(store, device);
   add_job(store, "done");
   const Job done = claim_one(store);
-  EXPECT_TRUE(store.succeed(lease_of(done), results_for(done, recording))->held);
+  JobResults results = results_for(done, recording);
+  results.pooled.push_back({device.id, "angular_rate", "z", "{}"});
+  EXPECT_TRUE(store.succeed(lease_of(done), results)->held);
+  Study study;
+  study.device_id = device.id;
+  study.unique_key = "study";
+  EXPECT_TRUE(store.add_study(study));
   add_job(store, "failed");
   EXPECT_TRUE(store.fail_attempt(lease_of(claim_one(store)), {"{}"})->held);
   add_job(store, "queued");

@@ -1,0 +1,65 @@
+#include "clients/cli/cli.hpp"
+#include "clients/cli/http_client.hpp"
+#include "schema/json/json.hpp"
+
+#include <cstdio>
+#include <memory>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::string server = "http://127.0.0.1:8477";
+  std::string device;
+  std::string sensor = "gyroscope";
+  std::string axis;
+  std::string method = "gmwm";
+  std::string model;
+  std::string format = "text";
+};
+
+Exit run(const Flags& flags) {
+  auto client = HttpClient::to(flags.server);
+  if (!client) {
+    return complain(client.error());
+  }
+  std::string target = "/v1/trends?device=" + percent_encode(flags.device) + "&sensor=" + percent_encode(flags.sensor) +
+                       "&method=" + percent_encode(flags.method);
+  for (const auto& [name, value] : {std::pair{"&axis=", flags.axis}, std::pair{"&model=", flags.model}}) {
+    if (!value.empty()) {
+      target += name + percent_encode(value);
+    }
+  }
+  auto reply = client->get(target, flags.format == "json" ? "application/json" : "text/plain");
+  if (!reply) {
+    return complain(reply.error(), Exit::ServerOrJob);
+  }
+  if (reply->status != 200) {
+    const auto problem = parse_json(reply->body);
+    const std::string detail = problem && problem->is_object() ? problem->value("detail", "") : "";
+    return complain({ErrorCode::InvalidArgument, detail.empty() ? "The daemon refused." : detail, {}},
+                    reply->status < 500 ? Exit::BadInput : Exit::ServerOrJob);
+  }
+  std::fwrite(reply->body.data(), 1, reply->body.size(), stdout);
+  return Exit::Success;
+}
+
+}  // namespace
+
+void add_trends(CLI::App& app, Command& chosen) {
+  CLI::App* const command =
+      app.add_subcommand("trends", "How each parameter of one sensor axis moves with rate and angular acceleration");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
+  command->add_option("--device", flags->device, "Name or id of the device")->required();
+  command->add_option("--sensor", flags->sensor, "gyroscope or accelerometer")->capture_default_str();
+  command->add_option("--axis", flags->axis, "x, y or z");
+  command->add_option("--method", flags->method, "gmwm or av (Allan variance)")->capture_default_str();
+  command->add_option("--model", flags->model, "Model of the table; default: the best over all conditions");
+  command->add_option("--format", flags->format, "text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace driftlab::cli

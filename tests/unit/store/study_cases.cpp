@@ -1,0 +1,74 @@
+#include "tests/unit/store/store_suite.hpp"
+
+namespace driftlab::server {
+namespace {
+
+using StudyStore = StoreSuite;
+DRIFTLAB_OVER_ALL_STORES(StudyStore);
+
+Study study_of(const Device& device, const std::string& key) {
+  Study study;
+  study.device_id = device.id;
+  study.unique_key = key;
+  study.document_json = R"({"recordings":[]})";
+  return study;
+}
+
+TEST_P(StudyStore, TheSameStudyIsKeptOnce) {
+  const Device device = add_device(store());
+  const auto first = store().add_study(study_of(device, "a"));
+  ASSERT_TRUE(first && first->created);
+  EXPECT_TRUE(first->study.id.starts_with("stu_"));
+  EXPECT_EQ(first->study.created_at, clock_.now());
+  const auto again = store().add_study(study_of(device, "a"));
+  ASSERT_TRUE(again);
+  EXPECT_FALSE(again->created);
+  EXPECT_EQ(again->study.id, first->study.id);
+  EXPECT_EQ(store().study(first->study.id)->document_json, R"({"recordings":[]})");
+  EXPECT_EQ(store().study("stu_nobody").error().code, ErrorCode::NotFound);
+}
+
+TEST_P(StudyStore, StudiesAreListedByDevice) {
+  const Device one = add_device(store(), "one");
+  const Device two = add_device(store(), "two");
+  for (const char* const key : {"a", "b", "c"}) {
+    ASSERT_TRUE(store().add_study(study_of(key[0] == 'c' ? two : one, key)));
+  }
+  EXPECT_EQ(store().studies(std::nullopt, {})->size(), 3U);
+  const auto page = store().studies(one.id, {"", 1});
+  ASSERT_EQ(page->size(), 1U);
+  EXPECT_EQ(store().studies(one.id, {page->front().id, 10})->size(), 1U);
+  EXPECT_EQ(store().studies(two.id, {})->size(), 1U);
+}
+
+TEST_P(StudyStore, AFinishReplacesThePooledDocumentOfItsAxis) {
+  const Recording recording = add_recording(store(), add_device(store()));
+  for (const char* const text : {"first", "second"}) {
+    add_job(store(), text);
+    const Job job = claim_one(store());
+    JobResults results = results_for(job, recording);
+    results.pooled.push_back({recording.device_id, "angular_rate", "z", text});
+    ASSERT_TRUE(store().succeed(lease_of(job), results)->held);
+    const auto pooled = store().pooled_result(recording.device_id, "angular_rate", "z");
+    ASSERT_TRUE(pooled && *pooled);
+    EXPECT_EQ((*pooled)->document_json, text);
+  }
+  EXPECT_FALSE(*store().pooled_result(recording.device_id, "angular_rate", "x"));
+}
+
+TEST_P(StudyStore, ARemovedRecordingTakesThePooledDocumentsOfItsDeviceAlong) {
+  const Device device = add_device(store());
+  const Recording stays = add_recording(store(), device, "a");
+  const Recording goes = add_recording(store(), device, "b");
+  add_job(store(), "key");
+  const Job job = claim_one(store());
+  JobResults results = results_for(job, stays);
+  results.pooled.push_back({device.id, "angular_rate", "z", "{}"});
+  ASSERT_TRUE(store().succeed(lease_of(job), results)->held);
+  ASSERT_TRUE(store().remove_recording(goes.id, 1));
+  EXPECT_FALSE(*store().pooled_result(device.id, "angular_rate", "z"));
+  EXPECT_EQ(store().latest_channel_results(device.id, "angular_rate", "z")->size(), 1U);
+}
+
+}  // namespace
+}  // namespace driftlab::server
