@@ -120,24 +120,73 @@ double GaussMarkov::haar_cross(double mi, double mj, double h, double dt_s) cons
   return scale * (even + odd);
 }
 
+namespace {
+
+/// The nine points of two second differences of steps mi and mj: sum_k w_k f(|h + o_k|).
+struct NinePoints {
+  static constexpr std::size_t kPoints = 9;
+  static constexpr std::array<double, kPoints> kWeight{4.0, -2.0, -2.0, -2.0, -2.0, 1.0, 1.0, 1.0, 1.0};
+  std::array<double, kPoints> offset;
+
+  NinePoints(double mi, double mj) : offset{0.0, mi, -mi, mj, -mj, mi + mj, mi - mj, mj - mi, -mi - mj} {}
+};
+
+/// sum_k w_k [exp(-x |h + o_k|) + |h + o_k| sinh x] over the lags between two kinks, where no h + o_k changes its sign:
+/// fall e^-xh + rise e^xh + level + slope h.
+struct Stretch {
+  double fall = 0.0;
+  double rise = 0.0;
+  double level = 0.0;
+  double slope = 0.0;
+
+  Stretch() = default;
+  Stretch(const NinePoints& points, double x, double h) {
+    const double sinh_x = std::sinh(x);
+    for (std::size_t k = 0; k < NinePoints::kPoints; ++k) {
+      const double weight = NinePoints::kWeight[k];
+      const bool ahead = h + points.offset[k] >= 0.0;
+      (ahead ? fall : rise) += weight * std::exp((ahead ? -x : x) * points.offset[k]);
+      const double signed_weight = (ahead ? weight : -weight) * sinh_x;
+      level += signed_weight * points.offset[k];
+      slope += signed_weight;
+    }
+  }
+};
+
+/// sum_k w_k [(sinh x - x) |h + o_k| - (sinh x |h + o_k| - x |h + o_k|)] for x (h + mi + mj) <= 1, where seven terms of
+/// the series of sinh are exact.
+double odd_part(const NinePoints& points, double x, double h, double rest) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < NinePoints::kPoints; ++k) {
+    const double distance = std::fabs(h + points.offset[k]);
+    const double y = x * distance;
+    const double s = y * y;
+    const double series =
+        1.0 +
+        s / 20.0 * (1.0 + s / 42.0 * (1.0 + s / 72.0 * (1.0 + s / 110.0 * (1.0 + s / 156.0 * (1.0 + s / 210.0)))));
+    sum += NinePoints::kWeight[k] * (distance * rest - y * s / 6.0 * series);
+  }
+  return sum;
+}
+
+}  // namespace
+
 void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                                  std::span<double> out) const {
   const double x = beta * dt_s;
   const double s = std::sinh(0.5 * x);
   const double scale = factor * sigma * sigma / (16.0 * s * s * mi * mj);
-  const double sinh_x = std::sinh(x);
   const double a = std::expm1(-x * mi);
   const double b = std::expm1(-x * mj);
   const double far = -scale * a * a * b * b;
-  // Offsets of the nine points of the two second differences, their weights, and exp(x offset).
-  constexpr std::size_t kPoints = 9;
-  const std::array<double, kPoints> offset{0.0, mi, -mi, mj, -mj, mi + mj, mi - mj, mj - mi, -mi - mj};
-  constexpr std::array<double, kPoints> kWeight{4.0, -2.0, -2.0, -2.0, -2.0, 1.0, 1.0, 1.0, 1.0};
+  const NinePoints points(mi, mj);
+  const double rest = sinh_minus(x);
+  const double even_a = 2.0 * std::sinh(0.5 * x * mi);
+  const double even_b = 2.0 * std::sinh(0.5 * x * mj);
+  const double even = even_a * even_a * even_b * even_b;
   const bool bounded = x * (mi + mj) < 300.0;  // no power overflows
-  std::array<double, kPoints> growth{};
-  for (std::size_t k = 0; k < kPoints; ++k) {
-    growth[k] = bounded ? std::exp(x * offset[k]) : 0.0;
-  }
+  int known = -1;
+  Stretch stretch;
   for (std::size_t i = 0; i < lags.size(); ++i) {
     const double h = lags[i];
     const double beyond = x * (h - mi - mj);
@@ -147,19 +196,22 @@ void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<co
       }
       continue;
     }
-    if (x > kWhite || !bounded || x * (h + mi + mj) <= 1.0) {
+    if (x > kWhite || !bounded) {
       out[i] += factor * haar_cross(mi, mj, h, dt_s);
       continue;
     }
     const double decay = std::exp(-x * h);
-    const double rise = 1.0 / decay;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < kPoints; ++k) {
-      const double lag = h + offset[k];
-      const double power = lag >= 0.0 ? decay / growth[k] : rise * growth[k];
-      sum += kWeight[k] * (power + std::fabs(lag) * sinh_x);
+    if (x * (h + mi + mj) <= 1.0) {
+      const double cosh = 0.5 * (decay + 1.0 / decay);
+      out[i] -= scale * (even * cosh + odd_part(points, x, h, rest));
+      continue;
     }
-    out[i] -= scale * sum;
+    const int here = (h >= mi ? 1 : 0) + (h >= mj ? 1 : 0) + (h >= std::fabs(mj - mi) ? 1 : 0);
+    if (here != known) {
+      stretch = Stretch(points, x, h);
+      known = here;
+    }
+    out[i] -= scale * (stretch.fall * decay + stretch.rise / decay + stretch.level + stretch.slope * h);
   }
 }
 

@@ -25,6 +25,7 @@ struct DecodeLimits {
   std::uint64_t expansion_allowance = std::uint64_t{256} << 20;
   std::uint64_t expansion_ratio = 200;
   std::uint64_t max_decoder_memory = std::uint64_t{256} << 20;  ///< dictionary or window a stream may demand [bytes]
+  std::size_t max_tables_bytes = std::size_t{256} << 20;        ///< samples in memory, in formats of several tables
   std::size_t max_line_bytes = std::size_t{1} << 20;            ///< one line of a text format
   std::size_t max_columns = 1024;
   std::size_t max_name_bytes = 256;  ///< one column name

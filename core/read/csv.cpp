@@ -1,10 +1,15 @@
-/// Comma-separated values: an optional header row, then one sample a row.
+/// Delimited text: an optional header row, then one sample a row, in any of the dialects of dialect.hpp.
 ///
-/// Two readers of the same bytes: the fast one knows nothing but numbers, commas and line ends and gives up on anything
-/// else; the careful one reads that row again, with quotes and blanks, and names what is wrong with it.
+/// Two readers of the same bytes: the fast one knows nothing but numbers, separators and line ends and gives up on
+/// anything else; the careful one reads that row again, with quotes, blanks, holes and words. A cell that is no number
+/// becomes a missing sample that says what stood there (core/signal/missing.hpp); only a file without any number is
+/// refused for it.
+#include "core/read/csv_time.hpp"
 #include "core/read/decimal.hpp"
+#include "core/read/dialect.hpp"
 #include "core/read/formats.hpp"
 #include "core/read/text_shape.hpp"
+#include "core/signal/missing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +24,11 @@ namespace {
 
 constexpr std::size_t kBatchValues = 16384;
 
-/// Skips blanks inside a line.
-const char* skip_blanks(const char* p) {
-  while (*p == ' ' || *p == '\t') {
-    ++p;
-  }
-  return p;
-}
+/// What was met in one column that is no number.
+struct Holes {
+  std::uint64_t texts = 0;
+  std::string first_text;  ///< an excerpt in quotes
+};
 
 class CsvDecoder {
  public:
@@ -35,22 +38,34 @@ class CsvDecoder {
   Status run();
 
  private:
+  /// Rows of plain numbers from the first pointer, until the batch is full or a row is anything else; returns where
+  /// that row begins.
+  using FastReader = const char* (CsvDecoder::*)(const char*, const char*);
+  template <char Separator, char Point>
+  const char* take_rows_fast(const char* p, const char* end);
+  template <char Separator, char Point>
+  const char* take_cell_fast(const char* p, bool last, double& value) const;
+  static FastReader choose_fast_reader(const text::Dialect& dialect);
+
+  Status start();
+  Status take_pieces();
   Status take_lines(std::string_view lines);
   Status take_line(std::string_view line);
-  Status take_header(std::string_view line);
-  Status begin(const std::vector<std::string>& fields, bool named);
-  const char* take_rows_fast(const char* p, const char* end);
+  Status take_first_line(std::string_view line);
+  Status begin(const std::vector<std::string>& cells, bool named);
+  Result<std::string> column_name(const std::string& cell, std::size_t column, bool named);
   Status take_row_carefully(std::string_view line);
-  [[nodiscard]] Result<double> take_cell(std::string_view cell, std::size_t column) const;
+  double take_cell(std::string_view cell, std::size_t column);
+  double number_in(std::string_view cell) const;
+  void close_row(double* row);
   Status flush();
+  Status finish();
+  void note_dialect();
+  void note_texts();
 
   [[nodiscard]] std::string line_name() const { return "Line " + std::to_string(line_); }
   [[nodiscard]] tl::unexpected<Error> at_line(ErrorCode code, const std::string& what) const {
     return fail(code, line_name() + " " + what, {{"row", std::to_string(line_)}});
-  }
-  [[nodiscard]] tl::unexpected<Error> at_cell(ErrorCode code, std::size_t column, const std::string& what) const {
-    return fail(code, line_name() + ", column '" + names_[column] + "': " + what,
-                {{"row", std::to_string(line_)}, {"column", names_[column]}});
   }
   [[nodiscard]] Status too_long() const {
     return at_line(ErrorCode::LimitExceeded,
@@ -61,21 +76,56 @@ class CsvDecoder {
   const DecodeLimits& limits_;
   ColumnSink& sink_;
   const RunControl& control_;
+  text::Dialect dialect_;
+  FastReader fast_ = nullptr;
   std::uint64_t line_ = 0;        ///< number of the line being read, from 1
   std::uint64_t blank_line_ = 0;  ///< a blank line that is an error if a row follows it
   std::uint64_t comments_ = 0;
+  std::uint64_t inner_comments_ = 0;  ///< between rows
   std::uint64_t rows_ = 0;
-  ColumnNames names_;  ///< empty until the first row is seen
+  bool units_follow_ = false;  ///< the next line is the second of two header lines
+  bool any_number_ = false;
+  bool dates_ = false;
+  Error first_fault_;       ///< the first cell that is no number; the answer where there is no number at all
+  ColumnNames names_;       ///< of the file's columns; empty until the first row is seen
+  std::size_t stride_ = 0;  ///< values a row: the file's columns, and the time made from a stated rate
+  TimeFromRate time_;
+  std::vector<Holes> holes_;
   std::vector<double> batch_;
   std::size_t filled_ = 0;
 };
 
 Status CsvDecoder::run() {
-  if (auto head = source_.view(text::kByteOrderMark.size()); !head) {
+  if (auto status = start(); !status) {
+    return status;
+  }
+  if (auto status = take_pieces(); !status) {
+    return status;
+  }
+  if (auto status = flush(); !status) {
+    return status;
+  }
+  return finish();
+}
+
+/// Skips a byte-order mark and finds the dialect.
+Status CsvDecoder::start() {
+  auto head = source_.view(text::kByteOrderMark.size());
+  if (!head) {
     return fail(head.error());
-  } else if (head->starts_with(text::kByteOrderMark)) {
+  }
+  if (head->starts_with(text::kByteOrderMark)) {
     source_.consume(text::kByteOrderMark.size());
   }
+  head = source_.view(kSniffBytes);
+  if (!head) {
+    return fail(head.error());
+  }
+  dialect_ = text::find_dialect(head->substr(0, kSniffBytes), head->size() < kSniffBytes);
+  return {};
+}
+
+Status CsvDecoder::take_pieces() {
   std::size_t want = 1;
   while (true) {
     if (control_.stop.stop_requested()) {
@@ -95,10 +145,7 @@ Status CsvDecoder::run() {
     } else if (view->size() < want) {  // the end: a last line without a line feed
       const std::string last = std::string(*view) + "\n";
       source_.consume(view->size());
-      if (auto status = last.size() > 1 ? take_lines(last) : Status{}; !status) {
-        return status;
-      }
-      break;
+      return last.size() > 1 ? take_lines(last) : Status{};
     } else if (view->size() > limits_.max_line_bytes) {
       ++line_;
       return too_long();
@@ -106,16 +153,6 @@ Status CsvDecoder::run() {
       want = 2 * view->size();
     }
   }
-  if (auto status = flush(); !status) {
-    return status;
-  }
-  if (names_.empty()) {
-    return fail(ErrorCode::EmptyInput, "The file holds no rows, only blank lines or comments.");
-  }
-  if (rows_ == 0) {
-    return fail(ErrorCode::NoSamples, "The file has a header and no samples under it.");
-  }
-  return {};
 }
 
 /// `lines` ends with a line feed.
@@ -123,8 +160,8 @@ Status CsvDecoder::take_lines(std::string_view lines) {
   const char* p = lines.data();
   const char* const end = p + lines.size();
   while (p < end) {
-    if (!names_.empty() && blank_line_ == 0) {
-      p = take_rows_fast(p, end);
+    if (!names_.empty() && blank_line_ == 0 && !units_follow_) {
+      p = (this->*fast_)(p, end);
       if (filled_ == batch_.size()) {
         if (auto status = flush(); !status) {
           return status;
@@ -148,53 +185,110 @@ Status CsvDecoder::take_lines(std::string_view lines) {
   return {};
 }
 
-/// Rows of plain numbers from `p`, until the batch is full or a row is anything else; returns where that row begins.
+template <char Separator>
+const char* skip_blanks(const char* p) {
+  while (*p == ' ' || (Separator != '\t' && *p == '\t')) {
+    ++p;
+  }
+  return p;
+}
+
+/// One number or hole and what ends it; nullptr where it is anything else.
+template <char Separator, char Point>
+const char* CsvDecoder::take_cell_fast(const char* p, bool last, double& value) const {
+  p = *p == ' ' || *p == '\t' ? skip_blanks<Separator>(p) : p;
+  const char* q = decimal::parse<Point>(p, value);
+  if (q == nullptr) {
+    const bool hole =
+        Separator != ' ' && (*p == Separator || (last && names_.size() > 1 && (*p == '\n' || *p == '\r')));
+    if (!hole) {
+      return nullptr;
+    }
+    value = missing_sample(Missing::Empty, line_ + 1);
+    q = p;
+  } else if (!std::isfinite(value)) {
+    return nullptr;
+  }
+  if constexpr (Separator == ' ') {
+    const char* const behind = skip_blanks<Separator>(q);
+    if (!last) {
+      return behind != q && *behind != '\n' && *behind != '\r' ? behind : nullptr;
+    }
+    q = behind;
+  } else {
+    if (*q != Separator) {
+      q = skip_blanks<Separator>(q);
+    }
+    if (!last) {
+      return *q == Separator ? q + 1 : nullptr;
+    }
+    if (dialect_.trailing_separator && *q == Separator) {
+      q = skip_blanks<Separator>(q + 1);
+    }
+  }
+  q += *q == '\r' ? 1 : 0;
+  return *q == '\n' ? q + 1 : nullptr;
+}
+
+template <char Separator, char Point>
 const char* CsvDecoder::take_rows_fast(const char* p, const char* const end) {
   const std::size_t width = names_.size();
   double* into = batch_.data() + filled_;
   double* const full = batch_.data() + batch_.size();
   while (p < end && into != full) {
     const char* q = p;
-    for (std::size_t column = 0; column < width; ++column) {
-      q = decimal::parse(*q == ' ' ? skip_blanks(q) : q, into[column]);
-      if (q == nullptr || !std::isfinite(into[column])) {
-        filled_ = static_cast<std::size_t>(into - batch_.data());
-        return p;
-      }
-      if (*q != ',') {
-        q = skip_blanks(q);
-        q += *q == '\r' && column + 1 == width ? 1 : 0;
-      }
-      if (*q != (column + 1 == width ? '\n' : ',')) {
-        filled_ = static_cast<std::size_t>(into - batch_.data());
-        return p;
-      }
-      ++q;
+    for (std::size_t column = 0; column < width && q != nullptr; ++column) {
+      q = take_cell_fast<Separator, Point>(q, column + 1 == width, into[column]);
     }
-    if (static_cast<std::size_t>(q - p) > limits_.max_line_bytes) {
+    if (q == nullptr || static_cast<std::size_t>(q - p) > limits_.max_line_bytes) {
       break;
     }
+    any_number_ = any_number_ || std::any_of(into, into + width, [](double value) { return !std::isnan(value); });
+    if (!any_number_) {
+      break;  // the careful reader keeps the fault
+    }
     p = q;
-    into += width;
     ++line_;
-    ++rows_;
+    close_row(into);
+    into += stride_;
   }
   filled_ = static_cast<std::size_t>(into - batch_.data());
   return p;
 }
 
+CsvDecoder::FastReader CsvDecoder::choose_fast_reader(const text::Dialect& dialect) {
+  switch (dialect.separator) {
+    case ';':
+      return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<';', ','> : &CsvDecoder::take_rows_fast<';', '.'>;
+    case '\t':
+      return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<'\t', ','> : &CsvDecoder::take_rows_fast<'\t', '.'>;
+    case ' ':
+      return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<' ', ','> : &CsvDecoder::take_rows_fast<' ', '.'>;
+    default:
+      return &CsvDecoder::take_rows_fast<',', '.'>;
+  }
+}
+
 Status CsvDecoder::take_line(std::string_view line) {
   const std::string_view content = text::trim(line);
-  if (content.empty()) {
-    blank_line_ = names_.empty() || blank_line_ != 0 ? blank_line_ : line_;
-    return {};
-  }
   if (names_.empty()) {
-    if (content.front() == '#') {
-      ++comments_;
+    comments_ += text::is_comment(content) ? 1 : 0;
+    if (content.empty() || text::is_comment(content) || line_ < dialect_.first_line) {
       return {};
     }
-    return take_header(content);
+    return take_first_line(line);  // a tab at its front separates an empty name
+  }
+  if (content.empty()) {
+    blank_line_ = blank_line_ != 0 ? blank_line_ : line_;
+    return {};
+  }
+  if (text::is_comment(content)) {
+    ++inner_comments_;
+    return {};
+  }
+  if (units_follow_) {
+    units_follow_ = false;
+    return {};
   }
   if (blank_line_ != 0) {
     line_ = blank_line_;
@@ -203,100 +297,159 @@ Status CsvDecoder::take_line(std::string_view line) {
   return take_row_carefully(line);
 }
 
-/// The first row. It is a row of samples if all of it is numbers, or part of it numbers that nobody uses as names.
-Status CsvDecoder::take_header(std::string_view line) {
+/// The first line of the table: names, or a row already.
+Status CsvDecoder::take_first_line(std::string_view line) {
   if (line.find('\0') != std::string_view::npos) {
     return at_line(ErrorCode::NotANumber, "holds a NUL byte; is this a text file?");
   }
-  const std::vector<std::string> fields = text::split_fields(line);
-  bool all_numbers = true;
-  bool a_measured_number = false;
-  bool counts_up = fields.size() > 2;  // pandas writes 0,1,2,... above columns without names
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const bool number = text::is_number(fields[i]);
-    all_numbers = all_numbers && number;
-    counts_up = counts_up && fields[i] == std::to_string(i);
-    a_measured_number = a_measured_number || (number && fields[i].find_first_not_of("0123456789") != std::string::npos);
+  if (dialect_.first_line == 0) {  // the first lines were all comments
+    dialect_ = text::find_dialect(line, true);
   }
-  if (comments_ > 0) {
-    sink_.note(std::to_string(comments_) + " comment lines above the first row were skipped.");
+  fast_ = choose_fast_reader(dialect_);
+  std::vector<std::string> cells = text::split_cells(line, dialect_.separator);
+  if (dialect_.trailing_separator && cells.size() > dialect_.width && cells.back().empty()) {
+    cells.pop_back();
   }
-  if (!counts_up && (all_numbers || a_measured_number)) {
-    auto status = begin(fields, false);
+  if (!dialect_.has_names) {
+    const bool commented = dialect_.names.size() == cells.size();
+    if (commented) {
+      sink_.note("The names of the columns are those of the comment above the first row.");
+    }
+    auto status = begin(commented ? dialect_.names : cells, commented);
     return status ? take_row_carefully(line) : status;
   }
-  return begin(fields, true);
+  units_follow_ = !dialect_.units.empty();
+  for (std::size_t i = 0; i < std::min(cells.size(), dialect_.units.size()); ++i) {
+    cells[i] += dialect_.units[i].empty() ? "" : " (" + dialect_.units[i] + ")";
+  }
+  for (const std::size_t column : dialect_.dates) {  // as numbers they are seconds, and their name has to say so
+    if (column < cells.size() && !cells[column].empty() && cells[column].back() != ')') {
+      cells[column] += " (s)";
+    }
+  }
+  return begin(cells, true);
 }
 
-Status CsvDecoder::begin(const std::vector<std::string>& fields, bool named) {
-  if (fields.size() > limits_.max_columns) {
-    return at_line(ErrorCode::LimitExceeded, "has " + std::to_string(fields.size()) + " columns; at most " +
+Result<std::string> CsvDecoder::column_name(const std::string& cell, std::size_t column, bool named) {
+  std::string name = named ? text::to_utf8(cell) : std::to_string(column);
+  if (name.empty()) {
+    name = std::to_string(column);
+    sink_.note("Column " + std::to_string(column + 1) + " has no name in the header; it is called '" + name + "'.");
+  }
+  if (name.size() > limits_.max_name_bytes) {
+    return at_line(ErrorCode::LimitExceeded,
+                   "has a column name longer than " + std::to_string(limits_.max_name_bytes) + " bytes.");
+  }
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (std::any_of(name.begin(), name.end(), control)) {
+    return at_line(ErrorCode::NotANumber, "holds control characters; is this a text file?");
+  }
+  return name;
+}
+
+Status CsvDecoder::begin(const std::vector<std::string>& cells, bool named) {
+  if (cells.size() > limits_.max_columns) {
+    return at_line(ErrorCode::LimitExceeded, "has " + std::to_string(cells.size()) + " columns; at most " +
                                                  std::to_string(limits_.max_columns) + " are read.");
   }
+  note_dialect();
   ColumnLayout layout;
   layout.has_header = named;
   std::set<std::string> seen;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    std::string name = named ? text::to_utf8(fields[i]) : std::to_string(i);
-    if (name.empty()) {
-      name = std::to_string(i);
-      sink_.note("Column " + std::to_string(i + 1) + " has no name in the header; it is called '" + name + "'.");
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    auto name = column_name(cells[i], i, named);
+    if (!name) {
+      return fail(name.error());
     }
-    if (name.size() > limits_.max_name_bytes) {
-      return at_line(ErrorCode::LimitExceeded,
-                     "has a column name longer than " + std::to_string(limits_.max_name_bytes) + " bytes.");
+    if (!seen.insert(*name).second) {
+      return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + *name + "'; give each its own name.",
+                  {{"row", std::to_string(line_)}, {"column", *name}});
     }
-    const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-    if (std::any_of(name.begin(), name.end(), control)) {
-      return at_line(ErrorCode::NotANumber, "holds control characters; is this a text file?");
-    }
-    if (!seen.insert(name).second) {
-      return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + name + "'; give each its own name.",
-                  {{"row", std::to_string(line_)}, {"column", name}});
-    }
-    layout.names.push_back(std::move(name));
+    layout.names.push_back(std::move(*name));
   }
   names_ = layout.names;
-  batch_.resize(std::max<std::size_t>(kBatchValues / names_.size(), 1) * names_.size());
+  if (dialect_.rate_hz) {
+    time_ = TimeFromRate(names_, *dialect_.rate_hz);
+    sink_.note(time_.sentence());
+  }
+  if (time_.needed()) {
+    layout.names.emplace_back(TimeFromRate::kName);
+  }
+  stride_ = layout.names.size();
+  holes_.resize(names_.size());
+  batch_.resize(std::max<std::size_t>(kBatchValues / stride_, 1) * stride_);
   return sink_.begin(layout);
 }
 
 Status CsvDecoder::take_row_carefully(std::string_view line) {
-  const std::vector<std::string> fields = text::split_fields(line);
-  const std::size_t common = std::min(fields.size(), names_.size());
-  for (std::size_t column = 0; column < common && fields.size() == names_.size(); ++column) {
-    auto value = take_cell(fields[column], column);
-    if (!value) {
-      return fail(value.error());
-    }
-    batch_[filled_ + column] = *value;
+  std::vector<std::string> cells = text::split_cells(line, dialect_.separator);
+  if (dialect_.trailing_separator && cells.size() == names_.size() + 1 && cells.back().empty()) {
+    cells.pop_back();
   }
-  if (fields.size() != names_.size()) {
-    return at_line(ErrorCode::RaggedRow, "has " + std::to_string(fields.size()) + " values; the first row has " +
+  if (cells.size() != names_.size()) {
+    return at_line(ErrorCode::RaggedRow, "has " + std::to_string(cells.size()) + " values; the first row has " +
                                              std::to_string(names_.size()) + ".");
   }
-  filled_ += names_.size();
-  ++rows_;
+  for (std::size_t column = 0; column < cells.size(); ++column) {
+    batch_[filled_ + column] = take_cell(cells[column], column);
+  }
+  close_row(batch_.data() + filled_);
+  filled_ += stride_;
   return filled_ == batch_.size() ? flush() : Status{};
 }
 
-Result<double> CsvDecoder::take_cell(std::string_view cell, std::size_t column) const {
+/// What follows from a row of the file's own columns.
+void CsvDecoder::close_row(double* row) {
+  if (time_.needed()) {
+    row[stride_ - 1] = time_.at(rows_, row);
+  }
+  ++rows_;
+}
+
+/// The number that is all of `cell`, or a NaN that says why there is none.
+double CsvDecoder::number_in(std::string_view cell) const {
   if (cell.empty()) {
-    return at_cell(ErrorCode::NotANumber, column, "the cell is empty.");
+    return missing_sample(Missing::Empty, line_);
   }
   if (text::is_non_finite_word(cell)) {
-    return at_cell(ErrorCode::NonFinite, column, text::excerpt(cell) + " is not a finite number.");
-  }
-  if (cell.find('\0') != std::string_view::npos) {
-    return at_cell(ErrorCode::NotANumber, column, "the cell holds a NUL byte.");
+    const bool nan = (cell.back() | 0x20) == 'n';
+    return missing_sample(nan ? Missing::Nan : Missing::Infinite, line_);
   }
   const std::string terminated(cell);
   double value = 0.0;
-  if (decimal::parse(terminated.c_str(), value) != terminated.c_str() + terminated.size()) {
-    return at_cell(ErrorCode::NotANumber, column, text::excerpt(cell) + " is not a number.");
+  const char* const end = dialect_.decimal_comma ? decimal::parse<','>(terminated.c_str(), value)
+                                                 : decimal::parse<'.'>(terminated.c_str(), value);
+  if (end != terminated.c_str() + terminated.size()) {
+    return text::seconds_of_date(cell).value_or(missing_sample(Missing::Text, line_));
   }
-  if (!std::isfinite(value)) {
-    return at_cell(ErrorCode::OutOfRange, column, text::excerpt(cell) + " is larger than a double can hold.");
+  return std::isfinite(value) ? value : missing_sample(Missing::OutOfRange, line_);
+}
+
+double CsvDecoder::take_cell(std::string_view cell, std::size_t column) {
+  const double value = number_in(cell);
+  if (!std::isnan(value)) {
+    any_number_ = true;
+    dates_ = dates_ || (cell.size() > 10 && cell[4] == '-' && cell[7] == '-');
+    return value;
+  }
+  const Missing why = why_missing(value).why;
+  if (why == Missing::Text) {
+    Holes& holes = holes_[column];
+    holes.first_text = holes.texts == 0 ? text::excerpt(cell) : holes.first_text;
+    ++holes.texts;
+  }
+  if (!any_number_ && first_fault_.message.empty()) {
+    const bool word = why == Missing::Nan || why == Missing::Infinite;
+    const std::string what = why == Missing::Empty        ? "the cell is empty."
+                             : word                       ? text::excerpt(cell) + " is not a finite number."
+                             : why == Missing::OutOfRange ? text::excerpt(cell) + " is larger than a double can hold."
+                                                          : text::excerpt(cell) + " is not a number.";
+    const ErrorCode code = word                         ? ErrorCode::NonFinite
+                           : why == Missing::OutOfRange ? ErrorCode::OutOfRange
+                                                        : ErrorCode::NotANumber;
+    first_fault_ = Error{code,
+                         line_name() + ", column '" + names_[column] + "': " + what,
+                         {{"row", std::to_string(line_)}, {"column", names_[column]}}};
   }
   return value;
 }
@@ -307,9 +460,73 @@ Status CsvDecoder::flush() {
   return status;
 }
 
+Status CsvDecoder::finish() {
+  if (names_.empty()) {
+    return fail(ErrorCode::EmptyInput, "The file holds no rows, only blank lines or comments.");
+  }
+  if (rows_ == 0) {
+    return fail(ErrorCode::NoSamples, "The file has a header and no samples under it.");
+  }
+  if (!any_number_) {
+    return fail(first_fault_);
+  }
+  if (inner_comments_ > 0) {
+    sink_.note(std::to_string(inner_comments_) + " comment lines between the rows were skipped.");
+  }
+  if (dates_) {
+    sink_.note("Dates are read as seconds since 1970-01-01 UTC.");
+  }
+  note_texts();
+  return {};
+}
+
+void CsvDecoder::note_dialect() {
+  if (comments_ > 0) {
+    sink_.note(std::to_string(comments_) + " comment lines above the first row were skipped.");
+  }
+  if (dialect_.preamble_lines > 0) {
+    sink_.note(std::to_string(dialect_.preamble_lines) +
+               " lines above the names of the columns are no samples and were skipped.");
+  }
+  if (!dialect_.units.empty()) {
+    sink_.note("The second header line is read as the units of the columns.");
+  }
+  if (dialect_.decimal_comma) {
+    sink_.note("Numbers are read with a decimal comma.");
+  }
+  if (dialect_.trailing_separator) {
+    sink_.note("The separator behind the last cell of each row is ignored.");
+  }
+}
+
+void CsvDecoder::note_texts() {
+  for (std::size_t column = 0; column < holes_.size(); ++column) {
+    if (holes_[column].texts > 0) {
+      sink_.note("Column '" + names_[column] + "' holds text in " + std::to_string(holes_[column].texts) + " of " +
+                 std::to_string(rows_) + " rows, first " + holes_[column].first_text + ".");
+    }
+  }
+}
+
+/// True if a format of one kind of text takes it: the table of numbers is for what nobody else knows.
+bool is_special(std::string_view head) { return kCxd5602.sniff(head) > 0 || kVmu931.sniff(head) > 0; }
+
 int sniff(std::string_view head) {
+  if (head.starts_with(text::kByteOrderMark)) {
+    head.remove_prefix(text::kByteOrderMark.size());
+  }
   const text::Shape shape = text::shape_of(head);
-  return shape == text::Shape::Commas || shape == text::Shape::SingleColumn ? 40 : 0;
+  if (shape == text::Shape::NotText || is_special(head)) {
+    return 0;
+  }
+  if (shape != text::Shape::NotATable && shape != text::Shape::Spaces) {
+    return 40;
+  }
+  const std::string_view start = text::trim(head);
+  if (start.empty() || start.front() == '<' || start.front() == '{' || start.front() == '[') {
+    return 0;
+  }
+  return text::find_dialect(head, head.size() < kSniffBytes).fraction_of_numbers > 0.5 ? 40 : 0;
 }
 
 Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {
@@ -318,6 +535,6 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
 
 }  // namespace
 
-const Format kCsv{"csv", "comma-separated values with or without a header row", sniff, decode};
+const Format kCsv{"csv", "a table of numbers in text, with or without a header row", sniff, decode};
 
 }  // namespace driftlab::formats

@@ -4,11 +4,13 @@
 /// A number m * 10^e with an integer m <= 2^53 and |e| <= 22 has both factors exactly representable, so one IEEE
 /// multiplication or division rounds it correctly (Clinger 1990, "How to read floating point numbers accurately",
 /// section 5). Everything else goes to std::from_chars, which rounds correctly too: the result is the same bits always.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <system_error>
 
 namespace driftlab::decimal {
@@ -21,8 +23,16 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
 
 /// The slow way, correct for every input: [first, last) is the text of a number that scan() has accepted.
 /// Beyond the range of double: the infinity or zero it rounds to.
-[[nodiscard]] inline double from_text(const char* first, const char* last, bool large) {
+template <char Point>
+[[nodiscard]] double from_text(const char* first, const char* last, bool large) {
   double value = 0.0;
+  std::string copy;
+  if constexpr (Point != '.') {
+    copy.assign(first, last);
+    std::replace(copy.begin(), copy.end(), Point, '.');
+    first = copy.data();
+    last = first + copy.size();
+  }
   const auto [end, error] = std::from_chars(first, last, value);
   if (error == std::errc::result_out_of_range) {
     const double magnitude = large ? std::numeric_limits<double>::infinity() : 0.0;
@@ -35,8 +45,9 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
 /// that starts at `text`. Returns the character behind it, or nullptr if no number starts there; `nan`, `inf` and
 /// hexadecimal are no numbers here. A number too large for a double gives an infinity, one too small a zero, with its
 /// sign. Precondition: some readable character after the number ends it (a line feed, a NUL); the scan stops at the
-/// first character that cannot continue a number.
-[[nodiscard]] inline const char* parse(const char* text, double& value) {
+/// first character that cannot continue a number. `Point` is the decimal sign.
+template <char Point = '.'>
+[[nodiscard]] const char* parse(const char* text, double& value) {
   const bool negative = *text == '-';
   const char* const number = text + (*text == '+' ? 1 : 0);  // from_chars knows no plus sign
   const char* p = text + (negative || *text == '+' ? 1 : 0);
@@ -47,7 +58,7 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
   }
   const std::int64_t integer_digits = p - digits;
   std::int64_t exponent = 0;
-  if (*p == '.') {
+  if (*p == Point) {
     const char* const fraction = ++p;
     while (is_digit(*p)) {
       mantissa = mantissa * 10 + static_cast<std::uint64_t>(*p++ - '0');
@@ -72,7 +83,7 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
     }
   }
   if (significant > 19) {  // leading zeros do not count
-    for (const char* q = digits; *q == '0' || *q == '.'; ++q) {
+    for (const char* q = digits; *q == '0' || *q == Point; ++q) {
       significant -= *q == '0' ? 1 : 0;
     }
   }
@@ -84,7 +95,7 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
     value = negative ? -magnitude : magnitude;
     return p;
   }
-  value = from_text(number, p, significant + exponent > 0);
+  value = from_text<Point>(number, p, significant + exponent > 0);
   return p;
 }
 

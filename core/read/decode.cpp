@@ -1,5 +1,6 @@
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
+#include "core/read/phone_export.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -98,6 +99,19 @@ class FileSink final : public ColumnSink {
   std::unique_ptr<ColumnFileWriter> writer_;  ///< from begin() on
 };
 
+/// A folder as one recording; `nothing` stands for the bytes it does not have.
+Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_ptr<ByteReader> nothing,
+                              ColumnSink& sink, const DecodeLimits& limits, const RunControl& control) {
+  const ByteSource source(std::move(nothing));
+  WatchingSink watching(sink, source, control);
+  if (auto status = decode_folder(folder, limits, watching, control); !status) {
+    return fail(status.error());
+  }
+  watching.decoded().format = "phone_folder";
+  control.report("decode", 1.0);
+  return std::move(watching.decoded());
+}
+
 }  // namespace
 
 Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& sink, const DecodeLimits& limits,
@@ -143,12 +157,15 @@ Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& si
 
 Result<Decoded> decode_file(const std::filesystem::path& input, const std::filesystem::path& output,
                             const DecodeLimits& limits, const RunControl& control) {
-  auto reader = open_file_reader(input);
+  std::error_code none;
+  const bool folder = std::filesystem::is_directory(input, none);
+  auto reader = folder ? Result<std::unique_ptr<ByteReader>>(make_memory_reader("")) : open_file_reader(input);
   if (!reader) {
     return fail(reader.error());
   }
   FileSink sink(output);
-  auto decoded = decode_stream(std::move(*reader), sink, limits, control);
+  auto decoded = folder ? decode_tables(input, std::move(*reader), sink, limits, control)
+                        : decode_stream(std::move(*reader), sink, limits, control);
   if (!decoded) {
     return decoded;
   }

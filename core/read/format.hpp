@@ -82,10 +82,14 @@ struct Decoded {
 };
 
 /// Decompresses (once: an archive inside an archive is refused), recognises and decodes `reader` into `sink`.
-/// Errors: EmptyInput, UnsupportedFormat (with what it looks like), those of make_decompressor, those of the format:
-///   csv  EmptyInput, NoSamples, RaggedRow, NotANumber, NonFinite, OutOfRange, DuplicateColumn, LimitExceeded
+/// A cell that is no number is a missing sample (core/signal/missing.hpp), not an error: whoever needs the column
+/// decides. Errors: EmptyInput, UnsupportedFormat (with what it looks like), those of make_decompressor, those of the
+/// format:
+///   csv  EmptyInput, NoSamples, RaggedRow, DuplicateColumn, LimitExceeded; where no cell is a number, what is wrong
+///   with the
+///        first: NotANumber, NonFinite, OutOfRange
 ///   npy  Truncated (fewer bytes than the header declares), ShapeMismatch (more bytes, or an impossible shape),
-///        UnsupportedType, NoSamples, NonFinite, LimitExceeded
+///        UnsupportedType, NoSamples, LimitExceeded
 /// and Io, Cancelled. Fields: `row` (in text the line of the file from 1, else the sample from 1), `column` (its name).
 [[nodiscard]] Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& sink,
                                             const DecodeLimits& limits = {}, const RunControl& control = {});

@@ -5,8 +5,13 @@
 
 // clang-format off
 #define DRIFTLAB_FORMATS(FORMAT) \
-  FORMAT(kCsv) /* csv.cpp */     \
-  FORMAT(kNpy) /* npy.cpp */
+  FORMAT(kCsv)      /* csv.cpp */       \
+  FORMAT(kNpy)      /* npy.cpp */       \
+  FORMAT(kNpz)      /* npz.cpp */       \
+  FORMAT(kMat5)     /* mat5.cpp */      \
+  FORMAT(kPhoneZip) /* phone_export.cpp */ \
+  FORMAT(kCxd5602)  /* cxd5602.cpp */   \
+  FORMAT(kVmu931)   /* vmu931.cpp */
 // clang-format on
 
 namespace driftlab::formats {

@@ -2,6 +2,7 @@
 /// Source: numpy/lib/format.py, "Format Version 1.0" to "3.0" of the NumPy manual (NEP 1).
 #include "core/read/formats.hpp"
 #include "core/read/npy_header.hpp"
+#include "core/signal/missing.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -50,7 +51,7 @@ class NpyDecoder {
 
  private:
   Status deliver(std::span<const double> values);
-  [[nodiscard]] Status non_finite(std::span<const double> values) const;
+  void mark_missing(std::span<double> values) const;
   [[nodiscard]] Status ends_early(std::size_t left_over) const;
 
   ByteSource& source_;
@@ -82,9 +83,9 @@ Status NpyDecoder::run() {
     const std::string_view bytes = view->substr(0, count * header_.item_bytes);
     const bool finite = header_.item_bytes == 8 ? convert<double, std::uint64_t>(bytes, header_.swap, batch.data())
                                                 : convert<float, std::uint32_t>(bytes, header_.swap, batch.data());
-    const std::span<const double> values(batch.data(), count);
+    const std::span<double> values(batch.data(), count);
     if (!finite) {
-      return non_finite(values);
+      mark_missing(values);
     }
     source_.consume(bytes.size());
     if (auto status = deliver(values); !status) {
@@ -120,15 +121,15 @@ Status NpyDecoder::deliver(std::span<const double> values) {
   return {};
 }
 
-Status NpyDecoder::non_finite(std::span<const double> values) const {
-  const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
-  const std::uint64_t index = taken_ + static_cast<std::uint64_t>(bad - values.begin());
-  const std::uint64_t row = header_.fortran_order ? index % header_.rows : index / header_.columns;
-  const std::uint64_t column = header_.fortran_order ? index / header_.rows : index % header_.columns;
-  return fail(ErrorCode::NonFinite,
-              "Sample " + std::to_string(row + 1) + " of column '" + std::to_string(column) + "' is " +
-                  (std::isnan(*bad) ? "NaN." : "infinite."),
-              {{"row", std::to_string(row + 1)}, {"column", std::to_string(column)}});
+/// NaN and infinities as missing samples that know their row.
+void NpyDecoder::mark_missing(std::span<double> values) const {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      const std::uint64_t index = taken_ + i;
+      const std::uint64_t row = header_.fortran_order ? index % header_.rows : index / header_.columns;
+      values[i] = missing_sample(std::isnan(values[i]) ? Missing::Nan : Missing::Infinite, row + 1);
+    }
+  }
 }
 
 Status NpyDecoder::ends_early(std::size_t left_over) const {

@@ -25,7 +25,7 @@ std::string_view take_line(std::string_view& rest) {
 std::string_view take_content(std::string_view& rest) {
   while (!rest.empty()) {
     const std::string_view line = take_line(rest);
-    if (!line.empty() && line.front() != '#') {
+    if (!line.empty() && line.front() != '#' && line.front() != '%' && !line.starts_with("//")) {
       return line;
     }
   }
@@ -137,6 +137,72 @@ bool is_number(std::string_view text) {
          is_non_finite_word(text);
 }
 
+namespace {
+
+/// The digits of `text` from `at` on, `count` of them; -1 if they are not all digits.
+int digits_at(std::string_view text, std::size_t at, std::size_t count) {
+  int value = 0;
+  for (std::size_t i = at; i < at + count; ++i) {
+    if (i >= text.size() || !decimal::is_digit(text[i])) {
+      return -1;
+    }
+    value = 10 * value + (text[i] - '0');
+  }
+  return value;
+}
+
+/// Days from 1970-01-01 to a date of the Gregorian calendar: years begin in March, so that the leap day ends one.
+std::int64_t days_to(int year, int month, int day) {
+  const std::int64_t y = year - (month <= 2 ? 1 : 0);
+  const std::int64_t month_from_march = (month + 9) % 12;
+  const std::int64_t day_of_year = (153 * month_from_march + 2) / 5 + day - 1;
+  return 365 * y + y / 4 - y / 100 + y / 400 + day_of_year - 719468;
+}
+
+/// Seconds east of Greenwich of `Z`, `+hh:mm`, `-hhmm` or nothing.
+std::optional<int> zone_of(std::string_view text) {
+  if (text.empty() || text == "Z") {
+    return 0;
+  }
+  const int hours = digits_at(text, 1, 2);
+  const int minutes = text.size() == 6 && text[3] == ':' ? digits_at(text, 4, 2)
+                      : text.size() == 5                 ? digits_at(text, 3, 2)
+                                                         : -1;
+  if ((text[0] != '+' && text[0] != '-') || hours < 0 || hours > 14 || minutes < 0 || minutes > 59) {
+    return std::nullopt;
+  }
+  return (text[0] == '-' ? -1 : 1) * (3600 * hours + 60 * minutes);
+}
+
+}  // namespace
+
+std::optional<double> seconds_of_date(std::string_view text) {
+  const int year = digits_at(text, 0, 4);
+  const int month = digits_at(text, 5, 2);
+  const int day = digits_at(text, 8, 2);
+  const int hour = digits_at(text, 11, 2);
+  const int minute = digits_at(text, 14, 2);
+  const int second = digits_at(text, 17, 2);
+  if (year < 1900 || month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 23 || minute < 0 ||
+      minute > 59 || second < 0 || second > 60 || text[4] != '-' || text[7] != '-' ||
+      (text[10] != ' ' && text[10] != 'T') || text[13] != ':' || text[16] != ':') {
+    return std::nullopt;
+  }
+  double fraction = 0.0;
+  std::size_t at = 19;
+  if (at < text.size() && text[at] == '.') {
+    double place = 0.1;
+    for (++at; at < text.size() && decimal::is_digit(text[at]); ++at, place *= 0.1) {
+      fraction += place * (text[at] - '0');
+    }
+  }
+  const auto zone = zone_of(text.substr(at));
+  if (!zone) {
+    return std::nullopt;
+  }
+  return static_cast<double>(86400 * days_to(year, month, day) + 3600 * hour + 60 * minute + second - *zone) + fraction;
+}
+
 std::string excerpt(std::string_view cell) {
   constexpr std::size_t kMost = 32;
   std::string shown = "'";
@@ -197,34 +263,6 @@ std::string to_utf8(std::string_view text) {
     }
   }
   return converted;
-}
-
-std::vector<std::string> split_fields(std::string_view line) {
-  std::vector<std::string> fields;
-  std::size_t i = 0;
-  while (true) {
-    while (i < line.size() && (line[i] == ' ' || line[i] == '\t')) {
-      ++i;
-    }
-    std::string field;
-    if (i < line.size() && line[i] == '"') {
-      for (++i; i < line.size(); ++i) {
-        if (line[i] == '"' && (i + 1 == line.size() || line[i + 1] != '"')) {
-          ++i;
-          break;
-        }
-        i += line[i] == '"' ? 1 : 0;  // a doubled quote is one
-        field += line[i];
-      }
-    }
-    const std::size_t comma = std::min(line.find(',', i), line.size());
-    field += trim(line.substr(i, comma - i));
-    fields.push_back(std::move(field));
-    if (comma == line.size()) {
-      return fields;
-    }
-    i = comma + 1;
-  }
 }
 
 }  // namespace driftlab::text

@@ -1,5 +1,6 @@
 #pragma once
 /// What a text looks like from its first lines: which separator, which line end. Internal to core/read.
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,11 +32,13 @@ enum class Shape {
 /// A few characters of a cell for an error message: printable ASCII, at most 32 of them, in quotes.
 [[nodiscard]] std::string excerpt(std::string_view cell);
 
+/// Seconds since 1970-01-01 UTC of a date and time as ISO 8601 writes it: `2025-06-14 21:17:02+00:00`,
+/// `2025-06-14T21:17:02.5Z`; without a zone it is UTC. Nothing for any other text. Source of the day count: the
+/// Gregorian rule, from March on.
+[[nodiscard]] std::optional<double> seconds_of_date(std::string_view text);
+
 /// `text` as UTF-8: unchanged if it is, else every byte read as ISO 8859-1.
 [[nodiscard]] std::string to_utf8(std::string_view text);
-
-/// The fields of one comma-separated line (RFC 4180 without line breaks inside quotes), trimmed and unquoted.
-[[nodiscard]] std::vector<std::string> split_fields(std::string_view line);
 
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 

@@ -20,8 +20,7 @@ struct Signature {
 };
 
 constexpr std::array kSignatures{
-    Signature{0, "MATLAB 5.0 MAT-file"sv, "a MATLAB 5 file; save the samples as CSV or .npy"},
-    Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save the samples as CSV or .npy"},
+    Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save it with -v7, or the samples as CSV or .npy"},
     Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
     Signature{0, "ULog\x01\x12\x35"sv, "a PX4 ULog flight log"},
     Signature{0, "#ROSBAG V"sv, "a ROS bag"},
@@ -51,13 +50,10 @@ constexpr std::array kSignatures{
 
 std::string describe_zip(std::string_view head) {
   const std::string_view entry = head.substr(0, 512);
-  if (entry.find(".npy") != std::string_view::npos) {
-    return "a NumPy .npz archive; send its arrays as .npy";
-  }
   if (entry.find("[Content_Types].xml") != std::string_view::npos) {
     return "a Microsoft Office file; save the sheet as CSV";
   }
-  return "a ZIP archive; send its files one by one";
+  return "a ZIP archive without CSV files or .npy arrays";
 }
 
 std::string describe_text(std::string_view head) {
@@ -73,11 +69,11 @@ std::string describe_text(std::string_view head) {
   }
   switch (text::shape_of(head)) {
     case text::Shape::Semicolons:
-      return "semicolon-separated text; use commas between columns and a decimal point";
+      return "semicolon-separated text that is not a table of numbers";
     case text::Shape::Tabs:
-      return "tab-separated text; use commas between columns";
+      return "tab-separated text that is not a table of numbers";
     case text::Shape::Spaces:
-      return "space-separated text; use commas between columns";
+      return "text in columns that are not numbers";
     case text::Shape::NotText:
       return "binary data";
     default:

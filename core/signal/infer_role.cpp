@@ -30,6 +30,8 @@ constexpr std::array kStems{
     Stem{"acceleration", Quantity::SpecificForce},
     Stem{"f", Quantity::SpecificForce},
     Stem{"specificforce", Quantity::SpecificForce},
+    Stem{"wb", Quantity::AngularRate},
+    Stem{"fb", Quantity::SpecificForce},
     Stem{"m", Quantity::MagneticField},
     Stem{"mag", Quantity::MagneticField},
     Stem{"magnetometer", Quantity::MagneticField},
@@ -43,12 +45,24 @@ struct UnitWord {
 
 /// Units as they are written behind an underscore, where no slash can be.
 constexpr std::array kUnitWords{
-    UnitWord{"s", "s"},         UnitWord{"sec", "s"},      UnitWord{"ms", "ms"},       UnitWord{"us", "us"},
-    UnitWord{"ns", "ns"},       UnitWord{"dps", "deg/s"},  UnitWord{"degps", "deg/s"}, UnitWord{"degs", "deg/s"},
-    UnitWord{"radps", "rad/s"}, UnitWord{"rads", "rad/s"}, UnitWord{"mps2", "m/s^2"},  UnitWord{"ms2", "m/s^2"},
-    UnitWord{"g", "g"},         UnitWord{"mg", "mg"},      UnitWord{"degc", "degC"},   UnitWord{"c", "degC"},
-    UnitWord{"k", "K"},         UnitWord{"ut", "uT"},
+    UnitWord{"s", "s"},         UnitWord{"sec", "s"},          UnitWord{"ms", "ms"},       UnitWord{"us", "us"},
+    UnitWord{"ns", "ns"},       UnitWord{"dps", "deg/s"},      UnitWord{"degps", "deg/s"}, UnitWord{"degs", "deg/s"},
+    UnitWord{"radps", "rad/s"}, UnitWord{"rads", "rad/s"},     UnitWord{"mps2", "m/s^2"},  UnitWord{"ms2", "m/s^2"},
+    UnitWord{"g", "g"},         UnitWord{"mg", "mg"},          UnitWord{"degc", "degC"},   UnitWord{"c", "degC"},
+    UnitWord{"k", "K"},         UnitWord{"ut", "uT"},          UnitWord{"seconds", "s"},   UnitWord{"celsius", "degC"},
+    UnitWord{"gs", "g"},        UnitWord{"microteslas", "uT"},
 };
+
+/// The same in several words.
+constexpr std::array kUnitPhrases{
+    UnitWord{"_deg_per_s", "_degps"},
+    UnitWord{"_rad_per_s", "_radps"},
+    UnitWord{"_m_per_s2", "_mps2"},
+};
+
+/// Words in front of a quantity that do not change it.
+constexpr std::array<std::string_view, 9> kPlainWords{"raw", "imu", "imu1",       "sens",        "sensor",
+                                                      "all", "cal", "calibrated", "uncalibrated"};
 
 constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
 
@@ -124,6 +138,9 @@ std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<
   if (is_time_name(squashed)) {
     return ColumnRole{Quantity::Time, "", unit};
   }
+  if (squashed == "millis") {
+    return ColumnRole{Quantity::Time, "", known_unit("ms")};
+  }
   if (squashed == "secondselapsed") {
     return ColumnRole{Quantity::Time, "", known_unit("s")};
   }
@@ -162,9 +179,37 @@ std::optional<ColumnRole> infer_suffixed(std::string_view name) {
   return role && unit && measures(*unit, role->quantity) ? role : std::nullopt;
 }
 
+/// `name` without plain words in front: "imu_gyr_x" -> "gyr_x", "SENSgyro_x" -> "gyro_x". Itself if there are none.
+std::string_view without_plain_words(std::string_view name) {
+  if (name.starts_with("SENS")) {
+    name.remove_prefix(4);
+  }
+  while (true) {
+    const std::size_t cut = name.find_first_of("_. ");
+    if (cut == std::string_view::npos ||
+        std::find(kPlainWords.begin(), kPlainWords.end(), squash(name.substr(0, cut))) == kPlainWords.end()) {
+      return name;
+    }
+    name.remove_prefix(cut + 1);
+  }
+}
+
+/// The name with a unit of several words written as one.
+std::string with_short_unit(std::string_view name) {
+  std::string text(name);
+  for (const UnitWord& phrase : kUnitPhrases) {
+    if (text.ends_with(phrase.word)) {
+      text.replace(text.size() - phrase.word.size(), phrase.word.size(), phrase.symbol);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
-ColumnRole infer_role(std::string_view name) {
+ColumnRole infer_role(std::string_view written) {
+  const std::string text = with_short_unit(without_plain_words(written));
+  std::string_view name = text;
   const std::string_view bracket = take_bracket(name);
   if (bracket.empty()) {
     if (auto role = infer_suffixed(name)) {

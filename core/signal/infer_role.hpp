@@ -10,12 +10,13 @@ namespace driftlab {
 ///
 /// A unit in brackets at the end (`gyro_x [deg/s]`, `time (ms)`, `Gyroscope x (rad/s)`) is taken if it is known. What
 /// is left is compared without case, blanks and punctuation:
-///   time             t, ts, time, timestamp, seconds_elapsed, and with a unit behind `_` (time_ms, t_us)
+///   time             t, ts, time, timestamp, seconds_elapsed, millis, and with a unit behind `_` (time_ms, t_us)
 ///   temperature      temp, temperature
 ///   angular rate     g gyr gyro gyroscope w omega rate angular_rate angular_velocity, with x, y or z behind or before
 ///   it specific force   a acc accel accelerometer acceleration f specific_force, likewise magnetic field   m mag
 ///   magnetometer magnetic_field, likewise
-/// A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
+/// Words in front that change nothing are skipped: raw_acceleration_x_gs, imu_gyr_x, imu.wb_z, GyroscopeUncalibrated
+/// stays unknown. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
 [[nodiscard]] ColumnRole infer_role(std::string_view name);
 
 }  // namespace driftlab

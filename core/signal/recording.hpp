@@ -66,14 +66,36 @@ struct TimeBase {
   double start_s = 0.0;  ///< first time stamp, 0 without a time column
 };
 
+/// What is true of one sensor channel as it came (core/signal/channel_survey.hpp finds it). Counts are over the whole
+/// file.
+struct ChannelQuality {
+  std::string column;
+  std::size_t missing = 0;      ///< cells without a number: empty, NaN, or beyond the end of the column
+  std::size_t implausible = 0;  ///< numbers that mean "missing" (-9999) or are garbage (-1.7e38); taken as missing
+  std::size_t repeated = 0;     ///< samples equal to the one before
+  std::optional<std::size_t> distinct;  ///< distinct values; nothing above 256
+  double resolution = 0.0;              ///< step of the lattice the values lie on [channel unit]; 0 where there is none
+  std::size_t saturated = 0;            ///< samples at a full-scale value
+  std::size_t frozen = 0;               ///< samples of a stretch in which the sensor gives one value only
+  std::size_t frozen_from = 0;          ///< its first sample, from 1
+  std::size_t first = 0;                ///< first analysed sample, from 1
+  std::size_t analysed = 0;  ///< samples analysed: the longest stretch in the window without any of the above
+};
+
 /// What is true of the recording as it came, reported and never silently repaired.
 struct Quality {
   std::size_t samples = 0;          ///< rows of the file
   std::size_t analysed = 0;         ///< rows of the analysed part, after trims
   std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 intervals of the samples they join
   std::size_t repeated_stamps = 0;  ///< steps of the time column equal to 0
+  std::size_t backward_steps = 0;   ///< steps of the time column below 0 that are no counter wrap
+  std::size_t counter_wraps = 0;    ///< times a counter of 16 or 32 bits in the time column started again
+  bool bursts = false;              ///< stamps given on arrival: many samples at once, then none for long
   double longest_gap_s = 0.0;
-  double measured_rate_hz = 0.0;   ///< (samples - 1) / (last - first stamp); 0 without a time column
+  double jitter_s = 0.0;              ///< half the distance of the 5 % and 95 % quantiles of the steps
+  double measured_rate_hz = 0.0;      ///< (samples - 1) / time advanced; 0 without a time column
+  std::optional<double> clock_ratio;  ///< measured over stated rate of the analysed stretch, where both are there
+  std::vector<ChannelQuality> channels;
   std::vector<std::string> notes;  ///< sentences: unnamed columns, missing units, parts left out
 };
 
@@ -86,10 +108,11 @@ struct Window {
 };
 
 /// Reads the time column (in `time_unit`; empty span: none), the stated rate and the trims, and decides which rows are
-/// analysed: where the time column has gaps, the longest stretch without one, which a note in `quality` says.
-/// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (naming
-/// the row), NonFinite, TooFewSamples (naming the parameter when a trim leaves nothing), InvalidArgument. O(rows) time,
-/// O(rows) memory for the median step.
+/// analysed: where the time column has gaps or steps back, the longest stretch without one, which a note in `quality`
+/// says. Stamps in bursts (more than 2 % of the steps look like gaps) are read as those of evenly spaced samples.
+/// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (one row
+/// in a thousand steps back, or more; naming the first), NonFinite, TooFewSamples (naming the parameter when a trim
+/// leaves nothing), InvalidArgument. O(rows) time, O(rows) memory for the median step.
 [[nodiscard]] Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows,
                                          std::span<const double> time_column, const Unit& time_unit);
 

@@ -15,10 +15,13 @@
 
 namespace driftlab {
 
-/// One sensor channel of the analysed window.
+/// One sensor channel: the longest stretch of the analysed window in which it is sound
+/// (core/signal/channel_survey.hpp), so that no value is missing, implausible or frozen. What is left out stands in
+/// `window.quality`.
 struct ChannelView {
   std::string column;
   ColumnRole role;                 ///< unit `1` where none is stated
+  std::size_t first_row = 0;       ///< row of the file that values[0] comes from
   std::span<const double> values;  ///< error series in the channel's unit; the file's memory, or `owned`
   std::vector<double> owned;       ///< filled where a reference had to be subtracted
 };
@@ -29,8 +32,8 @@ struct RecordingView {
 };
 
 /// `column(i)` gives the samples of column i of the file in its own unit; they must outlive the view.
-/// Errors: those of assign_roles and plan_window; TooFewSamples; UnknownColumn (no sensor column at all).
-/// O(rows) time; O(rows) memory per channel with a moving reference, none otherwise.
+/// Errors: those of assign_roles, plan_window and, for sensor columns, check_holes; TooFewSamples; UnknownColumn (no
+/// sensor column at all). O(rows) time; O(rows) memory per channel with a moving reference, none otherwise.
 [[nodiscard]] Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names,
                                                    std::size_t rows,
                                                    const std::function<std::span<const double>(std::size_t)>& column);

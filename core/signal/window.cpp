@@ -1,4 +1,5 @@
 #include "core/signal/recording.hpp"
+#include "core/signal/time_column.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -71,24 +72,16 @@ Result<Window> plan_uniform(const RecordingSpec& spec, std::size_t rows) {
   return window;
 }
 
-/// The time column in seconds, finite and never falling.
-Result<std::vector<double>> checked_stamps(std::span<const double> column, const Unit& unit) {
-  std::vector<double> stamps(column.size());
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    stamps[i] = unit.to_si(column[i]);
-    if (!std::isfinite(stamps[i])) {
-      return fail(ErrorCode::NonFinite,
-                  "Sample " + std::to_string(i + 1) + " of the time column is not a finite number.",
-                  {{"row", std::to_string(i + 1)}});
-    }
-    if (i > 0 && stamps[i] < stamps[i - 1]) {
-      return fail(ErrorCode::NonMonotonicTime,
-                  "The time column steps back by " + short_text(stamps[i - 1] - stamps[i]) + " s at sample " +
-                      std::to_string(i + 1) + ".",
-                  {{"row", std::to_string(i + 1)}});
-    }
+/// A time column that never advances says nothing; a stated rate does.
+Result<Window> plan_standing_clock(const RecordingSpec& spec, std::size_t rows) {
+  if (!spec.rate_hz) {
+    return fail(ErrorCode::InconsistentSampling, "The time column never advances.");
   }
-  return stamps;
+  auto window = plan_uniform(spec, rows);
+  if (window) {
+    window->quality.notes.emplace_back("The time column never advances and is not used; the stated rate is.");
+  }
+  return window;
 }
 
 /// Samples that share one stamp.
@@ -96,6 +89,17 @@ struct Group {
   std::size_t first = 0;
   std::size_t count = 1;
 };
+
+/// The element below which a fraction `p` of `values` lies, 0 of none; reorders them. O(n).
+double quantile(std::vector<double>& values, double p) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto index = static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size()));
+  const auto at = values.begin() + std::min(index, static_cast<std::ptrdiff_t>(values.size()) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 std::vector<Group> group_by_stamp(const std::vector<double>& stamps) {
   std::vector<Group> groups{{0, 1}};
@@ -116,14 +120,11 @@ double median_interval(const std::vector<double>& stamps, const std::vector<Grou
   intervals.reserve(groups.size());
   for (std::size_t g = 1; g < groups.size(); ++g) {
     const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
-    intervals.push_back(step / (0.5 * static_cast<double>(groups[g - 1].count + groups[g].count)));
+    if (step > 0.0) {
+      intervals.push_back(step / (0.5 * static_cast<double>(groups[g - 1].count + groups[g].count)));
+    }
   }
-  if (intervals.empty()) {
-    return 0.0;
-  }
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return quantile(intervals, 0.5);
 }
 
 /// The rows before which samples are missing: a step is a gap if it exceeds what the samples of both its groups can
@@ -140,15 +141,76 @@ std::vector<std::size_t> find_gaps(const std::vector<double>& stamps, const std:
   return gaps;
 }
 
-Quality survey(const std::vector<double>& stamps, std::size_t groups, const std::vector<std::size_t>& gaps) {
+/// Every step forward of the stamps.
+std::vector<double> forward_steps(const std::vector<double>& stamps) {
+  std::vector<double> steps;
+  steps.reserve(stamps.size());
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] >= stamps[i - 1]) {
+      steps.push_back(stamps[i] - stamps[i - 1]);
+    }
+  }
+  return steps;
+}
+
+/// The spacing of the stamps: where samples are missing, and how evenly the rest lie.
+struct Spacing {
+  std::vector<std::size_t> gaps;  ///< rows before which samples are missing
+  double interval_s = 0.0;        ///< median step a sample
+  double jitter_s = 0.0;
+  bool bursts = false;
+};
+
+/// Stamps given on arrival come in bursts: many steps look like gaps, though none of the samples is lost. The recording
+/// is then read as evenly spaced, and a gap is what is far beyond every other step.
+Spacing find_spacing(const std::vector<double>& stamps, const std::vector<Group>& groups) {
+  constexpr double kBurstGaps = 0.02;  // more of the steps than this look like gaps
+  Spacing spacing;
+  spacing.interval_s = median_interval(stamps, groups);
+  if (spacing.interval_s <= 0.0) {
+    return spacing;
+  }
+  spacing.gaps = find_gaps(stamps, groups, spacing.interval_s);
+  std::vector<double> steps = forward_steps(stamps);
+  const double low = quantile(steps, 0.05);
+  spacing.jitter_s = 0.5 * (quantile(steps, 0.95) - low);
+  spacing.bursts = static_cast<double>(spacing.gaps.size()) > kBurstGaps * static_cast<double>(stamps.size()) &&
+                   stamps.size() >= 100;
+  if (!spacing.bursts) {
+    return spacing;
+  }
+  const double largest_common = quantile(steps, 0.99);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double step : steps) {
+    sum += step <= largest_common ? step : 0.0;
+    count += step <= largest_common ? 1 : 0;
+  }
+  spacing.interval_s = sum / static_cast<double>(count);
+  const double longest = std::max(20.0 * spacing.interval_s, 5.0 * largest_common);
+  spacing.gaps.clear();
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] - stamps[i - 1] > longest) {
+      spacing.gaps.push_back(i);
+    }
+  }
+  return spacing;
+}
+
+Quality survey(const TimeColumn& time, std::size_t groups, const Spacing& spacing) {
+  const std::vector<double>& stamps = time.stamps;
   Quality quality;
   quality.samples = stamps.size();
   quality.repeated_stamps = stamps.size() - groups;
-  quality.gaps = gaps.size();
-  for (const std::size_t row : gaps) {
+  quality.gaps = spacing.gaps.size();
+  quality.jitter_s = spacing.jitter_s;
+  quality.bursts = spacing.bursts;
+  quality.backward_steps = time.backward.size();
+  quality.counter_wraps = time.wraps;
+  for (const std::size_t row : spacing.gaps) {
     quality.longest_gap_s = std::max(quality.longest_gap_s, stamps[row] - stamps[row - 1]);
   }
-  quality.measured_rate_hz = static_cast<double>(stamps.size() - 1) / (stamps.back() - stamps.front());
+  quality.measured_rate_hz = static_cast<double>(stamps.size() - 1) / time.advanced_s();
   return quality;
 }
 
@@ -198,6 +260,7 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
     }
     return {};
   }
+  window.quality.clock_ratio = measured_hz / *spec.rate_hz;
   const double difference = std::abs(measured_hz / *spec.rate_hz - 1.0);
   if (difference > kRateTolerance) {
     const std::string read_as = unit_known ? "" : ", read in seconds,";
@@ -220,7 +283,7 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
   return {};
 }
 
-void note_irregularities(std::size_t trimmed_rows, Window& window) {
+void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& window) {
   Quality& quality = window.quality;
   if (quality.repeated_stamps > 0) {
     quality.notes.push_back(std::to_string(quality.repeated_stamps) + " time stamps repeat the one before.");
@@ -229,6 +292,18 @@ void note_irregularities(std::size_t trimmed_rows, Window& window) {
     quality.notes.push_back("The time column has " + std::to_string(quality.gaps) + " gaps, the longest " +
                             short_text(quality.longest_gap_s) + " s.");
   }
+  if (quality.bursts) {
+    quality.notes.push_back("Time stamps come in bursts; the samples are read as evenly spaced by their mean step, " +
+                            short_text(window.time.dt_s) + " s.");
+  }
+  if (quality.counter_wraps > 0) {
+    quality.notes.push_back("The counter in the time column started again " + std::to_string(quality.counter_wraps) +
+                            " times; it is continued.");
+  }
+  if (quality.backward_steps > 0) {
+    quality.notes.push_back("The time column steps back " + std::to_string(quality.backward_steps) +
+                            " times, by at most " + short_text(step_back_s) + " s; the recording is split there.");
+  }
   if (window.count < trimmed_rows) {
     quality.notes.push_back("Only the longest stretch without a gap is analysed: " + std::to_string(window.count) +
                             " of " + std::to_string(trimmed_rows) + " samples, from sample " +
@@ -236,41 +311,49 @@ void note_irregularities(std::size_t trimmed_rows, Window& window) {
   }
 }
 
+/// Rows [first, last) that the trims leave. Rows at exactly the trim stay; the slack absorbs the rounding of decimal
+/// stamps.
+std::pair<std::size_t, std::size_t> trimmed_rows(const RecordingSpec& spec, const std::vector<double>& stamps,
+                                                 double slack) {
+  const double start = stamps.front() + spec.trim.start_s - slack;
+  const double end = stamps.back() - spec.trim.end_s + slack;
+  const auto begin = std::find_if(stamps.begin(), stamps.end(), [start](double stamp) { return stamp >= start; });
+  const auto behind = std::find_if(stamps.rbegin(), stamps.rend(), [end](double stamp) { return stamp <= end; }).base();
+  return {static_cast<std::size_t>(begin - stamps.begin()), static_cast<std::size_t>(behind - stamps.begin())};
+}
+
 Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> column, const Unit& unit) {
-  auto stamps = checked_stamps(column, unit);
-  if (!stamps) {
-    return fail(stamps.error());
+  auto time = read_time_column(column, unit);
+  if (!time) {
+    return fail(time.error());
   }
-  const std::vector<Group> groups = group_by_stamp(*stamps);
-  const double interval_s = median_interval(*stamps, groups);
-  if (interval_s <= 0.0) {
-    return fail(ErrorCode::InconsistentSampling, "The time column never advances.");
+  const std::vector<double>& stamps = time->stamps;
+  const std::vector<Group> groups = group_by_stamp(stamps);
+  const Spacing spacing = find_spacing(stamps, groups);
+  if (spacing.interval_s <= 0.0) {
+    return plan_standing_clock(spec, column.size());
   }
   Window window;
-  const std::vector<std::size_t> gaps = find_gaps(*stamps, groups, interval_s);
-  window.quality = survey(*stamps, groups.size(), gaps);
-  window.time.start_s = stamps->front();
-  // Rows at exactly the trim stay; the slack absorbs the rounding of decimal stamps.
-  const double slack = 1e-6 * interval_s;
-  const auto begin = std::lower_bound(stamps->begin(), stamps->end(), stamps->front() + spec.trim.start_s - slack);
-  const auto end = std::upper_bound(stamps->begin(), stamps->end(), stamps->back() - spec.trim.end_s + slack);
-  if (end - begin < 2) {
-    return trimmed_away(spec, stamps->back() - stamps->front());
+  window.quality = survey(*time, groups.size(), spacing);
+  window.time.start_s = stamps.front();
+  const auto [first, last] = trimmed_rows(spec, stamps, 1e-6 * spacing.interval_s);
+  if (last < first + 2) {
+    return trimmed_away(spec, stamps.back() - stamps.front());
   }
-  const auto first = static_cast<std::size_t>(begin - stamps->begin());
-  const auto last = static_cast<std::size_t>(end - stamps->begin());
-  const auto [from, to] = longest_stretch(gaps, first, last);
+  std::vector<std::size_t> breaks(spacing.gaps.size() + time->backward.size());
+  std::merge(spacing.gaps.begin(), spacing.gaps.end(), time->backward.begin(), time->backward.end(), breaks.begin());
+  const auto [from, to] = longest_stretch(breaks, first, last);
   window.first = from;
   window.count = to - from;
   window.quality.analysed = window.count;
-  const double span = (*stamps)[to - 1] - (*stamps)[from];
+  const double span = stamps[to - 1] - stamps[from];
   if (window.count < 2 || span <= 0.0) {
     return fail(ErrorCode::TooFewSamples, "No two consecutive samples are without a gap between them.");
   }
   if (auto status = settle_rate(spec, unit, span / static_cast<double>(window.count - 1), window); !status) {
     return fail(status.error());
   }
-  note_irregularities(last - first, window);
+  note_irregularities(last - first, time->largest_step_back_s, window);
   return window;
 }
 

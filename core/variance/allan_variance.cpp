@@ -10,13 +10,17 @@
 
 namespace driftlab {
 
-std::vector<double> allan_variance(std::span<const double> samples, double pivot, std::span<const std::size_t> m) {
+std::vector<double> allan_variance(std::span<const double> samples, double pivot, std::span<const std::size_t> m,
+                                   const RunControl& control) {
   const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot);
   const std::size_t n = samples.size();
   std::vector<double> sum(m.size(), 0.0);
   // Block by block, so that the block of the newest prefix sums stays in cache for all half lengths.
   constexpr std::size_t kBlock = 4096;
   for (std::size_t start = 1; start <= n; start += kBlock) {
+    if (control.stop.stop_requested()) {
+      return {};
+    }
     const std::size_t end = std::min(n + 1, start + kBlock);
     for (std::size_t k = 0; k < m.size(); ++k) {
       assert(m[k] > 0 && 2 * m[k] <= n);

@@ -1,5 +1,7 @@
 #include "core/variance/excess_kurtosis.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,6 +36,41 @@ double kurtosis_share(std::size_t half, std::size_t samples) {
   const double b = std::max(filter, count);
   const double overlap = a * a * (b - a + 1.0) + (a - 1.0) * a * (2.0 * a - 1.0) / 3.0;
   return overlap / (filter * filter * count * count);
+}
+
+double part_variance(const Model& model, double half, double dt_s, bool rough) {
+  double sum = 0.0;
+  for (const Process& process : model) {
+    const bool smooth = process.kind->symbol == "RW" || process.kind->symbol == "DR" ||
+                        (process.kind->symbol == "GM" && process.parameters[1] * dt_s < 0.3);
+    if (smooth != rough) {
+      sum += process.haar_variance(half, dt_s);
+    }
+  }
+  return sum;
+}
+
+void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<const double> half, std::size_t samples,
+                  double dt_s, const NoiseShape& shape) {
+  if (shape.kurtosis == 0.0) {
+    return;
+  }
+  Eigen::VectorXd direction(covariance.rows());
+  for (Eigen::Index j = 0; j < direction.size(); ++j) {
+    const double m = half[static_cast<std::size_t>(j)];
+    direction(j) =
+        part_variance(model, m, dt_s, shape.rough) * std::sqrt(kurtosis_share(static_cast<std::size_t>(m), samples));
+  }
+  double kurtosis = shape.kurtosis;
+  if (kurtosis < 0.0) {  // C + k v v' stays positive while -k v' C^-1 v < 1
+    const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+    const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd scaled = direction.cwiseQuotient(sd);
+    const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
+    const double reach = scaled.dot(factor.solve(scaled));
+    kurtosis = reach > 0.0 ? std::max(kurtosis, -0.9 / reach) : 0.0;
+  }
+  covariance += kurtosis * direction * direction.transpose();
 }
 
 }  // namespace driftlab

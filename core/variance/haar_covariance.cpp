@@ -1,44 +1,165 @@
 #include "core/variance/haar_covariance.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
 namespace driftlab {
 namespace {
 
-/// Lags from 0 to `last`: every kink of gamma is one, and between them the step is the larger of mi/16 and 6 % of the
-/// distance to the nearest kink.
-std::vector<double> choose_lags(double mi, double mj, double last) {
-  // Quantization noise has spikes of one lag there: the neighbours of a kink are taken too, so that it has the
-  // weight 1.
-  std::vector<double> kinks{last};
+constexpr std::size_t kNodes = 6;
+/// A stretch this short is summed lag by lag.
+constexpr double kWhole = 10.0;
+
+/// Legendre polynomials P_0 .. P_{kNodes-1} at t.
+std::array<double, kNodes> legendre(double t) {
+  std::array<double, kNodes> p{1.0, t};
+  for (std::size_t d = 2; d < kNodes; ++d) {
+    const auto k = static_cast<double>(d);
+    p[d] = ((2.0 * k - 1.0) * t * p[d - 1] - (k - 1.0) * p[d - 2]) / k;
+  }
+  return p;
+}
+
+/// Nodes (whole, from 0) and weights for the sum of a smooth function over `length` consecutive lags: exact for
+/// polynomials of degree kNodes - 1, and nearly so up to twice that, for the nodes are Gauss-Legendre's rounded.
+struct SumRule {
+  std::array<double, kNodes> node{};
+  std::array<double, kNodes> weight{};
+
+  explicit SumRule(double length) {
+    constexpr std::array<double, kNodes> kGauss{-0.93246951420315203, -0.66120938646626451, -0.23861918608319691,
+                                                0.23861918608319691,  0.66120938646626451,  0.93246951420315203};
+    Eigen::Matrix<double, kNodes, kNodes> basis;
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      node[k] = std::round(0.5 * length * (1.0 + kGauss[k]) - 0.5);
+      const auto p = legendre((2.0 * node[k] + 1.0) / length - 1.0);
+      for (std::size_t d = 0; d < kNodes; ++d) {
+        basis(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(k)) = p[d];
+      }
+    }
+    Eigen::Matrix<double, kNodes, 1> moment = Eigen::Matrix<double, kNodes, 1>::Zero();
+    moment(0) = length;
+    if (length <= 512.0) {  // above, the sums of the others are below 10^-5 of the first
+      moment.setZero();
+      for (double h = 0.0; h < length; h += 1.0) {
+        const auto p = legendre((2.0 * h + 1.0) / length - 1.0);
+        for (std::size_t d = 0; d < kNodes; ++d) {
+          moment(static_cast<Eigen::Index>(d)) += p[d];
+        }
+      }
+    }
+    const Eigen::Matrix<double, kNodes, 1> solved = basis.partialPivLu().solve(moment);
+    std::copy(solved.begin(), solved.end(), weight.begin());
+  }
+};
+
+/// Collects lags and the number of lags each stands for.
+class LagPlan {
+ public:
+  LagPlan(double mi, std::map<double, SumRule>& rules) : first_(std::max(1.0, std::ceil(0.5 * mi))), rules_(rules) {}
+
+  void single(double lag) {
+    lag_.push_back(lag);
+    weight_.push_back(1.0);
+  }
+
+  /// The lags strictly between two kinks (`end` a kink too) or up to and including the last lag. Near a kink a stretch
+  /// is m_i/2 long, away from it it grows fourfold in distance.
+  void gap(double start, double end, bool end_is_kink) {
+    const double low = start + 1.0;
+    const double high = end_is_kink ? end - 1.0 : end;
+    if (high < low) {
+      return;
+    }
+    std::vector<double> cuts;  // a stretch ends with each of these
+    const double reach = end_is_kink ? 0.5 * (high - low) : high - low;
+    std::vector<double> distance;
+    for (double d = first_; d <= reach + 1.0; d *= 4.0) {
+      distance.push_back(d);
+    }
+    for (const double d : distance) {
+      cuts.push_back(std::floor(low + d) - 1.0);
+    }
+    if (end_is_kink) {
+      if (!distance.empty()) {
+        cuts.push_back(std::floor(0.5 * (low + high)));
+      }
+      for (auto d = distance.rbegin(); d != distance.rend(); ++d) {
+        cuts.push_back(std::ceil(high - *d));
+      }
+    }
+    cuts.push_back(high);
+    double from = low;
+    for (const double cut : cuts) {
+      if (cut >= from) {
+        stretch(from, cut - from + 1.0);
+        from = cut + 1.0;
+      }
+    }
+  }
+
+  std::vector<double>& lag() { return lag_; }
+  std::vector<double>& weight() { return weight_; }
+
+ private:
+  void stretch(double from, double length) {
+    if (length <= kWhole) {
+      for (double h = 0.0; h < length; h += 1.0) {
+        single(from + h);
+      }
+      return;
+    }
+    const SumRule& rule = rules_.try_emplace(length, length).first->second;
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      lag_.push_back(from + rule.node[k]);
+      weight_.push_back(rule.weight[k]);
+    }
+  }
+
+  double first_;
+  std::map<double, SumRule>& rules_;
+  std::vector<double> lag_;
+  std::vector<double> weight_;
+};
+
+/// The rules depend on the lengths alone, which repeat from pair to pair.
+void choose_lags(double mi, double mj, double last, std::map<double, SumRule>& rules, std::vector<double>& lag,
+                 std::vector<double>& weight) {
+  std::vector<double> kinks;
   for (const double kink : {0.0, mi, mj - mi, mj, mj + mi}) {
-    for (const double lag : {kink - 1.0, kink, kink + 1.0}) {
-      kinks.push_back(std::clamp(lag, 0.0, last));
+    if (kink <= last) {
+      kinks.push_back(kink);
     }
   }
   std::sort(kinks.begin(), kinks.end());
   kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
-  const double fine = std::max(1.0, std::floor(mi / 16.0));
-  std::vector<double> lags{0.0};
-  for (std::size_t k = 1; k < kinks.size(); ++k) {
-    const double start = kinks[k - 1];
-    const double end = kinks[k];
-    const bool open_end = k + 1 == kinks.size() && end > mi + mj;  // the last lag is no kink
-    while (lags.back() < end) {
-      const double here = lags.back();
-      const double gap = open_end ? here - (mi + mj) : std::min(here - start, end - here);
-      const double grown = gap > 2.0 * mi ? std::floor(0.06 * gap) : 0.0;
-      lags.push_back(std::min(end, here + std::max(fine, grown)));
-    }
+  LagPlan plan(mi, rules);
+  for (std::size_t k = 0; k < kinks.size(); ++k) {
+    plan.single(kinks[k]);
+    const bool more = k + 1 < kinks.size();
+    plan.gap(kinks[k], more ? kinks[k + 1] : last, more);
   }
-  return lags;
+  lag = std::move(plan.lag());
+  weight = std::move(plan.weight());
 }
 
 }  // namespace
 
+struct HaarCovariance::Rules {
+  std::map<double, SumRule> of;  ///< by length
+};
+
+HaarCovariance::~HaarCovariance() = default;
+HaarCovariance::HaarCovariance(HaarCovariance&& other) noexcept = default;
+HaarCovariance& HaarCovariance::operator=(HaarCovariance&& other) noexcept = default;
+
 HaarCovariance::HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s)
-    : half_(half.begin(), half.end()), samples_(static_cast<double>(samples)), dt_s_(dt_s) {
+    : half_(half.begin(), half.end()),
+      samples_(static_cast<double>(samples)),
+      dt_s_(dt_s),
+      rules_(std::make_unique<Rules>()) {
   pairs_.resize(half_.size() * (half_.size() + 1) / 2);
 }
 
@@ -52,15 +173,11 @@ HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
   const double n = samples_;
   const double last = n - mi - mj;
   const double count = (n - 2.0 * mi + 1.0) * (n - 2.0 * mj + 1.0);
-  plan.lag = choose_lags(mi, mj, last);
-  plan.weight.resize(plan.lag.size());
+  choose_lags(mi, mj, last, rules_->of, plan.lag, plan.weight);
   for (std::size_t k = 0; k < plan.lag.size(); ++k) {
-    // sum_{h=-last}^{last} f = 2 trapezoid + f(last)
-    const double before = k > 0 ? plan.lag[k] - plan.lag[k - 1] : 0.0;
-    const double after = k + 1 < plan.lag.size() ? plan.lag[k + 1] - plan.lag[k] : 0.0;
-    const double width = before + after + (k + 1 == plan.lag.size() ? 1.0 : 0.0);
+    const double sides = plan.lag[k] == 0.0 ? 1.0 : 2.0;
     const double overlap = std::min(n - mj, n - mi - plan.lag[k]) - mj + 1.0;
-    plan.weight[k] = width * overlap / count;
+    plan.weight[k] *= sides * overlap / count;
   }
   return plan;
 }

@@ -5,8 +5,10 @@
 /// n_ij(h) the number of pairs that far apart,
 ///   Cov(nu_i, nu_j) = 2/(Mi Mj) sum_h n_ij(h) gamma_ij(h)^2 + 4 mu_i mu_j/(Mi Mj) sum_h n_ij(h) gamma_ij(h),
 /// mu the mean of the coefficients under a trend (exact for Gaussian data; Percival 1995, Greenhall and Riley 2003).
-/// The sum is taken over lags thinned to m_i/16 near the kinks of gamma and growing by 6 % elsewhere: 0.2 % error at N
-/// = 90,000.
+/// gamma^2 n is smooth between the lags 0, m_i, m_j - m_i, m_j, m_i + m_j, so the sum is taken there by rules of six
+/// lags (Gauss-Legendre's nodes, rounded to whole lags, with the weights that are exact for polynomials over whole
+/// lags) on stretches that are m_i/2 long near these lags and grow fourfold in distance: some 100 lags for a pair, and
+/// an error below 0.1 % of sqrt(C_ii C_jj) for every process (0.3 % for flicker noise).
 #include "core/process/model.hpp"
 
 #include <Eigen/Core>
@@ -14,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,6 +29,11 @@ class HaarCovariance {
  public:
   /// `half`: half lengths in samples, rising; each 2 m <= samples.
   HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s);
+  ~HaarCovariance();
+  HaarCovariance(HaarCovariance&& other) noexcept;
+  HaarCovariance& operator=(HaarCovariance&& other) noexcept;
+  HaarCovariance(const HaarCovariance&) = delete;
+  HaarCovariance& operator=(const HaarCovariance&) = delete;
 
   /// Covariance matrix of the estimated variances [unit^4], scales x scales.
   /// Positive even for a deterministic model: 10^-16 of the squared variance stands for rounding.
@@ -45,6 +53,7 @@ class HaarCovariance {
   [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(samples_); }
 
  private:
+  struct Rules;
   struct Pair {
     std::vector<double> lag;
     std::vector<double> weight;  ///< quadrature weight times n_ij, both signs of the lag together, over Mi Mj
@@ -59,6 +68,7 @@ class HaarCovariance {
   std::vector<double> half_;
   double samples_;
   double dt_s_;
+  std::unique_ptr<Rules> rules_;
   std::vector<Pair> pairs_;
   std::vector<double> scratch_;
 };

@@ -5,7 +5,7 @@
 /// N, and the unbiased MODWT estimator (Percival and Walden 2000, eq. 306b) is the mean of W_t^2 over its N - 2m + 1
 /// values. Twice that is the overlapping Allan variance at tau = m dt (NIST SP 1065 eq. 11), which therefore needs no
 /// pass of its own.
-#include "core/signal/result.hpp"
+#include "core/signal/progress.hpp"
 
 #include <cstddef>
 #include <span>
@@ -27,8 +27,12 @@ struct HaarVariance {
 
 /// All octaves in one pass. `samples` are used as they lie; NaN-free and bounded (summarise() checks). Sums are formed
 /// relative to `pivot` (the mean, to be accurate: then a bias of 10^6 sigma costs no digits), short scales by a pyramid
-/// of pairwise sums inside cache-sized blocks, long ones from block-ordered prefix sums. O(N log N) time, one array of
-/// N doubles of memory. Fewer than 2 samples give no scale. Same bits on every run.
-[[nodiscard]] HaarVariance haar_variance(std::span<const double> samples, double pivot);
+/// of pairwise sums inside cache-sized blocks, long ones from prefix sums. O(N) time a scale (14 to 18 vectorised sums
+/// of the array for all scales together). Memory does not grow with the record (9 MB, and 4 bytes for a thousand
+/// samples): prefix sums older than 260,000 samples are made again from the samples, so these may lie in a mapped file
+/// that is larger than the memory; blocks are read in order, at the offsets 0, 2^19, 2^20, ... behind the newest. Fewer
+/// than 2 samples give no scale. Same bits on every run. `control.stop` is polled every million samples; a stopped pass
+/// gives an empty curve, which the caller tells by asking the token.
+[[nodiscard]] HaarVariance haar_variance(std::span<const double> samples, double pivot, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -1,19 +1,29 @@
 #pragma once
 /// The inner loops of the variances, in the widest instruction set the processor has.
 ///
-/// All versions are one source (kernels_body.inc): sums run in sixteen lanes whose order of additions is fixed, without
-/// fused multiply-add, so the bits are the same in every version; the portable one is what other processors and
-/// compilers use.
+/// All versions are one source (kernels_body.inc): sums run in lanes (sixteen or eight) whose order of additions is
+/// fixed, without fused multiply-add, so the bits are the same in every version; the portable one is what other
+/// processors and compilers use.
 #include <cstddef>
 
 namespace driftlab {
 
 struct Kernels {
-  /// next[i] = now[i] + before[i]; the sum of (now[i] - before[i])^2 over i >= first.
-  double (*pyramid_step)(const double* now, const double* before, double* next, std::size_t first, std::size_t count);
+  /// next[i] = now[i] + now[i - m]; the sum of (now[i] - now[i - m])^2 over i >= first.
+  double (*pyramid_step)(const double* now, std::size_t m, double* next, std::size_t first, std::size_t count);
+  /// Two such steps, the second of 2 m on the sums of the first: next[i] = now[i] + now[i - m] + now[i - 2m] +
+  /// now[i - 3m]; the sums of squares of step k over i >= first[k] are added to power[k]. first[0] <= first[1].
+  void (*pyramid_pair)(const double* now, std::size_t m, double* next, const std::size_t* first, std::size_t count,
+                       double* power);
+  /// out[i] = base + (inside + sum of x[0] - pivot .. x[i] - pivot); the last bracket.
+  double (*prefix_block)(const double* x, std::size_t count, double pivot, double base, double inside, double* out);
   /// For level k of `levels`, offset m 2^k: the sum over i of (now[i] - 2 now[i - m 2^k] + now[i - m 2^(k+1)])^2, added
   /// to power[k].
   void (*octave_powers)(const double* now, std::size_t m, std::size_t levels, std::size_t count, double* power);
+  /// Sum of (a[i] - 2 b[i] + c[i])^2.
+  double (*second_difference_power)(const double* a, const double* b, const double* c, std::size_t count);
+  /// Sum over i of (now[i] - 3 now[i - m] + 3 now[i - 2m] - now[i - 3m])^2.
+  double (*third_difference_power)(const double* now, std::size_t m, std::size_t count);
   /// Sum of u (1 - u bound)^4 over the u below 1/bound.
   double (*biweight_sum)(const double* u, std::size_t count, double bound);
   /// out[i] = (a[i] - 2 b[i] + c[i])^2 scale.

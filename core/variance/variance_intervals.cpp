@@ -79,27 +79,15 @@ MixtureFit fit_mixture(const Eigen::VectorXd& nu, HaarCovariance& plan, bool wit
   return fit;
 }
 
-/// The wavelet variance of the rough part of a mixture (what first differences whiten no further) or of the smooth
-/// part.
-double part_variance(const Model& mixture, double half, double dt_s, bool rough) {
-  double sum = 0.0;
-  for (const Process& process : mixture) {
-    const bool smooth = process.kind->symbol == "RW" || process.kind->symbol == "DR" ||
-                        (process.kind->symbol == "GM" && process.parameters[1] * dt_s < 0.3);
-    if (smooth != rough) {
-      sum += process.haar_variance(half, dt_s);
-    }
-  }
-  return sum;
-}
-
-void add_kurtosis(VarianceIntervals& intervals, const HaarVariance& curve, const HaarCovariance& plan, double excess) {
+void widen_by_kurtosis(VarianceIntervals& intervals, const HaarVariance& curve, const HaarCovariance& plan,
+                       double excess) {
   const double rough = part_variance(intervals.mixture, 1.0, plan.dt_s(), true);
   const double share = rough / intervals.modelled(0);
   const bool use_rough = share >= 0.5;
   // First differences of independent values halve the excess; those of a random walk are its innovations.
   const double own = use_rough ? 2.0 * excess / (share * share) : excess / ((1.0 - share) * (1.0 - share));
   const double kurtosis = std::max(own, -2.0);  // no distribution has less
+  intervals.shape = {kurtosis, use_rough};
   for (Eigen::Index j = 0; j < intervals.modelled.size(); ++j) {
     const std::size_t half = curve.half[static_cast<std::size_t>(j)];
     const double part = part_variance(intervals.mixture, static_cast<double>(half), plan.dt_s(), use_rough);
@@ -146,7 +134,7 @@ VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& 
   result.modelled = fit.modelled;
   result.estimate_variance = fit.variance;
   if (excess != 0.0) {
-    add_kurtosis(result, curve, plan, excess);
+    widen_by_kurtosis(result, curve, plan, excess);
   }
   for (Eigen::Index j = 0; j < nu.size(); ++j) {
     const double edf = 2.0 * result.modelled(j) * result.modelled(j) / result.estimate_variance(j);

@@ -9,6 +9,7 @@
 /// coverage 93.5-98 % (tests/ACCURACY.md).
 #include "core/process/model.hpp"
 #include "core/signal/estimate.hpp"
+#include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/haar_variance.hpp"
 
@@ -27,6 +28,7 @@ struct VarianceIntervals {
   Model mixture;                      ///< the dictionary processes with a positive level
   Eigen::VectorXd modelled;           ///< wavelet variance of the mixture
   Eigen::VectorXd estimate_variance;  ///< Var(nu^_j) under the mixture
+  NoiseShape shape;                   ///< what the excess kurtosis was laid on
 };
 
 /// `plan` must be that of the curve's scales. Needs at least one positive variance. `excess`:

@@ -14,8 +14,8 @@ Result<Response> recording_response(ApiContext& context, int status, const Recor
   if (!blob) {
     return fail(blob.error());
   }
-  const Blob* const stored_blob = blob->has_value() ? &blob->value() : nullptr;
-  Response response = json_response(status, to_json(recording, stored_blob));
+  const std::optional<Blob>& kept = *blob;
+  Response response = json_response(status, to_json(recording, kept ? &*kept : nullptr));
   response.headers.emplace_back("ETag", etag_of(recording.id, recording.revision));
   return response;
 }

@@ -177,6 +177,37 @@ class Refused(DaemonTest):
         self.refused(names + b"\n" + b",".join([b"1"] * 1025) + b"\n", 413, "limit_exceeded")
 
 
+class Survived(DaemonTest):
+    """What real recordings have in them is reported, not refused, while it is little: the analysis leaves it out."""
+
+    def quality(self, content: bytes, **query: object) -> dict:
+        recording = self.expect(201, self.daemon.upload(content, device="survivor", **{"rate_hz": 100, **query}))
+        return recording.json["quality"]
+
+    def test_few_holes(self) -> None:
+        values = ["%.4f" % (0.01 * ((i * 7919) % 1009)) for i in range(5000)]
+        values[100] = "nan"
+        values[200] = ""
+        values[300] = "-9999"
+        rows = "".join(f"{value},S\n" for value in values).encode()
+        [channel] = self.quality(b"gz,state\n" + rows)["channels"]
+        self.assertEqual((channel["missing"], channel["implausible"], channel["first"], channel["analysed"]), (2, 1, 302, 4699))
+
+    def test_clock_set_back_and_counter_that_starts_again(self) -> None:
+        def table(stamps: list[int]) -> bytes:
+            return b"t,gz\n" + b"".join(b"%d,%d\n" % (t, (i * 31) % 17) for i, t in enumerate(stamps))
+        columns = "t=time::ms,gz=angular_rate:z:deg/s"
+        quality = self.quality(table([10 * i - (1000 if i >= 3000 else 0) for i in range(5000)]), columns=columns, rate_hz=None)
+        self.assertEqual((quality["backward_steps"], quality["analysed"]), (1, 3000))
+        quality = self.quality(table([(10 * i + 60000) % 65536 for i in range(5000)]), columns=columns, rate_hz=None)
+        self.assertEqual((quality["counter_wraps"], quality["backward_steps"], quality["analysed"]), (1, 0, 5000))
+
+    def test_dialects(self) -> None:
+        rows = b"".join(b"%d,%02d;%d,5E-1\r\n" % (i // 100, i % 100, i % 7) for i in range(500))
+        quality = self.quality(b'\xef\xbb\xbf"Time (s)";"Z (rad/s)"\r\n' + rows, rate_hz=None)
+        self.assertEqual((quality["samples"], round(quality["measured_rate_hz"], 6)), (500, 100))
+
+
 class Interrupted(DaemonTest):
     """Lengths that lie and clients that leave."""
 

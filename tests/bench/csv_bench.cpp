@@ -67,9 +67,26 @@ void csv_nine_decimals(benchmark::State& state) { decode(state, make_csv(std::ch
 void csv_seventeen_digits(benchmark::State& state) { decode(state, make_csv(std::chars_format::scientific, 16)); }
 void csv_savetxt_default(benchmark::State& state) { decode(state, make_csv(std::chars_format::scientific, 18)); }
 
+/// The same table between other separators, with a decimal comma where one is asked for.
+std::string in_dialect(std::string text, char separator, bool decimal_comma) {
+  for (char& c : text) {
+    c = c == ',' ? separator : c == '.' && decimal_comma ? ',' : c;
+  }
+  return text;
+}
+
+void csv_decimal_comma(benchmark::State& state) {
+  decode(state, in_dialect(make_csv(std::chars_format::fixed, 6), ';', true));
+}
+void csv_blanks(benchmark::State& state) {
+  decode(state, in_dialect(make_csv(std::chars_format::fixed, 6), ' ', false));
+}
+
 BENCHMARK(csv_six_decimals)->Unit(benchmark::kMillisecond);
 BENCHMARK(csv_nine_decimals)->Unit(benchmark::kMillisecond);
 BENCHMARK(csv_seventeen_digits)->Unit(benchmark::kMillisecond);
 BENCHMARK(csv_savetxt_default)->Unit(benchmark::kMillisecond);
+BENCHMARK(csv_decimal_comma)->Unit(benchmark::kMillisecond);
+BENCHMARK(csv_blanks)->Unit(benchmark::kMillisecond);
 
 }  // namespace

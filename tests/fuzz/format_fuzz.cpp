@@ -1,6 +1,7 @@
 /// Any bytes as an uploaded file: sniffed, decompressed, decoded. Every answer is an error or a rectangular table of
-/// finite numbers, and the same whether the bytes arrive at once or in small pieces.
+/// finite numbers and missing samples, and the same whether the bytes arrive at once or in small pieces.
 #include "core/read/format.hpp"
+#include "core/signal/missing.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -51,8 +52,13 @@ class CheckingSink final : public ColumnSink {
 
  private:
   void take(std::size_t index, double value) {
-    require(std::isfinite(value));
     ++counts_[index];
+    if (std::isnan(value)) {  // a missing sample
+      const MissingSample hole = why_missing(value);
+      require(hole.why != Missing::Unknown);
+      value = static_cast<double>(hole.row) + 0.1 * static_cast<double>(hole.why);
+    }
+    require(std::isfinite(value));
     sum_ = sum_ * 0.5 + value * 1e-300;  // bounded, and sensitive to value and order
   }
 

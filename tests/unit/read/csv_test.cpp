@@ -1,10 +1,15 @@
+#include "core/signal/missing.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
+
 namespace driftlab {
 namespace {
 
+using ::testing::Contains;
 using testing::decode_bytes;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -75,18 +80,44 @@ TEST(Csv, NamesLineAndColumnOfEveryFault) {
   EXPECT_EQ(located(decode_bytes("gx,gy\n1,2\n3\n")), "ragged_row@3:");
   EXPECT_EQ(located(decode_bytes("gx,gy\n1,2\n3,4,5\n")), "ragged_row@3:");
   EXPECT_EQ(located(decode_bytes("gx,gy\n1,2\n\n3,4\n")), "ragged_row@3:");
-  EXPECT_EQ(located(decode_bytes("# c\ngx,gy\n1,abc\n")), "not_a_number@3:gy");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,2\n,4\n")), "not_a_number@3:gx");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,2x\n")), "not_a_number@2:gy");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,0x10\n")), "not_a_number@2:gy");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,1 2\n")), "not_a_number@2:gy");
-  EXPECT_EQ(located(decode_bytes(std::string("gx,gy\n1,2\n1,\0\n", 14))), "not_a_number@3:gy");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,nan\n")), "non_finite@2:gy");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n-Inf,2\n")), "non_finite@2:gx");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,2\n1,2\n-Infinity,2\n")), "non_finite@4:gx");
-  EXPECT_EQ(located(decode_bytes("gx,gy\n1,1e999\n")), "out_of_range@2:gy");
   EXPECT_EQ(located(decode_bytes("gx,gx\n1,2\n")), "duplicate_column@1:gx");
-  EXPECT_EQ(located(decode_bytes("1.5,abc\n1,2\n")), "not_a_number@1:1");
+}
+
+TEST(Csv, RefusesATableWithoutAnyNumberByItsFirstCell) {
+  EXPECT_EQ(located(decode_bytes("gx,gy\na,b\nc,d\n")), "not_a_number@2:gx");
+  EXPECT_EQ(located(decode_bytes("gx,gy\n,\n")), "not_a_number@2:gx");
+  EXPECT_EQ(located(decode_bytes("gx\nnan\n")), "non_finite@2:gx");
+  EXPECT_EQ(located(decode_bytes("gx\n1e999\n")), "out_of_range@2:gx");
+}
+
+/// What the NaN in a cell says, as `kind@line`.
+std::string hole(const Outcome& outcome, std::size_t column, std::size_t row) {
+  const double value = std::bit_cast<double>(outcome.bits.at(column).at(row));
+  const MissingSample missing = why_missing(value);
+  constexpr std::array kKinds{"unknown", "empty", "nan", "infinite", "text", "out of range", "ended"};
+  return std::isnan(value)
+             ? std::string(kKinds.at(static_cast<std::size_t>(missing.why))) + "@" + std::to_string(missing.row)
+             : "a number";
+}
+
+TEST(Csv, KeepsWhatACellThatIsNoNumberHeldAndItsLine) {
+  EXPECT_EQ(hole(decode_bytes("# c\ngx,gy\n1,2\n1,abc\n"), 1, 1), "text@4");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,2\n,4\n"), 0, 1), "empty@3");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,2\n4,\n"), 1, 1), "empty@3");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,2x\n"), 1, 0), "text@2");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,0x10\n"), 1, 0), "text@2");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,1 2\n"), 1, 0), "text@2");
+  EXPECT_EQ(hole(decode_bytes(std::string("gx,gy\n1,2\n1,\0\n", 14)), 1, 1), "text@3");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,NaN\n"), 1, 0), "nan@2");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n-Inf,2\n"), 0, 0), "infinite@2");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,2\n1,2\n-Infinity,2\n"), 0, 2), "infinite@4");
+  EXPECT_EQ(hole(decode_bytes("gx,gy\n1,1e999\n"), 1, 0), "out of range@2");
+  EXPECT_EQ(hole(decode_bytes("1.5,abc\n1,2\n"), 1, 0), "text@1");
+}
+
+TEST(Csv, SaysWhichColumnsHoldText) {
+  EXPECT_THAT(decode_bytes("state,gx\nS,1\nS,2\n").decoded.notes,
+              ElementsAre("Column 'state' holds text in 2 of 2 rows, first 'S'."));
 }
 
 TEST(Csv, RoundsANumberTooSmallForADoubleToZero) {
@@ -118,12 +149,76 @@ TEST(Csv, ReadsALineJustWithinTheLimit) {
 }
 
 TEST(Csv, SaysWhatOtherTextLooksLike) {
-  EXPECT_THAT(decode_bytes("t;gx\n0;1\n").message, HasSubstr("semicolon-separated"));
-  EXPECT_THAT(decode_bytes("t;gx\n0,5;1,25\n").message, HasSubstr("semicolon-separated"));
-  EXPECT_THAT(decode_bytes("0,5;1,25\n").message, HasSubstr("semicolon-separated"));
-  EXPECT_THAT(decode_bytes("t\tgx\n0\t1\n").message, HasSubstr("tab-separated"));
-  EXPECT_THAT(decode_bytes("0.5 1.25 3\n0.6 1.25 3\n").message, HasSubstr("space-separated"));
   EXPECT_THAT(decode_bytes("Dear lab\nplease find enclosed\n").message, HasSubstr("not a table"));
+  EXPECT_THAT(decode_bytes("I have 2 apples\nyou have 3 pears\n").message, HasSubstr("not a table"));
+}
+
+/// Three rows of 0.5, -1.25, 1e-3 in some dialect.
+void expect_the_same_table(const std::string& text, const std::vector<std::string>& names) {
+  const Outcome outcome = decode_bytes(text);
+  ASSERT_FALSE(outcome.error) << text << outcome.message;
+  EXPECT_EQ(outcome.decoded.names, names) << text;
+  ASSERT_EQ(outcome.decoded.rows, 3U) << text;
+  EXPECT_THAT(column(outcome, 0), ElementsAre(0.5, 0.5, 0.5)) << text;
+  EXPECT_THAT(column(outcome, 1), ElementsAre(-1.25, -1.25, -1.25)) << text;
+  EXPECT_THAT(column(outcome, 2), ElementsAre(1e-3, 1e-3, 1e-3)) << text;
+}
+
+std::string thrice(const std::string& header, const std::string& row) { return header + row + row + row; }
+
+TEST(Csv, ReadsEveryDialect) {
+  const std::vector<std::string> names{"t", "gx", "gy"};
+  expect_the_same_table(thrice("t,gx,gy\n", "0.5,-1.25,1e-3\n"), names);
+  expect_the_same_table(thrice("t;gx;gy\n", "0.5;-1.25;1e-3\n"), names);
+  expect_the_same_table(thrice("t;gx;gy\r\n", "0,5;-1,25;1,0E-3\r\n"), names);
+  expect_the_same_table(thrice("\"t\";\"gx\";\"gy\"\n", "5,0E-1;-1,25E0;1,0E-3\n"), names);
+  expect_the_same_table(thrice("t\tgx\tgy\n", "0.5\t-1.25\t1e-3\n"), names);
+  expect_the_same_table(thrice("t\tgx\tgy\n", "0,5\t-1,25\t1e-3\n"), names);
+  expect_the_same_table(thrice("t gx  gy\n", "  0.5   -1.25 1e-3 \n"), names);
+  expect_the_same_table(thrice("// Counter below\n// Firmware 2\nt\tgx\tgy\n", " 0.5\t-1.25\t1e-3\t\n"), names);
+  expect_the_same_table(thrice("t,gx,gy,\n", "0.5,-1.25,1e-3,\n"), names);
+  expect_the_same_table(thrice("Fs,100\nLogging Type,0\nt,gx,gy\n", "0.5,-1.25,1e-3\n"), names);
+  expect_the_same_table(thrice("# t, gx, gy\n", "0.5,-1.25,1e-3\n"), names);
+  expect_the_same_table(thrice("t,gx,gy\ns,deg/s,\n", "0.5,-1.25,1e-3\n"), {"t (s)", "gx (deg/s)", "gy"});
+  expect_the_same_table(thrice("t;gx;gy\n[s];[deg/s];[deg/s]\n", "0,5;-1,25;1e-3\n"),
+                        {"t (s)", "gx (deg/s)", "gy (deg/s)"});
+  expect_the_same_table(thrice("% made by a logger\n", "0.5 -1.25 1e-3\n"), {"0", "1", "2"});
+  expect_the_same_table("t,gx,gy\n0.5,-1.25,1e-3\n# paused\n0.5,-1.25,1e-3\n0.5,-1.25,1e-3\n", names);
+}
+
+TEST(Csv, KeepsAnEmptyFirstNameBeforeATab) {
+  EXPECT_THAT(decode_bytes("\tgx\tgy\n0\t1\t2\n1\t3\t4\n").decoded.names, ElementsAre("0", "gx", "gy"));
+}
+
+TEST(Csv, ReadsDatesAsSeconds) {
+  const Outcome outcome =
+      decode_bytes("time,gx\n2025-06-14 21:17:02+00:00,1\n2025-06-14T23:17:03.5+02:00,2\n2024-02-29 00:00:00,3\n");
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(column(outcome, 0), ElementsAre(1749935822.0, 1749935823.5, 1709164800.0));
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("time (s)", "gx"));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("seconds since 1970")));
+  EXPECT_EQ(hole(decode_bytes("time,gx\n2025-13-14 21:17:02,1\n"), 0, 0), "text@2");
+}
+
+TEST(Csv, SaysHowItReadADialect) {
+  EXPECT_THAT(decode_bytes("t;gx\n0,5;1,25\n").decoded.notes, ElementsAre(HasSubstr("decimal comma")));
+  EXPECT_THAT(decode_bytes("t,gx\ns,deg/s\n1,2\n").decoded.notes, ElementsAre(HasSubstr("units")));
+  EXPECT_THAT(decode_bytes("t,gx,\n1,2,\n").decoded.notes, ElementsAre(HasSubstr("separator behind the last cell")));
+}
+
+TEST(Csv, MakesTheTimeThatAStatedRateGives) {
+  const Outcome plain = decode_bytes("// Sample rate: 50.0Hz\nAcc_X\tAcc_Y\n1\t2\n3\t4\n5\t6\n");
+  ASSERT_FALSE(plain.error) << plain.message;
+  EXPECT_THAT(plain.decoded.names, ElementsAre("Acc_X", "Acc_Y", "time (s)"));
+  EXPECT_THAT(column(plain, 2), ElementsAre(0.0, 0.02, 0.04));
+  EXPECT_THAT(plain.decoded.notes, Contains(HasSubstr("states 50 Hz")));
+  // A packet counter shows what was lost, and goes on where it starts again.
+  const Outcome counted = decode_bytes("// Sample rate: 50.0Hz\nCounter\tAcc_X\n65533\t2\n65535\t4\n1\t6\n");
+  EXPECT_THAT(column(counted, 2), ElementsAre(0.0, 0.04, 0.08));
+  const Outcome preamble = decode_bytes("Fs,100\nax,ay,az\n1,2,3\n4,5,6\n");
+  EXPECT_THAT(column(preamble, 3), ElementsAre(0.0, 0.01));
+  // Where there is a time column, it rules.
+  EXPECT_THAT(decode_bytes("# Sample rate: 50 Hz\nt,gx\n0,1\n0.02,2\n").decoded.names, ElementsAre("t", "gx"));
 }
 
 TEST(Csv, GivesTheSameForFastAndCarefulRows) {
@@ -147,7 +242,7 @@ TEST(Csv, CountsLinesAcrossBatchesAndBuffers) {
   for (int i = 0; i < 100000; ++i) {
     text += "1,2\n";
   }
-  EXPECT_EQ(located(decode_bytes(text + "1,x\n")), "not_a_number@100002:gy");
+  EXPECT_EQ(located(decode_bytes(text + "1\n")), "ragged_row@100002:");
 }
 
 }  // namespace

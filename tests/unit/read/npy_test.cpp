@@ -1,3 +1,4 @@
+#include "core/signal/missing.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -110,19 +111,20 @@ TEST(Npy, RefusesAHeaderItCannotRead) {
             ErrorCode::UnsupportedType);
 }
 
-TEST(Npy, NamesSampleAndColumnOfANumberThatIsNotFinite) {
+TEST(Npy, KeepsANumberThatIsNotFiniteAsAMissingSampleOfItsRow) {
   std::vector<double> values = ramp(12);
   values[7] = std::numeric_limits<double>::quiet_NaN();
   const Outcome by_row = decode_bytes(npy(npy_dictionary("<f8", false, "(4, 3)"), number_bytes<double>(values)));
-  EXPECT_EQ(by_row.error, ErrorCode::NonFinite);
-  EXPECT_EQ(by_row.field("row"), "3");
-  EXPECT_EQ(by_row.field("column"), "1");
+  ASSERT_FALSE(by_row.error) << by_row.message;
+  const MissingSample nan = why_missing(column(by_row, 1)[2]);
+  EXPECT_EQ(nan.why, Missing::Nan);
+  EXPECT_EQ(nan.row, 3U);
   values[7] = -std::numeric_limits<double>::infinity();
   const Outcome by_column = decode_bytes(npy(npy_dictionary("<f4", true, "(4, 3)"), number_bytes<float>(values)));
-  EXPECT_EQ(by_column.error, ErrorCode::NonFinite);
-  EXPECT_EQ(by_column.field("row"), "4");
-  EXPECT_EQ(by_column.field("column"), "1");
-  EXPECT_THAT(by_column.message, HasSubstr("infinite"));
+  ASSERT_FALSE(by_column.error) << by_column.message;
+  const MissingSample infinite = why_missing(column(by_column, 1)[3]);
+  EXPECT_EQ(infinite.why, Missing::Infinite);
+  EXPECT_EQ(infinite.row, 4U);
 }
 
 }  // namespace

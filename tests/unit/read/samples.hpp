@@ -2,6 +2,7 @@
 /// Material of the reader suites: valid files of every registered format, compressors, sinks and a directory of its
 /// own.
 #include "core/read/format.hpp"
+#include "tests/unit/read/archives.hpp"
 
 #include <gtest/gtest.h>
 #include <lzma.h>
@@ -195,11 +196,28 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
   return {
       {"csv",
        {"t,gx,gy\n0.00,1.5,-2\n0.01,1e-3,+4\n0.02,-0.125,6.\n", "gx\n1\n2\n3\n", "1,2\n3,4", "1\n2\n",
+        "Time (s);X (rad/s)\n0,5;1,25E-3\n1,0;\n",
+        "// Rate: 5\n// Sample rate: 50.0Hz\nCounter\tAcc_X\n 7\t1.5\t\n9\tnan\t\n",
+        "-8.42 0.06 5.24\n -8.47 -0.01 \t5.18 \n", "Fs,100\nax,ay,az\n1,2,3\n,two,-9999\n",
         "\xEF\xBB\xBF# made by a logger\r\n\"time (s)\", \"gz, raw\"\r\n0, 1\r\n0.5 , \"2\"\r\n\r\n"}},
       {"npy",
        {npy(npy_dictionary("<f8", false, "(4, 3)"), number_bytes<double>(ramp(12))),
         npy(npy_dictionary("<f4", false, "(5,)"), number_bytes<float>(ramp(5)), 2),
         npy(npy_dictionary(">f8", true, "(3, 2)"), number_bytes<double>(ramp(6), true), 3)}},
+      {"npz",
+       {zip({{"gyro.npy", npy(npy_dictionary("<f8", false, "(4, 3)"), number_bytes<double>(ramp(12)))},
+             {"t.npy", npy(npy_dictionary("<f8", false, "(4,)"), number_bytes<double>(ramp(4)))}})}},
+      {"mat5",
+       {mat_file({mat_matrix("gyro", 3, 4, ramp(12)), mat_matrix("fs", 1, 1, {100.0})}),
+        mat_file({mat_matrix("t", 5, 1, ramp(5)), mat_matrix("w", 5, 3, ramp(15))}, true)}},
+      {"phone_zip",
+       {zip({{"Gyroscope.csv", "\"Time (s)\",\"X (rad/s)\",\"Y (rad/s)\"\n0.00,1E-3,2\n0.01,3,4\n0.02,5,6\n"},
+             {"Accelerometer.csv", "\"Time (s)\",\"X (m/s^2)\"\n0.011,9.8\n0.021,9.7\n"},
+             {"meta/device.csv", "\"property\",\"value\"\n\"model\",\"none\"\n"}})}},
+      {"vmu931", {"Attribute,Time stamp,x,y,z\nG,10,1,2,3\nA,10,0.1,0.2,1\nG,11,2,3,4\nE,11,0,0,0\nA,11,0.1,0.2,1\n"}},
+      {"cxd5602",
+       {"9b981977,41d84d00,b9685f6a,39738705,b8c2bdea,3e823bd9,bc5bae10,411c758a\r\n"
+        "9b9e7c5a,41d81f00,38b19c82,3a490aa1,b8eed188,3e81f398,bc33c37e,411c991c\r\n"}},
   };
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab {
@@ -52,6 +53,39 @@ TEST(HaarVariance, EqualsItsDefinitionAtEveryScale) {
       EXPECT_NEAR(curve.variance[j], expected, 1e-13 * expected) << "n=" << n << " m=" << curve.half[j];
     }
   }
+}
+
+TEST(HaarVariance, FiltersBeyondTheWindowEqualTheirDefinition) {
+  // Blocks older than 2^20 samples are made again from the samples: at the lengths where that begins, with the first
+  // filter of all ending inside a block, at its end, and one sample behind it.
+  for (const std::size_t n : {(std::size_t{1} << 22U) - 1, std::size_t{1} << 22U, (std::size_t{1} << 22U) + 1,
+                              (std::size_t{1} << 22U) + 300007}) {
+    const std::vector<double> x = white(n, n, 5.0);
+    const double pivot = summarise(x)->mean;
+    const HaarVariance curve = haar_variance(x, pivot);
+    std::vector<long double> prefix(n + 1, 0.0L);
+    for (std::size_t t = 0; t < n; ++t) {
+      prefix[t + 1] = prefix[t] + (static_cast<long double>(x[t]) - static_cast<long double>(pivot));
+    }
+    for (std::size_t j = 19; j < curve.scales(); ++j) {
+      const std::size_t m = curve.half[j];
+      long double sum = 0.0L;
+      for (std::size_t t = 2 * m; t <= n; ++t) {
+        const long double w = prefix[t] - 2.0L * prefix[t - m] + prefix[t - 2 * m];
+        sum += w * w;
+      }
+      const long double scale = 4.0L * static_cast<long double>(m) * static_cast<long double>(m);
+      const double expected = static_cast<double>(sum / scale / static_cast<long double>(n - 2 * m + 1));
+      EXPECT_NEAR(curve.variance[j], expected, 1e-11 * expected) << "n=" << n << " m=" << m;
+    }
+  }
+}
+
+TEST(HaarVariance, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  const std::vector<double> x(3000000, 1.0);
+  EXPECT_EQ(haar_variance(x, 1.0, {.stop = source.get_token(), .progress = {}}).scales(), 0U);
 }
 
 TEST(HaarVariance, HasEveryScaleThatFits) {

@@ -21,15 +21,34 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfThePortableOne) {
     std::vector<double> a(count);
     std::vector<double> b(count);
     for (const std::size_t first : {std::size_t{0}, count / 3, count}) {
-      EXPECT_EQ(chosen.pyramid_step(x.data() + 64, x.data(), a.data(), first, count),
-                portable.pyramid_step(x.data() + 64, x.data(), b.data(), first, count));
+      EXPECT_EQ(chosen.pyramid_step(x.data() + 64, 64, a.data(), first, count),
+                portable.pyramid_step(x.data() + 64, 64, b.data(), first, count));
       EXPECT_EQ(a, b);
+      const std::size_t firsts[] = {first / 2, first};
+      std::vector<double> p(2, 0.0);
+      std::vector<double> q(2, 0.0);
+      chosen.pyramid_pair(x.data() + 64, 16, a.data(), firsts, count, p.data());
+      portable.pyramid_pair(x.data() + 64, 16, b.data(), firsts, count, q.data());
+      EXPECT_EQ(a, b);
+      EXPECT_EQ(p, q);
     }
+    EXPECT_EQ(chosen.prefix_block(x.data(), count, 0.3, 7.0, 0.01, a.data()),
+              portable.prefix_block(x.data(), count, 0.3, 7.0, 0.01, b.data()));
+    EXPECT_EQ(a, b);
     std::vector<double> p(5, 0.0);
     std::vector<double> q(5, 0.0);
     chosen.octave_powers(x.data() + 3000, 40, 5, count, p.data());
     portable.octave_powers(x.data() + 3000, 40, 5, count, q.data());
     EXPECT_EQ(p, q);
+    for (const std::size_t levels : {1U, 2U, 3U, 4U}) {
+      chosen.octave_powers(x.data() + 3000, 7, levels, count, p.data());
+      portable.octave_powers(x.data() + 3000, 7, levels, count, q.data());
+      EXPECT_EQ(p, q) << levels;
+    }
+    EXPECT_EQ(chosen.second_difference_power(x.data() + 20, x.data() + 10, x.data(), count),
+              portable.second_difference_power(x.data() + 20, x.data() + 10, x.data(), count));
+    EXPECT_EQ(chosen.third_difference_power(x.data() + 300, 10, count),
+              portable.third_difference_power(x.data() + 300, 10, count));
     std::vector<double> squares(count);
     for (std::size_t i = 0; i < count; ++i) {
       squares[i] = x[i] * x[i];

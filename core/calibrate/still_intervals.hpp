@@ -1,0 +1,31 @@
+#pragma once
+/// The stretches of a recording in which a triad was held still.
+#include "core/calibrate/triad.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace driftlab {
+
+struct StillInterval {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+struct StillOptions {
+  double block_s = 0.25;    ///< samples are judged in blocks of this length
+  double shortest_s = 1.0;  ///< intervals below this are dropped
+  double factor = 10.0;     ///< a block is still if its variance is at most this many times that of the stillest ones
+  double margin_s = 0.25;   ///< left out at both ends of an interval
+};
+
+/// A block's variance is that of its three channels together; the stillest ones are represented by the 5 % quantile
+/// over all blocks, so at least some 5 % of the recording has to be still. Blocks in a row whose means agree within 6
+/// of their standard deviations (of a block's mean, from the stillest blocks) are one interval: two positions without
+/// motion seen between them stay apart. After Tedaldi, Pretto and Menegatti (ICRA 2014), section V, who take the
+/// threshold from a still start. Errors: ShapeMismatch, InvalidArgument (rate or options not positive), TooFewSamples
+/// (below 20 blocks). O(n).
+[[nodiscard]] Result<std::vector<StillInterval>> find_still_intervals(
+    const std::array<std::span<const double>, 3>& channels, double rate_hz, const StillOptions& options = {});
+
+}  // namespace driftlab

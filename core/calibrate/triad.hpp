@@ -1,0 +1,51 @@
+#pragma once
+/// A triad of sensors at rest, or turning evenly: its mean reading with its uncertainty, and the linear law of its
+/// errors.
+///
+/// The law is that of the seed paper's equations (9) and (10), read as the errata say (the scale factor multiplies the
+/// true value), with the axes allowed to be askew:
+///
+///   y = (I + diag(S) + M) x + b + noise
+///
+/// y what the triad reads, x what an ideal one would, b the bias, S the scale-factor errors, M the misalignments (zero
+/// diagonal; M_ij: how much of the true value along j sensor i reads). All in SI.
+#include "core/signal/estimate.hpp"
+#include "core/signal/result.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace driftlab {
+
+using Triple = std::array<double, 3>;
+
+/// The mean of three channels over one recording or stretch, SI.
+struct TriadMean {
+  Triple mean{};
+  Triple sigma{};  ///< standard deviation of each mean, inflated for being estimated itself; 0: unknown
+};
+
+/// Means of batches of one twentieth give the uncertainty, so that noise correlated over less than that is accounted
+/// for; a drift over the whole stretch is not seen as one and counts as scatter. sigma = sd(batch means)/sqrt(20) *
+/// sqrt(19/17), which gives an interval of +-1.96 sigma the variance of Student's with 19 degrees of freedom. Errors:
+/// TooFewSamples (below 40), ShapeMismatch (channels of unequal length), NonFinite. O(n).
+[[nodiscard]] Result<TriadMean> triad_mean(const std::array<std::span<const double>, 3>& channels);
+
+/// y = matrix * x + bias, and back.
+struct TriadLaw {
+  std::array<Triple, 3> matrix{Triple{1.0, 0.0, 0.0}, Triple{0.0, 1.0, 0.0}, Triple{0.0, 0.0, 1.0}};
+  Triple bias{};
+
+  /// The true value behind a reading. Precondition: the matrix is regular, as every estimate here is.
+  [[nodiscard]] Triple correct(const Triple& reading) const;
+};
+
+/// sqrt(x^2 + y^2 + z^2).
+[[nodiscard]] double length(const Triple& vector);
+
+/// A quantile of Student's t: P(|t| <= q) = 95 % with `dof` >= 1 degrees of freedom. Relative error below 0.2 %.
+[[nodiscard]] double student_95(double dof);
+
+}  // namespace driftlab

@@ -1,0 +1,352 @@
+#include "core/signal/channel_survey.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+
+namespace driftlab {
+namespace {
+
+constexpr std::size_t kMostDistinct = 256;
+constexpr std::size_t kShortestFrozen = 200;
+constexpr std::size_t kFrozenToOthers = 20;
+constexpr std::size_t kSamplesForSteps = 16384;
+constexpr std::array kSentinels{-9999.0, 9999.0, -99999.0, 99999.0, -999.0};
+constexpr double kGarbage = 1e6;
+
+std::string short_text(double value) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
+  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
+}
+
+/// Distinct values up to kMostDistinct, in a table of open addresses.
+class DistinctValues {
+ public:
+  void take(double value) {
+    if (count_ > kMostDistinct) {
+      return;
+    }
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    std::size_t slot = static_cast<std::size_t>((bits * 0x9E3779B97F4A7C15U) >> 54U);
+    while (used_[slot] && table_[slot] != value) {
+      slot = (slot + 1) % table_.size();
+    }
+    if (!used_[slot]) {
+      used_[slot] = true;
+      table_[slot] = value;
+      ++count_;
+    }
+  }
+  [[nodiscard]] std::optional<std::size_t> count() const {
+    return count_ <= kMostDistinct ? std::optional(count_) : std::nullopt;
+  }
+
+ private:
+  std::array<double, 1024> table_{};
+  std::array<bool, 1024> used_{};
+  std::size_t count_ = 0;
+};
+
+/// Runs of one value: the longest and the one after it.
+class Runs {
+ public:
+  void take(std::size_t row, bool same) {
+    if (!same) {
+      close(row);
+      begin_ = row;
+    }
+  }
+  void close(std::size_t row) {
+    const std::size_t length = row - begin_;
+    if (length > longest_.second - longest_.first) {
+      second_ = longest_.second - longest_.first;
+      longest_ = {begin_, row};
+    } else {
+      second_ = std::max(second_, length);
+    }
+    begin_ = row;
+  }
+  [[nodiscard]] std::pair<std::size_t, std::size_t> frozen(std::size_t rows) const {
+    const std::size_t length = longest_.second - longest_.first;
+    const bool stuck = length >= kShortestFrozen && length > kFrozenToOthers * second_ && length < rows;
+    return stuck ? longest_ : std::pair<std::size_t, std::size_t>{0, 0};
+  }
+
+ private:
+  std::size_t begin_ = 0;
+  std::pair<std::size_t, std::size_t> longest_{0, 0};
+  std::size_t second_ = 0;
+};
+
+/// How often the extreme value is met, and the one next to it.
+struct Extreme {
+  double value = 0.0;
+  std::size_t count = 0;
+  double next = 0.0;
+  std::size_t next_count = 0;
+
+  /// `value` in units of which larger is more extreme.
+  void take(double value_in, bool first) {
+    if (first || value_in > value) {
+      if (!first) {
+        next = value;
+        next_count = count;
+      }
+      value = value_in;
+      count = 1;
+    } else if (value_in == value) {
+      ++count;
+    } else if (next_count == 0 || value_in > next) {
+      next = value_in;
+      next_count = 1;
+    } else if (value_in == next) {
+      ++next_count;
+    }
+  }
+  [[nodiscard]] std::size_t saturated(bool varied) const {
+    const double magnitude = std::abs(value);
+    const bool counter_end = magnitude == 32768.0 || magnitude == 32767.0 || value == 65535.0;
+    const bool piled_up = varied && count >= 8 && count >= 5 * next_count;
+    return counter_end || piled_up ? count : 0;
+  }
+};
+
+bool suspicious(double value) {
+  return std::abs(value) > kGarbage || std::find(kSentinels.begin(), kSentinels.end(), value) != kSentinels.end();
+}
+
+/// The median, and the distance from it within which 95 % of the numbers lie.
+std::pair<double, double> middle_and_width(std::span<const double> values) {
+  std::vector<double> finite;
+  finite.reserve(values.size());
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
+               [](double value) { return !std::isnan(value); });
+  const auto at = [&](double p) {
+    const auto place = finite.begin() + static_cast<std::ptrdiff_t>(p * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), place, finite.end());
+    return *place;
+  };
+  const double median = at(0.5);
+  for (double& value : finite) {
+    value = std::abs(value - median);
+  }
+  return {median, at(0.95)};
+}
+
+/// Rows whose number is no measurement.
+std::vector<std::size_t> implausible_rows(std::span<const double> values) {
+  const auto [median, width] = middle_and_width(values);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i];
+    if (std::isnan(value) || !suspicious(value)) {
+      continue;
+    }
+    const double distance = std::abs(value - median);
+    const bool sentinel = std::find(kSentinels.begin(), kSentinels.end(), value) != kSentinels.end();
+    if ((sentinel && distance > 100.0 * width) || (std::abs(value) > kGarbage && distance > kGarbage * width)) {
+      rows.push_back(i);
+    }
+  }
+  return rows;
+}
+
+/// The step of the lattice on which the first samples lie: the smallest difference of distinct values, if 95 % of the
+/// other differences are multiples of it; else 0.
+double smallest_step(std::span<const double> values, const std::vector<std::size_t>& unsound) {
+  std::vector<double> some;
+  for (std::size_t i = 0; i < values.size() && some.size() < kSamplesForSteps; ++i) {
+    if (!std::binary_search(unsound.begin(), unsound.end(), i)) {
+      some.push_back(values[i]);
+    }
+  }
+  std::sort(some.begin(), some.end());
+  const double rounding = some.empty() ? 0.0 : 1e-12 * std::max(std::abs(some.front()), std::abs(some.back()));
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < some.size(); ++i) {
+    if (some[i] - some[i - 1] > rounding) {
+      steps.push_back(some[i] - some[i - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0.0;
+  }
+  const double smallest = *std::min_element(steps.begin(), steps.end());
+  const auto whole = std::count_if(steps.begin(), steps.end(), [smallest](double step) {
+    const double multiple = step / smallest;
+    return std::abs(multiple - std::round(multiple)) < 0.05;
+  });
+  return static_cast<double>(whole) >= 0.95 * static_cast<double>(steps.size()) ? smallest : 0.0;
+}
+
+/// Everything that needs the sound samples in order.
+void walk(std::span<const double> values, ChannelSurvey& survey) {
+  DistinctValues distinct;
+  Runs runs;
+  Extreme high;
+  Extreme low;
+  ChannelQuality& quality = survey.quality;
+  auto unsound = survey.unsound.begin();
+  bool first = true;
+  double before = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (unsound != survey.unsound.end() && *unsound == i) {
+      ++unsound;
+      continue;  // a hole neither ends a run nor counts in one
+    }
+    const double value = values[i];
+    const bool same = !first && value == before;
+    quality.repeated += same ? 1 : 0;
+    runs.take(i, same);
+    if (!same) {
+      distinct.take(value);
+    }
+    high.take(value, first);
+    low.take(-value, first);
+    first = false;
+    before = value;
+  }
+  runs.close(values.size());
+  quality.distinct = distinct.count();
+  survey.frozen = runs.frozen(values.size());
+  const bool varied = !quality.distinct || *quality.distinct >= 8;
+  quality.saturated = high.value == -low.value ? 0 : high.saturated(varied) + low.saturated(varied);
+}
+
+}  // namespace
+
+ChannelSurvey survey_channel(const std::string& column, std::span<const double> values) {
+  ChannelSurvey survey;
+  survey.quality.column = column;
+  bool look_closer = false;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) {
+      survey.unsound.push_back(i);
+    } else {
+      look_closer = look_closer || suspicious(values[i]);
+    }
+  }
+  survey.quality.missing = survey.unsound.size();
+  if (look_closer) {
+    const std::vector<std::size_t> implausible = implausible_rows(values);
+    survey.quality.implausible = implausible.size();
+    const auto missing = static_cast<std::ptrdiff_t>(survey.unsound.size());
+    survey.unsound.insert(survey.unsound.end(), implausible.begin(), implausible.end());
+    std::inplace_merge(survey.unsound.begin(), survey.unsound.begin() + missing, survey.unsound.end());
+  }
+  walk(values, survey);
+  survey.quality.resolution = smallest_step(values, survey.unsound);
+  survey.quality.frozen = survey.frozen.second - survey.frozen.first;
+  survey.quality.frozen_from = survey.quality.frozen > 0 ? survey.frozen.first + 1 : 0;
+  return survey;
+}
+
+Status check_holes(const std::string& column, std::span<const double> values) {
+  struct Found {
+    std::size_t count = 0;
+    std::uint64_t row = 0;
+  };
+  std::array<Found, static_cast<std::size_t>(Missing::Ended) + 1> found{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i];
+    if (std::isfinite(value)) {
+      continue;
+    }
+    const MissingSample hole = std::isnan(value) ? why_missing(value) : MissingSample{Missing::Infinite, 0};
+    Found& kind = found[static_cast<std::size_t>(hole.why == Missing::Unknown ? Missing::Nan : hole.why)];
+    kind.row = kind.count++ == 0 ? (hole.row != 0 ? hole.row : i + 1) : kind.row;
+  }
+  const auto refuse = [&](ErrorCode code, Missing why, const std::string& what) -> tl::unexpected<Error> {
+    const std::string row = std::to_string(found[static_cast<std::size_t>(why)].row);
+    return fail(code, "Row " + row + ", column '" + column + "' " + what, {{"row", row}, {"column", column}});
+  };
+  const auto count = [&](Missing why) { return found[static_cast<std::size_t>(why)].count; };
+  const std::string of_all = " of " + std::to_string(values.size()) + " rows.";
+  if (count(Missing::Text) > 0) {
+    return refuse(ErrorCode::NotANumber, Missing::Text, "holds text where a number belongs.");
+  }
+  if (count(Missing::OutOfRange) > 0) {
+    return refuse(ErrorCode::OutOfRange, Missing::OutOfRange, "holds a number larger than a double can hold.");
+  }
+  if (count(Missing::Infinite) > 0) {
+    return refuse(ErrorCode::NonFinite, Missing::Infinite, "holds an infinity.");
+  }
+  if (count(Missing::Nan) * 1000 >= values.size() && count(Missing::Nan) > 0) {
+    return refuse(ErrorCode::NonFinite, Missing::Nan,
+                  "is the first NaN; they are " + std::to_string(count(Missing::Nan)) + of_all);
+  }
+  if (count(Missing::Empty) * 20 > values.size()) {
+    return refuse(ErrorCode::NotANumber, Missing::Empty,
+                  "is the first empty cell; they are " + std::to_string(count(Missing::Empty)) + of_all);
+  }
+  if (count(Missing::Ended) == values.size()) {
+    return refuse(ErrorCode::NoSamples, Missing::Ended, "holds no sample at all.");
+  }
+  return {};
+}
+
+std::pair<std::size_t, std::size_t> longest_sound(const ChannelSurvey& survey, std::size_t first, std::size_t last) {
+  std::pair<std::size_t, std::size_t> best{first, first};
+  std::size_t begin = first;
+  const auto close = [&](std::size_t end, std::size_t next) {
+    if (end > begin && end - begin > best.second - best.first) {
+      best = {begin, end};
+    }
+    begin = std::max(begin, next);
+  };
+  auto hole = std::lower_bound(survey.unsound.begin(), survey.unsound.end(), first);
+  bool frozen_ahead = survey.frozen.second > std::max(first, survey.frozen.first);
+  while (begin < last) {
+    const std::size_t next_hole = hole == survey.unsound.end() ? last : std::min(*hole, last);
+    if (frozen_ahead && survey.frozen.first <= next_hole) {
+      frozen_ahead = false;
+      close(std::min(std::max(survey.frozen.first, begin), last), survey.frozen.second);
+      hole = std::lower_bound(hole, survey.unsound.end(), begin);
+      continue;
+    }
+    close(next_hole, next_hole + 1);
+    hole += hole == survey.unsound.end() ? 0 : 1;
+  }
+  return best;
+}
+
+std::string describe(const ChannelQuality& quality, std::size_t window_rows) {
+  std::vector<std::string> facts;
+  if (quality.missing > 0) {
+    facts.push_back(std::to_string(quality.missing) + " samples are missing");
+  }
+  if (quality.implausible > 0) {
+    facts.push_back(std::to_string(quality.implausible) +
+                    " samples are no measurements (such as -9999) and are left out");
+  }
+  if (quality.frozen > 0) {
+    facts.push_back("the sensor is frozen for " + std::to_string(quality.frozen) + " samples from sample " +
+                    std::to_string(quality.frozen_from));
+  }
+  if (quality.saturated > 0) {
+    facts.push_back(std::to_string(quality.saturated) + " samples are at full scale");
+  }
+  if (quality.distinct && *quality.distinct == 1) {
+    facts.emplace_back("every sample is the same");
+  } else if (quality.distinct && *quality.distinct <= 16) {
+    facts.push_back("it takes " + std::to_string(*quality.distinct) + " distinct values only" +
+                    (quality.resolution > 0.0 ? ", " + short_text(quality.resolution) + " apart" : std::string()));
+  }
+  if (quality.analysed < window_rows) {
+    facts.push_back("samples " + std::to_string(quality.first) + " to " +
+                    std::to_string(quality.first + quality.analysed - 1) + " are analysed");
+  }
+  std::string sentence;
+  for (const std::string& fact : facts) {
+    sentence += sentence.empty() ? "Column '" + quality.column + "': " : "; ";
+    sentence += fact;
+  }
+  return sentence.empty() ? sentence : sentence + ".";
+}
+
+}  // namespace driftlab

@@ -1,0 +1,86 @@
+#pragma once
+/// Small valid ZIP archives and MATLAB files, byte by byte.
+#include <zlib.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace driftlab::testing {
+
+inline std::string word(std::uint64_t value, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) {
+    text += static_cast<char>((value >> (8 * i)) & 0xFFU);
+  }
+  return text;
+}
+
+/// zlib (`wrapped`) or raw deflate.
+inline std::string deflated(std::string_view plain, bool wrapped) {
+  z_stream stream{};
+  deflateInit2(&stream, 9, Z_DEFLATED, wrapped ? 15 : -15, 8, Z_DEFAULT_STRATEGY);
+  std::string packed(deflateBound(&stream, plain.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
+  stream.avail_in = static_cast<uInt>(plain.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  deflate(&stream, Z_FINISH);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+/// A ZIP archive of deflated files (APPNOTE 6.3, sections 4.3.7, 4.3.12, 4.3.16).
+inline std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string archive;
+  std::string directory;
+  for (const auto& [path, content] : files) {
+    const std::string packed = deflated(content, false);
+    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+    const std::string common = word(20, 2) + word(0, 2) + word(8, 2) + word(0, 4) + word(crc, 4) +
+                               word(packed.size(), 4) + word(content.size(), 4) + word(path.size(), 2) + word(0, 2);
+    directory += "PK\x01\x02" + word(20, 2) + common + word(0, 2) + word(0, 2) + word(0, 2) + word(0, 4) +
+                 word(archive.size(), 4) + path;
+    archive += "PK\x03\x04" + common + path + packed;
+  }
+  const std::string end = "PK\x05\x06" + word(0, 4) + word(files.size(), 2) + word(files.size(), 2) +
+                          word(directory.size(), 4) + word(archive.size(), 4) + word(0, 2);
+  return archive + directory + end;
+}
+
+/// One element of a MATLAB 5 file, padded to 8 bytes.
+inline std::string mat_element(std::uint32_t type, const std::string& data) {
+  return word(type, 4) + word(data.size(), 4) + data + std::string((8 - data.size() % 8) % 8, '\0');
+}
+
+/// The head of a matrix element: flags, dimensions, name.
+inline std::string mat_head(unsigned array_class, std::uint32_t rows, std::uint32_t columns, const std::string& name) {
+  return mat_element(6, word(array_class, 4) + word(0, 4)) + mat_element(5, word(rows, 4) + word(columns, 4)) +
+         mat_element(1, name);
+}
+
+/// A real matrix of doubles, column by column.
+inline std::string mat_matrix(const std::string& name, std::uint32_t rows, std::uint32_t columns,
+                              const std::vector<double>& values) {
+  std::string data(values.size() * sizeof(double), '\0');
+  std::memcpy(data.data(), values.data(), data.size());
+  return mat_element(14, mat_head(6, rows, columns, name) + mat_element(9, data));
+}
+
+/// A MATLAB 5 file of elements, each compressed on request.
+inline std::string mat_file(const std::vector<std::string>& elements, bool compressed = false) {
+  std::string file = "MATLAB 5.0 MAT-file, made by hand";
+  file.resize(124, ' ');
+  file += word(0x0100, 2) + "IM";
+  for (const std::string& element : elements) {
+    const std::string packed = compressed ? deflated(element, true) : "";
+    file += compressed ? word(15, 4) + word(packed.size(), 4) + packed : element;
+  }
+  return file;
+}
+
+}  // namespace driftlab::testing

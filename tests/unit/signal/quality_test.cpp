@@ -1,0 +1,284 @@
+/// What the quality of a recording says about each quirk that real recordings have, and which samples analysis then
+/// takes.
+#include "core/signal/missing.hpp"
+#include "core/signal/recording_view.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+namespace driftlab {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Table = std::vector<std::vector<double>>;
+
+std::vector<double> noise(std::size_t count, std::uint64_t seed = 7) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, 0.1);
+  std::vector<double> values(count);
+  for (double& value : values) {
+    value = normal(random);
+  }
+  return values;
+}
+
+std::vector<double> clock(std::size_t count, double step = 0.01) {
+  std::vector<double> stamps(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    stamps[i] = step * static_cast<double>(i);
+  }
+  return stamps;
+}
+
+Result<RecordingView> view(const Table& table, const ColumnNames& names, std::optional<double> rate_hz = 100.0) {
+  RecordingSpec spec;
+  spec.rate_hz = rate_hz;
+  return view_recording(spec, names, table.front().size(),
+                        [&](std::size_t i) { return std::span<const double>(table[i]); });
+}
+
+/// The quality of one gyroscope column.
+ChannelQuality quality_of(const std::vector<double>& values) {
+  const auto seen = view({values}, {"gz [deg/s]"});
+  EXPECT_TRUE(seen) << seen.error().message;
+  return seen ? seen->window.quality.channels.at(0) : ChannelQuality{};
+}
+
+std::string fault(const std::vector<double>& values) {
+  const auto seen = view({values}, {"gz"});
+  if (seen) {
+    return "accepted";
+  }
+  return std::string(name_of(seen.error().code)) + "@" + seen.error().fields.at(0).value + ":" +
+         seen.error().fields.at(1).value;
+}
+
+TEST(Quality, IsSilentAboutASoundChannel) {
+  const auto seen = view({noise(5000)}, {"gz [deg/s]"});
+  ASSERT_TRUE(seen);
+  const ChannelQuality& channel = seen->window.quality.channels.at(0);
+  EXPECT_EQ(channel.missing + channel.implausible + channel.saturated + channel.frozen + channel.repeated, 0U);
+  EXPECT_FALSE(channel.distinct);
+  EXPECT_EQ(channel.resolution, 0.0);
+  EXPECT_EQ(channel.first, 1U);
+  EXPECT_EQ(channel.analysed, 5000U);
+  EXPECT_TRUE(seen->window.quality.notes.empty()) << seen->window.quality.notes.front();
+}
+
+TEST(Quality, CountsMissingSamplesAndTakesTheLongestStretchWithout) {
+  std::vector<double> values = noise(5000);
+  values[1000] = missing_sample(Missing::Empty, 1002);
+  values[1001] = missing_sample(Missing::Nan, 1003);
+  values[4000] = missing_sample(Missing::Nan, 4002);
+  const auto seen = view({values}, {"gz"});
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_EQ(seen->channels[0].values.size(), 2998U);
+  EXPECT_EQ(seen->channels[0].first_row, 1002U);
+  const ChannelQuality& channel = seen->window.quality.channels.at(0);
+  EXPECT_EQ(channel.missing, 3U);
+  EXPECT_EQ(channel.first, 1003U);
+  EXPECT_EQ(channel.analysed, 2998U);
+  EXPECT_THAT(seen->window.quality.notes,
+              Contains(AllOf(HasSubstr("3 samples are missing"), HasSubstr("1003 to 4000 are analysed"))));
+}
+
+TEST(Quality, RefusesAChannelOfWhichTooMuchIsMissingByItsFirstRow) {
+  std::vector<double> values = noise(3000);
+  values[10] = missing_sample(Missing::Text, 12);
+  EXPECT_EQ(fault(values), "not_a_number@12:gz");
+  values[10] = missing_sample(Missing::Infinite, 12);
+  EXPECT_EQ(fault(values), "non_finite@12:gz");
+  values[10] = missing_sample(Missing::OutOfRange, 12);
+  EXPECT_EQ(fault(values), "out_of_range@12:gz");
+  values[10] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(fault(values), "non_finite@11:gz");
+  // NaN in two of 3000 is reported; one in a thousand is refused.
+  values[10] = missing_sample(Missing::Nan, 12);
+  values[11] = missing_sample(Missing::Nan, 13);
+  EXPECT_EQ(fault(values), "accepted");
+  values[12] = std::nan("");
+  EXPECT_EQ(fault(values), "non_finite@12:gz");
+  // Empty cells: up to 5 %.
+  values = noise(3000);
+  for (std::size_t i = 0; i < 150; ++i) {
+    values[20 * i] = missing_sample(Missing::Empty, 20 * i + 2);
+  }
+  EXPECT_EQ(fault(values), "accepted");
+  values[1] = missing_sample(Missing::Empty, 3);
+  EXPECT_EQ(fault(values), "not_a_number@2:gz");
+}
+
+TEST(Quality, LeavesOutAColumnOfUnknownMeaningThatHoldsText) {
+  std::vector<double> words(3000, missing_sample(Missing::Text, 2));
+  const auto seen = view({words, noise(3000)}, {"state", "gz"});
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_EQ(seen->channels.size(), 1U);
+  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("'state' is left out")));
+}
+
+TEST(Quality, TakesNumbersThatMeanNothingAsMissing) {
+  std::vector<double> values = noise(6000);
+  values[100] = -9999.0;
+  values[200] = -1.7e38;
+  values[300] = -9999.0;
+  const ChannelQuality channel = quality_of(values);
+  EXPECT_EQ(channel.implausible, 3U);
+  EXPECT_EQ(channel.first, 302U);
+  EXPECT_EQ(channel.analysed, 5699U);
+  // In a channel of counts they are measurements.
+  std::vector<double> counts = noise(6000);
+  for (double& count : counts) {
+    count = std::round(count * 1e5);
+  }
+  counts[100] = -9999.0;
+  EXPECT_EQ(quality_of(counts).implausible, 0U);
+}
+
+TEST(Quality, SeesASensorThatFreezes) {
+  std::vector<double> values = noise(6000);
+  std::fill(values.begin() + 4000, values.end(), values[4000]);
+  const ChannelQuality channel = quality_of(values);
+  EXPECT_EQ(channel.frozen, 2000U);
+  EXPECT_EQ(channel.frozen_from, 4001U);
+  EXPECT_EQ(channel.first, 1U);
+  EXPECT_EQ(channel.analysed, 4000U);
+}
+
+TEST(Quality, LeavesOutASensorThatIsFrozenThroughoutTheWindow) {
+  std::vector<double> stamps = clock(6000);
+  for (std::size_t i = 1000; i < stamps.size(); ++i) {
+    stamps[i] += 10.0;
+  }
+  std::vector<double> values = noise(6000);
+  std::fill(values.begin() + 900, values.end(), values[900]);
+  const auto seen = view({stamps, values, noise(6000, 8)}, {"time (s)", "gx", "gy"}, std::nullopt);
+  ASSERT_TRUE(seen) << seen.error().message;
+  ASSERT_EQ(seen->channels.size(), 1U);
+  EXPECT_EQ(seen->channels[0].column, "gy");
+  EXPECT_EQ(seen->window.quality.channels.at(0).frozen, 5100U);
+  EXPECT_EQ(seen->window.quality.channels.at(0).analysed, 0U);
+  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("It is left out.")));
+}
+
+TEST(Quality, DoesNotTakeCoarseStepsForAFrozenSensor) {
+  // Noise of half a step: three values, runs of up to some tens of samples.
+  std::vector<double> values = noise(50000);
+  for (double& value : values) {
+    value = 0.2 * std::round(value / 0.2);
+  }
+  const ChannelQuality channel = quality_of(values);
+  EXPECT_EQ(channel.frozen, 0U);
+  EXPECT_EQ(channel.saturated, 0U);
+  ASSERT_TRUE(channel.distinct);
+  EXPECT_THAT(*channel.distinct, ::testing::AllOf(::testing::Ge(3U), ::testing::Le(7U)));
+  EXPECT_NEAR(channel.resolution, 0.2, 1e-12);
+  EXPECT_GT(channel.repeated, 20000U);
+}
+
+TEST(Quality, CountsSamplesAtFullScale) {
+  std::vector<double> values = noise(6000);
+  for (double& value : values) {
+    value = std::clamp(std::round(value / 0.01) * 0.01, -0.1, 0.1);  // 17 % at each end
+  }
+  const ChannelQuality clipped = quality_of(values);
+  EXPECT_GT(clipped.saturated, 1500U);
+  std::vector<double> counts(6000);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    counts[i] = std::round(noise(1, i)[0] * 1000.0);
+  }
+  counts[50] = -32768.0;
+  counts[51] = 32767.0;
+  EXPECT_EQ(quality_of(counts).saturated, 2U);
+}
+
+TEST(Quality, SplitsWhereTheClockIsSetBack) {
+  std::vector<double> stamps = clock(4000);
+  for (std::size_t i = 2500; i < stamps.size(); ++i) {
+    stamps[i] -= 1.0;
+  }
+  const auto seen = view({stamps, noise(4000)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_EQ(seen->window.quality.backward_steps, 1U);
+  EXPECT_EQ(seen->window.count, 2500U);
+  EXPECT_NEAR(seen->window.time.dt_s, 0.01, 1e-12);
+  EXPECT_NEAR(seen->window.quality.measured_rate_hz, 100.0, 0.1);
+  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("steps back 1 times, by at most 0.99 s")));
+}
+
+TEST(Quality, RefusesAClockThatStepsBackOnceInAThousandRows) {
+  std::vector<double> stamps = clock(1000);
+  std::swap(stamps[500], stamps[501]);
+  const auto seen = view({stamps, noise(1000)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_FALSE(seen);
+  EXPECT_EQ(seen.error().code, ErrorCode::NonMonotonicTime);
+  EXPECT_EQ(seen.error().fields.at(0).value, "502");
+}
+
+TEST(Quality, ContinuesACounterThatStartsAgain) {
+  for (const auto& [wrap, step] : {std::pair{65536.0, 10.0}, std::pair{4294967296.0, 10000.0}}) {
+    std::vector<double> ticks(4000);
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      ticks[i] = std::fmod(wrap - 1000.0 * step + step * static_cast<double>(i), wrap);
+    }
+    const auto seen = view({ticks, noise(4000)}, {"time (us)", "gz"}, std::nullopt);
+    ASSERT_TRUE(seen) << seen.error().message;
+    EXPECT_EQ(seen->window.quality.counter_wraps, 1U);
+    EXPECT_EQ(seen->window.quality.backward_steps, 0U);
+    EXPECT_EQ(seen->window.count, 4000U);
+    EXPECT_NEAR(seen->window.time.dt_s, step * 1e-6, 1e-15);
+  }
+}
+
+TEST(Quality, ReadsBurstsAsEvenlySpacedSamples) {
+  // A FIFO of four is read every 40 ms; its samples are stamped on arrival, 0.5 ms apart. Then a real gap of 2 s.
+  std::vector<double> stamps(4000);
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    stamps[i] = 0.04 * static_cast<double>(i / 4) + 0.0005 * static_cast<double>(i % 4) + (i >= 3000 ? 2.0 : 0.0);
+  }
+  const auto seen = view({stamps, noise(4000)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_TRUE(seen->window.quality.bursts);
+  EXPECT_EQ(seen->window.quality.gaps, 1U);
+  EXPECT_EQ(seen->window.count, 3000U);
+  // 2999 steps from the first sample of the first FIFO to the last of the last: 29.9615 s instead of 29.99 s.
+  EXPECT_NEAR(seen->window.time.dt_s, 0.01, 0.01 * 1.1e-3);
+  EXPECT_NEAR(seen->window.quality.jitter_s, 0.5 * (0.0385 - 0.0005), 1e-9);
+}
+
+TEST(Quality, ComparesTheClockWithTheStatedRate) {
+  const auto seen = view({clock(2000, 0.01005), noise(2000)}, {"time (s)", "gz"}, 100.0);
+  ASSERT_TRUE(seen) << seen.error().message;
+  ASSERT_TRUE(seen->window.quality.clock_ratio);
+  EXPECT_NEAR(*seen->window.quality.clock_ratio, 1.0 / 1.005, 1e-9);
+}
+
+TEST(Quality, UsesTheStatedRateWhereTheClockStands) {
+  const auto seen = view({std::vector<double>(2000, 1.7e9), noise(2000)}, {"time (s)", "gz"}, 100.0);
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_NEAR(seen->window.time.dt_s, 0.01, 1e-15);
+  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("never advances")));
+}
+
+TEST(Quality, LeavesOutTheErrorWhereTheReferenceIsMissing) {
+  std::vector<double> reference(3000, 0.0);
+  reference[1000] = missing_sample(Missing::Empty, 1002);
+  RecordingSpec spec;
+  spec.rate_hz = 100.0;
+  spec.columns = {{"gz", {Quantity::AngularRate, "z", *parse_unit("deg/s")}},
+                  {"rz", {Quantity::ReferenceAngularRate, "z", *parse_unit("deg/s")}}};
+  const Table table{noise(3000), reference};
+  const auto seen =
+      view_recording(spec, {"gz", "rz"}, 3000, [&](std::size_t i) { return std::span<const double>(table[i]); });
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_EQ(seen->channels[0].values.size(), 1999U);
+  EXPECT_EQ(seen->channels[0].first_row, 1001U);
+}
+
+}  // namespace
+}  // namespace driftlab
