@@ -56,6 +56,9 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
   if (const Json* const device = reader.member("device"); device != nullptr && device->is_object()) {
     inputs.device = device->value("id", "");
   }
+  if (const Json* const baseline = reader.member("baseline"); baseline != nullptr) {
+    inputs.baseline = *baseline;
+  }
   const Json* const recordings = reader.member("recordings");
   if (recordings == nullptr || !recordings->is_array() || recordings->empty()) {
     faults.add("/recordings", ErrorCode::InvalidArgument, "A study needs at least one recording.");

@@ -27,6 +27,7 @@ struct Inputs {
   std::string device;
   Json study;  ///< the id of the study's file, or null
   std::vector<InputFile> files;
+  Json baseline;  ///< the study's `baseline`, or null
 };
 
 /// Reads the inputs named on the command line: one study.json, or any number of recordings that share the flags.

@@ -1,5 +1,6 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/progress.hpp"
+#include "clients/cli/workspace.hpp"
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
 #include "core/signal/recording_view.hpp"
@@ -9,40 +10,10 @@
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/trend_table.hpp"
 
-#include <unistd.h>
-
-#include <cstdlib>
+#include <algorithm>
 
 namespace driftlab::cli {
 namespace {
-
-/// A directory of our own for decoded columns, gone at the end.
-class Workspace {
- public:
-  static Result<Workspace> make() {
-    std::error_code error;
-    std::string pattern = (std::filesystem::temp_directory_path(error) / "driftlab-XXXXXX").string();
-    if (error || mkdtemp(pattern.data()) == nullptr) {
-      return fail(ErrorCode::Io, "No temporary directory can be made; set TMPDIR to one that can be written.");
-    }
-    return Workspace(pattern);
-  }
-  Workspace(Workspace&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  Workspace& operator=(Workspace&&) = delete;
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-  ~Workspace() {
-    if (!path_.empty()) {
-      std::error_code ignored;
-      std::filesystem::remove_all(path_, ignored);
-    }
-  }
-  [[nodiscard]] std::filesystem::path file() const { return path_ / "columns"; }
-
- private:
-  explicit Workspace(std::filesystem::path path) : path_(std::move(path)) {}
-  std::filesystem::path path_;
-};
 
 Result<Json> characterise_file(const InputFile& file, const CharacteriseOptions& options, const Workspace& workspace,
                                const RunControl& control) {

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   driftlab::cli::add_characterise(app, chosen);
   driftlab::cli::add_table(app, chosen);
   driftlab::cli::add_trends(app, chosen);
+  driftlab::cli::add_investigate(app, chosen);
   driftlab::cli::add_simulate(app, chosen);
   try {
     app.parse(argc, argv);

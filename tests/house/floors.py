@@ -13,7 +13,7 @@ import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
-ANALYSIS = [*CORE, "core/calibrate", "core/navigate", "core/investigate"]
+ANALYSIS = [*CORE, "core/calibrate", "core/navigate", "core/investigate", "core/investigate/causes"]
 DOCUMENTS = [*ANALYSIS, "core/read", "schema/json", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
@@ -24,7 +24,8 @@ FLOORS: dict[str, list[str]] = {
     "core/fit": CORE[:3],
     "core/calibrate": CORE,
     "core/navigate": CORE,
-    "core/investigate": [*CORE, "core/calibrate", "core/navigate"],
+    "core/investigate": [*CORE, "core/calibrate", "core/navigate", "core/investigate/causes"],
+    "core/investigate/causes": [*CORE, "core/investigate"],  # each cause is one file; the search walks their registry
     "schema/json": [*ANALYSIS, "core/read"],
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],

@@ -1,0 +1,52 @@
+/// axis_misalignment: m w_other on an axis that should see none; the shape is the index of the other axis.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& group, double other,
+           std::vector<std::vector<double>>& columns) {
+  const auto axis = static_cast<std::size_t>(other);
+  if (group.role.quantity != Quantity::AngularRate || recording.rate[axis].empty()) {
+    return false;
+  }
+  columns.assign(1, recording.rate[axis]);
+  return true;
+}
+
+std::vector<double> shapes(const ChannelGroup& group) {
+  std::vector<double> others;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k != group.axis() && turns_about(group, k)) {
+      others.push_back(static_cast<double>(k));
+    }
+  }
+  return others;
+}
+
+constexpr MeanEffect kEffect{.build = build, .shapes = shapes, .penalty = 1.0};
+
+std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
+  if (group.role.quantity != Quantity::AngularRate || group.role.axis.empty() || shapes(group).empty()) {
+    return "a gyroscope axis beside the axis of rotation";
+  }
+  return "";
+}
+
+}  // namespace
+
+Cause axis_misalignment() {
+  return {.name = "axis_misalignment",
+          .title = "a part of the rate about another axis (misalignment)",
+          .family = Family::Mean,
+          .rivals = {"turn_on_bias"},
+          .needs = "several axes in motion",
+          .separates = "rates of both signs about the other axis",
+          .parameters = {{"m", units::radians}},
+          .mean = &kEffect,
+          .lacks = lacks};
+}
+
+}  // namespace driftlab::investigate

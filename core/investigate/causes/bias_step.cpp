@@ -1,0 +1,34 @@
+/// bias_step: the mean jumps by `step` at t0, t0 from the first sample of the file, in one recording.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, double t0_s,
+           std::vector<std::vector<double>>& columns) {
+  columns.assign(1, std::vector<double>(recording.length, 0.0));
+  for (std::size_t i = 0; i < recording.length; ++i) {
+    columns[0][i] = recording.time_s(i) >= t0_s - 1e-9 ? 1.0 : 0.0;
+  }
+  return true;
+}
+
+constexpr MeanEffect kEffect{
+    .build = build, .penalty = 7.0, .scope_all = false, .scope_single = true, .change_point = true};
+
+}  // namespace
+
+Cause bias_step() {
+  return {.name = "bias_step",
+          .title = "a jump of the bias",
+          .family = Family::Mean,
+          .rivals = {"random_walk", "gauss_markov", "linear_drift", "warm_up_transient", "temperature_bias"},
+          .needs = "any recording",
+          .separates = "more recordings of the same condition: a jump happens once, a random walk in every record",
+          .parameters = {{"step", units::level}, {"t0_s", units::seconds}},
+          .mean = &kEffect};
+}
+
+}  // namespace driftlab::investigate

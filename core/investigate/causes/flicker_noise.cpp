@@ -1,0 +1,24 @@
+/// flicker_noise: flicker noise.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr SlowKind kKind = SlowKind::Flicker;
+
+}  // namespace
+
+Cause flicker_noise() {
+  return {.name = "flicker_noise",
+          .title = "flicker noise",
+          .family = Family::Mean,
+          .rivals = {"gauss_markov", "random_walk"},
+          .needs = "a baseline that does not already hold it",
+          .separates = "a longer recording: flicker keeps its floor over decades of averaging time",
+          .parameters = {{"B", units::level}},
+          .slow = &kKind};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,35 @@
+/// g_sensitivity: G f on a gyro channel, f the specific force along the same axis.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
+           std::vector<std::vector<double>>& columns) {
+  const std::vector<double>& force = recording.force[group.axis()];
+  if (force.empty()) {
+    return false;
+  }
+  columns.assign(1, force);
+  return true;
+}
+
+constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
+
+}  // namespace
+
+Cause g_sensitivity() {
+  return {.name = "g_sensitivity",
+          .title = "a gyro that feels specific force along its axis",
+          .family = Family::Mean,
+          .rivals = {"vibration_rectification", "turn_on_bias"},
+          .needs = "an accelerometer along the gyro's axis, and a specific force that varies",
+          .separates = "the six positions of the device, each at least twice",
+          .parameters = {{"G", units::per_force}},
+          .mean = &kEffect,
+          .lacks = lacks_force};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,24 @@
+/// gauss_markov: one more slow Gauss-Markov process.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr SlowKind kKind = SlowKind::GaussMarkov;
+
+}  // namespace
+
+Cause gauss_markov() {
+  return {.name = "gauss_markov",
+          .title = "one more slow Gauss-Markov process",
+          .family = Family::Mean,
+          .rivals = {"random_walk", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step", "turn_on_bias"},
+          .needs = "a baseline that does not already hold it",
+          .separates = "a recording many correlation times long",
+          .parameters = {{"sigma", units::level}, {"beta", units::per_hertz_rate}},
+          .slow = &kKind};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,73 @@
+/// heavy_tailed_noise: the white part is Student-t with nu degrees of freedom and its variance unchanged.
+/// The innovations' nu_e follows by maximum likelihood; kurtosis passes to the white part as the square of its share of
+/// the variance: 6/(nu - 4) = 6/(nu_e - 4) / rho^2.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+#include "core/investigate/full_rate.hpp"
+#include "core/investigate/tails.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+std::vector<Evidence> examine(const FullRate& data) {
+  const InnovationHistogram histogram = histogram_of(data);
+  const TailFit fit = fit_student(histogram, data.given);
+  if (!(fit.value > 0.0)) {
+    return {};
+  }
+  Evidence evidence;
+  evidence.members = all_members(*data.group);
+  evidence.gain = fit.gain;
+  evidence.freedom = 1.0;
+  evidence.score = std::min(fit.gain, fit.gain_free_scale + 3.0) - 2.0;
+  if (fit.gain_free_scale < 9.0) {
+    evidence.score = std::min(evidence.score, 0.0);
+  }
+  const double square = data.white_share * data.white_share;
+  const auto of_white = [&](double inverse_nu) {  // 1/nu_e -> nu of the white part
+    const double excess = 6.0 * inverse_nu / std::max(1e-9, 1.0 - 4.0 * inverse_nu) / square;
+    return inverse_nu < 0.24 ? 4.0 + 6.0 / excess : 1.0 / inverse_nu;
+  };
+  evidence.shape = fit.value;
+  evidence.parameters = {
+      {"nu",
+       {of_white(fit.value), {of_white(fit.interval.high), of_white(std::max(1e-6, fit.interval.low))}},
+       units::one(data.group->unit)}};
+  return {evidence};
+}
+
+double log_gain(const FullRate& data, const Evidence& found) {
+  return student_gain(histogram_of(data), found.shape, data.given);
+}
+
+void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
+  double square = 0.0;
+  for (const double v : draft.white) {
+    square += v * v / static_cast<double>(draft.white.size());
+  }
+  const double scale = std::sqrt(square * (values[0] - 2.0) / values[0]);
+  for (double& v : draft.white) {
+    v = scale * random.student(values[0]);
+  }
+}
+
+}  // namespace
+
+Cause heavy_tailed_noise() {
+  return {.name = "heavy_tailed_noise",
+          .title = "white noise with heavier tails than a Gaussian",
+          .family = Family::Tails,
+          .rivals = {"outliers"},
+          .needs = "any recording",
+          .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
+          .parameters = {{"nu", units::one}},
+          .examine = examine,
+          .log_gain = log_gain,
+          .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,44 @@
+/// lever_arm: rotation about z at distance r: -r w^2 on x (radial), r dw/dt on y (tangential).
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
+           std::vector<std::vector<double>>& columns) {
+  const std::vector<double>& w = recording.rate[2];
+  if (w.empty() || group.axis() > 1) {
+    return false;
+  }
+  columns.assign(1, std::vector<double>(recording.length));
+  for (std::size_t i = 0; i < recording.length; ++i) {
+    columns[0][i] = group.axis() == 0 ? -w[i] * w[i] : recording.acceleration[2][i];
+  }
+  return true;
+}
+
+constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
+
+std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
+  const bool usable = group.role.quantity == Quantity::SpecificForce && group.axis() < 2 && !group.role.axis.empty() &&
+                      turns_about(group, 2);
+  return usable ? "" : "accelerometers x or y in rotation about z";
+}
+
+}  // namespace
+
+Cause lever_arm() {
+  return {.name = "lever_arm",
+          .title = "accelerometers away from the axis of rotation",
+          .family = Family::Mean,
+          .rivals = {"turn_on_bias"},
+          .needs = "accelerometers in rotation about z",
+          .separates = "several rates: the error grows with their square",
+          .parameters = {{"r", units::metres}},
+          .mean = &kEffect,
+          .lacks = lacks};
+}
+
+}  // namespace driftlab::investigate

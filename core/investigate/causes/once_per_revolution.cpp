@@ -1,0 +1,49 @@
+/// once_per_revolution: A sin(theta + phi), theta the integral of the rate from the first sample of the file.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, double /*shape*/,
+           std::vector<std::vector<double>>& columns) {
+  if (recording.angle.empty()) {
+    return false;
+  }
+  columns.assign(2, std::vector<double>(recording.length));
+  for (std::size_t i = 0; i < recording.length; ++i) {
+    columns[0][i] = std::sin(recording.angle[i]);
+    columns[1][i] = std::cos(recording.angle[i]);
+  }
+  return true;
+}
+
+constexpr MeanEffect kEffect{.build = build, .columns = 2, .penalty = 2.0};
+
+std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
+  for (const auto& member : group.members) {
+    if (!member.recording->angle.empty()) {
+      return "";
+    }
+  }
+  return "a rotation";
+}
+
+}  // namespace
+
+Cause once_per_revolution() {
+  return {.name = "once_per_revolution",
+          .title = "an error that repeats with every revolution",
+          .family = Family::Mean,
+          .rivals = {"periodic_disturbance", "gauss_markov"},
+          .needs = "rotation through several revolutions",
+          .separates = "another rate: the error keeps its angle, a disturbance its frequency",
+          .parameters = {{"amplitude", units::level}},
+          .mean = &kEffect,
+          .lacks = lacks};
+}
+
+}  // namespace driftlab::investigate

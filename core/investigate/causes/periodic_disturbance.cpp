@@ -1,0 +1,44 @@
+/// periodic_disturbance: A sin(2 pi f0 t + phi), amplitude and frequency the same in all recordings of the scope, phase
+/// free in each. Found in the periodogram of the innovations, each ordinate against its neighbourhood
+/// (core/investigate/lines.hpp).
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+#include "core/investigate/full_rate.hpp"
+#include "core/investigate/lines.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace driftlab::investigate {
+namespace {
+
+std::vector<Evidence> examine(const FullRate& data) { return find_lines(data); }
+
+double log_gain(const FullRate& data, const Evidence& found) {
+  return line_gain(data, found.members, found.shape, found.parameters[0].estimate.value);
+}
+
+void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
+  const double phase = 2.0 * std::numbers::pi * random.uniform();
+  for (std::size_t i = 0; i < draft.mean.size(); ++i) {
+    draft.mean[i] += values[0] * std::sin(2.0 * std::numbers::pi * values[1] * draft.recording->time_s(i) + phase);
+  }
+}
+
+}  // namespace
+
+Cause periodic_disturbance() {
+  return {.name = "periodic_disturbance",
+          .title = "a sinusoidal disturbance",
+          .family = Family::Line,
+          .rivals = {"once_per_revolution", "gauss_markov"},
+          .needs = "any recording",
+          .separates = "the same recording with the suspected source switched off",
+          .parameters = {{"amplitude", units::level}, {"frequency_hz", units::hertz}},
+          .examine = examine,
+          .log_gain = log_gain,
+          .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

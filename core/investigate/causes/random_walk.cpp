@@ -1,0 +1,24 @@
+/// random_walk: a random walk of the bias.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr SlowKind kKind = SlowKind::RandomWalk;
+
+}  // namespace
+
+Cause random_walk() {
+  return {.name = "random_walk",
+          .title = "a random walk of the bias",
+          .family = Family::Mean,
+          .rivals = {"gauss_markov", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step"},
+          .needs = "a baseline that does not already hold it",
+          .separates = "a recording many times longer than the correlation time in question",
+          .parameters = {{"K", units::per_root_second}},
+          .slow = &kKind};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,30 @@
+/// reference_time_offset: measured follows w(t - delta), to first order -delta w'(t).
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
+           std::vector<std::vector<double>>& columns) {
+  return follow_slope(recording, group, columns, [](double /*t*/, double a) { return -a; });
+}
+
+constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
+
+}  // namespace
+
+Cause reference_time_offset() {
+  return {.name = "reference_time_offset",
+          .title = "a reference that is shifted in time",
+          .family = Family::Mean,
+          .rivals = {"reference_clock_drift", "scale_factor_error"},
+          .needs = "a profile with a reference column",
+          .separates = "the same motion early and late in a long recording",
+          .parameters = {{"delta_s", units::seconds}},
+          .mean = &kEffect,
+          .lacks = lacks_profile};
+}
+
+}  // namespace driftlab::investigate

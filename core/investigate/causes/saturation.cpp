@@ -1,0 +1,103 @@
+/// saturation: the output is clipped at +-limit: at least eight values at one extreme while the reference comes near
+/// it.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+#include "core/investigate/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr std::size_t kEnough = 8;
+
+struct Extreme {
+  double value = 0.0;  ///< file unit, modulus
+  std::size_t count = 0;
+};
+
+Extreme extreme_of(const Channel& channel) {
+  double top = 0.0;
+  for (const double v : channel.rows) {
+    top = std::max(top, std::fabs(v));
+  }
+  Extreme extreme{top, 0};
+  for (const double v : channel.rows) {
+    extreme.count += std::fabs(v) >= top * (1.0 - 1e-9) ? 1 : 0;
+  }
+  return extreme;
+}
+
+/// The reference comes within 2 % of the value, or passes it.
+bool reference_reaches(const Channel& channel, double limit_si) {
+  return std::any_of(channel.reference.begin(), channel.reference.end(),
+                     [&](double w) { return std::fabs(w) > 0.98 * limit_si; });
+}
+
+std::vector<Evidence> file_fact(const ChannelGroup& group) {
+  Evidence evidence;
+  double limit = 0.0;
+  double decimals = 0.0;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    const Channel& channel = *group.members[r].channel;
+    const Extreme extreme = extreme_of(channel);
+    const double si = std::fabs(channel.unit.to_si(extreme.value) - channel.unit.to_si(0.0));
+    if (extreme.count < kEnough || !reference_reaches(channel, si)) {
+      continue;
+    }
+    evidence.members.push_back(r);
+    evidence.score += static_cast<double>(extreme.count);
+    limit = std::max(limit, si);
+    decimals = std::max(decimals, find_lattice(channel.rows).decimals * channel.unit.factor);
+  }
+  if (evidence.members.empty()) {
+    return {};
+  }
+  evidence.score += 1000.0;
+  evidence.gain = evidence.score;
+  evidence.shape = limit;
+  evidence.parameters = {
+      {"limit", {limit, {limit - decimals - 1e-6 * limit, limit + decimals + 1e-6 * limit}}, units::level(group.unit)}};
+  return {evidence};
+}
+
+/// Near the limit only the lower half of the noise is seen: everything whose reference comes within six deviations
+/// goes.
+void spoils(const ChannelGroup& group, const Evidence& found, std::size_t r, std::vector<unsigned char>& mask) {
+  const Channel& channel = *group.members[r].channel;
+  const double margin = 6.0 * noise_of_differences(*group.members[r].recording, channel);
+  for (std::size_t i = 0; i < channel.reference.size(); ++i) {
+    if (std::fabs(channel.reference[i]) > found.shape - margin ||
+        std::fabs(channel.measured[i]) > found.shape - margin) {
+      mask[i] = 1;
+    }
+  }
+}
+
+void inject_effect(Draft& draft, std::span<const double> values, Random& /*random*/) {
+  const double limit = values[0];
+  draft.output.emplace_back([limit](std::vector<double>& out) {
+    for (double& v : out) {
+      v = std::clamp(v, -limit, limit);
+    }
+  });
+}
+
+}  // namespace
+
+Cause saturation() {
+  return {.name = "saturation",
+          .title = "an output that is clipped",
+          .family = Family::File,
+          .rivals = {},
+          .needs = "motion beyond the range, with a reference",
+          .separates = "",
+          .parameters = {{"limit", units::level}},
+          .file_fact = file_fact,
+          .spoils = spoils,
+          .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

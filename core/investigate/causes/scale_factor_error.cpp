@@ -1,0 +1,32 @@
+/// scale_factor_error: S w, w the reference rate about the sensor's own axis.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
+           std::vector<std::vector<double>>& columns) {
+  return follow_rate(recording, group, columns, [](double w) { return w; });
+}
+
+constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
+
+}  // namespace
+
+Cause scale_factor_error() {
+  return {.name = "scale_factor_error",
+          .title = "an output that is proportional to the rate (scale-factor error)",
+          .family = Family::Mean,
+          .rivals = {"scale_factor_asymmetry", "scale_factor_nonlinearity", "turn_on_bias"},
+          .needs = "several rates, or a profile",
+          .separates = "rates of both signs and several magnitudes; the same rates on another turntable",
+          .parameters = {{"S", units::ppm}},
+          .mean = &kEffect,
+          .lacks = lacks_rotation};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,205 @@
+/// stuck_samples: runs in which the last value repeats.
+/// On a lattice repeats are normal: with a chance p that the next value is the same, runs of k repeats or more occur N
+/// p^k times. Runs beyond the k at which that falls below 0.02 are stuck. Shorter stuck runs are counted by the
+/// geometric law of the longer.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+struct Runs {
+  std::vector<double> of;  ///< of[k]: runs with exactly k repeats
+  double samples = 0.0;
+  double chance = 0.0;  ///< of two equal neighbours without sticking
+};
+
+/// Largest share of one value in any of 32 parts of the record: while the mean stays there, a repeat is that likely.
+double commonest_share(std::span<const double> values) {
+  constexpr std::size_t kParts = 32;
+  double largest = 0.0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::size_t from = part * values.size() / kParts;
+    const std::size_t to = (part + 1) * values.size() / kParts;
+    std::vector<double> sorted(values.begin() + static_cast<std::ptrdiff_t>(from),
+                               values.begin() + static_cast<std::ptrdiff_t>(to));
+    std::sort(sorted.begin(), sorted.end());
+    std::size_t run = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      run = i > 0 && sorted[i] == sorted[i - 1] ? run + 1 : 1;
+      largest = std::max(largest, static_cast<double>(run) / static_cast<double>(sorted.size()));
+    }
+  }
+  return largest;
+}
+
+/// The chance is that of equal values far apart; on a coarse lattice the share of the commonest value.
+Runs count_runs(const Channel& channel) {
+  Runs runs;
+  runs.of.assign(2, 0.0);
+  const auto& v = channel.rows;
+  runs.samples = static_cast<double>(v.size());
+  std::size_t repeats = 0;
+  double equal_far = 0.0;
+  for (std::size_t i = 1; i <= v.size(); ++i) {
+    if (i < v.size() && v[i] == v[i - 1]) {
+      ++repeats;
+      continue;
+    }
+    if (repeats >= runs.of.size()) {
+      runs.of.resize(repeats + 1, 0.0);
+    }
+    runs.of[repeats] += 1.0;
+    repeats = 0;
+  }
+  constexpr std::size_t kFar = 37;
+  for (std::size_t i = kFar; i < v.size(); ++i) {
+    equal_far += v[i] == v[i - kFar] ? 1.0 : 0.0;
+  }
+  const double far = equal_far / std::max(1.0, runs.samples - kFar);
+  runs.chance = far > 0.01 ? std::min(0.999, std::max(far, commonest_share(v))) : std::max(far, 1e-9);
+  return runs;
+}
+
+std::size_t longest_by_chance(const Runs& runs) {
+  std::size_t k = 1;
+  while (k < 1000 && runs.samples * std::pow(runs.chance, static_cast<double>(k)) > 0.02) {
+    ++k;
+  }
+  return k;
+}
+
+struct Stuck {
+  double runs = 0.0;     ///< with at least `from` repeats
+  double repeats = 0.0;  ///< in them
+  std::size_t from = 1;
+};
+
+Stuck stuck_in(const Runs& runs) {
+  Stuck stuck;
+  stuck.from = longest_by_chance(runs);
+  for (std::size_t k = stuck.from; k < runs.of.size(); ++k) {
+    stuck.runs += runs.of[k];
+    stuck.repeats += static_cast<double>(k) * runs.of[k];
+  }
+  return stuck;
+}
+
+std::vector<Evidence> file_fact(const ChannelGroup& group) {
+  Evidence evidence;
+  double runs = 0.0;
+  double repeats = 0.0;
+  double samples = 0.0;
+  double variance = 0.0;
+  std::size_t from = 1;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    const Channel& channel = *group.members[r].channel;
+    const auto [low, high] = std::minmax_element(channel.rows.begin(), channel.rows.end());
+    if (*low == *high) {
+      continue;  // a constant channel is another matter
+    }
+    const Runs all = count_runs(channel);
+    const Stuck stuck = stuck_in(all);
+    if (stuck.repeats < 4.0) {
+      continue;
+    }
+    evidence.members.push_back(r);
+    from = std::max(from, stuck.from);
+    const double k0 = static_cast<double>(stuck.from);
+    // Geometric law: mean m with m = mean(repeats | >= k0) - (k0 - 1); runs in all M = M_k0 / g^(k0-1), g = 1 - 1/m.
+    const double m = std::max(1.0, stuck.repeats / stuck.runs - (k0 - 1.0));
+    const double g = 1.0 - 1.0 / m;
+    const double total = stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
+    runs += total;
+    repeats += total * m;
+    samples += all.samples;
+    variance += total * (1.0 + (k0 - 1.0) * 0.5);
+  }
+  if (evidence.members.empty()) {
+    return {};
+  }
+  const double mean = repeats / runs;
+  const double fraction = repeats / samples;
+  // The number of runs is Poisson, their lengths geometric of variance m (m - 1).
+  const double sd_mean = std::sqrt(std::max(mean * (mean - 1.0), 0.1) / runs) * (from > 1 ? 1.2 : 1.0);
+  const double sd_fraction = std::sqrt(mean * (2.0 * mean - 1.0) * variance) / samples;
+  evidence.score = 1000.0 + repeats;
+  evidence.gain = evidence.score;
+  evidence.parameters = {
+      {"fraction",
+       {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), fraction + 1.96 * sd_fraction}},
+       units::one(group.unit)},
+      {"mean_run", {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean}}, units::one(group.unit)}};
+  return {evidence};
+}
+
+/// Repeats of runs that chance does not explain.
+void spoils(const ChannelGroup& group, const Evidence& /*found*/, std::size_t r, std::vector<unsigned char>& mask) {
+  const Channel& channel = *group.members[r].channel;
+  const std::size_t from = longest_by_chance(count_runs(channel));
+  std::size_t row = 0;
+  std::size_t run_start = 0;
+  double last = 0.0;
+  std::vector<std::size_t> places;  // grid places of the present run's repeats
+  for (std::size_t i = 0; i < channel.valid.size(); ++i) {
+    if (channel.valid[i] == 0) {
+      continue;
+    }
+    const double v = channel.rows[row];
+    if (row > 0 && v == last) {
+      places.push_back(i);
+    } else {
+      places.clear();
+      run_start = i;
+    }
+    if (places.size() == from) {
+      for (const std::size_t place : places) {
+        mask[place] = 1;
+      }
+    } else if (places.size() > from) {
+      mask[i] = 1;
+    }
+    last = v;
+    ++row;
+  }
+  (void)run_start;
+}
+
+/// Runs start at random; their lengths are geometric with the mean asked for.
+void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
+  const double start = values[0] / values[1];
+  std::vector<unsigned char> repeat(draft.white.size(), 0);
+  for (std::size_t i = 1; i < repeat.size(); ++i) {
+    if (random.uniform() < start) {
+      do {
+        repeat[i++] = 1;
+      } while (i < repeat.size() && random.uniform() > 1.0 / values[1]);
+    }
+  }
+  draft.output.emplace_back([repeat](std::vector<double>& out) {
+    for (std::size_t i = 1; i < out.size(); ++i) {
+      out[i] = repeat[i] != 0 ? out[i - 1] : out[i];
+    }
+  });
+}
+
+}  // namespace
+
+Cause stuck_samples() {
+  return {.name = "stuck_samples",
+          .title = "runs in which the last value repeats",
+          .family = Family::File,
+          .rivals = {},
+          .needs = "any recording",
+          .separates = "",
+          .parameters = {{"fraction", units::one}, {"mean_run", units::one}},
+          .file_fact = file_fact,
+          .spoils = spoils,
+          .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

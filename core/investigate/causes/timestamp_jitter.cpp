@@ -1,0 +1,61 @@
+/// timestamp_jitter: the stamps scatter around the uniform grid by more than 0.2 % of the interval and their own
+/// resolution.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr double kNoticed = 0.002;
+
+std::vector<Evidence> file_fact(const ChannelGroup& group) {
+  Evidence evidence;
+  double square = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    const StudyRecording& recording = *group.members[r].recording;
+    const Stamps& stamps = recording.stamps;
+    const double noticed = std::max(kNoticed * recording.dt_s, 0.3 * stamps.resolution_s);
+    if (stamps.present && stamps.scatter_s > noticed) {
+      const auto rows = static_cast<double>(recording.length - stamps.missing);
+      evidence.members.push_back(r);
+      square += stamps.scatter_s * stamps.scatter_s * rows;
+      count += rows;
+    }
+  }
+  if (evidence.members.empty()) {
+    return {};
+  }
+  const double sigma = std::sqrt(square / count);
+  const double sd = sigma / std::sqrt(2.0 * count);
+  evidence.gain = evidence.score = 1000.0 + count;
+  evidence.parameters = {{"sigma_s", {sigma, {sigma - 1.96 * sd, sigma + 1.96 * sd}}, units::seconds(group.unit)}};
+  return {evidence};
+}
+
+void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
+  draft.stamp_error_s.resize(draft.white.size());
+  for (double& v : draft.stamp_error_s) {
+    v = values[0] * random.normal();
+  }
+}
+
+}  // namespace
+
+Cause timestamp_jitter() {
+  return {.name = "timestamp_jitter",
+          .title = "time stamps that scatter around the uniform grid",
+          .family = Family::File,
+          .rivals = {"acceleration_dependent_noise"},
+          .needs = "a time column",
+          .separates = "stamps from the sensor's own data-ready line",
+          .parameters = {{"sigma_s", units::seconds}},
+          .file_fact = file_fact,
+          .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

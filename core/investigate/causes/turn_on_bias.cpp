@@ -1,0 +1,25 @@
+/// turn_on_bias: a bias that differs from recording to recording.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/units.hpp"
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr SlowKind kKind = SlowKind::Offset;
+
+}  // namespace
+
+Cause turn_on_bias() {
+  return {.name = "turn_on_bias",
+          .title = "a bias that differs from recording to recording",
+          .family = Family::Mean,
+          .rivals = {"scale_factor_error", "scale_factor_asymmetry", "scale_factor_nonlinearity", "gauss_markov",
+                     "axis_misalignment", "g_sensitivity", "lever_arm", "vibration_rectification"},
+          .needs = "several recordings",
+          .separates = "the same condition several times, switched off in between",
+          .parameters = {{"sigma", units::level}},
+          .slow = &kKind};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,69 @@
+/// white_noise_level: white noise of another density than the baseline's, in all recordings or in some.
+/// Innovations in the scope have variance c [1 + rho (R^2 - 1)], R the ratio of densities and rho the share of the
+/// white part.
+#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/units.hpp"
+#include "core/investigate/draft.hpp"
+#include "core/investigate/full_rate.hpp"
+#include "core/investigate/modulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+std::vector<Evidence> examine(const FullRate& data) {
+  std::vector<Evidence> found;
+  const auto scopes = noise_scopes(*data.group, data.given);
+  for (const auto& scope : scopes) {
+    const Modulation levels = modulation_of_scope(data, scope);
+    const ModulationFit fit = fit_modulation(levels, data.given, 1.0, [&](double u, double x) {
+      return 1.0 + data.white_share * (std::exp(2.0 * x) - 1.0) * u;
+    });
+    Evidence evidence;
+    evidence.members = scope;
+    evidence.gain = fit.gain;
+    evidence.score = fit.gain - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
+    const double n0 = std::sqrt(data.model.white * fit.scale);
+    evidence.shape = fit.value;
+    evidence.parameters = {
+        {"N",
+         {n0 * std::exp(fit.value), {n0 * std::exp(fit.interval.low), n0 * std::exp(fit.interval.high)}},
+         units::density(data.group->unit)}};
+    found.push_back(std::move(evidence));
+  }
+  return found;
+}
+
+void deviation(const FullRate& data, const Evidence& found, std::size_t r, std::vector<double>& sd) {
+  const bool inside = std::find(found.members.begin(), found.members.end(), r) != found.members.end();
+  const double ratio = 1.0 + data.white_share * (std::exp(2.0 * found.shape) - 1.0);
+  sd.assign(data.innovation[r].size(), inside ? std::sqrt(ratio) : 1.0);
+}
+
+/// The new density stands in the place of the old one, which the draft's white part shows.
+void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
+  const double sd = values[0] / std::sqrt(draft.recording->dt_s);
+  for (double& v : draft.white) {
+    v = sd * random.normal();
+  }
+}
+
+}  // namespace
+
+Cause white_noise_level() {
+  return {
+      .name = "white_noise_level",
+      .title = "white noise of another level than the baseline's",
+      .family = Family::Variance,
+      .rivals = {"rate_dependent_noise", "acceleration_dependent_noise", "noise_level_change", "quantization_noise"},
+      .needs = "any recording; with an automatic baseline recordings of several conditions",
+      .separates = "a profile through many rates",
+      .parameters = {{"N", units::density}},
+      .examine = examine,
+      .deviation = deviation,
+      .inject = inject_effect};
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,33 @@
+#pragma once
+/// A simulated recording in the making, into which causes put their effects: what tests hide and the simulator shows.
+///
+/// One channel: white part, slow part and mean are kept apart until finish(), for effects act on one of them. A cause
+/// with a template or a slow process needs no code of its own here; the others have `Cause::inject`.
+#include "core/investigate/causes/cause.hpp"
+#include "core/process/random.hpp"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+struct Draft {
+  StudyRecording* recording = nullptr;    ///< rates, forces, temperature set; channels come with finish()
+  const ChannelGroup* group = nullptr;    ///< role of the channel; its members may be empty
+  std::size_t number = 0;                 ///< of the recording in its study
+  std::vector<double> white, slow, mean;  ///< over the file [SI]
+  std::vector<double> shared;             ///< unit white noise that all axes of the recording share
+  std::vector<std::function<void(std::vector<double>&)>> output;  ///< steps of the output stage, in order
+  std::vector<unsigned char> present;                             ///< 0: the sample is absent; empty: all are there
+  std::vector<double> stamp_error_s;                              ///< empty: exact stamps
+};
+
+/// Puts `cause` with parameters `values` (SI, in declared order) into the draft.
+void inject(const Cause& cause, Draft& draft, std::span<const double> values, Random& random);
+
+/// Adds one realisation of a slow process to `out`.
+void add_slow(SlowKind kind, double level, double beta, double dt_s, Random& random, std::vector<double>& out);
+
+}  // namespace driftlab::investigate

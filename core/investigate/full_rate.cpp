@@ -1,0 +1,205 @@
+#include "core/investigate/full_rate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr std::size_t kOrder = 24;
+
+/// Coefficients of an autoregression by Levinson's recursion on the pooled autocovariance of all recordings.
+std::vector<double> fit_autoregression(const std::vector<std::vector<double>>& series,
+                                       const std::vector<std::vector<unsigned char>>& used) {
+  std::vector<double> covariance(kOrder + 1, 0.0);
+  double samples = 0.0;
+  for (std::size_t r = 0; r < series.size(); ++r) {
+    // Gross values would stretch the covariance; clipping at 4 changes a Gaussian one by 1e-4.
+    std::vector<double> x(series[r].size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = used[r][i] != 0 ? std::clamp(series[r][i], -4.0, 4.0) : 0.0;
+      samples += used[r][i] != 0 ? 1.0 : 0.0;
+    }
+    for (std::size_t lag = 0; lag <= kOrder; ++lag) {
+      double sum = 0.0;
+      for (std::size_t i = lag; i < x.size(); ++i) {
+        sum += x[i] * x[i - lag];
+      }
+      covariance[lag] += sum;
+    }
+  }
+  std::vector<double> a(kOrder, 0.0);
+  if (!(covariance[0] > 0.0) || samples < 50.0 * kOrder) {
+    return {};
+  }
+  double error = covariance[0];
+  for (std::size_t k = 0; k < kOrder; ++k) {
+    double reflection = covariance[k + 1];
+    for (std::size_t j = 0; j < k; ++j) {
+      reflection -= a[j] * covariance[k - j];
+    }
+    reflection /= error;
+    std::vector<double> next = a;
+    next[k] = reflection;
+    for (std::size_t j = 0; j < k; ++j) {
+      next[j] = a[j] - reflection * a[k - 1 - j];
+    }
+    a = next;
+    error *= 1.0 - reflection * reflection;
+  }
+  return a;
+}
+
+void whiten_further(FullRate& data) {
+  const std::vector<double> a = fit_autoregression(data.innovation, data.used);
+  if (a.empty()) {
+    return;
+  }
+  double square = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < data.innovation.size(); ++r) {
+    std::vector<double>& x = data.innovation[r];
+    std::vector<double> e(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      double value = x[i];
+      for (std::size_t k = 0; k < std::min(i, a.size()); ++k) {
+        value -= a[k] * x[i - 1 - k];
+      }
+      e[i] = data.used[r][i] != 0 ? value : 0.0;
+      if (data.used[r][i] != 0 && std::fabs(e[i]) < 4.0) {
+        square += e[i] * e[i];
+        count += 1.0;
+      }
+    }
+    x = std::move(e);
+  }
+  if (!data.given && count > 0.0) {
+    const double scale = 1.0 / std::sqrt(square / count);
+    data.innovation_sd /= scale;
+    for (auto& x : data.innovation) {
+      for (double& value : x) {
+        value *= scale;
+      }
+    }
+  }
+}
+
+/// Does white + slow describe the spectra? Coarse bins, one free level for all recordings (1 where given).
+bool spectra_fit(const FullRate& data) {
+  double chi2 = 0.0;
+  double dof = 0.0;
+  for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
+    const Spectrum& s = data.spectrum[r];
+    double ratio = 0.0;
+    double weight = 0.0;
+    double total = 0.0;
+    double total_weight = 0.0;
+    for (std::size_t j = 0; j < s.power.size(); ++j) {
+      total += s.weight[j] * s.power[j] / (data.model.white + data.slow[r][j]);
+      total_weight += s.weight[j];
+    }
+    const double mean = total_weight > 0.0 ? total / total_weight : 1.0;
+    for (std::size_t j = 0; j < s.power.size(); ++j) {
+      ratio += s.weight[j] * s.power[j] / (data.model.white + data.slow[r][j]) / mean;
+      weight += s.weight[j];
+      if (weight > 400.0 || j + 1 == s.power.size()) {
+        const double deviation = ratio / weight - 1.0;
+        chi2 += weight * deviation * deviation;
+        dof += 1.0;
+        ratio = weight = 0.0;
+      }
+    }
+  }
+  return dof == 0.0 || (chi2 - dof) / std::sqrt(2.0 * dof) < 4.0;
+}
+
+}  // namespace
+
+std::vector<std::size_t> all_members(const ChannelGroup& group) {
+  std::vector<std::size_t> members(group.members.size());
+  std::iota(members.begin(), members.end(), std::size_t{0});
+  return members;
+}
+
+std::vector<std::size_t> moving_members(const ChannelGroup& group) {
+  std::vector<std::size_t> members;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    if (!group.members[r].recording->is_static()) {
+      members.push_back(r);
+    }
+  }
+  return members;
+}
+
+std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bool given) {
+  std::vector<std::vector<std::size_t>> scopes;
+  if (given || group.members.size() == 1) {
+    if (given) {
+      scopes.push_back(all_members(group));
+    }
+  }
+  const auto moving = moving_members(group);
+  if (!moving.empty() && moving.size() < group.members.size() && moving.size() > 1) {
+    scopes.push_back(moving);
+  }
+  if (group.members.size() > 1) {
+    for (std::size_t r = 0; r < group.members.size(); ++r) {
+      scopes.push_back({r});
+    }
+  }
+  return scopes;
+}
+
+FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const SlowModel& model,
+                           std::vector<std::vector<double>> residual,
+                           const std::vector<std::vector<unsigned char>>& mask, const FullRateOptions& options) {
+  FullRate data;
+  data.study = &study;
+  data.group = &group;
+  data.given = options.given;
+  data.lattice_step = options.lattice_step;
+  data.dt_s = group.members.front().recording->dt_s;
+  data.model = model;
+  data.residual = std::move(residual);
+  data.samples = average_blocks(group, mask, true);
+  BlockColumns columns;
+  columns.width = 1;
+  columns.rows = data.residual;
+  const Whitened whitened = whiten(data.samples, model, columns);
+  double sum_s = 0.0;
+  double steady = 0.0;
+  std::size_t row = 0;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    data.innovation.push_back(whitened.columns.rows[r]);
+    std::vector<unsigned char> used(data.residual[r].size());
+    for (std::size_t i = 0; i < used.size(); ++i, ++row) {
+      used[i] = data.samples.recordings[r].filled[i] > 0.0 ? 1 : 0;
+      if (used[i] != 0) {
+        sum_s += std::exp(whitened.log_var[row]);
+        steady += 1.0;
+      }
+    }
+    data.used.push_back(std::move(used));
+  }
+  data.white_share = std::clamp(model.white / data.dt_s / (sum_s / std::max(1.0, steady)), 0.05, 1.0);
+  data.innovation_sd = std::sqrt(sum_s / std::max(1.0, steady));
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    const double missing = 1.0 - static_cast<double>(std::count(data.used[r].begin(), data.used[r].end(), 1)) /
+                                     static_cast<double>(data.used[r].size());
+    data.spectrum.push_back(missing < 0.005 ? estimate_spectrum(data.residual[r], data.dt_s, 0.3) : Spectrum{});
+    std::vector<double> slow;
+    for (const double f : data.spectrum.back().f_hz) {
+      slow.push_back(
+          slow_density(model, data.samples, r, f, data.dt_s, static_cast<double>(data.spectrum.back().samples)));
+    }
+    data.slow.push_back(std::move(slow));
+  }
+  data.flat = spectra_fit(data);
+  if (options.whiten_further) {
+    whiten_further(data);
+  }
+  return data;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,416 @@
+#include "core/investigate/group_search.hpp"
+
+#include "core/investigate/hold_out.hpp"
+#include "core/investigate/investigate.hpp"
+#include "core/investigate/lattice.hpp"
+#include "core/investigate/lines.hpp"
+#include "core/investigate/slow_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr int kRounds = 4;
+
+bool is_rival(const Cause& cause, const Cause& other) {
+  const auto names = [](const Cause& a, const Cause& b) {
+    return std::find(a.rivals.begin(), a.rivals.end(), b.name) != a.rivals.end();
+  };
+  return &cause != &other && (names(cause, other) || names(other, cause));
+}
+
+/// Rivals whose score comes within the margin, best first.
+void set_rivals(Evidence& winner, const std::vector<Evidence>& candidates) {
+  winner.rivals.clear();
+  for (const Evidence& other : candidates) {
+    if (is_rival(*winner.cause, *other.cause) && other.score > winner.score - kMargin && other.score > 0.0) {
+      auto same = std::find_if(winner.rivals.begin(), winner.rivals.end(),
+                               [&](const Evidence& e) { return e.cause == other.cause; });
+      if (same == winner.rivals.end()) {
+        winner.rivals.push_back(other);
+      }
+    }
+  }
+  std::sort(winner.rivals.begin(), winner.rivals.end(),
+            [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
+  if (winner.rivals.size() > 5) {
+    winner.rivals.resize(5);
+  }
+  winner.ambiguous = !winner.rivals.empty();
+}
+
+const Evidence* strongest(const std::vector<Evidence>& candidates) {
+  const Evidence* best = nullptr;
+  for (const Evidence& candidate : candidates) {
+    if (best == nullptr || candidate.score > best->score) {
+      best = &candidate;
+    }
+  }
+  return best;
+}
+
+void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh) {
+  for (const Evidence& evidence : fresh) {
+    auto same =
+        std::find_if(examined.begin(), examined.end(), [&](const Evidence& e) { return e.cause == evidence.cause; });
+    if (same == examined.end()) {
+      examined.push_back(evidence);
+    } else if (evidence.score > same->score) {
+      *same = evidence;
+    }
+  }
+}
+
+/// The slow model of a given baseline; white and quantisation noise go into the white level.
+SlowModel given_model(const Baseline& baseline, double dt_s) {
+  SlowModel model;
+  for (const GivenProcess& process : baseline.processes) {
+    const auto& p = process.parameters;
+    if (process.process == "white_noise") {
+      model.white += p[0] * p[0];
+    } else if (process.process == "gauss_markov") {
+      model.components.push_back({SlowKind::GaussMarkov, p[0] * p[0], p[1], {}});
+    } else if (process.process == "random_walk") {
+      model.components.push_back({SlowKind::RandomWalk, p[0] * p[0], 0.0, {}});
+    } else if (process.process == "flicker_noise") {
+      model.components.push_back({SlowKind::Flicker, p[0] * p[0], 0.0, {}});
+    }
+  }
+  if (!(model.white > 0.0)) {
+    model.white = 1e-12 * dt_s;
+  }
+  return model;
+}
+
+bool applies(const Baseline& baseline, const ChannelGroup& group) {
+  if (baseline.automatic || baseline.quantity != group.role.quantity) {
+    return false;
+  }
+  return baseline.channels.empty() ||
+         std::find(baseline.channels.begin(), baseline.channels.end(), group.column) != baseline.channels.end();
+}
+
+/// N^2 at full rate: the mean of spectrum minus slow part over all recordings.
+double white_at_full_rate(const FullRate& data) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
+    const Spectrum& s = data.spectrum[r];
+    for (std::size_t j = 0; j < s.power.size(); ++j) {
+      if (data.slow[r][j] < 0.3 * data.model.white) {
+        sum += s.weight[j] * (s.power[j] - data.slow[r][j]);
+        weight += s.weight[j];
+      }
+    }
+  }
+  return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
+}
+
+/// White level per recording relative to the model in the lower quarter of the band; 1 where it does not differ by four
+/// standard errors.
+std::vector<double> white_scale_of(const FullRate& data) {
+  std::vector<double> scale(data.members(), 1.0);
+  bool any = false;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    double sum = 0.0;
+    double weight = 0.0;
+    const Spectrum& s = data.spectrum[r];
+    for (std::size_t j = 0; j < s.power.size(); ++j) {
+      if (s.f_hz[j] < 0.125 / data.dt_s && data.slow[r][j] < 0.5 * data.model.white) {
+        sum += s.weight[j] * (s.power[j] - data.slow[r][j]) / data.model.white;
+        weight += s.weight[j];
+      }
+    }
+    if (weight > 50.0 && std::fabs(sum / weight - 1.0) > 4.0 / std::sqrt(weight)) {
+      scale[r] = std::clamp(sum / weight, 0.05, 20.0);
+      any = true;
+    }
+  }
+  return any ? scale : std::vector<double>{};
+}
+
+/// One group's state through the search.
+class GroupSearch {
+ public:
+  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads)
+      : study_(study), group_(group), index_(index), threads_(threads) {}
+
+  GroupOutcome run() {
+    if (!check_usable()) {
+      return std::move(outcome_);
+    }
+    look_at_files();
+    search_slow();
+    search_full_rate();
+    for (Evidence& evidence : outcome_.found) {
+      evidence.group = index_;
+      for (Evidence& rival : evidence.rivals) {
+        rival.group = index_;
+      }
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  bool check_usable() {
+    double samples = 0.0;
+    bool constant = true;
+    for (const auto& member : group_.members) {
+      samples += static_cast<double>(member.recording->count());
+      const auto [low, high] = std::minmax_element(member.channel->rows.begin(), member.channel->rows.end());
+      constant = constant && *low == *high;
+      const double dt = member.recording->dt_s;
+      if (std::fabs(dt / group_.members.front().recording->dt_s - 1.0) > 0.01) {
+        outcome_.why_not = "its recordings have different sampling rates";
+        return false;
+      }
+    }
+    if (constant) {
+      outcome_.why_not = "it never changes";
+      return false;
+    }
+    if (samples < 500.0) {
+      outcome_.why_not = "it has fewer than 500 samples";
+      return false;
+    }
+    outcome_.usable = true;
+    return true;
+  }
+
+  void look_at_files() {
+    mask_.resize(group_.members.size());
+    error_.resize(group_.members.size());
+    for (std::size_t r = 0; r < group_.members.size(); ++r) {
+      mask_[r].assign(group_.members[r].recording->length, 0);
+      error_[r] = group_.members[r].channel->error;
+    }
+    for (const Cause& cause : cause_registry()) {
+      if (cause.file_fact == nullptr) {
+        continue;
+      }
+      for (Evidence& evidence : cause.file_fact(group_)) {
+        evidence.cause = &cause;
+        for (const std::size_t r : evidence.members) {
+          if (cause.spoils != nullptr) {
+            cause.spoils(group_, evidence, r, mask_[r]);
+          }
+        }
+        if (cause.name == "output_resolution" && !evidence.parameters.empty()) {
+          lattice_step_ = evidence.parameters[0].estimate.value;
+        }
+        jitter_ = jitter_ || cause.name == "timestamp_jitter";
+        outcome_.found.push_back(std::move(evidence));
+      }
+    }
+    if (lattice_step_ == 0.0) {
+      const Channel& channel = *group_.members.front().channel;
+      const Lattice lattice = find_lattice(channel.rows);
+      lattice_step_ = std::max(lattice.step, lattice.decimals) * channel.unit.factor;
+    }
+    outcome_.examined = outcome_.found;
+  }
+
+  [[nodiscard]] FullRate full_rate(const SlowSearch& search, bool whiten_further) const {
+    FullRateOptions options;
+    options.given = given_.has_value();
+    options.whiten_further = whiten_further;
+    options.lattice_step = lattice_step_;
+    SlowModel model = search.null_fit().model;
+    model.white_scale.clear();
+    if (given_) {
+      return look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+    }
+    options.whiten_further = false;
+    FullRate data = look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+    model.white = white_at_full_rate(data);
+    options.whiten_further = whiten_further;
+    return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+  }
+
+  void search_slow() {
+    const double dt = group_.members.front().recording->dt_s;
+    if (applies(study_.baseline, group_)) {
+      given_ = given_model(study_.baseline, dt);
+      given_->white += lattice_step_ * lattice_step_ / 12.0 * dt;
+    }
+    SlowSearch search(study_, group_, given_, threads_);
+    search.set_data(error_, mask_);
+    search.fit_null();
+    std::vector<Evidence> slow_found;
+    const Cause* const line_cause = find_cause("periodic_disturbance");
+    for (int round = 0; round < kRounds; ++round) {
+      FullRate data = full_rate(search, false);
+      if (round == 0) {
+        const std::vector<double> scale = white_scale_of(data);
+        if (!scale.empty()) {
+          search.set_white_scale(scale);
+          search.fit_null();
+          data = full_rate(search, false);
+        }
+      }
+      std::vector<Evidence> candidates = line_cause->examine(data);
+      for (Evidence& line : candidates) {
+        line.cause = line_cause;
+      }
+      // A line far above anything slow could be is taken before the slower search is made.
+      const Evidence* best = strongest(candidates);
+      const bool clear_line = best != nullptr && best->score > 60.0 && best->shape > 2.5;
+      if (!clear_line) {
+        for (Evidence& evidence : search.examine()) {
+          candidates.push_back(std::move(evidence));
+        }
+        best = strongest(candidates);
+      }
+      keep_best(outcome_.examined, candidates);
+      if (best == nullptr || best->score < kThreshold) {
+        break;
+      }
+      Evidence winner = *best;
+      set_rivals(winner, candidates);
+      if (winner.cause == line_cause) {
+        hold_out(data, winner);
+        for (const std::size_t r : winner.members) {
+          const std::vector<double> line = fitted_line(data, r, winner.shape);
+          const std::size_t begin = group_.members[r].recording->begin;
+          for (std::size_t i = 0; i < line.size(); ++i) {
+            error_[r][begin + i] -= line[i];
+          }
+        }
+        search.set_data(error_, mask_);
+        search.fit_null();
+        outcome_.found.push_back(std::move(winner));
+      } else {
+        search.accept(winner);
+        slow_found.push_back(std::move(winner));
+      }
+    }
+    // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
+    for (std::size_t i = slow_found.size(); i-- > 0;) {
+      search.hold_out(slow_found[i]);
+      if (slow_found[i].heldout_gain <= 0.0) {
+        search.reject(slow_found[i]);
+        slow_found.erase(slow_found.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    for (Evidence& evidence : slow_found) {
+      search.describe(evidence);
+      outcome_.found.push_back(std::move(evidence));
+    }
+    ChannelModel& model = outcome_.model;
+    model.channel = group_.column;
+    model.unit = group_.unit;
+    model.quantity = group_.role.quantity;
+    outcome_.after = full_rate(search, !given_);
+    outcome_.before = outcome_.after;
+    if (!outcome_.found.empty()) {  // the recordings as they came, under the base alone
+      std::vector<std::vector<double>> raw;
+      for (const auto& member : group_.members) {
+        const std::vector<double>& e = member.channel->error;
+        raw.emplace_back(e.begin() + static_cast<std::ptrdiff_t>(member.recording->begin),
+                         e.begin() + static_cast<std::ptrdiff_t>(member.recording->end));
+        for (double& v : raw.back()) {
+          v -= search.null_fit().amplitude[0];
+        }
+      }
+      FullRateOptions options;
+      options.given = given_.has_value();
+      options.whiten_further = !given_;
+      SlowModel base = outcome_.after.model;
+      outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
+    }
+    model.base = search.null_fit().model;
+    model.base.white = outcome_.after.model.white;
+    model.bias = search.null_fit().amplitude[0];
+  }
+
+  /// Everything that needs the samples: each found effect is taken out before the next is sought.
+  void search_full_rate() {
+    FullRate& data = outcome_.after;
+    take_band_limit(data);
+    for (int round = 0; round < 2; ++round) {
+      std::vector<Evidence> candidates;
+      for (const Cause& cause : cause_registry()) {
+        const bool wanted =
+            (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
+        const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
+        if (!wanted || cause.examine == nullptr || jittered) {
+          continue;
+        }
+        for (Evidence& evidence : cause.examine(data)) {
+          evidence.cause = &cause;
+          candidates.push_back(std::move(evidence));
+        }
+      }
+      if (round == 0) {
+        keep_best(outcome_.examined, candidates);
+      }
+      const Evidence* best = strongest(candidates);
+      if (best == nullptr || best->score < kThreshold) {
+        break;
+      }
+      Evidence winner = *best;
+      set_rivals(winner, candidates);
+      hold_out(data, winner);
+      const Cause& cause = *winner.cause;
+      outcome_.found.push_back(winner);
+      if (cause.deviation != nullptr) {
+        take_out(data, winner);
+      } else {
+        break;
+      }
+    }
+  }
+
+  void take_out(FullRate& data, const Evidence& found) const {
+    std::vector<double> sd;
+    for (std::size_t r = 0; r < data.members(); ++r) {
+      found.cause->deviation(data, found, r, sd);
+      for (std::size_t i = 0; i < sd.size(); ++i) {
+        data.innovation[r][i] /= sd[i];
+      }
+    }
+  }
+
+  void take_band_limit(FullRate& data) {
+    const Cause* const cause = find_cause("band_limited_noise");
+    std::vector<Evidence> found = cause->examine(data);
+    if (found.empty()) {
+      return;
+    }
+    found[0].cause = cause;
+    keep_best(outcome_.examined, found);
+    if (found[0].score < kThreshold) {
+      return;
+    }
+    hold_out(data, found[0]);
+    outcome_.found.push_back(found[0]);
+    FullRateOptions options;
+    options.given = false;  // the level behind the filter is the autoregression's
+    options.lattice_step = lattice_step_;
+    SlowModel model = data.model;
+    data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+    data.band_limited = true;
+    data.flat = false;
+  }
+
+  const Study& study_;
+  const ChannelGroup& group_;
+  std::size_t index_;
+  unsigned threads_;
+  std::optional<SlowModel> given_;
+  std::vector<std::vector<double>> error_;
+  std::vector<std::vector<unsigned char>> mask_;
+  double lattice_step_ = 0.0;
+  bool jitter_ = false;
+  GroupOutcome outcome_;
+};
+
+}  // namespace
+
+GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads) {
+  return GroupSearch(study, group, index, threads).run();
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,119 @@
+#include "core/investigate/hold_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr std::size_t kSegments = 8;
+
+/// The data with only one fold's samples in use.
+FullRate fold_of(const FullRate& data, std::size_t fold) {
+  FullRate part = data;
+  for (auto& used : part.used) {
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if ((i * kSegments / used.size()) % 2 != fold) {
+        used[i] = 0;
+      }
+    }
+  }
+  return part;
+}
+
+/// Half of every recording, with its own spectra.
+FullRate half_of(const FullRate& data, std::size_t half) {
+  FullRate part = data;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    const auto middle = static_cast<std::ptrdiff_t>(data.residual[r].size() / 2);
+    const auto cut = [&](auto& v) {
+      v = half == 0 ? std::decay_t<decltype(v)>(v.begin(), v.begin() + middle)
+                    : std::decay_t<decltype(v)>(v.begin() + middle, v.end());
+    };
+    cut(part.residual[r]);
+    cut(part.innovation[r]);
+    cut(part.used[r]);
+    if (!data.spectrum[r].power.empty()) {
+      part.spectrum[r] = estimate_spectrum(part.residual[r], data.dt_s, 0.3);
+      part.slow[r].clear();
+      for (const double f : part.spectrum[r].f_hz) {
+        part.slow[r].push_back(
+            slow_density(data.model, data.samples, r, f, data.dt_s, static_cast<double>(part.spectrum[r].samples)));
+      }
+    }
+  }
+  return part;
+}
+
+const Evidence* same_scope(const std::vector<Evidence>& found, const Evidence& like) {
+  for (const Evidence& evidence : found) {
+    if (evidence.members == like.members) {
+      return &evidence;
+    }
+  }
+  return nullptr;
+}
+
+/// Gaussian log likelihood gained by the deviations a modulation implies; scales are those of the fold where free.
+double gain_of_deviation(const FullRate& test, const Evidence& trained) {
+  double n = 0.0;
+  double plain = 0.0;
+  double divided = 0.0;
+  double logs = 0.0;
+  std::vector<double> sd;
+  for (std::size_t r = 0; r < test.members(); ++r) {
+    trained.cause->deviation(test, trained, r, sd);
+    for (std::size_t i = 0; i < sd.size(); ++i) {
+      if (test.used[r][i] != 0) {
+        const double e = test.innovation[r][i];
+        n += 1.0;
+        plain += e * e;
+        divided += e * e / (sd[i] * sd[i]);
+        logs += std::log(sd[i]);
+      }
+    }
+  }
+  if (n == 0.0) {
+    return 0.0;
+  }
+  if (test.given) {
+    return 0.5 * (plain - divided) - logs;
+  }
+  return 0.5 * n * std::log(plain / divided) - logs;
+}
+
+}  // namespace
+
+void hold_out(const FullRate& data, Evidence& found) {
+  const Cause& cause = *found.cause;
+  double gain = 0.0;
+  double samples = 0.0;
+  for (const auto& e : data.residual) {
+    samples += static_cast<double>(e.size());
+  }
+  bool done = true;
+  for (std::size_t fold = 0; fold < 2; ++fold) {
+    const bool halves = cause.log_gain != nullptr;
+    const FullRate train = halves ? half_of(data, fold) : fold_of(data, fold);
+    const FullRate test = halves ? half_of(data, 1 - fold) : fold_of(data, 1 - fold);
+    std::vector<Evidence> again = cause.examine(train);
+    const Evidence* const trained = same_scope(again, found);
+    if (trained == nullptr) {
+      continue;  // not seen in this fold: nothing would have been added, nothing gained
+    }
+    Evidence named = *trained;
+    named.cause = &cause;
+    if (halves) {
+      gain += cause.log_gain(test, named);
+    } else if (cause.deviation != nullptr) {
+      gain += gain_of_deviation(test, named);
+    } else {
+      done = false;
+    }
+  }
+  found.heldout_gain = gain;
+  found.heldout_samples = samples;
+  found.heldout = done;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,159 @@
+#include "core/investigate/investigate.hpp"
+
+#include "core/investigate/checks.hpp"
+#include "core/investigate/explain.hpp"
+#include "core/investigate/group_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+/// One lever arm moves two axes: evidence for one cause with one parameter on several channels is joined.
+void join_axes(std::vector<Evidence>& found) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t j = i + 1; j < found.size();) {
+      Evidence& a = found[i];
+      Evidence& b = found[j];
+      if (a.cause != b.cause || a.cause->name != "lever_arm" || a.parameters.empty() || b.parameters.empty()) {
+        ++j;
+        continue;
+      }
+      const auto width = [](const Evidence& e) {
+        return std::max(1e-12, e.parameters[0].estimate.ci95.high - e.parameters[0].estimate.ci95.low);
+      };
+      const double wa = 1.0 / (width(a) * width(a));
+      const double wb = 1.0 / (width(b) * width(b));
+      Estimate& estimate = a.parameters[0].estimate;
+      estimate.value = (wa * estimate.value + wb * b.parameters[0].estimate.value) / (wa + wb);
+      const double half = 0.5 / std::sqrt(wa + wb);
+      estimate.ci95 = {estimate.value - half, estimate.value + half};
+      a.score += b.score;
+      a.gain += b.gain;
+      a.heldout_gain += b.heldout_gain;
+      a.also_groups.push_back(b.group);
+      found.erase(found.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+void examine_together(const std::vector<GroupOutcome>& outcomes, const std::vector<ChannelGroup>& groups,
+                      std::vector<Evidence>& found, std::vector<Evidence>& examined) {
+  for (const Cause& cause : cause_registry()) {
+    if (cause.examine_together == nullptr) {
+      continue;
+    }
+    std::vector<FullRate> axes;
+    std::vector<std::size_t> index;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (outcomes[g].usable && groups[g].role.quantity == groups.front().role.quantity) {
+        axes.push_back(outcomes[g].after);
+        index.push_back(g);
+      }
+    }
+    if (axes.size() < 2) {
+      continue;
+    }
+    for (Evidence& evidence : cause.examine_together(axes)) {
+      evidence.cause = &cause;
+      evidence.group = index.front();
+      evidence.also_groups.assign(index.begin() + 1, index.end());
+      examined.push_back(evidence);
+      if (evidence.score > kThreshold) {
+        found.push_back(std::move(evidence));
+      }
+    }
+  }
+}
+
+std::vector<std::string> channels_of(const Evidence& evidence, const std::vector<ChannelGroup>& groups) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> all{evidence.group};
+  all.insert(all.end(), evidence.also_groups.begin(), evidence.also_groups.end());
+  for (const std::size_t g : all) {
+    for (const std::size_t r : evidence.members) {
+      if (r < groups[g].members.size()) {
+        names.push_back(groups[g].members[r].name());
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+Result<Report> investigate(const Study& study, const InvestigateOptions& options, const RunControl& control) {
+  if (study.recordings.empty()) {
+    return fail(ErrorCode::TooFewSamples, "The study holds no recording.");
+  }
+  Report report;
+  report.study = study.id;
+  report.automatic = study.baseline.automatic;
+  report.notes = study.notes;
+  const std::vector<ChannelGroup> groups = group_channels(study);
+  std::vector<GroupOutcome> outcomes;
+  std::vector<Evidence> found;
+  std::vector<Evidence> examined;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (control.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The investigation was stopped.");
+    }
+    control.report("search " + groups[g].column, static_cast<double>(g) / static_cast<double>(groups.size()));
+    outcomes.push_back(search_group(study, groups[g], g, options.threads));
+    GroupOutcome& outcome = outcomes.back();
+    if (!outcome.usable) {
+      report.notes.push_back("The channel " + groups[g].column + " cannot be examined: " + outcome.why_not + ".");
+      continue;
+    }
+    report.models.push_back(outcome.model);
+    found.insert(found.end(), outcome.found.begin(), outcome.found.end());
+    for (Evidence& evidence : outcome.examined) {
+      evidence.group = g;
+      examined.push_back(evidence);
+    }
+    for (const Cause& cause : cause_registry()) {
+      const std::string needs = cause.lacks != nullptr ? cause.lacks(study, groups[g]) : "";
+      if (!needs.empty()) {
+        report.not_examined.push_back({std::string(cause.name), groups[g].column, needs});
+      }
+    }
+  }
+  examine_together(outcomes, groups, found, examined);
+  join_axes(found);
+  std::sort(found.begin(), found.end(), [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
+  control.report("checks", 0.95);
+  make_checks(groups, outcomes, examined, report);
+  double samples = 0.0;
+  for (const GroupOutcome& outcome : outcomes) {
+    for (const auto& e : outcome.after.residual) {
+      samples += static_cast<double>(e.size());
+    }
+  }
+  double gained = 0.0;
+  for (Evidence& evidence : found) {
+    Finding finding;
+    finding.channels = channels_of(evidence, groups);
+    finding.because = checks_behind(evidence, groups, report);
+    if (evidence.heldout && evidence.heldout_samples > 0.0) {
+      finding.gain.log_score_per_sample = evidence.heldout_gain / evidence.heldout_samples;
+      finding.gain.heldout = true;
+      finding.gain.share = evidence.share_heldout;
+      finding.gain.samples = evidence.heldout_samples;
+      gained += evidence.heldout_gain / std::max(1.0, samples);
+    }
+    finding.evidence = std::move(evidence);
+    report.findings.push_back(std::move(finding));
+  }
+  // The misfit left is that of the innovations under the extended model; each finding's gain stands before it.
+  report.misfit_before = report.misfit_after + std::max(0.0, gained);
+  for (Finding& finding : report.findings) {
+    finding.gain.misfit_after = report.misfit_after;
+    finding.gain.misfit_before = report.misfit_after + finding.gain.log_score_per_sample;
+    finding.explanation = explain(finding, groups[finding.evidence.group]);
+    finding.next_measurement = next_measurement(finding);
+  }
+  return report;
+}
+
+}  // namespace driftlab::investigate

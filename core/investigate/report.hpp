@@ -1,0 +1,79 @@
+#pragma once
+/// The result of an investigation as values; schema/json/investigation.hpp writes it down (spec/causes.md).
+#include "core/investigate/evidence.hpp"
+#include "core/investigate/slow_model.hpp"
+#include "core/investigate/study.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// One statistic compared with what the baseline model gives for the same recording.
+struct Check {
+  std::string id;
+  std::string recording;  ///< empty: the whole channel
+  std::string channel;
+  double observed = 0.0;
+  double q025 = 0.0, median = 0.0, q975 = 0.0;  ///< under the model
+  double p = 1.0;
+  double p_adjusted = 1.0;  ///< over all checks of the study (Holm 1979)
+  bool failed = false;
+};
+
+struct FindingGain {
+  double log_score_per_sample = 0.0;  ///< [nat]
+  double misfit_before = 0.0;         ///< [nat per sample]
+  double misfit_after = 0.0;
+  bool heldout = false;
+  double share = 0.0;  ///< of the samples held out at a time
+  double samples = 0.0;
+};
+
+struct Finding {
+  Evidence evidence;
+  std::vector<std::string> channels;  ///< recording/column
+  std::vector<std::string> because;   ///< ids of checks
+  std::string explanation;
+  std::string next_measurement;
+  FindingGain gain;
+};
+
+/// The noise model of one channel, and what it cannot hold.
+struct ChannelModel {
+  std::string channel;
+  Unit unit;
+  Quantity quantity = Quantity::AngularRate;
+  SlowModel base;     ///< N^2 and the slow processes without the effects
+  double bias = 0.0;  ///< [SI]
+};
+
+struct Unexplained {
+  std::string channel;
+  std::string sentence;
+  std::vector<std::string> checks;
+};
+
+struct NotExamined {
+  std::string cause;
+  std::string channel;
+  std::string needs;
+};
+
+struct Report {
+  std::string study;
+  bool automatic = true;
+  std::vector<ChannelModel> models;  ///< one per examined channel
+  std::vector<Check> checks;
+  std::size_t failed_before = 0;
+  std::size_t failed_after = 0;
+  double misfit_before = 0.0;
+  double misfit_after = 0.0;
+  std::vector<Finding> findings;  ///< strongest first
+  std::vector<Unexplained> unexplained;
+  std::vector<NotExamined> not_examined;
+  std::vector<std::string> notes;
+};
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,70 @@
+#pragma once
+/// Gains of regressors at a fixed noise model, in every scope at once.
+///
+/// Whitened recordings are independent, so inner products over a scope are sums over its recordings. With z the
+/// whitened data, B the whitened regressors that are already in, x the new one restricted to a scope, the gain in twice
+/// the log likelihood is (x'Mz)^2 / x'Mx, M = I - B (B'B)^-1 B' (for two columns the matrix form).
+#include "core/investigate/slow_model.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// Gram matrices per recording: columns are data, regressors, then the new effect.
+class ScopedGram {
+ public:
+  /// `fixed`: number of leading columns (data and regressors).
+  ScopedGram(const BlockColumns& whitened, std::size_t fixed);
+  [[nodiscard]] double gain(const std::vector<std::size_t>& scope) const;
+
+ private:
+  Eigen::Index fixed_;
+  std::vector<Eigen::MatrixXd> gram_;
+  Eigen::MatrixXd all_;
+};
+
+/// Steps at every block of a recording. W'z gives all inner products by running sums; the norm of a whitened step
+/// varies smoothly and is computed at 24 places.
+class StepScan {
+ public:
+  /// `columns`: data, then regressors. O(blocks) per recording and regressor.
+  StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns);
+  struct Best {
+    std::size_t block = 0;
+    double gain = 0.0;
+  };
+  [[nodiscard]] Best best_in(std::size_t r) const;
+  /// Gain of a step at each block of recording r (0 near the ends).
+  [[nodiscard]] std::vector<double> gains(std::size_t r) const;
+
+ private:
+  const BlockSeries& series_;
+  const SlowModel& model_;
+  Eigen::MatrixXd inverse_;                                 ///< (B'B)^-1
+  std::vector<std::vector<std::vector<double>>> tail_sum_;  ///< recording, column (0: residual), block
+};
+
+/// The series and the model of one recording alone.
+struct SingleRecording {
+  BlockSeries series;
+  SlowModel model;
+};
+[[nodiscard]] SingleRecording take_recording(const BlockSeries& series, const SlowModel& model, std::size_t r);
+
+/// Keeps the better of two candidates for one cause and scope.
+template <class Candidate>
+void offer(std::vector<Candidate>& best, Candidate candidate) {
+  for (Candidate& known : best) {
+    if (known.cause == candidate.cause && known.members == candidate.members) {
+      if (candidate.score > known.score) {
+        known = std::move(candidate);
+      }
+      return;
+    }
+  }
+  best.push_back(std::move(candidate));
+}
+
+}  // namespace driftlab::investigate
