@@ -57,6 +57,83 @@ double ScopedGram::gain(const std::vector<std::size_t>& scope) const {
   return data.dot(own.ldlt().solve(data));
 }
 
+ScopedGram::Pair ScopedGram::pair_in(std::size_t r, Eigen::Index from) const {
+  const Eigen::MatrixXd& g = gram_[r];
+  Eigen::Matrix2d own = g.block<2, 2>(from, from);
+  Eigen::Vector2d data = g.block<2, 1>(from, 0);
+  const double before = own.trace();
+  if (fixed_ > 1) {
+    Eigen::MatrixXd b = all_.block(1, 1, fixed_ - 1, fixed_ - 1);
+    b.diagonal() *= 1.0 + 1e-12;
+    b.diagonal().array() += 1e-300;
+    const Eigen::LDLT<Eigen::MatrixXd> factor(b);
+    const Eigen::MatrixXd x = g.block(from, 1, 2, fixed_ - 1);
+    own -= x * factor.solve(x.transpose());
+    data -= x * factor.solve(all_.block(1, 0, fixed_ - 1, 1));
+  }
+  // A recording at rest has constant columns, which the bias holds already.
+  if (!(before > 0.0) || own.determinant() < 1e-6 * before * before) {
+    return {};
+  }
+  return {data.dot(own.ldlt().solve(data)), 0.5 * own.trace()};
+}
+
+namespace {
+
+/// -2 ln of the tail probability of T for moduli of information n and gains X.
+double surprise_of(const std::vector<double>& gain, const std::vector<double>& information) {
+  double total = 0.0;
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < gain.size(); ++r) {
+    total += information[r];
+    sum += std::sqrt(gain[r] * information[r]);
+    count += information[r] > 0.0 ? 1.0 : 0.0;
+  }
+  if (!(total > 0.0)) {
+    return 0.0;
+  }
+  const double s2 = sum * sum / total;
+  double log_p = -0.5 * s2 + 0.5 * (count - 1.0) * std::log(6.283185307179586 * std::max(s2, 1.0));
+  for (const double n : information) {
+    log_p += n > 0.0 ? 0.5 * std::log(n / total) : 0.0;
+  }
+  return -2.0 * std::min(0.0, log_p);
+}
+
+}  // namespace
+
+double ScopedGram::surprise_of_common_amplitude(const std::vector<std::size_t>& scope) const {
+  std::vector<double> gain;
+  std::vector<double> information;
+  for (const std::size_t r : scope) {
+    const Pair pair = pair_in(r, fixed_);
+    gain.push_back(pair.gain);
+    information.push_back(pair.information);
+  }
+  return surprise_of(gain, information);
+}
+
+double ScopedGram::surprise_of_members(const std::vector<std::size_t>& members) const {
+  std::vector<double> gain;
+  std::vector<double> information;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const Pair pair = pair_in(members[k], fixed_ + 2 * static_cast<Eigen::Index>(k));
+    gain.push_back(pair.gain);
+    information.push_back(pair.information);
+  }
+  return surprise_of(gain, information);
+}
+
+double ScopedGram::gain_of_member(std::size_t r, const std::vector<std::size_t>& members) const {
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    if (members[k] == r) {
+      return pair_in(r, fixed_ + 2 * static_cast<Eigen::Index>(k)).gain;
+    }
+  }
+  return 0.0;
+}
+
 SingleRecording take_recording(const BlockSeries& series, const SlowModel& model, std::size_t r) {
   SingleRecording single;
   single.series.dt_s = series.dt_s;
@@ -83,6 +160,9 @@ StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const Bloc
   }
   Eigen::MatrixXd b = gram.bottomRightCorner(p, p);
   b.diagonal() *= 1.0 + 1e-12;
+  for (Eigen::Index k = 0; k < p; ++k) {
+    b(k, k) = b(k, k) > 0.0 ? b(k, k) : 1.0;  // a regressor without input
+  }
   inverse_ = b.inverse();
   const Eigen::VectorXd amplitude = inverse_ * gram.col(0).tail(p);
   for (std::size_t r = 0; r < series.recordings.size(); ++r) {

@@ -18,8 +18,19 @@ class ScopedGram {
   /// `fixed`: number of leading columns (data and regressors).
   ScopedGram(const BlockColumns& whitened, std::size_t fixed);
   [[nodiscard]] double gain(const std::vector<std::size_t>& scope) const;
+  /// Sine and cosine columns with one amplitude and free phases: -2 ln P of T = (sum sqrt(n_r X_r))^2 / sum n_r, X_r
+  /// the gain in recording r and n_r its information on an amplitude (see lines.hpp for the law of T).
+  [[nodiscard]] double surprise_of_common_amplitude(const std::vector<std::size_t>& scope) const;
+  /// The same where each member already has its two columns, in the order of `members`.
+  [[nodiscard]] double surprise_of_members(const std::vector<std::size_t>& members) const;
+  [[nodiscard]] double gain_of_member(std::size_t r, const std::vector<std::size_t>& members) const;
 
  private:
+  /// Gain and information of columns [from, from + 2) in recording r.
+  struct Pair {
+    double gain = 0.0, information = 0.0;
+  };
+  [[nodiscard]] Pair pair_in(std::size_t r, Eigen::Index from) const;
   Eigen::Index fixed_;
   std::vector<Eigen::MatrixXd> gram_;
   Eigen::MatrixXd all_;

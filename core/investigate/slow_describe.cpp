@@ -110,14 +110,24 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
   const SlowFit fit = evaluate_slow(series_, columns, null_.model);
   const Unit& unit = group_.unit;
   const auto index = static_cast<Eigen::Index>(*position);
-  if (effect.columns == 2) {
-    const double a = fit.amplitude[index];
-    const double b = fit.amplitude[index + 1];
-    const double variance =
-        0.5 * (fit.amplitude_covariance(index, index) + fit.amplitude_covariance(index + 1, index + 1));
-    const double modulus = std::hypot(a, b);
-    const double value = modulus - 0.5 * variance / modulus;
-    const double half = 1.959964 * std::sqrt(variance);
+  if (effect.free_phase) {
+    // One amplitude from the moduli of all recordings, each less the noise's share: A ~ m - var/(2 m).
+    double weight = 0.0;
+    double mean = 0.0;
+    double count = 0.0;
+    for (Eigen::Index k = index; k + 1 < index + mine->columns; k += 2) {
+      const double variance = 0.5 * (fit.amplitude_covariance(k, k) + fit.amplitude_covariance(k + 1, k + 1));
+      const double modulus = std::hypot(fit.amplitude[k], fit.amplitude[k + 1]);
+      const bool seen = modulus * modulus > 0.0 && variance < 1e6 * modulus * modulus;
+      if (seen && variance > 0.0) {
+        weight += 1.0 / variance;
+        mean += modulus / variance;
+        count += 1.0;
+      }
+    }
+    mean /= weight;
+    const double value = mean - 0.5 * count / weight / mean;
+    const double half = 1.959964 / std::sqrt(weight);
     evidence.parameters = {{std::string(cause.parameters[0].name),
                             {value, {std::max(0.0, value - half), value + half}},
                             cause.parameters[0].unit(unit)}};

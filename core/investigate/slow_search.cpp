@@ -42,6 +42,11 @@ bool needs_full_rate(const ChannelGroup& group) {
   return false;
 }
 
+/// Regressor columns of an effect in a scope.
+int width_of(const Cause& cause, const std::vector<std::size_t>& members) {
+  return cause.mean->columns * (cause.mean->free_phase ? static_cast<int>(members.size()) : 1);
+}
+
 std::vector<unsigned char> membership(const std::vector<std::size_t>& members, std::size_t count) {
   std::vector<unsigned char> in(count, 0);
   for (const std::size_t r : members) {
@@ -173,11 +178,15 @@ BlockColumns SlowSearch::columns_with(const std::vector<Regressor>& regressors) 
         source = &made;
       }
     }
-    for (const std::size_t r : regressor.members) {
-      for (std::size_t c = 0; c < static_cast<std::size_t>(regressor.columns); ++c) {
+    const bool own = regressor.cause != nullptr && regressor.cause->mean->free_phase;
+    const std::size_t templates = source == nullptr ? 1 : source->blocks.size();
+    for (std::size_t k = 0; k < regressor.members.size(); ++k) {
+      const std::size_t r = regressor.members[k];
+      for (std::size_t c = 0; c < templates; ++c) {
+        const std::size_t place = at + c + (own ? k * templates : 0);
         for (std::size_t b = 0; b < series_.recordings[r].mean.size(); ++b) {
           const double value = source == nullptr ? 1.0 : source->blocks[c][r].empty() ? 0.0 : source->blocks[c][r][b];
-          columns.rows[r][b * width + at + c] = value;
+          columns.rows[r][b * width + place] = value;
         }
       }
     }
@@ -361,7 +370,8 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
       penalty += effect.shape_penalty(templates.shape);
     }
     for (const auto& scope : scopes) {
-      const double score = base_score + gram.gain(scope) - penalty;
+      const double gain = effect.free_phase ? gram.surprise_of_common_amplitude(scope) : gram.gain(scope);
+      const double score = base_score + gain - penalty;
       offer(best, Screened{templates.cause, scope, templates.shape, penalty, score, base});
     }
   }
@@ -414,7 +424,8 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
 }
 
 Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
-  Regressor regressor{candidate.cause, candidate.members, candidate.shape, candidate.cause->mean->columns};
+  Regressor regressor{candidate.cause, candidate.members, candidate.shape,
+                      width_of(*candidate.cause, candidate.members)};
   std::vector<Regressor> with = accepted_;
   with.push_back(regressor);
   Evidence evidence;
@@ -454,6 +465,17 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   evidence.shape = best_shape;
   evidence.gain = best - null_score_;
   evidence.score = best - null_score_ - candidate.penalty;
+  if (candidate.cause->mean->free_phase) {  // what free amplitudes gain over one amplitude is not the effect's
+    with.back().shape = best_shape;
+    const BlockColumns columns = columns_with(with);
+    const std::size_t own = columns.width - static_cast<std::size_t>(with.back().columns);
+    const ScopedGram gram(whiten(series_, best_fit.model, columns).columns, own);
+    double separate = 0.0;
+    for (const std::size_t r : candidate.members) {
+      separate += gram.gain_of_member(r, candidate.members);
+    }
+    evidence.score += gram.surprise_of_members(candidate.members) - separate;
+  }
   return evidence;
 }
 
@@ -605,7 +627,8 @@ std::vector<Evidence> SlowSearch::examine() {
 
 void SlowSearch::accept(const Evidence& evidence) {
   if (evidence.cause->mean != nullptr) {
-    accepted_.push_back({evidence.cause, evidence.members, evidence.shape, evidence.cause->mean->columns});
+    accepted_.push_back(
+        {evidence.cause, evidence.members, evidence.shape, width_of(*evidence.cause, evidence.members)});
     fit_null();
     // The shape once more under the fitted null.
     Regressor last = accepted_.back();
@@ -674,8 +697,11 @@ std::vector<std::vector<double>> SlowSearch::residuals(const std::vector<std::ve
           v -= null_.amplitude[static_cast<Eigen::Index>(at)];
         }
       } else if (acts && regressor.cause->mean->build(recording, group_, regressor.shape, columns)) {
+        const auto k = static_cast<std::size_t>(std::find(regressor.members.begin(), regressor.members.end(), r) -
+                                                regressor.members.begin());
+        const std::size_t first = at + (regressor.cause->mean->free_phase ? k * columns.size() : 0);
         for (std::size_t c = 0; c < columns.size(); ++c) {
-          const double a = null_.amplitude[static_cast<Eigen::Index>(at + c)];
+          const double a = null_.amplitude[static_cast<Eigen::Index>(first + c)];
           for (std::size_t i = 0; i < e.size(); ++i) {
             e[i] -= a * columns[c][i];
           }

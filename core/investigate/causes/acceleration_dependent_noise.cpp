@@ -28,7 +28,7 @@ std::vector<Evidence> examine(const FullRate& data) {
   Evidence evidence;
   evidence.members = all_members(*data.group);
   evidence.gain = fit.gain;
-  evidence.score = fit.gain - 1.0;
+  evidence.score = fit.gain / data.repeatability - 1.0;
   evidence.shape = fit.value;
   evidence.parameters = {{"k",
                           {fit.value, {std::max(0.0, fit.interval.low), fit.interval.high}},

@@ -1,5 +1,6 @@
 /// band_limited_noise: the white noise behind a second-order Butterworth low-pass, its density at low frequency kept.
-/// E = N^2 |H|^2 + step^2 dt/12 + slow: the rounding of the file fills the stop band.
+/// E = N^2 |H|^2 + floor + slow: rounding and the leakage of the periodogram fill the stop band by a level that is
+/// fitted.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
@@ -19,8 +20,8 @@ struct Shape {
   double density = 0.0;
 };
 
-/// All recordings under one density N^2 g(f) + floor + slow, g by frequency.
-Shape fit_shape(const FullRate& data, bool with_floor, const std::function<double(double)>& gain) {
+/// All recordings under one density N^2 g(f) + floor + slow, g by frequency; N^2 is the baseline's where that is given.
+Shape fit_shape(const FullRate& data, const std::function<double(double)>& gain) {
   Eigen::Index bins = 0;
   for (const Spectrum& s : data.spectrum) {
     bins += static_cast<Eigen::Index>(s.power.size());
@@ -29,7 +30,7 @@ Shape fit_shape(const FullRate& data, bool with_floor, const std::function<doubl
   density.power.resize(bins);
   density.weight.resize(bins);
   density.fixed.resize(bins);
-  density.shape.resize(bins, with_floor ? 2 : 1);
+  density.shape = Eigen::MatrixXd::Ones(bins, data.given ? 1 : 2);
   const double floor = data.lattice_step * data.lattice_step / 12.0 * data.dt_s + 1e-9 * data.model.white;
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
@@ -38,21 +39,17 @@ Shape fit_shape(const FullRate& data, bool with_floor, const std::function<doubl
       density.power[row] = s.power[j];
       density.weight[row] = s.weight[j];
       density.fixed[row] = data.slow[r][j] + floor;
-      density.shape(row, 0) = gain(s.f_hz[j]);
-      if (with_floor) {
-        density.shape(row, 1) = 1.0;
+      if (data.given) {
+        density.fixed[row] += data.model.white * gain(s.f_hz[j]);
+      } else {
+        density.shape(row, 1) = gain(s.f_hz[j]);
       }
     }
   }
-  if (data.given) {  // the level at low frequency is the baseline's
-    Eigen::VectorXd e = density.fixed + data.model.white * density.shape.col(0);
-    if (!with_floor) {
-      return {whittle(density.power, density.weight, e), data.model.white};
-    }
-  }
-  Eigen::VectorXd start = Eigen::VectorXd::Constant(with_floor ? 2 : 1, data.model.white * (with_floor ? 0.5 : 1.0));
+  Eigen::VectorXd start = Eigen::VectorXd::Constant(density.shape.cols(), data.model.white);
+  start[0] = 1e-4 * data.model.white;  // the floor
   const LevelFit fit = fit_levels(density, start);
-  return {fit.log_likelihood, fit.level[0]};
+  return {fit.log_likelihood, fit.level[fit.level.size() - 1]};
 }
 
 std::vector<Evidence> examine(const FullRate& data) {
@@ -60,10 +57,10 @@ std::vector<Evidence> examine(const FullRate& data) {
     return {};
   }
   const double nyquist = 0.5 / data.dt_s;
-  const double none = fit_shape(data, false, [](double) { return 1.0; }).log_likelihood;
+  const double none = fit_shape(data, [](double) { return 1.0; }).log_likelihood;
   const auto at = [&](double log_corner) {
     const double corner = std::exp(log_corner);
-    return fit_shape(data, false, [&](double f) { return butterworth_gain(f, corner, data.dt_s); }).log_likelihood;
+    return fit_shape(data, [&](double f) { return butterworth_gain(f, corner, data.dt_s); }).log_likelihood;
   };
   const double low = std::log(0.02 * nyquist);
   const double high = std::log(0.995 * nyquist);
@@ -98,7 +95,7 @@ std::vector<Evidence> examine(const FullRate& data) {
   double first_order = none;
   for (double f = 0.02 * nyquist; f < nyquist; f *= 1.3) {
     const double phi = std::exp(-2.0 * std::numbers::pi * f * data.dt_s);
-    const Shape shape = fit_shape(data, true, [&](double g) {
+    const Shape shape = fit_shape(data, [&](double g) {
       return (1.0 - phi) * (1.0 - phi) /
              (1.0 - 2.0 * phi * std::cos(2.0 * std::numbers::pi * g * data.dt_s) + phi * phi);
     });
@@ -115,8 +112,8 @@ std::vector<Evidence> examine(const FullRate& data) {
 }
 
 double log_gain(const FullRate& data, const Evidence& found) {
-  return fit_shape(data, false, [&](double f) { return butterworth_gain(f, found.shape, data.dt_s); }).log_likelihood -
-         fit_shape(data, false, [](double) { return 1.0; }).log_likelihood;
+  return fit_shape(data, [&](double f) { return butterworth_gain(f, found.shape, data.dt_s); }).log_likelihood -
+         fit_shape(data, [](double) { return 1.0; }).log_likelihood;
 }
 
 /// Second-order Butterworth low-pass, bilinear transform.

@@ -35,6 +35,7 @@ struct MeanEffect {
   bool (*build)(const StudyRecording& recording, const ChannelGroup& group, double shape,
                 std::vector<std::vector<double>>& columns) = nullptr;
   int columns = 1;
+  bool free_phase = false;  ///< two columns, and their combination differs from recording to recording: one amplitude
   /// Values of the shape to try; one value (ignored) where there is none.
   std::vector<double> (*shapes)(const ChannelGroup& group) = nullptr;
   bool continuous = false;  ///< the shape is refined between the tried values

@@ -115,7 +115,8 @@ std::vector<Evidence> examine(const FullRate& data) {
   for (std::size_t r = 0; r < data.members(); ++r) {
     double rest_square = 0.0;
     double rest_count = 0.0;
-    for (std::size_t s = 0; s < data.members(); ++s) {
+    // Levels of other recordings say nothing where they do not repeat.
+    for (std::size_t s = 0; s < data.members() && data.repeatability == 1.0; ++s) {
       rest_square += s == r ? 0.0 : square[s];
       rest_count += s == r ? 0.0 : count[s];
     }

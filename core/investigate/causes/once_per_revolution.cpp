@@ -1,4 +1,5 @@
-/// once_per_revolution: A sin(theta + phi), theta the integral of the rate from the first sample of the file.
+/// once_per_revolution: A sin(theta + phi), theta the integral of the rate from the first sample of the file; phi is
+/// free in each recording, for the turntable starts anywhere.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -21,7 +22,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .columns = 2, .penalty = 2.0};
+constexpr MeanEffect kEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0};
 
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   for (const auto& member : group.members) {

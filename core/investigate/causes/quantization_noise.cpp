@@ -24,10 +24,15 @@ std::vector<Evidence> examine(const FullRate& data) {
     if (!(added.level > 0.0)) {
       continue;
     }
+    double gain = added.gain;
+    if (data.repeatability > 1.0) {  // what another white level explains counts as little as a white level does
+      const double level = fit_added_density(data, scope, [](double, double) { return 1.0; }).gain;
+      gain -= level * (1.0 - 1.0 / data.repeatability);
+    }
     Evidence evidence;
     evidence.members = scope;
     evidence.gain = added.gain;
-    evidence.score = added.gain - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
+    evidence.score = gain - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
     evidence.shape = added.level;
     evidence.parameters = {
         {"Q",

@@ -37,7 +37,8 @@ double commonest_share(std::span<const double> values) {
   return largest;
 }
 
-/// The chance is that of equal values far apart; on a coarse lattice the share of the commonest value.
+/// The chance is that of equal values far apart; on a lattice, where neighbours are alike, also the share of the
+/// commonest value and the share of runs that go on after one repeat.
 Runs count_runs(const Channel& channel) {
   Runs runs;
   runs.of.assign(2, 0.0);
@@ -60,8 +61,16 @@ Runs count_runs(const Channel& channel) {
   for (std::size_t i = kFar; i < v.size(); ++i) {
     equal_far += v[i] == v[i - kFar] ? 1.0 : 0.0;
   }
-  const double far = equal_far / std::max(1.0, runs.samples - kFar);
-  runs.chance = far > 0.01 ? std::min(0.999, std::max(far, commonest_share(v))) : std::max(far, 1e-9);
+  // An upper end of the chance: few coincidences say little about it.
+  const double far = (equal_far + 3.0 * std::sqrt(equal_far) + 5.0) / std::max(1.0, runs.samples - kFar);
+  double once = 0.0;
+  double twice = 0.0;
+  for (std::size_t k = 1; k < runs.of.size(); ++k) {
+    once += runs.of[k];
+    twice += k > 1 ? runs.of[k] : 0.0;
+  }
+  const double goes_on = 1.15 * twice / std::max(1.0, once);
+  runs.chance = far > 0.01 ? std::min(0.999, std::max({far, goes_on, commonest_share(v)})) : far;
   return runs;
 }
 
@@ -111,9 +120,11 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
     from = std::max(from, stuck.from);
     const double k0 = static_cast<double>(stuck.from);
     // Geometric law: mean m with m = mean(repeats | >= k0) - (k0 - 1); runs in all M = M_k0 / g^(k0-1), g = 1 - 1/m.
-    const double m = std::max(1.0, stuck.repeats / stuck.runs - (k0 - 1.0));
+    // Up to k0 = 2 hardly a run is lost and they are counted as they are.
+    const bool direct = stuck.from <= 2;
+    const double m = std::max(1.0, stuck.repeats / stuck.runs - (direct ? 0.0 : k0 - 1.0));
     const double g = 1.0 - 1.0 / m;
-    const double total = stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
+    const double total = direct ? stuck.runs : stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
     runs += total;
     repeats += total * m;
     samples += all.samples;

@@ -24,7 +24,7 @@ std::vector<Evidence> examine(const FullRate& data) {
     Evidence evidence;
     evidence.members = scope;
     evidence.gain = fit.gain;
-    evidence.score = fit.gain - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
+    evidence.score = fit.gain / data.repeatability - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
     const double n0 = std::sqrt(data.model.white * fit.scale);
     evidence.shape = fit.value;
     evidence.parameters = {
