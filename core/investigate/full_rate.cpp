@@ -166,7 +166,9 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   BlockColumns columns;
   columns.width = 1;
   columns.rows = data.residual;
-  const Whitened whitened = whiten(data.samples, model, columns);
+  SlowModel filter = model;  // differenced noise counts as white here; the autoregression finds its colour
+  filter.white += 2.0 * options.quantization / data.dt_s;
+  const Whitened whitened = whiten(data.samples, filter, columns);
   double sum_s = 0.0;
   double steady = 0.0;
   std::size_t row = 0;
@@ -191,7 +193,8 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
     std::vector<double> slow;
     for (const double f : data.spectrum.back().f_hz) {
       slow.push_back(
-          slow_density(model, data.samples, r, f, data.dt_s, static_cast<double>(data.spectrum.back().samples)));
+          slow_density(model, data.samples, r, f, data.dt_s, static_cast<double>(data.spectrum.back().samples)) +
+          options.quantization * quantization_shape(f, data.dt_s));
     }
     data.slow.push_back(std::move(slow));
   }

@@ -40,6 +40,7 @@ struct FullRate {
 struct FullRateOptions {
   bool given = false;
   bool whiten_further = true;
+  double quantization = 0.0;  ///< Q^2 of a given baseline [SI^2 s^2]; the innovations then need whiten_further
   double lattice_step = 0.0;
 };
 

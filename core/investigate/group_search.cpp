@@ -1,5 +1,6 @@
 #include "core/investigate/group_search.hpp"
 
+#include "core/investigate/fact_gain.hpp"
 #include "core/investigate/hold_out.hpp"
 #include "core/investigate/investigate.hpp"
 #include "core/investigate/lattice.hpp"
@@ -63,7 +64,16 @@ void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fre
   }
 }
 
-/// The slow model of a given baseline; white and quantisation noise go into the white level.
+/// Sum of the squared levels of one process in a given baseline.
+double given_level(const Baseline& baseline, std::string_view name) {
+  double sum = 0.0;
+  for (const GivenProcess& process : baseline.processes) {
+    sum += process.process == name ? process.parameters[0] * process.parameters[0] : 0.0;
+  }
+  return sum;
+}
+
+/// The slow model of a given baseline.
 SlowModel given_model(const Baseline& baseline, double dt_s) {
   SlowModel model;
   for (const GivenProcess& process : baseline.processes) {
@@ -192,11 +202,16 @@ class GroupSearch {
       }
       for (Evidence& evidence : cause.file_fact(group_)) {
         evidence.cause = &cause;
+        std::vector<std::vector<unsigned char>> spoilt(group_.members.size());
         for (const std::size_t r : evidence.members) {
+          spoilt[r].assign(group_.members[r].recording->length, 0);
           if (cause.spoils != nullptr) {
-            cause.spoils(group_, evidence, r, mask_[r]);
+            cause.spoils(group_, evidence, r, spoilt[r]);
+            std::transform(mask_[r].begin(), mask_[r].end(), spoilt[r].begin(), mask_[r].begin(),
+                           [](unsigned char a, unsigned char b) { return static_cast<unsigned char>(a | b); });
           }
         }
+        hold_out_fact(group_, spoilt, evidence);
         if (cause.name == "output_resolution" && !evidence.parameters.empty()) {
           lattice_step_ = evidence.parameters[0].estimate.value;
         }
@@ -220,6 +235,12 @@ class GroupSearch {
     SlowModel model = search.null_fit().model;
     model.white_scale.clear();
     if (given_) {
+      model.white = given_white_;
+      if (quantization_ > 0.0) {
+        options.quantization = quantization_;
+        options.given = false;
+        options.whiten_further = true;
+      }
       return look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
     }
     options.whiten_further = false;
@@ -229,13 +250,39 @@ class GroupSearch {
     return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }
 
+  /// A drift that the baseline already has is no news.
+  void take_given_drift() {
+    for (const GivenProcess& process : study_.baseline.processes) {
+      if (process.process != "linear_drift") {
+        continue;
+      }
+      for (std::size_t r = 0; r < error_.size(); ++r) {
+        for (std::size_t i = 0; i < error_[r].size(); ++i) {
+          error_[r][i] -= process.parameters[0] * group_.members[r].recording->time_s(i);
+        }
+      }
+    }
+  }
+
+  /// The given model as blocks see it: of differenced noise only the two ends of a block remain, 2 Q^2/block^2.
+  [[nodiscard]] std::optional<SlowModel> block_model() const {
+    std::optional<SlowModel> model = given_;
+    if (model && quantization_ > 0.0) {
+      model->white += 2.0 * quantization_ * 5.0;  // blocks of about 1/5 s
+    }
+    return model;
+  }
+
   void search_slow() {
     const double dt = group_.members.front().recording->dt_s;
     if (applies(study_.baseline, group_)) {
       given_ = given_model(study_.baseline, dt);
       given_->white += lattice_step_ * lattice_step_ / 12.0 * dt;
+      given_white_ = given_->white;
+      quantization_ = given_level(study_.baseline, "quantization_noise");
+      take_given_drift();
     }
-    SlowSearch search(study_, group_, given_, threads_);
+    SlowSearch search(study_, group_, block_model(), threads_);
     search.set_data(error_, mask_);
     search.fit_null();
     std::vector<Evidence> slow_found;
@@ -296,7 +343,13 @@ class GroupSearch {
     }
     for (Evidence& evidence : slow_found) {
       search.describe(evidence);
-      outcome_.found.push_back(std::move(evidence));
+      // A drift that all recordings share is part of an automatic baseline.
+      const bool shared = evidence.members.size() == group_.members.size() && !evidence.parameters.empty();
+      if (!given_ && shared && evidence.cause->name == "linear_drift") {
+        outcome_.model.drift = evidence.parameters[0].estimate.value;
+      } else {
+        outcome_.found.push_back(std::move(evidence));
+      }
     }
     ChannelModel& model = outcome_.model;
     model.channel = group_.column;
@@ -403,6 +456,8 @@ class GroupSearch {
   std::vector<std::vector<double>> error_;
   std::vector<std::vector<unsigned char>> mask_;
   double lattice_step_ = 0.0;
+  double given_white_ = 0.0;
+  double quantization_ = 0.0;
   bool jitter_ = false;
   GroupOutcome outcome_;
 };

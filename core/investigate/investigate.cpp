@@ -95,6 +95,14 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   std::vector<GroupOutcome> outcomes;
   std::vector<Evidence> found;
   std::vector<Evidence> examined;
+  for (const StudyRecording& recording : study.recordings) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.error.empty() && !channel.input_only) {
+        report.notes.push_back("The channel " + recording.id + "/" + channel.column +
+                               " has no reference, so its error is not known and it is not examined.");
+      }
+    }
+  }
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The investigation was stopped.");

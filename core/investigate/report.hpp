@@ -46,6 +46,7 @@ struct ChannelModel {
   Unit unit;
   Quantity quantity = Quantity::AngularRate;
   SlowModel base;     ///< N^2 and the slow processes without the effects
+  double drift = 0.0;  ///< [SI/s], of an automatic baseline
   double bias = 0.0;  ///< [SI]
 };
 

@@ -118,6 +118,10 @@ Json model_json(const Report& report) {
     const investigate::LabUnit unit = investigate::level_unit(model.unit);
     const Json bias = parameter_json(model.bias, unit.per_si, unit.symbol);
     document["deterministic"][model.channel] = Json{{"bias", bias}};
+    if (model.drift != 0.0) {
+      const investigate::LabUnit slope = investigate::level_unit(model.unit, "/s");
+      document["deterministic"][model.channel]["drift"] = parameter_json(model.drift, slope.per_si, slope.symbol);
+    }
     channels[model.channel] = Json{{"processes", processes_json(model)}};
   }
   document["channels"] = std::move(channels);

@@ -12,6 +12,57 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Log likelihood gained by equal correlation r of the axes over independence, on one half of every recording:
+/// -1/2 sum [ ln((1-r)^(k-1) (1+(k-1) r)) + (S2 - r S^2/(1+(k-1) r))/(1-r) - S2 ], S2 the sum of squares, S the sum.
+double gain_on(std::span<const FullRate> axes, double r, std::size_t half) {
+  const auto k = static_cast<double>(axes.size());
+  const double log_det = (k - 1.0) * std::log1p(-r) + std::log1p((k - 1.0) * r);
+  double gain = 0.0;
+  for (std::size_t m = 0; m < axes[0].members(); ++m) {
+    std::size_t n = axes[0].innovation[m].size();
+    for (const FullRate& axis : axes) {
+      n = m < axis.members() ? std::min(n, axis.innovation[m].size()) : 0;
+    }
+    for (std::size_t i = half * n / 2; i < (half + 1) * n / 2; ++i) {
+      double sum = 0.0;
+      double square = 0.0;
+      bool used = true;
+      for (const FullRate& axis : axes) {
+        used = used && axis.used[m][i] != 0;
+        sum += axis.innovation[m][i];
+        square += axis.innovation[m][i] * axis.innovation[m][i];
+      }
+      if (used) {
+        gain -= 0.5 * (log_det + (square - r * sum * sum / (1.0 + (k - 1.0) * r)) / (1.0 - r) - square);
+      }
+    }
+  }
+  return gain;
+}
+
+/// Pooled correlation on one half.
+double correlation_on(std::span<const FullRate> axes, std::size_t half) {
+  double cross = 0.0;
+  double square = 0.0;
+  for (std::size_t m = 0; m < axes[0].members(); ++m) {
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      for (std::size_t b = a + 1; b < axes.size(); ++b) {
+        if (m >= axes[b].members() || m >= axes[a].members()) {
+          continue;
+        }
+        const auto& x = axes[a].innovation[m];
+        const auto& y = axes[b].innovation[m];
+        const std::size_t n = std::min(x.size(), y.size());
+        for (std::size_t i = half * n / 2; i < (half + 1) * n / 2; ++i) {
+          cross += x[i] * y[i];
+          square += 0.5 * (x[i] * x[i] + y[i] * y[i]);
+        }
+      }
+    }
+  }
+  return square > 0.0 ? std::clamp(cross / square, 0.0, 0.95) : 0.0;
+}
+
 std::vector<Evidence> examine(std::span<const FullRate> axes) {
   if (axes.size() < 2) {
     return {};
@@ -68,6 +119,13 @@ std::vector<Evidence> examine(std::span<const FullRate> axes) {
   evidence.parameters = {{"correlation",
                           {r / share, {(r - 1.96 * sd) / share, (r + 1.96 * sd) / share}},
                           units::one(axes[0].group->unit)}};
+  for (std::size_t half = 0; half < 2; ++half) {
+    evidence.heldout_gain += gain_on(axes, correlation_on(axes, 1 - half), half);
+  }
+  for (const auto& e : axes[0].innovation) {
+    evidence.heldout_samples += static_cast<double>(e.size()) * static_cast<double>(axes.size());
+  }
+  evidence.heldout = true;
   return {evidence};
 }
 
