@@ -34,7 +34,7 @@ Lattice find_lattice(std::span<const double> rows) {
   Lattice lattice;
   lattice.decimals = decimal_place(rows);
   const std::vector<double> values = distinct_values(rows);
-  if (values.size() < 3 || values.size() * 8 > rows.size()) {
+  if (values.size() < 3 || values.size() * 2 > rows.size()) {
     return lattice;
   }
   // The step is near the smallest common difference; decimals blur it by one of their units.

@@ -50,7 +50,7 @@ TEST_P(HiddenCause, IsNamedWhereItIsStrong) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, HiddenCause, testing::ValuesIn(cause_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& instance) { return instance.param; });
 
 TEST(NothingHidden, NothingIsFound) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

@@ -1,13 +1,15 @@
 /// stuck_samples: runs in which the last value repeats.
 /// On a lattice repeats are normal: with a chance p that the next value is the same, runs of k repeats or more occur N
-/// p^k times. Runs beyond the k at which that falls below 0.02 are stuck. Shorter stuck runs are counted by the
+/// p^k times. Runs beyond the k at which that falls below 0.001 are stuck. Shorter stuck runs are counted by the
 /// geometric law of the longer.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
+#include "core/investigate/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace driftlab::investigate {
 namespace {
@@ -39,7 +41,7 @@ double commonest_share(std::span<const double> values) {
 
 /// The chance is that of equal values far apart; on a lattice, where neighbours are alike, also the share of the
 /// commonest value and the share of runs that go on after one repeat.
-Runs count_runs(const Channel& channel) {
+Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   Runs runs;
   runs.of.assign(2, 0.0);
   const auto& v = channel.rows;
@@ -70,13 +72,20 @@ Runs count_runs(const Channel& channel) {
     twice += k > 1 ? runs.of[k] : 0.0;
   }
   const double goes_on = 1.15 * twice / std::max(1.0, once);
-  runs.chance = far > 0.01 ? std::min(0.999, std::max({far, goes_on, commonest_share(v)})) : far;
+  runs.chance = far;
+  const double step = find_lattice(v).step * channel.unit.factor;
+  const double noise = noise_of_differences(recording, channel);
+  if (far > 0.01 || step > 0.02 * noise) {
+    // Gaussian noise about the middle of a lattice place stays on it with erf(step / (2 sqrt(2) sigma)).
+    const double stays = noise > 0.0 ? std::erf(0.5 * step / std::numbers::sqrt2 / noise) : 1.0;
+    runs.chance = std::min(0.999, std::max({far, goes_on, commonest_share(v), stays}));
+  }
   return runs;
 }
 
 std::size_t longest_by_chance(const Runs& runs) {
   std::size_t k = 1;
-  while (k < 1000 && runs.samples * std::pow(runs.chance, static_cast<double>(k)) > 0.02) {
+  while (k < 1000 && runs.samples * std::pow(runs.chance, static_cast<double>(k)) > 1e-3) {
     ++k;
   }
   return k;
@@ -111,9 +120,9 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
     if (*low == *high) {
       continue;  // a constant channel is another matter
     }
-    const Runs all = count_runs(channel);
+    const Runs all = count_runs(*group.members[r].recording, channel);
     const Stuck stuck = stuck_in(all);
-    if (stuck.repeats < 4.0) {
+    if (stuck.repeats < 4.0 || stuck.runs < 2.0) {
       continue;
     }
     evidence.members.push_back(r);
@@ -151,7 +160,7 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
 /// Repeats of runs that chance does not explain.
 void spoils(const ChannelGroup& group, const Evidence& /*found*/, std::size_t r, std::vector<unsigned char>& mask) {
   const Channel& channel = *group.members[r].channel;
-  const std::size_t from = longest_by_chance(count_runs(channel));
+  const std::size_t from = longest_by_chance(count_runs(*group.members[r].recording, channel));
   std::size_t row = 0;
   std::size_t run_start = 0;
   double last = 0.0;
