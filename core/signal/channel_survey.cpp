@@ -235,9 +235,8 @@ ChannelSurvey survey_channel(const std::string& column, std::span<const double> 
   if (look_closer) {
     const std::vector<std::size_t> implausible = implausible_rows(values);
     survey.quality.implausible = implausible.size();
-    const auto missing = static_cast<std::ptrdiff_t>(survey.unsound.size());
     survey.unsound.insert(survey.unsound.end(), implausible.begin(), implausible.end());
-    std::inplace_merge(survey.unsound.begin(), survey.unsound.begin() + missing, survey.unsound.end());
+    std::sort(survey.unsound.begin(), survey.unsound.end());
   }
   walk(values, survey);
   survey.quality.resolution = smallest_step(values, survey.unsound);
