@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace driftlab {
@@ -38,6 +39,35 @@ Status check(const WaveletRecord& record) {
     return fail(ErrorCode::TooFewSamples, "A recording has fewer than two wavelet variances that are not zero.");
   }
   return {};
+}
+
+void withdraw(FittedProcess& process, const char* reason) {
+  for (FittedParameter& parameter : process.parameters) {
+    parameter.estimate.reset();
+    parameter.reason = reason;
+    parameter.upper_limit = std::numeric_limits<double>::infinity();
+  }
+}
+
+/// Takes back what a fit cannot say: where one of several processes of a kind vanished, or changes so fast that it is
+/// white noise under another name, the curve does not tell which of them the others are.
+void withdraw_ambiguous(const Model& model, double dt_s, ModelFit& fit) {
+  for (std::size_t p = 0; p < model.size(); ++p) {
+    const bool repeated = std::count_if(model.begin(), model.end(),
+                                        [&](const Process& other) { return other.kind == model[p].kind; }) > 1;
+    if (!repeated || model[p].kind->symbol != "GM") {
+      continue;
+    }
+    const bool ambiguous = std::any_of(model.begin(), model.end(), [&](const Process& other) {
+      return other.kind == model[p].kind && (!(other.parameters[0] > 0.0) || other.parameters[1] * dt_s > 1.0);
+    });
+    if (ambiguous) {
+      withdraw(
+          fit.processes[p],
+          "Not identifiable: one of the alike processes vanished or is white noise under another name, and the data "
+          "do not tell which the other is.");
+    }
+  }
 }
 
 }  // namespace
@@ -206,7 +236,9 @@ std::optional<Agreement> Replicates::agreement(const Candidate& joint) const {
 }
 
 ModelFit Replicates::report(Candidate& joint, IntervalMethod method) const {
-  return report_fit(joint, unit(), samples(), method);
+  ModelFit fit = report_fit(joint, unit(), samples(), method);
+  withdraw_ambiguous(joint.fit.model, blocks_->moments.dt_s, fit);
+  return fit;
 }
 
 }  // namespace driftlab

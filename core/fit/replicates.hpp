@@ -77,7 +77,9 @@ class Replicates {
   /// Empty for one recording and for a fit without a positive component.
   [[nodiscard]] std::optional<Agreement> agreement(const Candidate& joint) const;
 
-  /// The joint fit as it is told to people: parameters in SI. Profile intervals cost some 20 minimisations each.
+  /// The joint fit as it is told to people: parameters in SI. Profile intervals cost some 20 minimisations each. Where
+  /// one of several Gauss-Markov processes vanished, or has a correlation time below one sample, none of them is given:
+  /// the intervals would be those of the smaller model, and the name of the remaining process a guess.
   [[nodiscard]] ModelFit report(Candidate& joint, IntervalMethod method) const;
 
  private:

@@ -114,6 +114,22 @@ TEST(Replicates, InflationWidensIntervals) {
   EXPECT_NEAR(wider / width, std::sqrt(1.0 / 0.6), 0.02);
 }
 
+TEST(Replicates, GivesNoNameToWhatIsLeftOfTwoAlike) {
+  // White noise and one Gauss-Markov process fitted with two: one vanishes, or both share one curve.
+  const Model truth = white_and_markov(0.02, 0.05, 0.5);
+  auto stack = Replicates::stack({record(make(truth, 0.01, 30000, 0), 0.01)});
+  Candidate fit = stack->fit(*parse_model("WN+2GM"));
+  const ModelFit told = stack->report(fit, IntervalMethod::Preview);
+  const bool vanished = !(fit.fit.model[1].parameters[0] > 0.0) || !(fit.fit.model[2].parameters[0] > 0.0);
+  const bool white = fit.fit.model[1].parameters[1] * 0.01 > 1.0;
+  ASSERT_TRUE(vanished || white) << "this seed shows two processes";
+  for (std::size_t p = 1; p <= 2; ++p) {
+    EXPECT_FALSE(told.processes[p].parameters[0].estimate);
+    EXPECT_FALSE(told.processes[p].parameters[0].reason.empty());
+  }
+  EXPECT_TRUE(told.processes[0].parameters[0].estimate || white);
+}
+
 TEST(Replicates, RefusesWhatIsNoRecording) {
   EXPECT_EQ(Replicates::stack({}).error().code, ErrorCode::InvalidArgument);
   EXPECT_EQ(Replicates::stack({WaveletRecord{{1, 2}, {0.0, 1.0}, {}, 100, 0.01}}).error().code,
