@@ -200,7 +200,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   }
   data.flat = spectra_fit(data);
   if (!data.flat && !data.given) {
-    constexpr double kRepeats = 0.008;
+    constexpr double kRepeats = 0.006;
     data.repeatability = 1.0 + 2.0 * steady / static_cast<double>(data.members()) * kRepeats * kRepeats;
   }
   if (options.whiten_further) {

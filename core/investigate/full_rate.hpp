@@ -29,8 +29,8 @@ struct FullRate {
   std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
   std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin
   bool flat = true;  ///< white + slow describes the spectra; false: compare recordings with each other instead
-  /// Recordings of a real sensor repeat their noise level to about 0.8 %, not to 1/sqrt(2 n): where no model describes
-  /// the spectra, gains of contrasts between recordings are divided by 1 + 2 n 0.008^2. 1 elsewhere.
+  /// Recordings of a real sensor repeat their noise level to about 0.6 %, not to 1/sqrt(2 n): where no model describes
+  /// the spectra, gains of contrasts between recordings are divided by 1 + 2 n 0.006^2. 1 elsewhere.
   double repeatability = 1.0;
   bool band_limited = false;  ///< a band limit has been found: the colour at the top of the band is no news
 

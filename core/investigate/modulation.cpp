@@ -145,4 +145,9 @@ ModulationFit fit_modulation(const Modulation& levels, bool scale_known, double 
   return fit;
 }
 
+Interval widened(const ModulationFit& fit, const FullRate& data) {
+  const double factor = std::sqrt(data.repeatability);
+  return {fit.value - factor * (fit.value - fit.interval.low), fit.value + factor * (fit.interval.high - fit.value)};
+}
+
 }  // namespace driftlab::investigate

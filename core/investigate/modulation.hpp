@@ -35,4 +35,7 @@ struct ModulationFit {
 [[nodiscard]] ModulationFit fit_modulation(const Modulation& levels, bool scale_known, double unit,
                                            const std::function<double(double u, double x)>& ratio);
 
+/// The interval of a contrast between recordings, widened by the root of FullRate::repeatability.
+[[nodiscard]] Interval widened(const ModulationFit& fit, const FullRate& data);
+
 }  // namespace driftlab::investigate

@@ -25,14 +25,14 @@ std::vector<Evidence> examine(const FullRate& data) {
   if (fit.value <= 0.0) {
     return {};
   }
+  const Interval interval = widened(fit, data);
   Evidence evidence;
   evidence.members = all_members(*data.group);
   evidence.gain = fit.gain;
   evidence.score = fit.gain / data.repeatability - 1.0;
   evidence.shape = fit.value;
-  evidence.parameters = {{"k",
-                          {fit.value, {std::max(0.0, fit.interval.low), fit.interval.high}},
-                          units::per_acceleration(data.group->unit)}};
+  evidence.parameters = {
+      {"k", {fit.value, {std::max(0.0, interval.low), interval.high}}, units::per_acceleration(data.group->unit)}};
   return {evidence};
 }
 

@@ -17,7 +17,8 @@ namespace {
 struct Runs {
   std::vector<double> of;  ///< of[k]: runs with exactly k repeats
   double samples = 0.0;
-  double chance = 0.0;  ///< of two equal neighbours without sticking
+  double chance = 0.0;       ///< of two equal neighbours without sticking, its upper end
+  double coincidence = 0.0;  ///< share of equal values far apart
 };
 
 /// Largest share of one value in any of 32 parts of the record: while the mean stays there, a repeat is that likely.
@@ -65,6 +66,7 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   }
   // An upper end of the chance: few coincidences say little about it.
   const double far = (equal_far + 3.0 * std::sqrt(equal_far) + 5.0) / std::max(1.0, runs.samples - kFar);
+  runs.coincidence = equal_far / std::max(1.0, runs.samples - kFar);
   double once = 0.0;
   double twice = 0.0;
   for (std::size_t k = 1; k < runs.of.size(); ++k) {
@@ -131,9 +133,12 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
     // Geometric law: mean m with m = mean(repeats | >= k0) - (k0 - 1); runs in all M = M_k0 / g^(k0-1), g = 1 - 1/m.
     // Up to k0 = 2 hardly a run is lost and they are counted as they are.
     const bool direct = stuck.from <= 2;
-    const double m = std::max(1.0, stuck.repeats / stuck.runs - (direct ? 0.0 : k0 - 1.0));
+    // Single repeats beyond what coincidence gives belong to them.
+    const double single = direct && stuck.from == 2 ? std::max(0.0, all.of[1] - all.samples * all.coincidence) : 0.0;
+    const double m = std::max(
+        1.0, direct ? (stuck.repeats + single) / (stuck.runs + single) : stuck.repeats / stuck.runs - (k0 - 1.0));
     const double g = 1.0 - 1.0 / m;
-    const double total = direct ? stuck.runs : stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
+    const double total = direct ? stuck.runs + single : stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
     runs += total;
     repeats += total * m;
     samples += all.samples;

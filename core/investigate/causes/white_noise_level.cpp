@@ -25,12 +25,12 @@ std::vector<Evidence> examine(const FullRate& data) {
     evidence.members = scope;
     evidence.gain = fit.gain;
     evidence.score = fit.gain / data.repeatability - 1.0 - choice_penalty(static_cast<double>(scopes.size()));
+    const Interval interval = widened(fit, data);
     const double n0 = std::sqrt(data.model.white * fit.scale);
     evidence.shape = fit.value;
-    evidence.parameters = {
-        {"N",
-         {n0 * std::exp(fit.value), {n0 * std::exp(fit.interval.low), n0 * std::exp(fit.interval.high)}},
-         units::density(data.group->unit)}};
+    evidence.parameters = {{"N",
+                            {n0 * std::exp(fit.value), {n0 * std::exp(interval.low), n0 * std::exp(interval.high)}},
+                            units::density(data.group->unit)}};
     found.push_back(std::move(evidence));
   }
   return found;
