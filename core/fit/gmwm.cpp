@@ -177,6 +177,8 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
   std::vector<int> index(shapes, 0);
   std::vector<std::vector<int>> tried;
   std::vector<double> value;
+  std::vector<Eigen::Index> picked(static_cast<std::size_t>(fixed));
+  std::iota(picked.begin(), picked.end(), Eigen::Index{0});
   const auto visit = [&] {
     for (std::size_t s = 1; s < shapes; ++s) {
       const bool same_kind =
@@ -185,13 +187,11 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
         return;
       }
     }
-    std::vector<Eigen::Index> picked(static_cast<std::size_t>(fixed));
-    std::iota(picked.begin(), picked.end(), Eigen::Index{0});
     for (std::size_t s = 0; s < shapes; ++s) {
       picked[search.slots()[s].process] = fixed + static_cast<Eigen::Index>(s) * points + index[s];
     }
     tried.push_back(index);
-    value.push_back(problem.best_subset(picked).squared_residual);
+    value.push_back(problem.least_residual(picked));
   };
   for (;;) {
     visit();

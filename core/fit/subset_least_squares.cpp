@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,11 +13,12 @@ namespace {
 constexpr std::size_t kMaxColumns = 12;
 constexpr double kDependent = 1e-12;
 
-/// Solves the subset `members` of a Gram system by Cholesky; false if the columns are dependent or a level is not
-/// positive. `gain` is the fall of the squared residual.
+/// Solves the subset `members` of a Gram system by Cholesky; false if the columns are dependent. `gain` is the fall of
+/// the squared residual, `positive` whether all levels are.
 struct SmallSolve {
   std::array<double, kMaxColumns> x{};
   double gain = 0.0;
+  bool positive = false;
 
   bool run(const Eigen::MatrixXd& gram, const Eigen::VectorXd& product, std::span<const Eigen::Index> members) {
     const std::size_t n = members.size();
@@ -50,10 +52,8 @@ struct SmallSolve {
         sum -= lower[k][i] * x[k];
       }
       x[i] = sum / lower[i][i];
-      if (!(x[i] > 0.0)) {
-        return false;
-      }
     }
+    positive = std::all_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), [](double v) { return v > 0.0; });
     return true;
   }
 };
@@ -88,7 +88,7 @@ SubsetSolution GramProblem::best_subset(std::span<const Eigen::Index> picked) co
         members[count++] = picked[k];
       }
     }
-    if (solve.run(gram_, product_, {members.data(), count}) && solve.gain > best_gain) {
+    if (solve.run(gram_, product_, {members.data(), count}) && solve.positive && solve.gain > best_gain) {
       best_gain = solve.gain;
       best.x.setZero();
       for (std::size_t k = 0; k < count; ++k) {
@@ -98,6 +98,82 @@ SubsetSolution GramProblem::best_subset(std::span<const Eigen::Index> picked) co
   }
   best.squared_residual = b_squared_ - best_gain;
   return best;
+}
+
+double GramProblem::least_residual(std::span<const Eigen::Index> picked) const {
+  // Lawson and Hanson's active set on the normal equations; positions in `picked`.
+  const std::size_t n = picked.size();
+  std::array<double, kMaxColumns> x{};
+  std::array<std::size_t, kMaxColumns> inside{};
+  std::array<Eigen::Index, kMaxColumns> members{};
+  std::array<bool, kMaxColumns> barred{};
+  std::size_t count = 0;
+  double gain = 0.0;
+  SmallSolve solve;
+  const auto solve_inside = [&] {
+    for (std::size_t k = 0; k < count; ++k) {
+      members[k] = picked[inside[k]];
+    }
+    return solve.run(gram_, product_, {members.data(), count});
+  };
+  for (std::size_t round = 0; round < 3 * n; ++round) {
+    std::size_t entering = n;
+    double steepest = 1e-12 * std::sqrt(b_squared_);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (x[k] != 0.0 || barred[k]) {
+        continue;
+      }
+      double gradient = product_(picked[k]);
+      for (std::size_t i = 0; i < count; ++i) {
+        gradient -= gram_(picked[k], picked[inside[i]]) * x[inside[i]];
+      }
+      if (gradient > steepest) {
+        steepest = gradient;
+        entering = k;
+      }
+    }
+    if (entering == n) {
+      break;
+    }
+    inside[count++] = entering;
+    if (!solve_inside() || !(solve.x[count - 1] > 0.0)) {  // depends on those already in
+      --count;
+      barred[entering] = true;
+      continue;
+    }
+    while (!solve.positive && count > 0) {  // back to the first bound on the way; what reached it leaves
+      double step = 1.0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double now = x[inside[k]];
+        if (!(solve.x[k] > 0.0)) {
+          step = std::min(step, now / (now - solve.x[k]));
+        }
+      }
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        double& now = x[inside[k]];
+        const double moved = now + step * (solve.x[k] - now);
+        now = solve.x[k] > 0.0 || moved > 1e-15 ? std::max(moved, 0.0) : 0.0;
+        if (now > 0.0) {
+          inside[kept++] = inside[k];
+        }
+      }
+      if (kept == count) {
+        break;
+      }
+      count = kept;
+      if (!solve_inside()) {
+        break;
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      x[inside[k]] = std::max(solve.x[k], 0.0);
+    }
+    if (solve.positive) {
+      gain = std::max(gain, solve.gain);
+    }
+  }
+  return b_squared_ - gain;
 }
 
 SubsetSolution subset_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& a,

@@ -24,6 +24,8 @@ class GramProblem {
   GramProblem(const Eigen::MatrixXd& columns, const Eigen::VectorXd& b);
   /// Solution over the columns `picked`; accurate to some 1e-10 of |b|^2.
   [[nodiscard]] SubsetSolution best_subset(std::span<const Eigen::Index> picked) const;
+  /// Its squared residual alone, by an active-set method that solves a few subsets instead of all.
+  [[nodiscard]] double least_residual(std::span<const Eigen::Index> picked) const;
 
  private:
   Eigen::MatrixXd gram_;     ///< of the columns scaled to unit length
