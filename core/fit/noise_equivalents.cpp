@@ -24,8 +24,7 @@ Symbols symbols_of(Dimension channel) {
     return {"rad/s/sqrt(Hz)", "deg/s/sqrt(Hz)", kDegree, "deg/s", kDegree, "rad/s^2/sqrt(Hz)"};
   }
   if (channel == Dimension::SpecificForce) {
-    return {"m/s^2/sqrt(Hz)",        "ug/sqrt(Hz)", 1e6 / kStandardGravity, "mg",
-            1e3 / kStandardGravity, "m/s^3/sqrt(Hz)"};
+    return {"m/s^2/sqrt(Hz)", "ug/sqrt(Hz)", 1e6 / kStandardGravity, "mg", 1e3 / kStandardGravity, "m/s^3/sqrt(Hz)"};
   }
   return {"1/sqrt(Hz)", "1/sqrt(Hz)", 1.0, "1", 1.0, "1/s/sqrt(Hz)"};
 }

@@ -4,8 +4,8 @@
 /// driftlab's N is that of IEEE Std 952: the two-sided density of the rate is N^2, samples at dt scatter by N/sqrt(dt),
 /// AV = N^2/tau. Data sheets and spectrum analysers give the one-sided density, which is larger by sqrt(2) (0.05
 /// deg/s/sqrt(Hz) on a data sheet is 2.1 deg/sqrt(h) of angle random walk, not 3.0). Kalibr's continuous-time
-/// `noise_density` is N in SI units, its `random_walk` is K in SI units; what a filter adds per sample is N/sqrt(dt) and
-/// K sqrt(dt).
+/// `noise_density` is N in SI units, its `random_walk` is K in SI units; what a filter adds per sample is N/sqrt(dt)
+/// and K sqrt(dt).
 #include "core/signal/unit.hpp"
 
 #include <string>
