@@ -1,14 +1,13 @@
 #include "core/fit/allan_regression.hpp"
 
-#include "core/fit/candidate.hpp"
 #include "core/fit/fit_report.hpp"
 
 #include <algorithm>
 
 namespace driftlab {
 
-AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::VectorXd& sd, HaarCovariance& plan,
-                                 double unit) {
+AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::VectorXd& sd,
+                                 const CovarianceLaw& covariance_of, double unit) {
   AllanParameters result;
   // Fewer scales than terms: the steep ones go first, they need long records.
   const std::vector<std::string_view> names{"WN", "WN+RW", "QN+WN+RW", "QN+WN+FN+RW", "QN+WN+FN+RW+DR"};
@@ -19,7 +18,7 @@ AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::Vec
     return result;
   }
   const Result<ModelStructure> structure = parse_model(names[choice - 1]);
-  Candidate candidate = fit_candidate(moments, *structure, sd, plan);
+  Candidate candidate = fit_candidate(moments, *structure, sd, covariance_of);
   if (!candidate.log_fit) {
     return result;
   }

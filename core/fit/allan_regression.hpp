@@ -6,14 +6,13 @@
 /// non-negative; nothing is read off "where the slope is -1/2". Intervals by profile of the quasi-likelihood on the
 /// logarithms; where the five terms do not fit (L above its degrees of freedom) they are widened by that ratio (Birge
 /// 1932). A coefficient without a lower limit is not identifiable and comes back empty with the reason.
+#include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
-#include "core/fit/gmwm.hpp"
-#include "core/variance/haar_covariance.hpp"
 
 namespace driftlab {
 
 /// `sd`: standard deviations of the wavelet variances; `unit`: SI units in one unit of the moments.
 [[nodiscard]] AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::VectorXd& sd,
-                                               HaarCovariance& plan, double unit);
+                                               const CovarianceLaw& covariance_of, double unit);
 
 }  // namespace driftlab

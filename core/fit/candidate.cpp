@@ -65,8 +65,8 @@ Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& str
   return candidate;
 }
 
-double equation_8(const WaveletMoments& moments, const GmwmSolution& solution, const Eigen::VectorXd& sd,
-                  const Eigen::MatrixXd& covariance) {
+Equation8 equation_8(const WaveletMoments& moments, const GmwmSolution& solution, const Eigen::VectorXd& sd,
+                     const Eigen::MatrixXd& covariance) {
   const Model active = solution.active();
   const Eigen::VectorXd weight = sd.cwiseInverse();
   const Eigen::VectorXd error = weight.cwiseProduct(moments.nu - modelled_variance(moments, active));
@@ -89,7 +89,7 @@ double equation_8(const WaveletMoments& moments, const GmwmSolution& solution, c
   // tr(W C W D (D'WD)^-1 D') = tr(H S): H the projector on the weighted derivatives, S the weighted covariance.
   const Eigen::MatrixXd scaled = weight.asDiagonal() * covariance * weight.asDiagonal();
   const Eigen::MatrixXd projected = derivative * derivative.colPivHouseholderQr().solve(scaled);
-  return error.squaredNorm() + 2.0 * std::max(0.0, projected.trace());
+  return {error.squaredNorm(), 2.0 * std::max(0.0, projected.trace())};
 }
 
 }  // namespace driftlab

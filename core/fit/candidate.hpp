@@ -29,7 +29,8 @@ struct Candidate {
   GmwmSolution fit;               ///< fit under the model-implied weights
   Eigen::MatrixXd covariance;     ///< of the wavelet variances under `fit`
   double quasi_likelihood = 0.0;  ///< e' C^-1 e + ln det C
-  double eq8 = 0.0;               ///< set by price_by_equation_8
+  double eq8 = 0.0;               ///< equation_8(...).value()
+  double optimism = 0.0;          ///< equation_8(...).optimism
   std::size_t parameters = 0;
   std::unique_ptr<LogFit> log_fit;  ///< over the positive components; null where nothing is positive
 
@@ -45,10 +46,17 @@ using CovarianceLaw = std::function<Eigen::MatrixXd(const Model&)>;
 [[nodiscard]] Candidate fit_candidate(const WaveletMoments& moments, const ModelStructure& structure,
                                       const Eigen::VectorXd& sd, const CovarianceLaw& covariance_of);
 
-/// Seed paper eq. 8 with the optimism derived for it: (nu^ - nu)' W (nu^ - nu) + 2 tr(W C W D (D'WD)^-1 D'), W the
-/// diagonal weights, C one covariance for all candidates, D the derivatives of the active components. Never below the
-/// first term.
-[[nodiscard]] double equation_8(const WaveletMoments& moments, const GmwmSolution& solution, const Eigen::VectorXd& sd,
-                                const Eigen::MatrixXd& covariance);
+/// Seed paper eq. 8 in its two terms.
+struct Equation8 {
+  double distance = 0.0;  ///< (nu^ - nu)' W (nu^ - nu)
+  double optimism = 0.0;  ///< 2 tr(W C W D (D'WD)^-1 D') >= 0
+  [[nodiscard]] double value() const { return distance + optimism; }
+};
+
+/// Eq. 8 with the optimism derived for it, W the diagonal weights, C one covariance for all candidates, D the
+/// derivatives of the active components. The trace is that of a projector times a covariance, so it is never negative;
+/// with W = C^-1 it would be 2 p.
+[[nodiscard]] Equation8 equation_8(const WaveletMoments& moments, const GmwmSolution& solution,
+                                   const Eigen::VectorXd& sd, const Eigen::MatrixXd& covariance);
 
 }  // namespace driftlab

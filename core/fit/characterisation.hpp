@@ -75,10 +75,17 @@ struct ModelFit {
   double objective = 0.0;       ///< weighted squared distance at the optimum (seed paper eq. 7)
   double wic = 0.0;             ///< criterion that ranks (smaller is better)
   double eq8 = 0.0;             ///< seed paper's eq. 8 with optimism 2 tr(W C W D (D'WD)^-1 D'), diagonal W
+  double optimism = 0.0;        ///< its second term, never negative
   std::size_t parameters = 0;   ///< free parameters of the fit (those of vanished components do not count)
   bool plausible = false;       ///< in the set of models that the data cannot tell apart (holds the truth in 85-98 %)
   std::optional<JTest> j_test;  ///< empty where no degree of freedom is left
-  std::string status;           ///< `converged`, `not_converged`, `collapsed` (a component vanished), `unidentifiable`
+  /// Ratio of the best to the worst known combination of the logarithms of the parameters (1: all equally well).
+  double condition_number = 1.0;
+  /// Parameters at an end of their range: `random_walk.K` where the component vanished, `gauss_markov.beta` where the
+  /// record cannot tell the process from white noise or from a random walk.
+  std::vector<std::string> bounds_active;
+  std::string intervals = "profile";  ///< how the parameters' intervals were made: `profile`, `sandwich`, `bootstrap`
+  std::string status;  ///< `converged`, `not_converged`, `collapsed` (a component vanished), `unidentifiable`
   std::vector<std::string> warnings;
 };
 

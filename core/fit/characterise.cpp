@@ -1,8 +1,10 @@
 #include "core/fit/characterise.hpp"
 
 #include "core/fit/allan_regression.hpp"
+#include "core/fit/bootstrap.hpp"
 #include "core/fit/candidate.hpp"
 #include "core/fit/fit_report.hpp"
+#include "core/fit/model_search.hpp"
 #include "core/variance/contamination.hpp"
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
@@ -87,7 +89,7 @@ void store_robust(std::span<const double> samples, double mean, double unit_squa
 
 /// Fits every candidate that the number of scales allows; the rest are named in a warning.
 Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, const CharacteriseOptions& options,
-                                              const Eigen::VectorXd& sd, HaarCovariance& plan,
+                                              const Eigen::VectorXd& sd, const CovarianceLaw& covariance_of,
                                               const RunControl& control, std::vector<std::string>& warnings) {
   std::vector<Candidate> candidates;
   std::string left_out;
@@ -98,7 +100,7 @@ Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, con
     }
     const ModelStructure structure = *parse_model(options.models[i]);
     const std::string name = model_name(structure);
-    control.report("fit " + name, 0.3 + 0.5 * static_cast<double>(i) / static_cast<double>(options.models.size()));
+    control.report("fit " + name, 0.3 + 0.4 * static_cast<double>(i) / static_cast<double>(options.models.size()));
     if (structure.parameter_count() > usable) {
       left_out += (left_out.empty() ? "" : ", ") + name;
       continue;
@@ -106,7 +108,7 @@ Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, con
     const bool repeated = std::any_of(candidates.begin(), candidates.end(),
                                       [&](const Candidate& other) { return other.structure == structure; });
     if (!repeated) {
-      candidates.push_back(fit_candidate(moments, structure, sd, plan));
+      candidates.push_back(fit_candidate(moments, structure, sd, covariance_of));
     }
   }
   if (!left_out.empty()) {
@@ -114,6 +116,12 @@ Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, con
         "The record is too short for these models, which have more parameters than it has scales: " + left_out + ".");
   }
   std::erase_if(candidates, [](const Candidate& candidate) { return candidate.log_fit == nullptr; });
+  if (options.search == ModelSearch::Stepwise && !candidates.empty()) {
+    RunControl part;
+    part.stop = control.stop;
+    part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.7 + 0.1 * fraction); };
+    return search_models(moments, sd, covariance_of, std::move(candidates), part);
+  }
   return candidates;
 }
 
@@ -124,7 +132,9 @@ void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, con
       });
   const Eigen::MatrixXd common = largest->covariance;
   for (Candidate& candidate : candidates) {
-    candidate.eq8 = equation_8(moments, candidate.diagonal, sd, common);
+    const Equation8 criterion = equation_8(moments, candidate.diagonal, sd, common);
+    candidate.eq8 = criterion.value();
+    candidate.optimism = criterion.optimism;
   }
   std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
     const double first = a.criterion(moments.samples);
@@ -140,7 +150,8 @@ void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, con
   });
 }
 
-void store_fits(std::vector<Candidate>& candidates, double unit, double samples, ChannelCharacterisation& result) {
+void store_fits(std::vector<Candidate>& candidates, double unit, double samples, const std::vector<double>& rises,
+                ChannelCharacterisation& result) {
   double best = std::numeric_limits<double>::infinity();
   const auto light = [](const Candidate& c) {
     return c.log_fit->minimum() + 2.0 * static_cast<double>(c.structure.parameter_count());
@@ -150,7 +161,7 @@ void store_fits(std::vector<Candidate>& candidates, double unit, double samples,
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const IntervalMethod method = i == 0 ? IntervalMethod::Profile : IntervalMethod::Preview;
-    result.fits.push_back(report_fit(candidates[i], unit, samples, method));
+    result.fits.push_back(report_fit(candidates[i], unit, samples, method, i == 0 ? rises : std::vector<double>{}));
     result.fits.back().plausible = light(candidates[i]) <= best + kPlausible;
   }
 }
@@ -158,6 +169,9 @@ void store_fits(std::vector<Candidate>& candidates, double unit, double samples,
 }  // namespace
 
 Status check_options(const CharacteriseOptions& options) {
+  if (options.bootstrap != 0 && (options.bootstrap < kFewestReplicates || options.bootstrap > kMostReplicates)) {
+    return fail(replicates_error(options.bootstrap));
+  }
   if (options.models.empty() || options.models.size() > kMostModels) {
     return fail(ErrorCode::InvalidArgument, "Between 1 and " + std::to_string(kMostModels) + " models can be compared.",
                 {{"parameter", "models"}, {"limit", std::to_string(kMostModels)}});
@@ -190,7 +204,10 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   if (control.stop.stop_requested()) {
     return cancelled();
   }
-  HaarVariance curve = haar_variance(channel.values, summary->mean);
+  HaarVariance curve = haar_variance(channel.values, summary->mean, control);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   const double largest = *std::max_element(curve.variance.begin(), curve.variance.end());
   const double unit = std::sqrt(largest);
   const double si_unit = unit * std::fabs(channel.si_factor);
@@ -226,19 +243,37 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   store_robust(channel.values, summary->mean, largest, si_unit * si_unit, curve,
                excess == 0.0 ? intervals : variance_intervals(curve, plan), plan, result);
   const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
-  Result<std::vector<Candidate>> candidates = fit_candidates(moments, options, sd, plan, control, result.warnings);
+  const CovarianceLaw covariance_of = [&](const Model& model) {
+    Eigen::MatrixXd covariance = plan.matrix(model);
+    add_kurtosis(covariance, model, plan.half(), curve.samples, channel.dt_s, intervals.shape);
+    return covariance;
+  };
+  Result<std::vector<Candidate>> candidates =
+      fit_candidates(moments, options, sd, covariance_of, control, result.warnings);
   if (!candidates) {
     return fail(std::move(candidates.error()));
   }
   control.report("allan regression", 0.8);
-  result.allan_parameters = allan_regression(moments, sd, plan, si_unit);
+  result.allan_parameters = allan_regression(moments, sd, covariance_of, si_unit);
   if (control.stop.stop_requested()) {
     return cancelled();
   }
   control.report("parameter intervals", 0.9);
   if (!candidates->empty()) {
     rank(*candidates, moments, sd);
-    store_fits(*candidates, si_unit, moments.samples, result);
+    std::vector<double> rises;
+    if (options.bootstrap != 0) {
+      RunControl part;
+      part.stop = control.stop;
+      part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); };
+      Result<std::vector<double>> found =
+          bootstrap_rises(candidates->front(), moments, options.bootstrap, options.seed, part);
+      if (!found) {
+        return fail(std::move(found.error()));
+      }
+      rises = std::move(*found);
+    }
+    store_fits(*candidates, si_unit, moments.samples, rises, result);
   } else {
     result.warnings.emplace_back("No model could be fitted.");
   }

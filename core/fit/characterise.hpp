@@ -12,15 +12,24 @@
 namespace driftlab {
 
 /// Changes whenever the same input and settings may give other numbers; stored with every result.
-inline constexpr int kAlgorithmVersion = 2;
+inline constexpr int kAlgorithmVersion = 3;
+
+/// Which models are compared.
+enum class ModelSearch {
+  Listed,    ///< the models of CharacteriseOptions::models and no others
+  Stepwise,  ///< from the best of these on, process by process over the whole registry (core/fit/model_search.hpp)
+};
 
 struct CharacteriseOptions {
   /// Candidate models, written as in Table 3 of the seed paper (`WN`, `WN+GM`, `WN+2GM+RW`, `QN+WN+RW`, ...).
   /// The default is the nine of Table 3.
   std::vector<std::string> models = {"WN",     "WN+GM",     "WN+GM+RW",  "WN+GM+DR",    "WN+GM+RW+DR",
                                      "WN+2GM", "WN+2GM+RW", "WN+2GM+DR", "WN+2GM+RW+DR"};
-  /// Seed of every random draw (bootstrap, tie breaking). The same seed gives the same bits.
+  /// Seed of every random draw (the bootstrap). The same seed gives the same bits.
   std::uint64_t seed = 1;
+  ModelSearch search = ModelSearch::Listed;
+  /// Replicates of a parametric bootstrap of the best model's parameter intervals (core/fit/bootstrap.hpp); 0: none.
+  std::size_t bootstrap = 0;
 };
 
 /// Samples of one channel as they lie in the file, and the factor that makes them SI.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace driftlab {
@@ -12,6 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A preview whose logarithm is this uncertain is no estimate.
 constexpr double kPreviewLimit = 2.0;
+constexpr double kPoorlyConditioned = 1e4;
 
 std::string vanished(const ProcessKind& kind) {
   return "The data show no " + std::string(kind.title) + ": the best fit has none of it.";
@@ -37,14 +39,14 @@ struct Reported {
 };
 
 Reported report_parameter(Candidate& candidate, const Process& process, std::size_t active_index, std::size_t parameter,
-                          IntervalMethod method, double rise) {
+                          IntervalMethod method, const std::function<double(std::size_t)>& rise_of) {
   LogFit& fit = *candidate.log_fit;
   const auto& coordinates = fit.coordinates();
   const auto found = std::find_if(coordinates.begin(), coordinates.end(), [&](const LogCoordinate& c) {
     return c.process == active_index && c.parameter == parameter;
   });
   const auto k = static_cast<std::size_t>(found - coordinates.begin());
-  const Interval log_interval = coordinate_interval(fit, k, method, rise);
+  const Interval log_interval = coordinate_interval(fit, k, method, rise_of(k));
   const double scale = parameter == 0 ? 0.5 : 1.0;
   Reported reported;
   const std::string name(process.kind->parameters[parameter].name);
@@ -82,9 +84,8 @@ std::optional<JTest> j_test(const Candidate& candidate) {
   return JTest{statistic, dof, p};
 }
 
-}  // namespace
-
-std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method, double rise) {
+std::vector<FittedProcess> report_with(Candidate& candidate, double unit, IntervalMethod method,
+                                       const std::function<double(std::size_t)>& rise_of) {
   std::vector<FittedProcess> processes;
   std::size_t active_index = 0;
   for (const Process& process : candidate.fit.model) {
@@ -103,7 +104,7 @@ std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, I
       } else if (!level_known) {
         parameter.reason = "Not identifiable: the data do not show that the process is there.";
       } else {
-        Reported reported = report_parameter(candidate, process, active_index, k, method, rise);
+        Reported reported = report_parameter(candidate, process, active_index, k, method, rise_of);
         level_known = k > 0 || reported.estimate.has_value();
         parameter.reason = std::move(reported.reason);
         parameter.estimate = reported.estimate;
@@ -122,15 +123,54 @@ std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, I
   return processes;
 }
 
-ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method) {
+/// Names of the parameters whose bound is active, and a sentence for each shape at the end of its range.
+void report_bounds(const Candidate& candidate, ModelFit& fit) {
+  Model active;
+  for (const Process& process : candidate.fit.model) {
+    if (process.parameters[0] > 0.0) {
+      active.push_back(process);
+    } else {
+      fit.bounds_active.push_back(std::string(process.kind->name) + "." +
+                                  std::string(process.kind->parameters[0].name));
+    }
+  }
+  for (const std::size_t k : candidate.log_fit->at_bound()) {
+    const LogCoordinate& c = candidate.log_fit->coordinates()[k];
+    const ProcessKind& kind = *active[c.process].kind;
+    std::string name = std::string(kind.name) + "." + std::string(kind.parameters[c.parameter].name);
+    if (c.parameter > 0) {
+      const bool low = candidate.log_fit->best()(static_cast<Eigen::Index>(k)) <= c.low + 1e-6;
+      fit.warnings.push_back(name + (low ? " lies at the low end of what a record of this length can tell."
+                                         : " lies at the high end of what this sampling rate can tell."));
+    }
+    fit.bounds_active.push_back(std::move(name));
+  }
+}
+
+}  // namespace
+
+std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method, double rise) {
+  return report_with(candidate, unit, method, [rise](std::size_t) { return rise; });
+}
+
+std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, const std::vector<double>& rises) {
+  return report_with(candidate, unit, IntervalMethod::Profile, [&rises](std::size_t k) { return rises[k]; });
+}
+
+ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method,
+                    const std::vector<double>& rises) {
   ModelFit fit;
   fit.model = model_name(candidate.structure);
   fit.objective = candidate.fit.objective;
   fit.wic = candidate.criterion(samples);
   fit.eq8 = candidate.eq8;
+  fit.optimism = candidate.optimism;
   fit.parameters = candidate.parameters;
   fit.j_test = j_test(candidate);
-  fit.processes = report_processes(candidate, unit, method, kRise95);
+  fit.intervals = !rises.empty() ? "bootstrap" : (method == IntervalMethod::Profile ? "profile" : "sandwich");
+  fit.processes =
+      rises.empty() ? report_processes(candidate, unit, method, kRise95) : report_processes(candidate, unit, rises);
+  fit.condition_number = candidate.log_fit->condition_number();
   bool collapsed = false;
   bool unidentified = false;
   for (std::size_t p = 0; p < fit.processes.size(); ++p) {
@@ -151,6 +191,11 @@ ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalM
                : unidentified            ? "unidentifiable"
                : candidate.fit.converged ? "converged"
                                          : "not_converged";
+  report_bounds(candidate, fit);
+  if (fit.condition_number > kPoorlyConditioned) {
+    fit.warnings.emplace_back(
+        "Some combination of the parameters is hardly known (condition number above 1e4): see their intervals.");
+  }
   if (fit.j_test && fit.j_test->p < 0.01) {
     fit.warnings.emplace_back(
         "The model does not fit the wavelet variances (J-test p < 0.01); its intervals are too short.");

@@ -15,8 +15,13 @@ enum class IntervalMethod {
 [[nodiscard]] std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method,
                                                           double rise);
 
-/// The whole fit. `samples`: N of the criterion.
-[[nodiscard]] ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method);
+/// The same with a rise for each coordinate of the candidate's LogFit, as a bootstrap gives them.
+[[nodiscard]] std::vector<FittedProcess> report_processes(Candidate& candidate, double unit,
+                                                          const std::vector<double>& rises);
+
+/// The whole fit. `samples`: N of the criterion. `rises`: of a bootstrap, empty without one.
+[[nodiscard]] ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method,
+                                  const std::vector<double>& rises = {});
 
 /// Squared-distance rise of a 95 % interval of one parameter: chi-square(1) at 0.95.
 inline constexpr double kRise95 = 3.841458820694124;

@@ -1,6 +1,7 @@
 #include "core/fit/log_fit.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <boost/math/special_functions/digamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
 #include <ceres/tiny_solver.h>
@@ -240,6 +241,35 @@ double LogFit::constrained(std::size_t k, double value, Eigen::VectorXd& warm) c
     return from_best_value;
   }
   return warm_value;
+}
+
+double LogFit::rise_at(std::size_t k, double value) {
+  Eigen::VectorXd warm = best_;
+  const double found = constrained(k, value, warm);
+  if (found < minimum_) {
+    best_ = std::move(warm);
+    minimum_ = found;
+  }
+  return found - minimum_;
+}
+
+double LogFit::condition_number() const {
+  Eigen::MatrixXd jacobian;
+  evaluate(best_, nullptr, &jacobian);
+  const Eigen::VectorXd singular = jacobian.jacobiSvd().singularValues();
+  const double least = singular(singular.size() - 1);
+  return jacobian.rows() >= jacobian.cols() && least > 1e-14 * singular(0) ? singular(0) / least : kInfinity;
+}
+
+std::vector<std::size_t> LogFit::at_bound() const {
+  std::vector<std::size_t> bounds;
+  for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+    const double at = best_(static_cast<Eigen::Index>(k));
+    if (at <= coordinates_[k].low + 1e-6 || at >= coordinates_[k].high - 1e-6) {
+      bounds.push_back(k);
+    }
+  }
+  return bounds;
 }
 
 Interval LogFit::profile(std::size_t k, double rise) {

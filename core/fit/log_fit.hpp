@@ -48,6 +48,17 @@ class LogFit {
   /// not reach is open (infinite). Also lowers best()/minimum() should a constrained fit find less.
   [[nodiscard]] Interval profile(std::size_t k, double rise);
 
+  /// How far L rises above its minimum where coordinate `k` is held at `value` and the rest are free: chi-square(1) at
+  /// the truth. At least 0; lowers best()/minimum() should the constrained fit find less.
+  [[nodiscard]] double rise_at(std::size_t k, double value);
+
+  /// Ratio of the largest to the smallest singular value of the Jacobian of the whitened residual: how unequally the
+  /// data know the combinations of the coordinates. Infinite where one of them is not known at all.
+  [[nodiscard]] double condition_number() const;
+
+  /// Coordinates that lie at an end of their range.
+  [[nodiscard]] std::vector<std::size_t> at_bound() const;
+
   /// L and, where asked for, the whitened residual and its Jacobian (scales x coordinates).
   double evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* residual, Eigen::MatrixXd* jacobian) const;
 

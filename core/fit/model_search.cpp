@@ -1,0 +1,86 @@
+#include "core/fit/model_search.hpp"
+
+#include "core/process/registry.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+constexpr std::size_t kMostShapes = 3;
+constexpr int kMostSteps = 12;
+
+std::size_t best_of(const std::vector<Candidate>& candidates, double samples) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    if (candidates[i].criterion(samples) < candidates[best].criterion(samples)) {
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<ModelStructure> neighbouring_structures(const ModelStructure& from, std::size_t most_parameters) {
+  std::vector<ModelStructure> all;
+  if (from.kinds.size() < kMaxModelProcesses) {
+    for (const ProcessKind& kind : process_registry()) {
+      const bool there = std::find(from.kinds.begin(), from.kinds.end(), &kind) != from.kinds.end();
+      if (there && !kind.repeats) {
+        continue;
+      }
+      ModelStructure larger = from;
+      const auto place = std::upper_bound(
+          larger.kinds.begin(), larger.kinds.end(), &kind,
+          [](const ProcessKind* a, const ProcessKind* b) { return registry_index(a) < registry_index(b); });
+      larger.kinds.insert(place, &kind);
+      if (larger.shape_count() <= kMostShapes && larger.parameter_count() <= most_parameters) {
+        all.push_back(std::move(larger));
+      }
+    }
+  }
+  for (std::size_t k = 0; k < from.kinds.size() && from.kinds.size() > 1; ++k) {
+    if (k > 0 && from.kinds[k] == from.kinds[k - 1]) {
+      continue;  // the same model as without the one before
+    }
+    ModelStructure smaller = from;
+    smaller.kinds.erase(smaller.kinds.begin() + static_cast<std::ptrdiff_t>(k));
+    all.push_back(std::move(smaller));
+  }
+  return all;
+}
+
+Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd,
+                                             const CovarianceLaw& covariance_of, std::vector<Candidate> known,
+                                             const RunControl& control) {
+  const auto usable = static_cast<std::size_t>((moments.nu.array() > 0.0).count());
+  std::size_t best = best_of(known, moments.samples);
+  for (int step = 0; step < kMostSteps; ++step) {
+    for (const ModelStructure& structure : neighbouring_structures(known[best].structure, usable)) {
+      if (control.stop.stop_requested()) {
+        return fail(ErrorCode::Cancelled, "The search for a model was cancelled.");
+      }
+      const bool fitted =
+          std::any_of(known.begin(), known.end(), [&](const Candidate& other) { return other.structure == structure; });
+      if (fitted) {
+        continue;
+      }
+      control.report("fit " + model_name(structure), static_cast<double>(step) / kMostSteps);
+      Candidate candidate = fit_candidate(moments, structure, sd, covariance_of);
+      if (candidate.log_fit) {
+        known.push_back(std::move(candidate));
+      }
+    }
+    const std::size_t next = best_of(known, moments.samples);
+    if (next == best) {
+      break;
+    }
+    best = next;
+  }
+  return known;
+}
+
+}  // namespace driftlab

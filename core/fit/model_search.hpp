@@ -1,0 +1,29 @@
+#pragma once
+/// Stepwise search for a model over every registered process, beyond the candidates that somebody listed.
+///
+/// From the best candidate so far, every model with one process more or one less is fitted, the best by the criterion
+/// (candidate.hpp) is the next start, until no neighbour is better. The penalty p ln N of the criterion is what stops
+/// it; neighbours already fitted are not fitted twice. It is a local search: a pair of processes that helps only
+/// together is not found, which the listed candidates are there for. What it finds was chosen among some 30 models, so
+/// its intervals and its J-test are those of a model that was looked for.
+#include "core/fit/candidate.hpp"
+#include "core/signal/progress.hpp"
+#include "core/signal/result.hpp"
+
+#include <vector>
+
+namespace driftlab {
+
+/// Structures one process away from `from`, in registry order, additions before removals: none with more parameters
+/// than `most_parameters`, more than three shapes, or no process at all.
+[[nodiscard]] std::vector<ModelStructure> neighbouring_structures(const ModelStructure& from,
+                                                                  std::size_t most_parameters);
+
+/// `known` (not empty) and everything fitted on the way. Error: Cancelled, polled before each fit.
+/// Cost: some 8 fits a step, some 3 to 6 steps.
+[[nodiscard]] Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd,
+                                                           const CovarianceLaw& covariance_of,
+                                                           std::vector<Candidate> known,
+                                                           const RunControl& control = {});
+
+}  // namespace driftlab
