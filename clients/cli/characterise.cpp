@@ -12,12 +12,16 @@ struct Flags {
   std::string server;
   std::vector<std::string> models;
   std::uint64_t seed = 1;
+  bool stepwise = false;
+  std::size_t bootstrap = 0;
   bool json = false;
 };
 
 Exit run(const Flags& flags) {
   CharacteriseOptions options;
   options.seed = flags.seed;
+  options.search = flags.stepwise ? ModelSearch::Stepwise : ModelSearch::Listed;
+  options.bootstrap = flags.bootstrap;
   if (!flags.models.empty()) {
     options.models = flags.models;
   }
@@ -58,6 +62,12 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->add_option("--models", flags->models,
                    "Candidate models, e.g. WN,WN+GM; default: the nine of Radi et al. (2017)")
       ->delimiter(',');
+  command->add_flag("--stepwise", flags->stepwise,
+                    "Go on from the best of the models, process by process over all that are known");
+  command
+      ->add_option("--bootstrap", flags->bootstrap,
+                   "Series (40 to 2000) simulated to calibrate the best model's intervals; 0: none")
+      ->capture_default_str();
   command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
   command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
   command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");

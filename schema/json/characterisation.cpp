@@ -1,5 +1,6 @@
 #include "schema/json/characterisation.hpp"
 
+#include "core/fit/noise_equivalents.hpp"
 #include "schema/json/recording_spec.hpp"
 
 #include <algorithm>
@@ -123,6 +124,27 @@ Json process_json(const FittedProcess& process, Dimension dimension) {
   return document;
 }
 
+/// N and K of the best model in the numbers of other books.
+Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimension) {
+  Json document = Json::object();
+  for (const FittedProcess& process : channel.fits[channel.best].processes) {
+    const FittedParameter& level = process.parameters.front();
+    const bool white = process.process == "white_noise";
+    if (!level.estimate || (!white && process.process != "random_walk")) {
+      continue;
+    }
+    Json all = Json::array();
+    for (const NoiseEquivalent& one :
+         white ? white_noise_equivalents(dimension, channel.dt_s) : random_walk_equivalents(dimension, channel.dt_s)) {
+      Json entry = quantity(*level.estimate, one.factor, one.unit);
+      entry["convention"] = one.convention;
+      all.push_back(std::move(entry));
+    }
+    document[level.name] = std::move(all);
+  }
+  return document;
+}
+
 }  // namespace
 
 Json to_json(const ModelFit& fit, const Unit& unit) {
@@ -136,6 +158,10 @@ Json to_json(const ModelFit& fit, const Unit& unit) {
                 {"objective", number(fit.objective)},
                 {"wic", number(fit.wic)},
                 {"equation_8", number(fit.eq8)},
+                {"optimism", number(fit.optimism)},
+                {"condition_number", number(fit.condition_number)},
+                {"bounds_active", fit.bounds_active},
+                {"intervals", fit.intervals},
                 {"plausible", fit.plausible}};
   document["j_test"] = fit.j_test ? Json{{"statistic", number(fit.j_test->statistic)},
                                          {"dof", number(fit.j_test->dof)},
@@ -165,6 +191,7 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
     fits.push_back(to_json(fit, unit));
   }
   document["fits"] = std::move(fits);
+  document["equivalents"] = channel.fits.empty() ? Json::object() : equivalents_json(channel, unit.dimension);
   document["best"] = channel.fits.empty() ? Json(nullptr) : Json(channel.best);
   document["warnings"] = channel.warnings;
   return document;

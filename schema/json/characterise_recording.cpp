@@ -25,7 +25,12 @@ Result<Json> characterise_recording(const std::string& id, const RecordingSpec& 
   return recording_document(id, spec, view.window, std::move(channels));
 }
 
-Json to_json(const CharacteriseOptions& options) { return Json{{"models", options.models}, {"seed", options.seed}}; }
+Json to_json(const CharacteriseOptions& options) {
+  return Json{{"models", options.models},
+              {"seed", options.seed},
+              {"search", options.search == ModelSearch::Stepwise ? "stepwise" : "listed"},
+              {"bootstrap", options.bootstrap}};
+}
 
 CharacteriseOptions characterise_options_from_json(const Json& document, const std::string& pointer, Faults& faults) {
   CharacteriseOptions options;
@@ -46,9 +51,20 @@ CharacteriseOptions characterise_options_from_json(const Json& document, const s
     }
     options.seed = static_cast<std::uint64_t>(*seed);
   }
+  if (const auto search = reader.text("search")) {
+    if (*search != "listed" && *search != "stepwise") {
+      faults.add(reader.pointer("search"), ErrorCode::InvalidArgument, "The search is 'listed' or 'stepwise'.");
+    }
+    options.search = *search == "stepwise" ? ModelSearch::Stepwise : ModelSearch::Listed;
+  }
+  if (const auto replicates = reader.integer("bootstrap")) {
+    options.bootstrap = *replicates < 0 ? 1 : static_cast<std::size_t>(*replicates);  // 1 is refused below
+  }
   reader.reject_unknown();
   if (auto checked = check_options(options); !checked) {
-    faults.add(reader.pointer("models"), checked.error());
+    const auto& fields = checked.error().fields;
+    const bool replicates = !fields.empty() && fields.front().value == "bootstrap";
+    faults.add(reader.pointer(replicates ? "bootstrap" : "models"), checked.error());
   }
   return options;
 }
