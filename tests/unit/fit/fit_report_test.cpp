@@ -1,5 +1,6 @@
 // What a fit says about itself: bounds, condition, optimism, shape of the noise.
 #include "core/fit/characterise.hpp"
+#include "core/process/model.hpp"
 #include "tests/unit/fit/shared_data.hpp"
 
 #include <gmock/gmock.h>
