@@ -22,33 +22,40 @@ std::size_t best_of(const std::vector<Candidate>& candidates, double samples) {
   return best;
 }
 
+/// `from` with one process more, for each kind but `barred`.
+void append_larger(const ModelStructure& from, const ProcessKind* barred, std::size_t most_parameters,
+                   std::vector<ModelStructure>& all) {
+  for (const ProcessKind& kind : process_registry()) {
+    const bool there = std::find(from.kinds.begin(), from.kinds.end(), &kind) != from.kinds.end();
+    if (&kind == barred || (there && !kind.repeats) || from.kinds.size() == kMaxModelProcesses) {
+      continue;
+    }
+    ModelStructure larger = from;
+    const auto place = std::upper_bound(
+        larger.kinds.begin(), larger.kinds.end(), &kind,
+        [](const ProcessKind* a, const ProcessKind* b) { return registry_index(a) < registry_index(b); });
+    larger.kinds.insert(place, &kind);
+    if (larger.shape_count() <= kMostShapes && larger.parameter_count() <= most_parameters) {
+      all.push_back(std::move(larger));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ModelStructure> neighbouring_structures(const ModelStructure& from, std::size_t most_parameters) {
   std::vector<ModelStructure> all;
-  if (from.kinds.size() < kMaxModelProcesses) {
-    for (const ProcessKind& kind : process_registry()) {
-      const bool there = std::find(from.kinds.begin(), from.kinds.end(), &kind) != from.kinds.end();
-      if (there && !kind.repeats) {
-        continue;
-      }
-      ModelStructure larger = from;
-      const auto place = std::upper_bound(
-          larger.kinds.begin(), larger.kinds.end(), &kind,
-          [](const ProcessKind* a, const ProcessKind* b) { return registry_index(a) < registry_index(b); });
-      larger.kinds.insert(place, &kind);
-      if (larger.shape_count() <= kMostShapes && larger.parameter_count() <= most_parameters) {
-        all.push_back(std::move(larger));
-      }
-    }
-  }
-  for (std::size_t k = 0; k < from.kinds.size() && from.kinds.size() > 1; ++k) {
+  append_larger(from, nullptr, most_parameters, all);
+  for (std::size_t k = 0; k < from.kinds.size(); ++k) {
     if (k > 0 && from.kinds[k] == from.kinds[k - 1]) {
       continue;  // the same model as without the one before
     }
     ModelStructure smaller = from;
     smaller.kinds.erase(smaller.kinds.begin() + static_cast<std::ptrdiff_t>(k));
-    all.push_back(std::move(smaller));
+    append_larger(smaller, from.kinds[k], most_parameters, all);
+    if (!smaller.kinds.empty()) {
+      all.push_back(std::move(smaller));
+    }
   }
   return all;
 }
