@@ -109,7 +109,11 @@ Result<Line> fit_line(std::span<const KnownPosition> positions, std::size_t axis
   return line;
 }
 
+/// An interval without end where the variance is not known.
 Estimate estimate(double value, double variance, double quantile) {
+  if (!std::isfinite(variance)) {
+    return {value, {}};
+  }
   const double half = quantile * std::sqrt(std::max(variance, 0.0));
   return {value, {value - half, value + half}};
 }

@@ -47,8 +47,9 @@ struct TriadCalibration {
   double residual_after = 0.0;   ///< the same of corrected readings
 };
 
-/// Errors: TooFewSamples (an axis lacks a position up or down; the 12 numbers need 4 positions that are not in a
-/// plane), NonFinite, InvalidArgument (all uncertainties of an axis unknown where others are not). O(positions).
+/// An axis of which some uncertainty is 0 (unknown) is weighted evenly, and its interval taken from the scatter;
+/// without end where nothing is left to scatter. Errors: TooFewSamples (an axis lacks a position up or down; the 12
+/// numbers need 4 positions that are not in a plane), NonFinite. O(positions).
 [[nodiscard]] Result<TriadCalibration> calibrate_six_positions(std::span<const KnownPosition> positions,
                                                                const SixPositionOptions& options = {});
 

@@ -58,11 +58,11 @@ class LineDecoder {
                   {{"row", row}});
     }
     const std::uint32_t ticks = (*words)[0];
-    first_ = first_ ? first_ : std::optional<double>(ticks);
+    first_ = rows_ == 0 ? static_cast<double>(ticks) : first_;
     wraps_ += rows_ > 0 && ticks < last_ && last_ - ticks > 0x80000000U ? 1 : 0;
     last_ = ticks;
     std::array<double, kWords> row{};
-    row[0] = (ticks - *first_ + 4294967296.0 * static_cast<double>(wraps_)) / kTicksPerSecond;
+    row[0] = (ticks - first_ + 4294967296.0 * static_cast<double>(wraps_)) / kTicksPerSecond;
     for (std::size_t i = 1; i < kWords; ++i) {
       const double value = std::bit_cast<float>((*words)[i]);
       row[i] =
@@ -85,7 +85,7 @@ class LineDecoder {
   std::uint64_t rows_ = 0;
   std::uint64_t wraps_ = 0;
   std::uint32_t last_ = 0;
-  std::optional<double> first_;
+  double first_ = 0.0;
   std::vector<double> batch_;
 };
 

@@ -1,6 +1,5 @@
 #include "core/calibrate/six_position.hpp"
 
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -56,6 +55,7 @@ TEST(SixPosition, GivesBiasAndScaleOfEquationsNineAndTen) {
     EXPECT_EQ(found->misalignment[i][(i + 1) % 3].value, 0.0);
   }
   EXPECT_EQ(found->readings, 6U);
+  EXPECT_TRUE(std::isinf(found->bias[0].ci95.high));  // no uncertainty is stated and none is left to scatter
   EXPECT_EQ(found->chi_square_per_dof, 0.0);
   EXPECT_LT(found->residual_after, found->residual_before);
 }
