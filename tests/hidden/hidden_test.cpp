@@ -24,7 +24,7 @@ std::vector<std::string> cause_names() {
 class HiddenCause : public testing::TestWithParam<std::string> {};
 
 TEST_P(HiddenCause, IsNamedWhereItIsStrong) {
-  const Case hidden = make_case(GetParam(), 30.0, 1);
+  const Case hidden = make_case(GetParam(), 30.0, 1030);  // the first strong case of the table
   const SimulatedStudy simulated = simulate_study(hidden.world, {hidden.effect});
   const auto report = investigate::investigate(simulated.study);
   ASSERT_TRUE(report);

@@ -115,6 +115,7 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   double repeats = 0.0;
   double samples = 0.0;
   double variance = 0.0;
+  bool unseen = false;  // short runs hide among coincidences
   std::size_t from = 1;
   for (std::size_t r = 0; r < group.members.size(); ++r) {
     const Channel& channel = *group.members[r].channel;
@@ -131,14 +132,20 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
     from = std::max(from, stuck.from);
     const double k0 = static_cast<double>(stuck.from);
     // Geometric law: mean m with m = mean(repeats | >= k0) - (k0 - 1); runs in all M = M_k0 / g^(k0-1), g = 1 - 1/m.
-    // Up to k0 = 2 hardly a run is lost and they are counted as they are.
-    const bool direct = stuck.from <= 2;
-    // Single repeats beyond what coincidence gives belong to them.
-    const double single = direct && stuck.from == 2 ? std::max(0.0, all.of[1] - all.samples * all.coincidence) : 0.0;
-    const double m = std::max(
-        1.0, direct ? (stuck.repeats + single) / (stuck.runs + single) : stuck.repeats / stuck.runs - (k0 - 1.0));
+    // Where coincidence is rare, shorter runs are counted too, less what it gives; else their law is unknown.
+    const bool direct = all.chance < 0.01;
+    double shorter = 0.0;
+    double shorter_repeats = 0.0;
+    for (std::size_t k = 1; direct && k < stuck.from && k < all.of.size(); ++k) {
+      const double by_chance = all.samples * std::pow(all.coincidence, static_cast<double>(k));
+      shorter += std::max(0.0, all.of[k] - by_chance);
+      shorter_repeats += static_cast<double>(k) * std::max(0.0, all.of[k] - by_chance);
+    }
+    const double m = std::max(1.0, direct ? (stuck.repeats + shorter_repeats) / (stuck.runs + shorter)
+                                          : stuck.repeats / stuck.runs - (k0 - 1.0));
     const double g = 1.0 - 1.0 / m;
-    const double total = direct ? stuck.runs + single : stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
+    const double total = direct ? stuck.runs + shorter : stuck.runs / std::pow(std::max(g, 0.05), k0 - 1.0);
+    unseen = unseen || !direct;
     runs += total;
     repeats += total * m;
     samples += all.samples;
@@ -149,16 +156,18 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   }
   const double mean = repeats / runs;
   const double fraction = repeats / samples;
+  // Where short runs are not seen, runs of a single repeat may not occur at all: the mean is then one more.
   // The number of runs is Poisson, their lengths geometric of variance m (m - 1).
   const double sd_mean = std::sqrt(std::max(mean * (mean - 1.0), 0.1) / runs) * (from > 1 ? 1.2 : 1.0);
   const double sd_fraction = std::sqrt(mean * (2.0 * mean - 1.0) * variance) / samples;
   evidence.score = 1000.0 + repeats;
   evidence.gain = evidence.score;
-  evidence.parameters = {
-      {"fraction",
-       {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), fraction + 1.96 * sd_fraction}},
-       units::one(group.unit)},
-      {"mean_run", {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean}}, units::one(group.unit)}};
+  evidence.parameters = {{"fraction",
+                          {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), fraction + 1.96 * sd_fraction}},
+                          units::one(group.unit)},
+                         {"mean_run",
+                          {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean + (unseen ? 1.0 : 0.0)}},
+                          units::one(group.unit)}};
   return {evidence};
 }
 
