@@ -123,9 +123,11 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
       "recordings of 15 min each, nine candidates: verdicts [%%], and how often the best common structure is rejected "
       "at 5 "
       "%%.\n\n| truth | runs | one structure | changes | undecided | rejected |\n|---|---|---|---|---|---|\n");
-  std::vector<Model> mixed = rate_models(false);
-  mixed[0].back() = *make_process("linear_drift", {1e-5});  // no Gauss-Markov process at rest and at 9 deg/s
-  mixed[1].back() = *make_process("linear_drift", {1e-5});
+  // The process at rest, and beside it a drift under two conditions, a random walk under three.
+  std::vector<Model> mixed(5, rate_models(false).front());
+  for (std::size_t c = 0; c < mixed.size(); ++c) {
+    mixed[c].push_back(c < 2 ? *make_process("linear_drift", {1e-5}) : *make_process("random_walk", {2e-4}));
+  }
   struct Case {
     const char* name;
     std::vector<Model> conditions;
@@ -133,7 +135,7 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
   };
   for (const Case& one :
        {Case{"WN+GM throughout", rate_models(false), true}, Case{"WN+2GM throughout", rate_models(true), true},
-        Case{"WN+DR at rest and 9 deg/s, WN+GM above", mixed, false}}) {
+        Case{"WN+GM+DR at rest and 9 deg/s, WN+GM+RW above", mixed, false}}) {
     const std::size_t runs = repetitions(60);
     const Verdicts verdicts = judge(one.conditions, runs, 600);
     const double percent = 100.0 / static_cast<double>(runs);
