@@ -288,8 +288,8 @@ std::vector<Evidence> find_lines(const FullRate& data) {
       total += spectra.samples[r];
       longest = std::max(longest, spectra.samples[r]);
     }
-    // Below three periods of the record a line is a trend.
-    const auto first = static_cast<std::size_t>(3.0 / (longest * data.dt_s) / spectra.df_hz) + 1;
+    // Below twelve periods of the record a random walk has lines of its own.
+    const auto first = static_cast<std::size_t>(12.0 / (longest * data.dt_s) / spectra.df_hz) + 1;
     Peak peak;
     for (std::size_t i = first; i + 2 < spectra.bins; ++i) {
       const double s2 = combined(spectra, scope, i, total);
