@@ -1,0 +1,30 @@
+#pragma once
+/// Haar wavelet variances of a record with missing samples, without a model.
+///
+/// Two unbiased estimators. Whole windows: the mean of W^2 over the filters that touch no gap; efficient while most
+/// windows are whole, impossible once none is. Pairs (Mondal and Percival 2010, the estimator for processes with
+/// stationary increments): every filter is written as -1/2 sum_{l,l'} h_l h_l' (x_{t-l} - x_{t-l'})^2, each pair's term
+/// divided by how often pairs at that lag are both there; any scale, but its scatter grows with the share of gaps and
+/// it may come out negative. It serves as a check of what a model says (core/fit/sample_wise_variance.hpp).
+/// Both assume that samples are missing independently of their values.
+#include "core/signal/gappy_samples.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace driftlab {
+
+struct WholeWindows {
+  double variance = 0.0;
+  std::size_t windows = 0;  ///< how many touch no gap
+  double share = 0.0;       ///< of all windows
+};
+
+/// At half length `half`, 2 half <= grid; nothing where no window is whole. O(N).
+[[nodiscard]] std::optional<WholeWindows> whole_window_variance(const GappySamples& samples, std::size_t half);
+
+/// At half length `half`; nothing where no pair at some lag below 2 half is there. O(N half).
+[[nodiscard]] std::optional<double> pairwise_variance(const GappySamples& samples, std::size_t half);
+
+}  // namespace driftlab
