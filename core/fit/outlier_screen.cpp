@@ -1,0 +1,172 @@
+#include "core/fit/outlier_screen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace driftlab {
+namespace {
+
+constexpr double kMadToSd = 1.4826022185056018;
+constexpr double kPatchLimit = 5.5;
+constexpr double kClip = 5.0;
+constexpr std::size_t kLooks = 2000;  ///< places at which predictors are compared
+
+double median_of(std::vector<double>& values) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Robust standard deviation about 0 of at most some 40,000 of the values.
+double robust_sd(std::span<const double> values) {
+  const std::size_t stride = std::max<std::size_t>(1, values.size() / 40000);
+  std::vector<double> magnitudes;
+  magnitudes.reserve(values.size() / stride + 1);
+  for (std::size_t i = 0; i < values.size(); i += stride) {
+    magnitudes.push_back(std::fabs(values[i]));
+  }
+  return kMadToSd * median_of(magnitudes);
+}
+
+/// What the neighbours within `reach` say about a sample.
+class Predictor {
+ public:
+  explicit Predictor(std::span<const double> samples) : samples_(samples) {}
+
+  /// Mean of the two neighbours, or the one there is.
+  [[nodiscard]] double neighbours(std::size_t t) const {
+    const std::size_t last = samples_.size() - 1;
+    if (last == 0) {
+      return samples_[0];
+    }
+    return t == 0 ? samples_[1] : (t == last ? samples_[last - 1] : 0.5 * (samples_[t - 1] + samples_[t + 1]));
+  }
+
+  /// Median of the samples within `reach`, the sample itself left out.
+  double around(std::size_t t, std::size_t reach) {
+    fill(t, reach, false);
+    if (scratch_.size() == 4) {  // the four neighbours: mean of the middle two
+      std::sort(scratch_.begin(), scratch_.end());
+      return 0.5 * (scratch_[1] + scratch_[2]);
+    }
+    return scratch_.empty() ? samples_[t] : median_of(scratch_);
+  }
+
+  double window(std::size_t t, std::size_t reach) {
+    fill(t, reach, true);
+    return median_of(scratch_);
+  }
+
+ private:
+  void fill(std::size_t t, std::size_t reach, bool itself) {
+    const std::size_t first = t > reach ? t - reach : 0;
+    const std::size_t last = std::min(samples_.size() - 1, t + reach);
+    scratch_.assign(samples_.begin() + static_cast<std::ptrdiff_t>(first),
+                    samples_.begin() + static_cast<std::ptrdiff_t>(last + 1));
+    if (!itself) {
+      scratch_.erase(scratch_.begin() + static_cast<std::ptrdiff_t>(t - first));
+    }
+  }
+
+  std::span<const double> samples_;
+  std::vector<double> scratch_;
+};
+
+/// Residuals from running medians of 2 reach + 1 samples, taken at every `stride`-th sample.
+std::vector<double> median_residuals(std::span<const double> samples, std::size_t reach) {
+  const std::size_t stride = std::max<std::size_t>(1, reach / 2);
+  Predictor predictor(samples);
+  std::vector<double> residual(samples.size());
+  double left = predictor.window(0, reach);
+  for (std::size_t first = 0; first < samples.size(); first += stride) {
+    const std::size_t next = std::min(first + stride, samples.size() - 1);
+    const double right = predictor.window(next, reach);
+    for (std::size_t t = first; t < std::min(first + stride, samples.size()); ++t) {
+      const double part = next > first ? static_cast<double>(t - first) / static_cast<double>(next - first) : 0.0;
+      residual[t] = samples[t] - (left + part * (right - left));
+    }
+    left = right;
+  }
+  return residual;
+}
+
+constexpr std::array<std::size_t, 3> kReach{7, 31, 125};
+
+/// 0: neighbours, 1: four neighbours, 2 + i: kReach[i].
+std::size_t best_predictor(std::span<const double> samples) {
+  Predictor predictor(samples);
+  std::array<std::vector<double>, 2 + kReach.size()> errors;
+  const std::size_t stride = std::max<std::size_t>(1, samples.size() / kLooks);
+  for (std::size_t t = 0; t < samples.size(); t += stride) {
+    errors[0].push_back(std::fabs(samples[t] - predictor.neighbours(t)));
+    errors[1].push_back(std::fabs(samples[t] - predictor.around(t, 2)));
+    for (std::size_t i = 0; i < kReach.size(); ++i) {
+      errors[2 + i].push_back(std::fabs(samples[t] - predictor.window(t, kReach[i])));
+    }
+  }
+  std::size_t best = 0;
+  double least = median_of(errors[0]);
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    if (const double spread = median_of(errors[i]); spread > 0.0 && (spread < least || least == 0.0)) {
+      least = spread;
+      best = i;
+    }
+  }
+  return best;
+}
+
+void mark_patches(const std::vector<double>& residual, std::size_t length, std::vector<std::uint8_t>& patch) {
+  if (residual.size() < 4 * length) {
+    return;
+  }
+  const double sd = robust_sd(residual);
+  if (!(sd > 0.0)) {
+    return;
+  }
+  std::vector<double> mean(residual.size() - length + 1);
+  double sum = 0.0;
+  for (std::size_t t = 0; t < residual.size(); ++t) {
+    sum += std::clamp(residual[t] / sd, -kClip, kClip);
+    if (t + 1 >= length) {
+      mean[t + 1 - length] = sum;
+      sum -= std::clamp(residual[t + 1 - length] / sd, -kClip, kClip);
+    }
+  }
+  const double limit = kPatchLimit * robust_sd(mean);
+  for (std::size_t t = 0; t < mean.size(); ++t) {
+    if (limit > 0.0 && std::fabs(mean[t]) > limit) {
+      std::fill_n(patch.begin() + static_cast<std::ptrdiff_t>(t), length, std::uint8_t{1});
+    }
+  }
+}
+
+}  // namespace
+
+OutlierScreen screen_outliers(std::span<const double> samples) {
+  OutlierScreen screen;
+  screen.patch.assign(samples.size(), 0);
+  std::vector<double> residual = median_residuals(samples, kReach.back());
+  mark_patches(residual, 8, screen.patch);
+  mark_patches(residual, 20, screen.patch);
+  const std::size_t best = best_predictor(samples);
+  if (best < 2) {
+    Predictor predictor(samples);
+    for (std::size_t t = 0; t < samples.size(); ++t) {
+      residual[t] = samples[t] - (best == 0 ? predictor.neighbours(t) : predictor.around(t, 2));
+    }
+  } else if (best < 1 + kReach.size()) {
+    residual = median_residuals(samples, kReach[best - 2]);
+  }
+  screen.sd = robust_sd(residual);
+  screen.residual.resize(samples.size());
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    screen.residual[t] = screen.sd > 0.0 ? static_cast<float>(residual[t] / screen.sd) : 0.0F;
+  }
+  return screen;
+}
+
+}  // namespace driftlab
