@@ -94,6 +94,7 @@ ContaminationTest test_contamination(std::span<const double> samples, double uni
       for (std::size_t k = 1; k < sums.size(); ++k) {
         sum += robust.biweight[i].hermite[k] * robust.biweight[j].hermite[k] * sums[k];
       }
+      sum *= std::sqrt(robust.shape.inflation_at(i) * robust.shape.inflation_at(j));
       covariance(a, b) = 2.0 * sum / (robust.biweight[i].hermite[0] * robust.biweight[j].hermite[0]);
       covariance(b, a) = covariance(a, b);
     }

@@ -4,10 +4,13 @@
 /// nu solves mean chi(W_t/sqrt nu) = E chi(Z), chi of biweight.hpp tuned per scale to an efficiency of 0.6 for the
 /// overlap of the coefficients under the model-free mixture. The equation is redescending: the upper root is taken, and
 /// a scale without one is undefined (once most windows hold an outlier there is none: 1 % of gross errors, from n = 32
-/// on). Every m/8-th coefficient is used (1.5 % more variance). Consistent for Gaussian noise; for noise of another
-/// shape it estimates the scale of its core, which differs from the variance without anything being wrong.
+/// on). Every m/8-th coefficient is used (1.5 % more variance). Consistent for Gaussian noise, and for the two other
+/// clean shapes that robust_shape.hpp knows (uniform quantization errors, a coarse lattice) where told of them; for
+/// noise of yet another shape it estimates the scale of its core, which differs from the variance without anything
+/// being wrong.
 #include "core/variance/biweight.hpp"
 #include "core/variance/haar_variance.hpp"
+#include "core/variance/robust_shape.hpp"
 #include "core/variance/variance_intervals.hpp"
 
 #include <optional>
@@ -22,10 +25,27 @@ struct RobustVariance {
   std::vector<double> edf;                      ///< classical edf times efficiency
   std::vector<Interval> ci95;                   ///< {0, 0} where undefined
   std::vector<Biweight> biweight;
+  RobustShape shape;  ///< what was corrected for
 };
 
-/// `samples`, `pivot`: as for haar_variance(). O(N) time per scale up to n = 16, less above; N doubles of memory.
+/// `samples`, `pivot`: as for haar_variance(). A refused shape leaves every scale undefined. O(N) time per scale up to
+/// n = 16, less above; N doubles of memory.
 [[nodiscard]] RobustVariance robust_variance(std::span<const double> samples, double pivot, const HaarVariance& curve,
-                                             const VarianceIntervals& classical, HaarCovariance& plan);
+                                             const VarianceIntervals& classical, HaarCovariance& plan,
+                                             RobustShape shape = {});
+
+/// One scale: the largest root of mean chi = `expected`, if there is one, beside the mean square it stands against.
+struct RobustRoot {
+  std::optional<double> variance;
+  double mean_square = 0.0;
+};
+
+/// mean chi(W/sqrt nu) at one scale.
+[[nodiscard]] double mean_biweight(std::span<const double> prefix, std::size_t half, const Biweight& biweight,
+                                   double nu);
+
+/// `prefix`: prefix_sums() of the samples, 2 half < size.
+[[nodiscard]] RobustRoot robust_root(std::span<const double> prefix, std::size_t half, const Biweight& biweight,
+                                     double expected);
 
 }  // namespace driftlab
