@@ -26,11 +26,13 @@ struct HaarCurve {
   std::vector<double> variance;
   std::vector<Interval> ci95;
   std::vector<double> edf;
-  /// Tukey-biweight estimate per scale, tuned to an efficiency of 0.6; empty where it is undefined (core/variance/
-  /// robust_variance.hpp). Its interval is {0, 0} there.
+  /// Robust estimate per scale. While no sample is flagged that of the Tukey biweight, tuned to an efficiency of 0.6
+  /// and empty where undefined, its interval {0, 0} there (core/variance/robust_variance.hpp); else the sample-wise one
+  /// (core/fit/sample_wise_variance.hpp).
   std::vector<std::optional<double>> robust_variance;
   std::vector<Interval> robust_ci95;
   std::vector<double> robust_efficiency;
+  bool robust_sample_wise = false;
 };
 
 /// Whether gross errors move the variances (core/variance/contamination.hpp).
@@ -38,8 +40,10 @@ struct Contamination {
   std::string verdict = "undecided";         ///< clean, contaminated, undecided
   double p = 1.0;                            ///< of the test that robust and classical variance estimate the same
   std::vector<std::size_t> disjoint_scales;  ///< scales n at which the two 95 % intervals do not meet
-  std::size_t flagged_samples = 0;           ///< first differences beyond 4.5 robust standard deviations
-  bool not_gaussian = false;                 ///< they differ by the shape of the noise, not by a few samples
+  /// Samples with an error that passes a false-discovery rate of 1 %; where the sample-wise estimate was not asked for
+  /// or found nothing, first differences beyond 4.5 robust standard deviations.
+  std::size_t flagged_samples = 0;
+  bool not_gaussian = false;  ///< they differ by the shape of the noise, not by a few samples
 };
 
 /// One named parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says
@@ -68,8 +72,8 @@ struct JTest {
 
 /// One candidate model fitted by GMWM (Guerrier et al. 2013), whatever its outcome.
 struct ModelFit {
-  std::string model;  ///< `WN`, `WN+GM`, `WN+2GM+RW`, ...
-  bool robust = false;
+  std::string model;    ///< `WN`, `WN+GM`, `WN+2GM+RW`, ...
+  bool robust = false;  ///< fitted to the robust wavelet variances
   std::vector<FittedProcess>
       processes;                ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
   double objective = 0.0;       ///< weighted squared distance at the optimum (seed paper eq. 7)
@@ -102,6 +106,7 @@ struct AllanParameters {
 
 struct ChannelCharacterisation {
   std::size_t samples = 0;
+  std::size_t missing = 0;  ///< grid points between them without a sample
   double dt_s = 0.0;
   double mean = 0.0;  ///< of the analysed samples
   AllanCurve allan;

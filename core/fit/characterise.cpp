@@ -3,9 +3,9 @@
 #include "core/fit/allan_regression.hpp"
 #include "core/fit/bootstrap.hpp"
 #include "core/fit/candidate.hpp"
+#include "core/fit/channel_variances.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
-#include "core/variance/contamination.hpp"
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/haar_variance.hpp"
@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -62,29 +64,24 @@ void store_curves(const HaarVariance& curve, const VarianceIntervals* intervals,
   }
 }
 
-/// Robust variances and the contamination test. `curve` is in units of `unit_square` (file unit squared).
-void store_robust(std::span<const double> samples, double mean, double unit_square, double si_square,
-                  const HaarVariance& curve, const VarianceIntervals& intervals, HaarCovariance& plan,
-                  ChannelCharacterisation& result) {
-  RobustVariance robust = robust_variance(samples, mean, curve, intervals, plan);
-  for (std::size_t j = 0; j < curve.scales(); ++j) {  // the robust equation was solved in file units
-    if (std::optional<double>& value = robust.variance[j]) {
-      *value /= unit_square;
-      robust.ci95[j] = {robust.ci95[j].low / unit_square, robust.ci95[j].high / unit_square};
-    }
-  }
-  const ContaminationTest test = test_contamination(samples, unit_square, curve, intervals, robust, plan);
-  for (std::size_t j = 0; j < curve.scales(); ++j) {
+void store_robust(RobustVariances robust, double si_square, ChannelCharacterisation& result) {
+  for (std::size_t j = 0; j < robust.variance.size(); ++j) {
     const auto& value = robust.variance[j];
     result.haar.robust_variance.push_back(value ? std::optional<double>(*value * si_square) : std::nullopt);
     result.haar.robust_ci95.push_back({robust.ci95[j].low * si_square, robust.ci95[j].high * si_square});
     result.haar.robust_efficiency.push_back(robust.efficiency[j]);
   }
-  result.contamination = {.verdict = std::string(name_of(test.verdict)),
-                          .p = test.p,
-                          .disjoint_scales = test.disjoint_scales,
-                          .flagged_samples = test.flagged_coefficients,
-                          .not_gaussian = test.not_gaussian};
+  result.haar.robust_sample_wise = robust.sample_wise;
+  result.contamination = std::move(robust.contamination);
+  std::move(robust.warnings.begin(), robust.warnings.end(), std::back_inserter(result.warnings));
+}
+
+void store_constant(HaarVariance& curve, double dt_s, ChannelCharacterisation& result) {
+  std::fill(curve.variance.begin(), curve.variance.end(), 0.0);
+  store_curves(curve, nullptr, 0.0, dt_s, result);
+  result.warnings.emplace_back("The channel is constant: every variance is zero and no model is fitted.");
+  result.allan_parameters.q_reason = result.allan_parameters.n_reason = result.allan_parameters.b_reason =
+      result.allan_parameters.k_reason = result.allan_parameters.r_reason = "The channel is constant.";
 }
 
 /// Fits every candidate that the number of scales allows; the rest are named in a warning.
@@ -166,6 +163,80 @@ void store_fits(std::vector<Candidate>& candidates, double unit, double samples,
   }
 }
 
+/// Fits, ranks and reports models, and reads off the Allan coefficients.
+Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& options, double si_unit,
+                  HaarCovariance& plan, const RunControl& control, ChannelCharacterisation& result) {
+  const WaveletMoments moments{
+      Eigen::Map<const Eigen::VectorXd>(fitted.variance.data(), static_cast<Eigen::Index>(fitted.variance.size())),
+      {plan.half().begin(), plan.half().end()},
+      static_cast<double>(plan.samples()),
+      plan.dt_s()};
+  const CovarianceLaw covariance_of = fitted.covariance(plan);
+  Result<std::vector<Candidate>> candidates =
+      fit_candidates(moments, options, fitted.sd, covariance_of, control, result.warnings);
+  if (!candidates) {
+    return fail(std::move(candidates.error()));
+  }
+  control.report("allan regression", 0.8);
+  result.allan_parameters = allan_regression(moments, fitted.sd, covariance_of, si_unit);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
+  control.report("parameter intervals", 0.9);
+  if (candidates->empty()) {
+    result.warnings.emplace_back("No model could be fitted.");
+    return {};
+  }
+  rank(*candidates, moments, fitted.sd);
+  std::vector<double> rises;
+  if (options.bootstrap != 0) {
+    RunControl part;
+    part.stop = control.stop;
+    part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); };
+    Result<std::vector<double>> found =
+        bootstrap_rises(candidates->front(), moments, options.bootstrap, options.seed, part);
+    if (!found) {
+      return fail(std::move(found.error()));
+    }
+    rises = std::move(*found);
+  }
+  store_fits(*candidates, si_unit, moments.samples, rises, result);
+  for (ModelFit& fit : result.fits) {
+    fit.robust = fitted.robust;
+  }
+  return {};
+}
+
+/// Everything behind the classical variances, which are those of `samples`: the rows, or a series without their gaps.
+Status analyse(ClassicalVariances& classical, std::span<const double> samples, const GappySamples& grid, double mean,
+               const ChannelSamples& channel, const CharacteriseOptions& options, const RunControl& control,
+               ChannelCharacterisation& result) {
+  HaarVariance& curve = classical.curve;
+  const double largest = classical.unit_square;
+  const double si_unit = std::sqrt(largest) * std::fabs(channel.si_factor);
+  if (!std::isnormal(si_unit * si_unit) || !std::isnormal(largest)) {
+    return fail(ErrorCode::OutOfRange, "The variances of the channel are beyond the range of a double.");
+  }
+  for (double& variance : curve.variance) {  // everything below in units of the largest deviation
+    variance /= largest;
+  }
+  control.report("intervals", 0.2);
+  HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
+  const double excess = difference_excess_kurtosis(samples);
+  VarianceIntervals intervals = variance_intervals(curve, plan, excess);
+  // Gross errors have an excess kurtosis that would leave the contamination test no scale of many degrees of freedom:
+  // its hypothesis is Gaussian noise, and so are its degrees of freedom.
+  VarianceIntervals gaussian = excess == 0.0 ? intervals : variance_intervals(curve, plan);
+  lower_degrees(classical.efficiency, curve, intervals);
+  lower_degrees(classical.efficiency, curve, gaussian);
+  store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
+  control.report("robust variance", 0.25);
+  RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed);
+  const FittedVariances fitted = fitted_variances(classical, intervals, robust, plan);
+  store_robust(std::move(robust), si_unit * si_unit, result);
+  return fit_models(fitted, options, si_unit, plan, control, result);
+}
+
 }  // namespace
 
 Status check_options(const CharacteriseOptions& options) {
@@ -204,78 +275,28 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   if (control.stop.stop_requested()) {
     return cancelled();
   }
-  HaarVariance curve = haar_variance(channel.values, summary->mean, control);
-  if (control.stop.stop_requested()) {
-    return cancelled();
+  const Result<GappySamples> grid = channel.gaps.empty() ? GappySamples{} : on_grid(channel.values, channel.gaps);
+  if (!grid) {
+    return fail(grid.error());
   }
-  const double largest = *std::max_element(curve.variance.begin(), curve.variance.end());
-  const double unit = std::sqrt(largest);
-  const double si_unit = unit * std::fabs(channel.si_factor);
+  result.missing = grid->missing_count();
   if (summary->constant()) {
-    std::fill(curve.variance.begin(), curve.variance.end(), 0.0);
-    store_curves(curve, nullptr, 0.0, channel.dt_s, result);
-    result.warnings.emplace_back("The channel is constant: every variance is zero and no model is fitted.");
-    result.allan_parameters.q_reason = result.allan_parameters.n_reason = result.allan_parameters.b_reason =
-        result.allan_parameters.k_reason = result.allan_parameters.r_reason = "The channel is constant.";
+    HaarVariance curve =
+        haar_variance(result.missing > 0 ? std::span<const double>(grid->values) : channel.values, 0.0);
+    store_constant(curve, channel.dt_s, result);
     control.report("done", 1.0);
     return result;
   }
-  if (!std::isnormal(si_unit * si_unit) || !std::isnormal(largest)) {
-    return fail(ErrorCode::OutOfRange, "The variances of the channel are beyond the range of a double.");
+  Result<ClassicalVariances> classical =
+      classical_variances(channel.values, summary->mean, *grid, channel.dt_s, options.seed, control);
+  if (!classical) {
+    return fail(std::move(classical.error()));
   }
-  for (double& variance : curve.variance) {  // everything below in units of the largest deviation
-    variance /= largest;
-  }
-  control.report("intervals", 0.2);
-  HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
-  const double excess = difference_excess_kurtosis(channel.values);
-  const VarianceIntervals intervals = variance_intervals(curve, plan, excess);
-  store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
-
-  const WaveletMoments moments{
-      Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
-      {plan.half().begin(), plan.half().end()},
-      static_cast<double>(curve.samples),
-      channel.dt_s};
-  control.report("robust variance", 0.25);
-  // Gross errors have an excess kurtosis that would leave the test no scale of many degrees of freedom: its hypothesis is
-  // Gaussian noise, and so are its degrees of freedom.
-  store_robust(channel.values, summary->mean, largest, si_unit * si_unit, curve,
-               excess == 0.0 ? intervals : variance_intervals(curve, plan), plan, result);
-  const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
-  const CovarianceLaw covariance_of = [&](const Model& model) {
-    Eigen::MatrixXd covariance = plan.matrix(model);
-    add_kurtosis(covariance, model, plan.half(), curve.samples, channel.dt_s, intervals.shape);
-    return covariance;
-  };
-  Result<std::vector<Candidate>> candidates =
-      fit_candidates(moments, options, sd, covariance_of, control, result.warnings);
-  if (!candidates) {
-    return fail(std::move(candidates.error()));
-  }
-  control.report("allan regression", 0.8);
-  result.allan_parameters = allan_regression(moments, sd, covariance_of, si_unit);
-  if (control.stop.stop_requested()) {
-    return cancelled();
-  }
-  control.report("parameter intervals", 0.9);
-  if (!candidates->empty()) {
-    rank(*candidates, moments, sd);
-    std::vector<double> rises;
-    if (options.bootstrap != 0) {
-      RunControl part;
-      part.stop = control.stop;
-      part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); };
-      Result<std::vector<double>> found =
-          bootstrap_rises(candidates->front(), moments, options.bootstrap, options.seed, part);
-      if (!found) {
-        return fail(std::move(found.error()));
-      }
-      rises = std::move(*found);
-    }
-    store_fits(*candidates, si_unit, moments.samples, rises, result);
-  } else {
-    result.warnings.emplace_back("No model could be fitted.");
+  const std::span<const double> samples =
+      result.missing > 0 ? std::span<const double>(classical->completed) : channel.values;
+  Status status = analyse(*classical, samples, *grid, summary->mean, channel, options, control, result);
+  if (!status) {
+    return fail(std::move(status.error()));
   }
   control.report("done", 1.0);
   return result;

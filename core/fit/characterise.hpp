@@ -1,6 +1,7 @@
 #pragma once
 /// One channel in, its characterisation out: variances with intervals, Allan coefficients, ranked GMWM fits.
 #include "core/fit/characterisation.hpp"
+#include "core/signal/gappy_samples.hpp"
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
@@ -12,7 +13,7 @@
 namespace driftlab {
 
 /// Changes whenever the same input and settings may give other numbers; stored with every result.
-inline constexpr int kAlgorithmVersion = 3;
+inline constexpr int kAlgorithmVersion = 4;
 
 /// Which models are compared.
 enum class ModelSearch {
@@ -34,9 +35,10 @@ struct CharacteriseOptions {
 
 /// Samples of one channel as they lie in the file, and the factor that makes them SI.
 struct ChannelSamples {
-  std::span<const double> values;  ///< uniform at dt_s, file unit
+  std::span<const double> values;  ///< uniform at dt_s but for the gaps, file unit
   double dt_s = 0.0;
-  double si_factor = 1.0;  ///< file unit -> SI; variances are computed on `values` and scaled once
+  double si_factor = 1.0;          ///< file unit -> SI; variances are computed on `values` and scaled once
+  std::span<const Gap> gaps = {};  ///< where samples are missing between two rows of `values`
 };
 
 /// Checks a model name and every setting without data. Errors: InvalidArgument, naming the parameter.
@@ -44,8 +46,8 @@ struct ChannelSamples {
 
 /// Errors: TooFewSamples (fewer than 8 samples; the models need as many scales as parameters, smaller models are fitted
 /// and larger ones left out with a warning), NonFinite (naming the row), OutOfRange (squares overflow),
-/// InvalidArgument, Cancelled. A constant channel is no error: zero variances, no fit, a warning. Deterministic; one
-/// thread.
+/// InvalidArgument, LimitExceeded (more missing than recorded), Cancelled. A constant channel is no error: zero
+/// variances, no fit, a warning. Deterministic; one thread.
 [[nodiscard]] Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel,
                                                                    const CharacteriseOptions& options = {},
                                                                    const RunControl& control = {});

@@ -45,7 +45,8 @@ Json robust_json(const HaarCurve& curve, double square_factor) {
     sum += value ? curve.robust_efficiency[i] : 0.0;
     defined += value ? 1 : 0;
   }
-  return Json{{"variance", std::move(variance)},
+  return Json{{"method", curve.robust_sample_wise ? "sample_wise" : "coefficient_wise"},
+              {"variance", std::move(variance)},
               {"ci95", std::move(ci95)},
               {"efficiency", defined > 0 ? number(sum / defined) : Json(nullptr)},
               {"efficiency_by_scale", std::move(efficiencies)}};
@@ -180,6 +181,7 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"axis", identity.role.axis.empty() ? Json(nullptr) : Json(identity.role.axis)},
                 {"unit", unit.symbol},
                 {"samples", channel.samples},
+                {"missing", channel.missing},
                 {"dt_s", number(channel.dt_s)},
                 {"mean", number(channel.mean * factor)},
                 {"allan", allan_json(channel.allan, factor)},

@@ -204,6 +204,74 @@ TEST(Characterise, ShortRecordLeavesOutTheLargestModelsWithAWarning) {
   EXPECT_THAT(result->warnings, testing::Contains(testing::HasSubstr("WN+2GM+RW+DR")));
 }
 
+TEST(Characterise, GrossErrorsAreFittedAround) {
+  const auto good = make(model_of({{"white_noise", {0.02}}, {"random_walk", {0.01}}}), 1 << 14, 21);
+  auto x = good;
+  Random random(22);
+  for (double& value : x) {
+    value += random.uniform() < 0.01 ? 20.0 * random.normal() : 0.0;  // 100 sd of the white noise
+  }
+  const CharacteriseOptions options{.models = {"WN", "WN+RW", "WN+GM+RW"}};
+  const auto clean = characterise_channel({.values = good, .dt_s = kDt}, options);
+  const auto found = characterise_channel({.values = x, .dt_s = kDt}, options);
+  ASSERT_TRUE(clean && found);
+  EXPECT_FALSE(clean->fits.at(0).robust);
+  EXPECT_EQ(clean->contamination.verdict, "clean");
+  EXPECT_EQ(found->contamination.verdict, "contaminated");
+  EXPECT_TRUE(found->haar.robust_sample_wise);
+  // Errors of 100 sd: some 3 % of them are within three sd and cannot be told.
+  EXPECT_NEAR(static_cast<double>(found->contamination.flagged_samples), 0.01 * 16384, 45.0);
+  const ModelFit& best = found->fits.at(0);
+  EXPECT_TRUE(best.robust);
+  EXPECT_EQ(best.model, clean->fits.at(0).model);
+  ASSERT_TRUE(parameter(best, 0, 0).estimate && parameter(best, 1, 0).estimate);
+  // Relative standard error of N some 0.8 %, of K some 10 %, on either record.
+  EXPECT_NEAR(parameter(best, 0, 0).estimate->value, 0.02, 0.02 * 0.04);
+  EXPECT_NEAR(parameter(best, 1, 0).estimate->value, parameter(clean->fits.at(0), 1, 0).estimate->value, 0.002);
+  for (std::size_t j = 0; j < found->haar.robust_variance.size(); ++j) {
+    EXPECT_TRUE(found->haar.robust_variance[j].has_value());
+    EXPECT_GT(found->haar.robust_efficiency[j], 0.5);
+    EXPECT_LT(found->haar.robust_efficiency[j], 1.0 + 1e-12);
+  }
+}
+
+TEST(Characterise, MissingSamplesAreNeitherBridgedNorCutAway) {
+  const auto good = make(model_of({{"white_noise", {0.02}}, {"random_walk", {0.01}}}), 1 << 14, 23);
+  std::vector<double> rows;
+  std::vector<Gap> gaps;
+  std::size_t missing = 0;
+  for (std::size_t t = 0; t < good.size(); ++t) {
+    if (t % 1000 >= 950 && t > 0) {
+      ++missing;
+      if (!gaps.empty() && gaps.back().row == rows.size()) {
+        ++gaps.back().missing;
+      } else {
+        gaps.push_back({rows.size(), 1});
+      }
+    } else {
+      rows.push_back(good[t]);
+    }
+  }
+  const CharacteriseOptions options{.models = {"WN+RW"}};
+  const auto whole = characterise_channel({.values = good, .dt_s = kDt}, options);
+  const auto gappy = characterise_channel({.values = rows, .dt_s = kDt, .gaps = gaps}, options);
+  ASSERT_TRUE(whole && gappy);
+  EXPECT_EQ(gappy->samples, rows.size());
+  EXPECT_EQ(gappy->missing, missing);
+  EXPECT_EQ(gappy->haar.scale, whole->haar.scale);
+  EXPECT_EQ(gappy->contamination.verdict, "clean");
+  for (std::size_t j = 0; j < 10; ++j) {
+    EXPECT_NEAR(gappy->haar.variance[j] / whole->haar.variance[j], 1.0,
+                0.02 + 2.0 * std::sqrt(0.1 * 2.0 / whole->haar.edf[j]))
+        << j;
+    EXPECT_LE(gappy->haar.edf[j], 1.05 * whole->haar.edf[j]);
+  }
+  EXPECT_NEAR(parameter(gappy->fits.at(0), 0, 0).estimate->value, 0.02, 0.02 * 0.03);
+  const std::vector<Gap> outside{{rows.size() + 5, 1}};
+  EXPECT_EQ(characterise_channel({.values = rows, .dt_s = kDt, .gaps = outside}, options).error().code,
+            ErrorCode::InvalidArgument);
+}
+
 TEST(Characterise, OptionsAreCheckedWithoutData) {
   EXPECT_TRUE(check_options({}).has_value());
   EXPECT_FALSE(check_options({.models = {}}).has_value());
