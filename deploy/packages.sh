@@ -12,7 +12,7 @@
 # `ceres` is used for its header-only TinySolver: nothing of SuiteSparse is linked (see NOTICE).
 driftlab_packages() {
   case "$1" in
-    runtime) echo libboost-url1.81.0 libsqlite3-0 libspdlog1.10 libfmt9 libssl3 libarchive13 liblzma5 libzstd1 zlib1g libstdc++6 \
+    runtime) echo libboost-url1.81.0 libsqlite3-0 libspdlog1.10 libssl3 libarchive13 liblzma5 libzstd1 zlib1g libstdc++6 \
                   ca-certificates ;;
     build) echo build-essential cmake ninja-build ccache pkg-config git curl ca-certificates \
                 libboost1.81-dev libboost-url1.81-dev nlohmann-json3-dev libeigen3-dev libceres-dev libsqlite3-dev \

@@ -157,8 +157,8 @@ fi
 say ''
 say "driftlab serves at $address and keeps its data in $data"
 [ "$once" = no ] || exit 0
-say "Ctrl-C stops it."
 trap 'say ""; say "Stopping"; exit 0' INT
+say "Ctrl-C stops it."
 wait "$daemon" || code=$?
 daemon=''
 fail "the daemon stopped (exit ${code:-0}); its log is $logs/daemon.log"

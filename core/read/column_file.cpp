@@ -4,6 +4,7 @@
 #include "core/read/posix_file.hpp"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cassert>
 #include <cerrno>
@@ -74,6 +75,16 @@ ColumnFile::~ColumnFile() {
 std::span<const double> ColumnFile::column(std::size_t i) const {
   assert(i < names_.size());
   return {reinterpret_cast<const double*>(base_ + data_offset_ + i * stride_), rows_};
+}
+
+void ColumnFile::release(std::span<const double> samples) const {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const auto offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(samples.data()) - base_);
+  const std::size_t first = (offset + page - 1) / page * page;  // whole pages inside
+  const std::size_t last = (offset + samples.size_bytes()) / page * page;
+  if (last > first) {
+    ::madvise(const_cast<std::byte*>(base_) + first, last - first, MADV_DONTNEED);
+  }
 }
 
 }  // namespace driftlab

@@ -91,6 +91,9 @@ class ColumnFile {
   /// Column `i` < names().size(), in the file's own unit: rows() values, the first at an address divisible by 64.
   [[nodiscard]] std::span<const double> column(std::size_t i) const;
 
+  /// Lets the pages of these samples go; they are mapped again when they are read again. Changes nothing but memory.
+  void release(std::span<const double> samples) const;
+
  private:
   ColumnFile() = default;
   const std::byte* base_ = nullptr;

@@ -17,6 +17,22 @@ constexpr std::size_t kSamplesForSteps = 16384;
 constexpr std::array kSentinels{-9999.0, 9999.0, -99999.0, 99999.0, -999.0};
 constexpr double kGarbage = 1e6;
 
+/// Calls `passed` at the end of each million samples of a pass.
+class Pieces {
+ public:
+  Pieces(std::span<const double> values, const Passed& passed) : values_(values), passed_(passed) {}
+  void done(std::size_t i) const {
+    if ((i + 1) % kPiece == 0 && passed_) {
+      passed_(values_.subspan(i + 1 - kPiece, kPiece));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kPiece = std::size_t{1} << 20U;
+  std::span<const double> values_;
+  const Passed& passed_;
+};
+
 std::string short_text(double value) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
@@ -185,7 +201,7 @@ double smallest_step(std::span<const double> values, const std::vector<std::size
 }
 
 /// Everything that needs the sound samples in order.
-void walk(std::span<const double> values, ChannelSurvey& survey) {
+void walk(std::span<const double> values, const Pieces& pieces, ChannelSurvey& survey) {
   DistinctValues distinct;
   Runs runs;
   Extreme high;
@@ -194,7 +210,7 @@ void walk(std::span<const double> values, ChannelSurvey& survey) {
   auto unsound = survey.unsound.begin();
   bool first = true;
   double before = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); pieces.done(i), ++i) {
     if (unsound != survey.unsound.end() && *unsound == i) {
       ++unsound;
       continue;  // a hole neither ends a run nor counts in one
@@ -220,11 +236,12 @@ void walk(std::span<const double> values, ChannelSurvey& survey) {
 
 }  // namespace
 
-ChannelSurvey survey_channel(const std::string& column, std::span<const double> values) {
+ChannelSurvey survey_channel(const std::string& column, std::span<const double> values, const Passed& passed) {
+  const Pieces pieces(values, passed);
   ChannelSurvey survey;
   survey.quality.column = column;
   bool look_closer = false;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); pieces.done(i), ++i) {
     if (std::isnan(values[i])) {
       survey.unsound.push_back(i);
     } else {
@@ -238,20 +255,21 @@ ChannelSurvey survey_channel(const std::string& column, std::span<const double> 
     survey.unsound.insert(survey.unsound.end(), implausible.begin(), implausible.end());
     std::sort(survey.unsound.begin(), survey.unsound.end());
   }
-  walk(values, survey);
+  walk(values, pieces, survey);
   survey.quality.resolution = smallest_step(values, survey.unsound);
   survey.quality.frozen = survey.frozen.second - survey.frozen.first;
   survey.quality.frozen_from = survey.quality.frozen > 0 ? survey.frozen.first + 1 : 0;
   return survey;
 }
 
-Status check_holes(const std::string& column, std::span<const double> values) {
+Status check_holes(const std::string& column, std::span<const double> values, const Passed& passed) {
+  const Pieces pieces(values, passed);
   struct Found {
     std::size_t count = 0;
     std::uint64_t row = 0;
   };
   std::array<Found, static_cast<std::size_t>(Missing::Ended) + 1> found{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); pieces.done(i), ++i) {
     const double value = values[i];
     if (std::isfinite(value)) {
       continue;

@@ -21,12 +21,17 @@
 #include "core/signal/result.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace driftlab {
+
+/// Told of each million samples when a pass is through with them, so that the pages of a mapped file may go and memory
+/// stays flat (ColumnFile::release); may be empty.
+using Passed = std::function<void(std::span<const double>)>;
 
 struct ChannelSurvey {
   ChannelQuality quality;
@@ -35,12 +40,13 @@ struct ChannelSurvey {
 };
 
 /// O(n) time, once or twice over the samples; memory for the unsound rows, and a copy where a value looks like garbage.
-[[nodiscard]] ChannelSurvey survey_channel(const std::string& column, std::span<const double> values);
+[[nodiscard]] ChannelSurvey survey_channel(const std::string& column, std::span<const double> values,
+                                           const Passed& passed = {});
 
 /// What a sensor channel may not hold: text, an infinity or a number no double holds; NaN in one sample of a thousand
 /// or more; empty cells in more than 5 %. Errors: NotANumber, NonFinite, OutOfRange; each names the first `row` and the
 /// `column`.
-[[nodiscard]] Status check_holes(const std::string& column, std::span<const double> values);
+[[nodiscard]] Status check_holes(const std::string& column, std::span<const double> values, const Passed& passed = {});
 
 /// The longest run of rows of [first, last) that is sound; the earliest of equals.
 [[nodiscard]] std::pair<std::size_t, std::size_t> longest_sound(const ChannelSurvey& survey, std::size_t first,

@@ -91,10 +91,10 @@ bool may_be_left_out(const ColumnRole& role, const std::string& name, std::size_
 
 /// Surveys a sensor column and adds the sound part of its window as a channel.
 Status add_channel(const RecordingSpec& spec, const Roles& roles, const Columns& column, const std::string& name,
-                   std::size_t index, RecordingView& view) {
+                   std::size_t index, const Passed& passed, RecordingView& view) {
   const std::span<const double> values = column(index);
   const ColumnRole role = roles[index].value_or(ColumnRole{});
-  ChannelSurvey survey = survey_channel(name, values);
+  ChannelSurvey survey = survey_channel(name, values, passed);
   const Window& window = view.window;
   // Where the reference is missing the error is.
   const auto reference = reference_of(role.quantity);
@@ -132,7 +132,7 @@ Status add_channel(const RecordingSpec& spec, const Roles& roles, const Columns&
 }  // namespace
 
 Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
-                                     const Columns& column) {
+                                     const Columns& column, const Passed& passed) {
   auto roles = assign_roles(spec, names);
   if (!roles) {
     return fail(roles.error());
@@ -169,7 +169,7 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
     if (!is_sensor(role->quantity)) {
       continue;
     }
-    if (auto holes = check_holes(names[i], column(i)); !holes) {
+    if (auto holes = check_holes(names[i], column(i), passed); !holes) {
       first_fault = first_fault ? first_fault : std::optional(holes.error());
       if (spec.columns.empty() && may_be_left_out(*role, names[i], i, column(i))) {
         view.window.quality.notes.push_back("The column '" + names[i] + "' is left out: " + holes.error().message);
@@ -181,7 +181,7 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
       view.window.quality.notes.push_back("The unit of column '" + names[i] + "' is not stated; its unit is 1.");
     }
     // A sensor that is frozen throughout does not keep the others from being analysed.
-    if (auto status = add_channel(spec, *roles, column, names[i], i, view); !status) {
+    if (auto status = add_channel(spec, *roles, column, names[i], i, passed, view); !status) {
       first_fault = first_fault ? first_fault : std::optional(status.error());
       view.window.quality.notes.push_back(status.error().message + " It is left out.");
     }

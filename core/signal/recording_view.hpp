@@ -5,6 +5,7 @@
 /// +-g) does not change any variance and is left in, so that the samples are used where they lie in the mapped file.
 /// Under a constant angular acceleration the reference on the rotation axis is the ramp from rest at the first sample
 /// of the file; where a reference column of the same axis exists, it is the reference. Both need a copy of the channel.
+#include "core/signal/channel_survey.hpp"
 #include "core/signal/recording.hpp"
 
 #include <cstddef>
@@ -36,6 +37,7 @@ struct RecordingView {
 /// sensor column at all). O(rows) time; O(rows) memory per channel with a moving reference, none otherwise.
 [[nodiscard]] Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names,
                                                    std::size_t rows,
-                                                   const std::function<std::span<const double>(std::size_t)>& column);
+                                                   const std::function<std::span<const double>(std::size_t)>& column,
+                                                   const Passed& passed = {});
 
 }  // namespace driftlab

@@ -159,7 +159,7 @@ Json joint_fit_json(Group& group, Candidate& joint, IntervalMethod method) {
   ModelFit fit = group.stack->report(joint, method);
   fit.robust = group.robust;
   Json document = to_json(fit, group.unit);
-  document["intervals"] = method == IntervalMethod::Profile ? "profile" : "preview";
+  document["intervals"] = method == IntervalMethod::Profile ? "profile" : "sandwich";
   return document;
 }
 
@@ -178,7 +178,7 @@ void fit_group(Group& group, const std::vector<std::string>& models, std::span<c
     const Json& channel = group.sources.front()->channel;
     for (const Json& fit : channel.at("fits")) {
       Json taken = fit;
-      taken["intervals"] = &fit == &channel["fits"].front() ? "profile" : "preview";
+      taken["intervals"] = &fit == &channel["fits"].front() ? "profile" : "sandwich";
       group.fits.emplace(fit.value("model", ""), std::move(taken));
     }
   }

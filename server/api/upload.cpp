@@ -233,8 +233,9 @@ class RecordingUpload final : public UploadSession {
     if (!columns) {
       return fail(columns.error());
     }
-    auto view = view_recording(metadata_.spec, columns->names(), columns->rows(),
-                               [&](std::size_t i) { return columns->column(i); });
+    auto view = view_recording(
+        metadata_.spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); },
+        [&](std::span<const double> samples) { columns->release(samples); });
     if (!view) {
       return fail(view.error());
     }
