@@ -18,7 +18,8 @@ REFERENCE = SHARED / "reference/adis_16405_imu1.oadev.json"
 AXES = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
 
 
-@unittest.skipUnless(RECORDING.is_file() and REFERENCE.is_file(), "no shared recordings")
+@unittest.skipUnless(RECORDING.is_file() and REFERENCE.is_file(),
+                     "SKIPPED: no real recordings; set DRIFTLAB_SHARED to the directory that holds data/ and reference/")
 class Adis16405(DaemonTest):
     def test_allan_deviation_equals_the_reference(self) -> None:
         columns = ",".join(f"{i}={'angular_rate' if name.startswith('gyro') else 'specific_force'}:{name[-1]}:{'deg/s' if name.startswith('gyro') else 'g'}"

@@ -152,7 +152,7 @@ MultiPositionCalibration calibrate_file(const std::filesystem::path& file, std::
 TEST(MultiPosition, BringsRealRecordingsToGravity) {
   const auto data = shared_data();
   if (!data) {
-    GTEST_SKIP() << "no shared recordings";
+    GTEST_SKIP() << "SKIPPED: no real recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
   struct Case {
     const char* file;
