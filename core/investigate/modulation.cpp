@@ -1,5 +1,6 @@
 #include "core/investigate/modulation.hpp"
 
+#include "core/investigate/golden_section.hpp"
 #include "core/investigate/profile.hpp"
 
 #include <algorithm>
@@ -111,30 +112,10 @@ ModulationFit fit_modulation(const Modulation& levels, bool scale_known, double 
       }
     }
   }
-  double low = best == 0.0 ? -1e-3 * unit : std::min(best * 0.2, best * 3.5);
-  double high = best == 0.0 ? 1e-3 * unit : std::max(best * 0.2, best * 3.5);
-  constexpr double kGolden = 0.6180339887498949;
-  double a = high - kGolden * (high - low);
-  double b = low + kGolden * (high - low);
-  double fa = at(a);
-  double fb = at(b);
-  for (int i = 0; i < 50; ++i) {
-    if (fa > fb) {
-      high = b;
-      b = a;
-      fb = fa;
-      a = high - kGolden * (high - low);
-      fa = at(a);
-    } else {
-      low = a;
-      a = b;
-      fa = fb;
-      b = low + kGolden * (high - low);
-      fb = at(b);
-    }
-  }
+  const double low = best == 0.0 ? -1e-3 * unit : std::min(best * 0.2, best * 3.5);
+  const double high = best == 0.0 ? 1e-3 * unit : std::max(best * 0.2, best * 3.5);
   ModulationFit fit;
-  fit.value = 0.5 * (low + high);
+  fit.value = golden_section(low, high, 50, at);
   const Value value = evaluate(levels, scale_known, fit.value, ratio);
   fit.scale = value.scale;
   fit.gain = 2.0 * (value.log_likelihood - none);

@@ -1,5 +1,6 @@
 #include "core/investigate/tails.hpp"
 
+#include "core/investigate/golden_section.hpp"
 #include "core/investigate/profile.hpp"
 
 #include <algorithm>
@@ -12,30 +13,6 @@ namespace {
 constexpr double kWidth = 0.05;
 constexpr double kTop = 12.0;
 constexpr double kCut = 1000.0;
-
-double golden(double low, double high, int steps, const std::function<double(double)>& f) {
-  constexpr double kGolden = 0.6180339887498949;
-  double a = high - kGolden * (high - low);
-  double b = low + kGolden * (high - low);
-  double fa = f(a);
-  double fb = f(b);
-  for (int i = 0; i < steps; ++i) {
-    if (fa > fb) {
-      high = b;
-      b = a;
-      fb = fa;
-      a = high - kGolden * (high - low);
-      fa = f(a);
-    } else {
-      low = a;
-      a = b;
-      fa = fb;
-      b = low + kGolden * (high - low);
-      fb = f(b);
-    }
-  }
-  return 0.5 * (low + high);
-}
 
 double gaussian(const InnovationHistogram& h, double variance) {
   return -0.5 * (h.samples * std::log(variance) + h.square / variance) -
@@ -119,14 +96,14 @@ TailFit fit_student(const InnovationHistogram& h, bool scale_known) {
   const double free_gaussian = gaussian(h, own);
   const double null = scale_known ? gaussian(h, 1.0) : free_gaussian;
   const auto at_free = [&](double x) {
-    const double v = golden(std::log(0.5 * own), std::log(1.5 * own), 18,
-                            [&](double log_v) { return student(h, x, std::exp(log_v)); });
+    const double v = golden_section(std::log(0.5 * own), std::log(1.5 * own), 18,
+                                    [&](double log_v) { return student(h, x, std::exp(log_v)); });
     return student(h, x, std::exp(v));
   };
   const std::function<double(double)> at_known = [&](double x) { return student(h, x, 1.0); };
   const std::function<double(double)> at = scale_known ? at_known : std::function<double(double)>(at_free);
   const auto over_log = [&](const std::function<double(double)>& f) {
-    return std::exp(golden(std::log(1e-4), std::log(0.45), 30, [&](double l) { return f(std::exp(l)); }));
+    return std::exp(golden_section(std::log(1e-4), std::log(0.45), 30, [&](double l) { return f(std::exp(l)); }));
   };
   fit.value = over_log(at);
   const double top = at(fit.value);
@@ -156,11 +133,11 @@ MixtureFit fit_mixture(const InnovationHistogram& h, bool scale_known) {
     double v = known ? 1.0 : own;
     double p = 1e-4;
     for (int round = 0; round < (known ? 1 : 3); ++round) {
-      p = std::exp(golden(std::log(1e-6), std::log(0.1), 24,
-                          [&](double log_p) { return mixture(h, std::exp(log_p), magnitude, v); }));
+      p = std::exp(golden_section(std::log(1e-6), std::log(0.1), 24,
+                                  [&](double log_p) { return mixture(h, std::exp(log_p), magnitude, v); }));
       if (!known) {
-        v = std::exp(golden(std::log(0.8 * v), std::log(1.1 * v), 16,
-                            [&](double log_v) { return mixture(h, p, magnitude, std::exp(log_v)); }));
+        v = std::exp(golden_section(std::log(0.8 * v), std::log(1.1 * v), 16,
+                                    [&](double log_v) { return mixture(h, p, magnitude, std::exp(log_v)); }));
       }
     }
     return Point{p, v, mixture(h, p, magnitude, v)};
@@ -175,7 +152,7 @@ MixtureFit fit_mixture(const InnovationHistogram& h, bool scale_known) {
         best = m;
       }
     }
-    return golden(best / 1.15, best * 1.15, 12, [&](double m) { return at(m, known).log_likelihood; });
+    return golden_section(best / 1.15, best * 1.15, 12, [&](double m) { return at(m, known).log_likelihood; });
   };
   fit.magnitude = search(scale_known);
   const Point top = at(fit.magnitude, scale_known);
@@ -204,8 +181,8 @@ double student_gain(const InnovationHistogram& h, double inverse_nu, bool scale_
   if (scale_known) {
     return student(h, inverse_nu, 1.0) - gaussian(h, 1.0);
   }
-  const double v = golden(std::log(0.5 * own), std::log(1.5 * own), 18,
-                          [&](double log_v) { return student(h, inverse_nu, std::exp(log_v)); });
+  const double v = golden_section(std::log(0.5 * own), std::log(1.5 * own), 18,
+                                  [&](double log_v) { return student(h, inverse_nu, std::exp(log_v)); });
   return student(h, inverse_nu, std::exp(v)) - gaussian(h, own);
 }
 
@@ -214,8 +191,8 @@ double mixture_gain(const InnovationHistogram& h, double fraction, double magnit
   if (scale_known) {
     return mixture(h, fraction, magnitude, 1.0) - gaussian_binned(h, 1.0);
   }
-  const double v = golden(std::log(0.5 * own), std::log(1.1 * own), 20,
-                          [&](double log_v) { return mixture(h, fraction, magnitude, std::exp(log_v)); });
+  const double v = golden_section(std::log(0.5 * own), std::log(1.1 * own), 20,
+                                  [&](double log_v) { return mixture(h, fraction, magnitude, std::exp(log_v)); });
   return mixture(h, fraction, magnitude, std::exp(v)) - gaussian_binned(h, own);
 }
 
