@@ -1,8 +1,6 @@
-#include "clients/cli/cli.hpp"
 #include "clients/cli/http_client.hpp"
-#include "schema/json/json.hpp"
+#include "clients/cli/print_answer.hpp"
 
-#include <cstdio>
 #include <memory>
 
 namespace driftlab::cli {
@@ -29,10 +27,6 @@ std::string media_type(const std::string& format) {
 }
 
 Exit run(const Flags& flags) {
-  auto client = HttpClient::to(flags.server);
-  if (!client) {
-    return complain(client.error());
-  }
   std::string target = "/v1/parameter-tables?device=" + percent_encode(flags.device) +
                        "&sensor=" + percent_encode(flags.sensor) + "&method=" + percent_encode(flags.method);
   if (!flags.axis.empty()) {
@@ -41,18 +35,7 @@ Exit run(const Flags& flags) {
   if (!flags.model.empty()) {
     target += "&model=" + percent_encode(flags.model);
   }
-  auto reply = client->get(target, media_type(flags.format));
-  if (!reply) {
-    return complain(reply.error(), Exit::ServerOrJob);
-  }
-  if (reply->status != 200) {
-    const auto problem = parse_json(reply->body);
-    const std::string detail = problem && problem->is_object() ? problem->value("detail", "") : "";
-    return complain({ErrorCode::InvalidArgument, detail.empty() ? "The daemon refused." : detail, {}},
-                    reply->status < 500 ? Exit::BadInput : Exit::ServerOrJob);
-  }
-  std::fwrite(reply->body.data(), 1, reply->body.size(), stdout);
-  return Exit::Success;
+  return print_answer(flags.server, target, media_type(flags.format));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
-#include "clients/cli/cli.hpp"
 #include "clients/cli/http_client.hpp"
-#include "schema/json/json.hpp"
+#include "clients/cli/print_answer.hpp"
 
-#include <cstdio>
 #include <memory>
 
 namespace driftlab::cli {
@@ -19,10 +17,6 @@ struct Flags {
 };
 
 Exit run(const Flags& flags) {
-  auto client = HttpClient::to(flags.server);
-  if (!client) {
-    return complain(client.error());
-  }
   std::string target = "/v1/trends?device=" + percent_encode(flags.device) + "&sensor=" + percent_encode(flags.sensor) +
                        "&method=" + percent_encode(flags.method);
   for (const auto& [name, value] : {std::pair{"&axis=", flags.axis}, std::pair{"&model=", flags.model}}) {
@@ -30,18 +24,7 @@ Exit run(const Flags& flags) {
       target += name + percent_encode(value);
     }
   }
-  auto reply = client->get(target, flags.format == "json" ? "application/json" : "text/plain");
-  if (!reply) {
-    return complain(reply.error(), Exit::ServerOrJob);
-  }
-  if (reply->status != 200) {
-    const auto problem = parse_json(reply->body);
-    const std::string detail = problem && problem->is_object() ? problem->value("detail", "") : "";
-    return complain({ErrorCode::InvalidArgument, detail.empty() ? "The daemon refused." : detail, {}},
-                    reply->status < 500 ? Exit::BadInput : Exit::ServerOrJob);
-  }
-  std::fwrite(reply->body.data(), 1, reply->body.size(), stdout);
-  return Exit::Success;
+  return print_answer(flags.server, target, flags.format == "json" ? "application/json" : "text/plain");
 }
 
 }  // namespace
