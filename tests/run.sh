@@ -112,7 +112,7 @@ fi
 
 # Release suites and fuzz targets are one ctest run, so that its closing lines speak for all of them.
 trees=()
-step "build release" build release "all header_check" -DDRIFTLAB_TESTS=ON -DDRIFTLAB_BENCH=ON && trees+=(release)
+step "build release" build release "all benchmarks header_check" -DDRIFTLAB_TESTS=ON -DDRIFTLAB_BENCH=ON && trees+=(release)
 step "build fuzz targets" build fuzz fuzz_targets "-DDRIFTLAB_FUZZ_SECONDS=$fuzz_seconds" && trees+=(fuzz)
 labels=(--label-exclude long)
 if [ "$long" = yes ]; then

@@ -8,6 +8,8 @@
 #include "core/signal/recording_view.hpp"
 #include "schema/json/calibration.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -1,5 +1,7 @@
 #include "clients/cli/analysis.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 #include <memory>
 

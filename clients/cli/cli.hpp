@@ -2,11 +2,13 @@
 /// The command line: shared pieces of all commands. Each command is one file that adds itself to the application.
 #include "core/signal/result.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
 #include <stop_token>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace driftlab::cli {
 

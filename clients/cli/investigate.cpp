@@ -9,6 +9,8 @@
 #include "core/read/format.hpp"
 #include "schema/json/investigation.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <deque>

@@ -1,6 +1,8 @@
 // driftlab: the command line. See `driftlab --help` and schema/docs/cli.md.
 #include "clients/cli/cli.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 
 namespace driftlab::cli {

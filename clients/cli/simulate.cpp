@@ -3,6 +3,8 @@
 #include "core/signal/number.hpp"
 #include "core/signal/unit.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <cstdio>
 #include <fstream>
 #include <memory>

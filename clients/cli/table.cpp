@@ -1,6 +1,8 @@
 #include "clients/cli/http_client.hpp"
 #include "clients/cli/print_answer.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <memory>
 
 namespace driftlab::cli {

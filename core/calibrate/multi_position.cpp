@@ -1,6 +1,6 @@
 #include "core/calibrate/multi_position.hpp"
 
-#include <Eigen/Dense>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +92,7 @@ Solution solve(const Scaled& scaled) {
     ++found.iterations;
     Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     normal.diagonal() *= 1.0 + damping;
-    const Parameters step = normal.ldlt().solve(-(jacobian.transpose() * residuals));
+    const Parameters step = solve_symmetric(normal, Eigen::VectorXd(-(jacobian.transpose() * residuals)));
     Eigen::VectorXd trial_residuals;
     const double square = evaluate(scaled, found.p + step, nullptr, trial_residuals);
     if (std::isfinite(square) && square <= found.square) {
@@ -106,12 +106,10 @@ Solution solve(const Scaled& scaled) {
     }
   }
   const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-  const double smallest = eigen.eigenvalues()[0];
-  found.condition =
-      smallest > 0.0 ? eigen.eigenvalues()[kNumbers - 1] / smallest : std::numeric_limits<double>::infinity();
-  found.deviation =
-      normal.ldlt().solve(Eigen::MatrixXd::Identity(kNumbers, kNumbers)).diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd eigenvalues = symmetric_eigen(normal).values;
+  const double smallest = eigenvalues[0];
+  found.condition = smallest > 0.0 ? eigenvalues[kNumbers - 1] / smallest : std::numeric_limits<double>::infinity();
+  found.deviation = inverse(normal).diagonal().cwiseMax(0.0).cwiseSqrt();
   return found;
 }
 

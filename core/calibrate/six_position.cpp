@@ -1,6 +1,6 @@
 #include "core/calibrate/six_position.hpp"
 
-#include <Eigen/Dense>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,14 +81,14 @@ Result<Line> fit_line(std::span<const KnownPosition> positions, std::size_t axis
   // Columns of comparable size, so that the rank does not depend on g or a rate in rad/s.
   const Eigen::VectorXd size = design.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = design * size.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  if (rows < width || qr.rank() < width) {
+  const Eigen::VectorXd singular = singular_values(scaled);
+  if (rows < width || !(singular[width - 1] > 1e-12 * singular[0])) {
     return fail(ErrorCode::TooFewSamples,
                 "The positions do not determine the misalignments: true values in four directions not of one plane are "
                 "needed.");
   }
-  const Eigen::VectorXd solution = qr.solve(reading);
-  const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).inverse();
+  const Eigen::VectorXd solution = least_squares(scaled, reading);
+  const Eigen::MatrixXd spread = inverse(scaled.transpose() * scaled);
   Line line;
   line.readings = used.size();
   line.free = columns.size();
@@ -97,7 +97,7 @@ Result<Line> fit_line(std::span<const KnownPosition> positions, std::size_t axis
     const int ka = columns[static_cast<std::size_t>(a)];
     line.value[ka] = solution[a] / size[a];
     for (Eigen::Index b = 0; b < width; ++b) {
-      line.covariance(ka, columns[static_cast<std::size_t>(b)]) = inverse(a, b) / (size[a] * size[b]);
+      line.covariance(ka, columns[static_cast<std::size_t>(b)]) = spread(a, b) / (size[a] * size[b]);
     }
   }
   if (!weighted) {  // the scatter alone says how uncertain the readings are

@@ -1,7 +1,6 @@
 #include "core/fit/candidate.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include "core/process/dense.hpp"
 
 #include <array>
 #include <cmath>
@@ -88,7 +87,7 @@ Equation8 equation_8(const WaveletMoments& moments, const GmwmSolution& solution
   }
   // tr(W C W D (D'WD)^-1 D') = tr(H S): H the projector on the weighted derivatives, S the weighted covariance.
   const Eigen::MatrixXd scaled = weight.asDiagonal() * covariance * weight.asDiagonal();
-  const Eigen::MatrixXd projected = derivative * derivative.colPivHouseholderQr().solve(scaled);
+  const Eigen::MatrixXd projected = derivative * least_squares(derivative, scaled);
   return {error.squaredNorm(), 2.0 * std::max(0.0, projected.trace())};
 }
 

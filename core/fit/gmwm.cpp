@@ -1,10 +1,8 @@
 #include "core/fit/gmwm.hpp"
 
+#include "core/fit/levenberg_marquardt.hpp"
 #include "core/fit/subset_least_squares.hpp"
-
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <ceres/tiny_solver.h>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <array>
@@ -103,51 +101,37 @@ class Search {
   std::vector<ShapeSlot> slots_;
 };
 
-/// The projected residual as a function of the logarithms of the shapes, in the form ceres::TinySolver asks for.
-class ProjectedResidual {
- public:
-  using Scalar = double;
-  // NOLINTNEXTLINE(readability-identifier-naming): names are Ceres'
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
-
-  explicit ProjectedResidual(const Search& search) : search_(search) {}
-  [[nodiscard]] int NumResiduals() const { return static_cast<int>(search_.scales()); }   // NOLINT
-  [[nodiscard]] int NumParameters() const { return static_cast<int>(search_.shapes()); }  // NOLINT
-
-  bool operator()(const double* log_shapes, double* residuals, double* jacobian) const {
-    const Eigen::VectorXd at =
-        search_.clamped(Eigen::Map<const Eigen::VectorXd>(log_shapes, static_cast<Eigen::Index>(search_.shapes())));
-    const Eigen::MatrixXd a = search_.design(at);
-    const SubsetSolution levels = subset_least_squares(a, search_.target());
-    Eigen::Map<Eigen::VectorXd> r(residuals, search_.scales());
-    r = search_.target() - a * levels.x;
-    if (jacobian == nullptr) {
-      return true;
-    }
-    std::vector<Eigen::Index> active;
-    for (Eigen::Index k = 0; k < levels.x.size(); ++k) {
-      if (levels.x(k) > 0.0) {
-        active.push_back(k);
-      }
-    }
-    Eigen::MatrixXd basis(a.rows(), static_cast<Eigen::Index>(active.size()));
-    for (std::size_t k = 0; k < active.size(); ++k) {
-      basis.col(static_cast<Eigen::Index>(k)) = a.col(active[k]);
-    }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
-    Eigen::Map<Eigen::MatrixXd> jac(jacobian, search_.scales(), static_cast<Eigen::Index>(search_.shapes()));
-    for (std::size_t s = 0; s < search_.shapes(); ++s) {
-      const auto process = static_cast<Eigen::Index>(search_.slots()[s].process);
-      const auto column = static_cast<Eigen::Index>(s);
-      const Eigen::VectorXd slope = levels.x(process) * search_.column_slope(search_.slots()[s].process, at(column));
-      jac.col(column) = active.empty() ? Eigen::VectorXd(-slope) : Eigen::VectorXd(basis * qr.solve(slope) - slope);
-    }
-    return true;
+/// The projected residual as a function of the logarithms of the shapes.
+void projected_residual(const Search& search, const Eigen::VectorXd& log_shapes, Eigen::VectorXd& residuals,
+                        Eigen::MatrixXd* jacobian) {
+  const Eigen::VectorXd at = search.clamped(log_shapes);
+  const Eigen::MatrixXd a = search.design(at);
+  const SubsetSolution levels = subset_least_squares(a, search.target());
+  residuals = search.target() - a * levels.x;
+  if (jacobian == nullptr) {
+    return;
   }
-
- private:
-  const Search& search_;
-};
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index k = 0; k < levels.x.size(); ++k) {
+    if (levels.x(k) > 0.0) {
+      active.push_back(k);
+    }
+  }
+  Eigen::MatrixXd basis(a.rows(), static_cast<Eigen::Index>(active.size()));
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    basis.col(static_cast<Eigen::Index>(k)) = a.col(active[k]);
+  }
+  Eigen::MatrixXd slopes(a.rows(), static_cast<Eigen::Index>(search.shapes()));
+  for (std::size_t s = 0; s < search.shapes(); ++s) {
+    const auto process = static_cast<Eigen::Index>(search.slots()[s].process);
+    const auto column = static_cast<Eigen::Index>(s);
+    slopes.col(column) = levels.x(process) * search.column_slope(search.slots()[s].process, at(column));
+  }
+  *jacobian = -slopes;
+  if (!active.empty()) {
+    *jacobian += basis * least_squares(basis, slopes);
+  }
+}
 
 struct Candidate {
   Eigen::VectorXd log_shapes;
@@ -266,10 +250,11 @@ MomentWeights MomentWeights::from_covariance(const Eigen::MatrixXd& covariance) 
   for (double ridge = 0.0;; ridge = ridge == 0.0 ? 1e-12 : 10.0 * ridge) {
     Eigen::MatrixXd raised = correlation;
     raised.diagonal().array() += ridge;
-    const Eigen::LLT<Eigen::MatrixXd> factor(raised);
-    if (factor.info() == Eigen::Success || ridge > 1.0) {
-      const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols());
-      return {Eigen::MatrixXd(factor.matrixL().solve(identity)) * inverse.asDiagonal()};
+    if (const std::optional<Eigen::MatrixXd> whitening = inverse_cholesky(raised)) {
+      return {*whitening * inverse.asDiagonal()};
+    }
+    if (ridge > 1.0) {  // not a covariance at all: what is not finite in it is left to the fit to report
+      return from_sd(sd);
     }
   }
 }
@@ -298,24 +283,21 @@ GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& struc
   if (search.shapes() == 0) {
     best.log_shapes.resize(0);
   } else {
-    const ProjectedResidual residual(search);
+    const auto residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
+      projected_residual(search, at, residuals, jacobian);
+    };
+    LeastSquaresLimits limits{.max_iterations = 60, .gradient_tolerance = 1e-13, .parameter_tolerance = 1e-10};
     for (Candidate candidate : scan(search, structure)) {
-      ceres::TinySolver<ProjectedResidual> solver;
-      solver.options.max_num_iterations = 60;
-      solver.options.gradient_tolerance = 1e-13;
-      solver.options.parameter_tolerance = 1e-10;
-      solver.options.function_tolerance = 1e-13 * std::max(1.0, candidate.objective);
-      solver.options.cost_threshold = 1e-300;
+      limits.function_tolerance = 1e-13 * std::max(1.0, candidate.objective);
       Eigen::VectorXd at = candidate.log_shapes;
-      const auto& summary = solver.Solve(residual, &at);
-      const double objective = 2.0 * summary.final_cost;
-      if (objective < candidate.objective) {
-        candidate.objective = objective;
+      const LeastSquaresOutcome outcome = levenberg_marquardt(residual, search.scales(), limits, at);
+      if (outcome.squared_residual < candidate.objective) {
+        candidate.objective = outcome.squared_residual;
         candidate.log_shapes = search.clamped(at);
       }
       if (best.log_shapes.size() == 0 || candidate.objective < best.objective) {
         best = candidate;
-        solution.converged = summary.status != ceres::TinySolver<ProjectedResidual>::HIT_MAX_ITERATIONS;
+        solution.converged = outcome.converged;
       }
     }
   }

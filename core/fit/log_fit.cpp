@@ -1,10 +1,10 @@
 #include "core/fit/log_fit.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include "core/fit/levenberg_marquardt.hpp"
+#include "core/process/dense.hpp"
+
 #include <boost/math/special_functions/digamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
-#include <ceres/tiny_solver.h>
 
 #include <algorithm>
 #include <array>
@@ -17,46 +17,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxRestarts = 20;
-
-/// Residual over the free coordinates, in the form ceres::TinySolver asks for.
-class FreeResidual {
- public:
-  using Scalar = double;
-  // NOLINTNEXTLINE(readability-identifier-naming): names are Ceres'
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
-
-  FreeResidual(const LogFit& fit, Eigen::VectorXd base, std::vector<Eigen::Index> free)
-      : fit_(fit), base_(std::move(base)), free_(std::move(free)) {}
-  [[nodiscard]] int NumResiduals() const { return static_cast<int>(fit_.scales()); }  // NOLINT
-  [[nodiscard]] int NumParameters() const { return static_cast<int>(free_.size()); }  // NOLINT
-
-  [[nodiscard]] Eigen::VectorXd full(const double* values) const {
-    Eigen::VectorXd at = base_;
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      at(free_[i]) = values[i];
-    }
-    return at;
-  }
-
-  bool operator()(const double* values, double* residuals, double* jacobian) const {
-    Eigen::VectorXd r;
-    Eigen::MatrixXd all;
-    fit_.evaluate(full(values), &r, jacobian != nullptr ? &all : nullptr);
-    Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
-    if (jacobian != nullptr) {
-      Eigen::Map<Eigen::MatrixXd> out(jacobian, r.size(), static_cast<Eigen::Index>(free_.size()));
-      for (std::size_t i = 0; i < free_.size(); ++i) {
-        out.col(static_cast<Eigen::Index>(i)) = all.col(free_[i]);
-      }
-    }
-    return true;
-  }
-
- private:
-  const LogFit& fit_;
-  Eigen::VectorXd base_;
-  std::vector<Eigen::Index> free_;
-};
 
 }  // namespace
 
@@ -182,20 +142,28 @@ double LogFit::minimise(Eigen::VectorXd& at, std::optional<std::size_t> fixed) c
   if (free.empty()) {
     return evaluate(at, nullptr, nullptr);
   }
-  const FreeResidual residual(*this, at, free);
-  Eigen::VectorXd values(static_cast<Eigen::Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    values(static_cast<Eigen::Index>(i)) = at(free[i]);
-  }
-  ceres::TinySolver<FreeResidual> solver;
-  solver.options.max_num_iterations = 80;
-  solver.options.gradient_tolerance = 1e-9;
-  solver.options.parameter_tolerance = 1e-9;
-  solver.options.function_tolerance = 1e-7;
-  solver.options.cost_threshold = 1e-14;
-  solver.options.initial_trust_region_radius = 1e2;
-  solver.Solve(residual, &values);
-  at = residual.full(values.data());
+  const auto full = [&](const Eigen::VectorXd& values) {
+    Eigen::VectorXd point = at;
+    point(free) = values;
+    return point;
+  };
+  const auto residual = [&](const Eigen::VectorXd& values, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
+    Eigen::MatrixXd all;
+    evaluate(full(values), &residuals, jacobian != nullptr ? &all : nullptr);
+    if (jacobian != nullptr) {
+      *jacobian = all(Eigen::all, free);
+    }
+  };
+  Eigen::VectorXd values = at(free);
+  levenberg_marquardt(residual, static_cast<Eigen::Index>(scales()),
+                      {.max_iterations = 80,
+                       .gradient_tolerance = 1e-9,
+                       .parameter_tolerance = 1e-9,
+                       .function_tolerance = 1e-7,
+                       .cost_threshold = 1e-14,
+                       .first_trust_radius = 1e2},
+                      values);
+  at = full(values);
   for (std::size_t k = 0; k < coordinates_.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     at(i) = std::clamp(at(i), coordinates_[k].low, coordinates_[k].high);
@@ -216,13 +184,13 @@ bool LogFit::improve(Eigen::VectorXd start) {
 Eigen::VectorXd LogFit::sandwich() const {
   Eigen::MatrixXd jacobian;
   evaluate(best_, nullptr, &jacobian);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
+  const SymmetricEigen eigen = symmetric_eigen(jacobian.transpose() * jacobian);
   Eigen::VectorXd errors(static_cast<Eigen::Index>(coordinates_.size()));
   for (Eigen::Index k = 0; k < errors.size(); ++k) {
     double variance = 0.0;
     for (Eigen::Index e = 0; e < errors.size(); ++e) {
-      const double loading = eigen.eigenvectors()(k, e);
-      variance += loading * loading / std::max(eigen.eigenvalues()(e), 1e-14);
+      const double loading = eigen.vectors(k, e);
+      variance += loading * loading / std::max(eigen.values(e), 1e-14);
     }
     errors(k) = std::sqrt(variance);
   }
@@ -256,7 +224,7 @@ double LogFit::rise_at(std::size_t k, double value) {
 double LogFit::condition_number() const {
   Eigen::MatrixXd jacobian;
   evaluate(best_, nullptr, &jacobian);
-  const Eigen::VectorXd singular = jacobian.jacobiSvd().singularValues();
+  const Eigen::VectorXd singular = singular_values(jacobian);
   const double least = singular(singular.size() - 1);
   return jacobian.rows() >= jacobian.cols() && least > 1e-14 * singular(0) ? singular(0) / least : kInfinity;
 }

@@ -1,6 +1,6 @@
 #include "core/fit/subset_least_squares.hpp"
 
-#include <Eigen/QR>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <array>
@@ -198,7 +198,7 @@ SubsetSolution subset_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& a,
       length(i) = a.col(active[k]).norm();
       columns.col(i) = a.col(active[k]) / length(i);
     }
-    const Eigen::VectorXd exact = columns.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd exact = least_squares(columns, Eigen::VectorXd(b));
     if (exact.minCoeff() > 0.0) {
       for (std::size_t k = 0; k < active.size(); ++k) {
         solution.x(active[k]) = exact(static_cast<Eigen::Index>(k)) / length(static_cast<Eigen::Index>(k));

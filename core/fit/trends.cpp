@@ -1,6 +1,8 @@
 #include "core/fit/trends.hpp"
 
-#include <Eigen/Dense>
+#include "core/process/dense.hpp"
+
+#include <Eigen/LU>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -56,7 +58,7 @@ Regression regress(const Eigen::MatrixXd& design, const Eigen::VectorXd& y, cons
   const Eigen::VectorXd weight = variance.cwiseInverse();
   const Eigen::MatrixXd normal = design.transpose() * weight.asDiagonal() * design;
   Regression result;
-  result.covariance = normal.inverse();
+  result.covariance = inverse(normal);
   result.coefficients = result.covariance * (design.transpose() * weight.cwiseProduct(y));
   const Eigen::VectorXd residual = y - design * result.coefficients;
   result.chi_square = weight.dot(residual.cwiseAbs2());
@@ -246,7 +248,7 @@ void store_covariance(const Series& series, double tau2, FittedRelation& relatio
   const Eigen::VectorXd weight = (series.variance.array() + tau2).inverse();
   Eigen::MatrixXd normal = gradient.transpose() * weight.asDiagonal() * gradient;
   normal.diagonal().array() += 1e-8 * normal.trace();  // an exponent that nothing tells has a wide interval, not none
-  const Eigen::MatrixXd covariance = normal.inverse();
+  const Eigen::MatrixXd covariance = inverse(normal);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < count; ++j) {
       relation.covariance[i][j] = covariance(i, j);

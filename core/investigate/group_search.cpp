@@ -144,12 +144,13 @@ std::vector<double> white_scale_of(const FullRate& data) {
 /// One group's state through the search.
 class GroupSearch {
  public:
-  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads)
-      : study_(study), group_(group), index_(index), threads_(threads) {}
+  /// What is found is written to `outcome`.
+  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads, GroupOutcome& outcome)
+      : study_(study), group_(group), index_(index), threads_(threads), outcome_(outcome) {}
 
-  GroupOutcome run() {
+  void run() {
     if (!check_usable()) {
-      return std::move(outcome_);
+      return;
     }
     look_at_files();
     search_slow();
@@ -160,7 +161,6 @@ class GroupSearch {
         rival.group = index_;
       }
     }
-    return std::move(outcome_);
   }
 
  private:
@@ -459,13 +459,15 @@ class GroupSearch {
   double given_white_ = 0.0;
   double quantization_ = 0.0;
   bool jitter_ = false;
-  GroupOutcome outcome_;
+  GroupOutcome& outcome_;
 };
 
 }  // namespace
 
 GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads) {
-  return GroupSearch(study, group, index, threads).run();
+  GroupOutcome outcome;
+  GroupSearch(study, group, index, threads, outcome).run();
+  return outcome;
 }
 
 }  // namespace driftlab::investigate

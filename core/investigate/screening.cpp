@@ -1,6 +1,7 @@
 #include "core/investigate/screening.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/process/dense.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -43,10 +44,12 @@ double ScopedGram::gain(const std::vector<std::size_t>& scope) const {
   if (fixed_ > 1) {
     Eigen::MatrixXd b = all_.block(1, 1, fixed_ - 1, fixed_ - 1);
     b.diagonal() *= 1.0 + 1e-12;
-    const Eigen::LDLT<Eigen::MatrixXd> factor(b);
     const Eigen::MatrixXd x = cross.rightCols(fixed_ - 1);
-    own -= x * factor.solve(x.transpose());
-    data -= x * factor.solve(all_.block(1, 0, fixed_ - 1, 1));
+    Eigen::MatrixXd right(fixed_ - 1, columns + 1);
+    right << x.transpose(), all_.col(0).segment(1, fixed_ - 1);
+    const Eigen::MatrixXd explained = x * solve_symmetric(b, right);
+    own -= explained.leftCols(columns);
+    data -= explained.col(columns);
   }
   // What lies in the span of the regressors has no gain: the remainder must be more than rounding.
   for (Eigen::Index i = 0; i < columns; ++i) {
@@ -54,7 +57,7 @@ double ScopedGram::gain(const std::vector<std::size_t>& scope) const {
       return 0.0;
     }
   }
-  return data.dot(own.ldlt().solve(data));
+  return data.dot(solve_symmetric(own, data));
 }
 
 ScopedGram::Pair ScopedGram::pair_in(std::size_t r, Eigen::Index from) const {
@@ -66,16 +69,18 @@ ScopedGram::Pair ScopedGram::pair_in(std::size_t r, Eigen::Index from) const {
     Eigen::MatrixXd b = all_.block(1, 1, fixed_ - 1, fixed_ - 1);
     b.diagonal() *= 1.0 + 1e-12;
     b.diagonal().array() += 1e-300;
-    const Eigen::LDLT<Eigen::MatrixXd> factor(b);
     const Eigen::MatrixXd x = g.block(from, 1, 2, fixed_ - 1);
-    own -= x * factor.solve(x.transpose());
-    data -= x * factor.solve(all_.block(1, 0, fixed_ - 1, 1));
+    Eigen::MatrixXd right(fixed_ - 1, 3);
+    right << x.transpose(), all_.col(0).segment(1, fixed_ - 1);
+    const Eigen::MatrixXd explained = x * solve_symmetric(b, right);
+    own -= explained.leftCols<2>();
+    data -= explained.col(2);
   }
   // A recording at rest has constant columns, which the bias holds already.
   if (!(before > 0.0) || own.determinant() < 1e-6 * before * before) {
     return {};
   }
-  return {data.dot(own.ldlt().solve(data)), 0.5 * own.trace()};
+  return {data.dot(own.inverse() * data), 0.5 * own.trace()};
 }
 
 namespace {
@@ -163,7 +168,7 @@ StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const Bloc
   for (Eigen::Index k = 0; k < p; ++k) {
     b(k, k) = b(k, k) > 0.0 ? b(k, k) : 1.0;  // a regressor without input
   }
-  inverse_ = b.inverse();
+  inverse_ = inverse(b);
   const Eigen::VectorXd amplitude = inverse_ * gram.col(0).tail(p);
   for (std::size_t r = 0; r < series.recordings.size(); ++r) {
     const auto& rows = whitened.columns.rows[r];

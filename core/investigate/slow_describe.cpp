@@ -2,8 +2,7 @@
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/screening.hpp"
 #include "core/investigate/slow_search.hpp"
-
-#include <Eigen/Cholesky>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +37,8 @@ double tested(const Eigen::MatrixXd& train, const Eigen::MatrixXd& test, Eigen::
   Eigen::MatrixXd normal = train.block(1, 1, p, p);
   normal.diagonal() *= 1.0 + 1e-9;
   normal.diagonal().array() += 1e-300;
-  const Eigen::VectorXd a = normal.ldlt().solve(train.block(1, 0, p, 1));
-  return test(0, 0) - 2.0 * a.dot(test.block(1, 0, p, 1).col(0)) + a.dot(test.block(1, 1, p, p) * a);
+  const Eigen::VectorXd a = solve_symmetric(normal, Eigen::VectorXd(train.col(0).segment(1, p)));
+  return test(0, 0) - 2.0 * a.dot(test.col(0).segment(1, p)) + a.dot(test.block(1, 1, p, p) * a);
 }
 
 BlockSeries half_of(const BlockSeries& series, std::size_t half) {

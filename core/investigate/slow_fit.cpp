@@ -1,7 +1,6 @@
 #include "core/investigate/slow_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -152,12 +151,11 @@ LeastSquares solve_whitened(const BlockColumns& whitened) {
   }
   normal = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
   normal.diagonal().array() += 1e-12;
-  const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+  const Eigen::MatrixXd spread = solve_symmetric(normal, Eigen::MatrixXd(Eigen::MatrixXd::Identity(p, p)));
   const Eigen::VectorXd right = scale.cwiseInverse().cwiseProduct(gram.col(0).tail(p));
-  const Eigen::VectorXd solution = factor.solve(right);
+  const Eigen::VectorXd solution = spread * right;
   result.amplitude = scale.cwiseInverse().cwiseProduct(solution);
-  result.covariance = scale.cwiseInverse().asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) *
-                      scale.cwiseInverse().asDiagonal();
+  result.covariance = scale.cwiseInverse().asDiagonal() * spread * scale.cwiseInverse().asDiagonal();
   result.residual = gram(0, 0) - right.dot(solution);
   return result;
 }
@@ -193,7 +191,7 @@ SlowFit fit_slow(const BlockSeries& series, const BlockColumns& columns, const S
       Eigen::MatrixXd damped = d.information;
       damped.diagonal() *= 1.0 + damping;
       damped.diagonal().array() += 1e-9;
-      const Eigen::VectorXd step = damped.ldlt().solve(d.score);
+      const Eigen::VectorXd step = solve_symmetric(damped, d.score);
       if (0.5 * step.dot(d.score) < 5e-3) {
         fit.converged = true;
         break;
@@ -272,7 +270,7 @@ Interval profile_parameter(const BlockSeries& series, const BlockColumns& column
   }
   const auto index = static_cast<Eigen::Index>(found - fit.parameters.begin());
   const Eigen::MatrixXd covariance =
-      (fit.information + 1e-9 * Eigen::MatrixXd::Identity(fit.information.rows(), fit.information.cols())).inverse();
+      inverse(fit.information + 1e-9 * Eigen::MatrixXd::Identity(fit.information.rows(), fit.information.cols()));
   const double sd = std::sqrt(std::clamp(covariance(index, index), 1e-8, 4.0));
   SlowModel start = fit.model;
   const double centre = std::log(value_of(start, parameter));
@@ -290,7 +288,7 @@ Interval profile_parameter(const BlockSeries& series, const BlockColumns& column
       Eigen::MatrixXd damped = d.information;
       damped.diagonal() *= 1.001;
       damped.diagonal().array() += 1e-9;
-      const Eigen::VectorXd step = damped.ldlt().solve(d.score);
+      const Eigen::VectorXd step = solve_symmetric(damped, d.score);
       SlowModel trial = there.model;
       for (std::size_t j = 0; j < rest.size(); ++j) {
         const Interval limits = bounds_of(series, fit.model, rest[j]);

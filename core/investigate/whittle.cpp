@@ -1,7 +1,6 @@
 #include "core/investigate/whittle.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "core/process/dense.hpp"
 
 #include <cmath>
 
@@ -35,7 +34,7 @@ LevelFit fit_levels(const LinearDensity& density, const Eigen::VectorXd& start) 
         score[k] = 0.0;
       }
     }
-    const Eigen::VectorXd step = active.ldlt().solve(score);
+    const Eigen::VectorXd step = solve_symmetric(active, score);
     double factor = 1.0;
     bool moved = false;
     for (int attempt = 0; attempt < 12; ++attempt, factor *= 0.5) {
@@ -57,7 +56,7 @@ LevelFit fit_levels(const LinearDensity& density, const Eigen::VectorXd& start) 
       break;
     }
   }
-  fit.covariance = (information + 1e-30 * Eigen::MatrixXd::Identity(levels, levels)).inverse();
+  fit.covariance = inverse(information + 1e-30 * Eigen::MatrixXd::Identity(levels, levels));
   return fit;
 }
 

@@ -1,8 +1,8 @@
 #include "core/process/flicker_noise.hpp"
 
+#include "core/process/dense.hpp"
 #include "core/process/haar_differences.hpp"
 
-#include <Eigen/QR>
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
@@ -209,7 +209,7 @@ struct PoleSum {
         share(i, k) = 2.0 * kPi * f * gap * (2.0 - gap) / (gap * gap + 4.0 * (1.0 - gap) * s * s);
       }
     }
-    variance = share.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(kPoints));
+    variance = least_squares(share, Eigen::VectorXd(Eigen::VectorXd::Ones(kPoints)));
     worst = (share * variance - Eigen::VectorXd::Ones(kPoints)).cwiseAbs().maxCoeff();
   }
 };

@@ -1,6 +1,7 @@
 #include "core/variance/contamination.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/process/dense.hpp"
+
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
@@ -99,9 +100,8 @@ ContaminationTest test_contamination(std::span<const double> samples, double uni
       covariance(b, a) = covariance(a, b);
     }
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
   test.dof = static_cast<double>(count);
-  test.statistic = std::max(0.0, d.dot(factor.solve(d)));
+  test.statistic = std::max(0.0, d.dot(solve_symmetric(covariance, d)));
   const double capped = std::min(test.statistic, 1e6);
   test.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(test.dof), capped));
   if (!test.undefined_scales.empty()) {

@@ -1,6 +1,6 @@
 #include "core/variance/excess_kurtosis.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/process/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +66,7 @@ void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<con
     const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
     const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
     const Eigen::VectorXd scaled = direction.cwiseQuotient(sd);
-    const Eigen::LDLT<Eigen::MatrixXd> factor(correlation);
-    const double reach = scaled.dot(factor.solve(scaled));
+    const double reach = scaled.dot(solve_symmetric(correlation, scaled));
     kurtosis = reach > 0.0 ? std::max(kurtosis, -0.9 / reach) : 0.0;
   }
   covariance += kurtosis * direction * direction.transpose();

@@ -1,7 +1,6 @@
 #include "core/variance/nonnegative_least_squares.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include "core/process/dense.hpp"
 
 #include <limits>
 
@@ -14,7 +13,7 @@ Eigen::VectorXd solve_on(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, con
   for (std::size_t k = 0; k < active.size(); ++k) {
     columns.col(static_cast<Eigen::Index>(k)) = a.col(active[k]);
   }
-  return columns.colPivHouseholderQr().solve(b);
+  return least_squares(columns, b);
 }
 
 }  // namespace
