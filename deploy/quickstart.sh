@@ -71,10 +71,8 @@ if [ -z "$bin" ]; then
   . "$repository/deploy/packages.sh"
   install_packages "$logs/apt.log" build || exit 1
   build=$repository/build/release
-  # The suites need more packages; a tree that was configured with them keeps them.
-  options=()
-  [ -f "$build/CMakeCache.txt" ] || options=(-DDRIFTLAB_TESTS=OFF -DDRIFTLAB_BENCH=OFF)
-  (cd "$repository" && cmake --preset release "${options[@]}") >"$logs/configure.log" 2>&1 ||
+  # A tree that is configured, with the suites perhaps, stays as it is.
+  [ -f "$build/CMakeCache.txt" ] || (cd "$repository" && cmake --preset release) >"$logs/configure.log" 2>&1 ||
     { tail -n 20 "$logs/configure.log" >&2; fail "configuring failed; the whole output is in $logs/configure.log"; }
   # Said only where there is something to wait for.
   (sleep 3 >/dev/null 2>&1 && say "Building driftlab (the first time takes some minutes)") &
