@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """clang-tidy over every source of the project, warnings as errors; a source that was clean is not looked at again.
 
-Usage: tidy.py BUILD [--jobs N] [--all]    BUILD holds compile_commands.json of the preset `tidy`.
+Usage: tidy.py BUILD [SOURCE...] [--jobs N] [--all]    BUILD holds compile_commands.json of the preset `tidy`.
 
 What clang-tidy sees of a source is its preprocessed text, its flags and the .clang-tidy files above it. Their hash is kept in
 BUILD/tidy-clean when the source was clean, so that a second run costs one preprocessing each. --all forgets those hashes.
@@ -69,6 +69,7 @@ def look_at(source, entry, build, version):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("sources", nargs="*", type=pathlib.Path, help="look at these alone")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--all", action="store_true", help="look at every source again")
     options = parser.parse_args()
@@ -79,9 +80,11 @@ def main():
         for stamp in stamps.iterdir():
             stamp.unlink()
     version = subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout
+    only = {source.resolve() for source in options.sources}
+    chosen = sorted((e for e in entries(build) if not only or e[0] in only), key=lambda e: e[0])
     faulty = 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        todo = {pool.submit(look_at, source, entry, build, version): source for source, entry in sorted(entries(build), key=lambda e: e[0])}
+        todo = {pool.submit(look_at, source, entry, build, version): source for source, entry in chosen}
         for done, future in enumerate(concurrent.futures.as_completed(todo), 1):
             diagnostics = future.result()
             if diagnostics:
