@@ -13,16 +13,6 @@
 namespace driftlab {
 namespace {
 
-/// What clean noise of this channel looks like to the coefficient-wise estimator.
-RobustShape shape_of(std::span<const double> samples, double unit_square, const VarianceIntervals& intervals,
-                     HaarCovariance& plan, std::uint64_t seed) {
-  RobustShape shape = lattice_shape(samples, unit_square, intervals, plan, seed);
-  if (!shape.refused && !shape.simulated(0)) {
-    shape = quantization_shape(intervals, plan, difference_excess_kurtosis(samples));
-  }
-  return shape;
-}
-
 void take_sample_wise(SampleWiseVariance found, double unit_square, const VarianceIntervals& intervals,
                       HaarCovariance& plan, RobustVariances& result) {
   HaarVariance curve = std::move(found.curve);
@@ -42,6 +32,15 @@ void take_sample_wise(SampleWiseVariance found, double unit_square, const Varian
 }
 
 }  // namespace
+
+RobustShape clean_shape(std::span<const double> samples, double unit_square, const VarianceIntervals& intervals,
+                        HaarCovariance& plan, std::uint64_t seed, const RunControl& control) {
+  RobustShape shape = lattice_shape(samples, unit_square, intervals, plan, seed, control);
+  if (!shape.refused && !shape.simulated(0)) {
+    shape = quantization_shape(intervals, plan, difference_excess_kurtosis(samples, control));
+  }
+  return shape;
+}
 
 void lower_degrees(const std::vector<double>& efficiency, const HaarVariance& curve, VarianceIntervals& intervals) {
   for (std::size_t j = 0; j < efficiency.size(); ++j) {
@@ -65,7 +64,10 @@ Result<ClassicalVariances> classical_variances(std::span<const double> rows, dou
       half.push_back(m);
     }
     HaarCovariance plan(half, grid.size(), dt_s);
-    SampleWiseVariance found = sample_wise_variance(grid, plan, {.seed = seed, .look_for_errors = false});
+    SampleWiseVariance found = sample_wise_variance(grid, plan, {.seed = seed, .look_for_errors = false}, control);
+    if (found.outcome == SampleWiseOutcome::Cancelled) {
+      return fail(ErrorCode::Cancelled, "The characterisation was cancelled.");
+    }
     if (found.outcome != SampleWiseOutcome::Estimated) {
       return fail(ErrorCode::TooFewSamples,
                   "The gaps leave too few samples, or too many equal ones, to say what is missing.",
@@ -81,12 +83,16 @@ Result<ClassicalVariances> classical_variances(std::span<const double> rows, dou
 
 RobustVariances robust_variances(std::span<const double> samples, double mean, const GappySamples& grid,
                                  const ClassicalVariances& classical, const VarianceIntervals& intervals,
-                                 HaarCovariance& plan, std::uint64_t seed) {
+                                 HaarCovariance& plan, std::uint64_t seed, const RunControl& control) {
   const HaarVariance& curve = classical.curve;
   const double unit_square = classical.unit_square;
   RobustVariances result;
   RobustVariance coefficients =
-      robust_variance(samples, mean, curve, intervals, plan, shape_of(samples, unit_square, intervals, plan, seed));
+      robust_variance(samples, mean, curve, intervals, plan,
+                      clean_shape(samples, unit_square, intervals, plan, seed, control), control);
+  if (control.stop.stop_requested()) {
+    return result;
+  }
   for (std::size_t j = 0; j < curve.scales(); ++j) {  // the robust equation was solved in the samples' units
     if (std::optional<double>& value = coefficients.variance[j]) {
       *value /= unit_square;
@@ -112,7 +118,7 @@ RobustVariances robust_variances(std::span<const double> samples, double mean, c
     return result;
   }
   const GappySamples whole = grid.missing.empty() ? GappySamples{{samples.begin(), samples.end()}, {}} : GappySamples{};
-  SampleWiseVariance found = sample_wise_variance(grid.missing.empty() ? whole : grid, plan, {.seed = seed});
+  SampleWiseVariance found = sample_wise_variance(grid.missing.empty() ? whole : grid, plan, {.seed = seed}, control);
   if (found.outcome == SampleWiseOutcome::NotGaussian) {
     result.contamination.not_gaussian = true;
     result.contamination.verdict = name_of(ContaminationVerdict::Undecided);

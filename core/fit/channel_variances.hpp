@@ -14,6 +14,7 @@
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/haar_variance.hpp"
+#include "core/variance/robust_shape.hpp"
 #include "core/variance/variance_intervals.hpp"
 
 #include <Eigen/Core>
@@ -40,6 +41,12 @@ struct ClassicalVariances {
                                                              const GappySamples& grid, double dt_s, std::uint64_t seed,
                                                              const RunControl& control = {});
 
+/// What clean noise of this channel looks like to the coefficient-wise estimator: that of a coarse lattice, of uniform
+/// quantization errors, or Gaussian. `intervals`: of the classical curve in units of `unit_square`.
+[[nodiscard]] RobustShape clean_shape(std::span<const double> samples, double unit_square,
+                                      const VarianceIntervals& intervals, HaarCovariance& plan, std::uint64_t seed,
+                                      const RunControl& control = {});
+
 struct RobustVariances {
   std::vector<std::optional<double>> variance;  ///< in units of the classical ones
   std::vector<Interval> ci95;
@@ -50,9 +57,11 @@ struct RobustVariances {
 };
 
 /// Both robust estimators and the contamination test. `samples`: the record, or its completion where it has gaps.
+/// Without a value where `control.stop` asked.
 [[nodiscard]] RobustVariances robust_variances(std::span<const double> samples, double mean, const GappySamples& grid,
                                                const ClassicalVariances& classical, const VarianceIntervals& intervals,
-                                               HaarCovariance& plan, std::uint64_t seed);
+                                               HaarCovariance& plan, std::uint64_t seed,
+                                               const RunControl& control = {});
 
 /// What models are fitted to: moments, their standard deviations, and their covariance under a model.
 struct FittedVariances {

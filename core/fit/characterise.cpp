@@ -222,7 +222,7 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   }
   control.report("intervals", 0.2);
   HaarCovariance plan(curve.half, curve.samples, channel.dt_s);
-  const double excess = difference_excess_kurtosis(samples);
+  const double excess = difference_excess_kurtosis(samples, control);
   VarianceIntervals intervals = variance_intervals(curve, plan, excess);
   // Gross errors have an excess kurtosis that would leave the contamination test no scale of many degrees of freedom:
   // its hypothesis is Gaussian noise, and so are its degrees of freedom.
@@ -231,7 +231,10 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   lower_degrees(classical.efficiency, curve, gaussian);
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
   control.report("robust variance", 0.25);
-  RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed);
+  RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed, control);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   const FittedVariances fitted = fitted_variances(classical, intervals, robust, plan);
   store_robust(std::move(robust), si_unit * si_unit, result);
   return fit_models(fitted, options, si_unit, plan, control, result);
@@ -264,9 +267,9 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
     return fail(std::move(status.error()));
   }
   control.report("variance", 0.0);
-  const Result<SampleSummary> summary = summarise(channel.values);
+  const Result<SampleSummary> summary = summarise(channel.values, control);
   if (!summary) {
-    return fail(summary.error());
+    return summary.error().code == ErrorCode::Cancelled ? cancelled() : fail(summary.error());
   }
   ChannelCharacterisation result;
   result.samples = channel.values.size();

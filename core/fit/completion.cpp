@@ -332,13 +332,17 @@ class Judge {
 };
 
 template <int N, bool Quantized>
-void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& random, ResidualHistogram& histogram) {
+void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& random, ResidualHistogram& histogram,
+           const RunControl& control) {
   const Chain<N, Quantized> chain(law);
   const std::size_t samples = arrays.recorded.size();
   const std::size_t blocks = (samples + kBlock - 1) / kBlock;
   std::vector<Information<N>> at_end(blocks);  // information in samples after the block
   Information<N> information;
   for (std::size_t block = blocks; block-- > 0;) {
+    if (control.stop.stop_requested()) {
+      return;
+    }
     at_end[block] = information;
     for (std::size_t t = std::min(samples, (block + 1) * kBlock); t-- > block * kBlock && block > 0;) {
       chain.back(information, arrays.recorded[t] - law.pivot, arrays.state[t]);
@@ -348,6 +352,9 @@ void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& ran
   Judge judge(law, random);
   std::vector<Information<N>> later(kBlock);
   for (std::size_t block = 0; block < blocks; ++block) {
+    if (control.stop.stop_requested()) {
+      return;
+    }
     const std::size_t first = block * kBlock;
     const std::size_t last = std::min(samples, first + kBlock);
     information = at_end[block];
@@ -377,22 +384,22 @@ void sweep(const CompletionLaw& law, const CompletionArrays& arrays, Random& ran
 }  // namespace
 
 void sweep_completion(const CompletionLaw& law, const CompletionArrays& arrays, Random& random,
-                      ResidualHistogram& histogram) {
+                      ResidualHistogram& histogram, const RunControl& control) {
   switch (law.states.count * 2 + (law.states.quantization ? 1 : 0)) {
     case 2:
-      return sweep<1, false>(law, arrays, random, histogram);
+      return sweep<1, false>(law, arrays, random, histogram, control);
     case 4:
-      return sweep<2, false>(law, arrays, random, histogram);
+      return sweep<2, false>(law, arrays, random, histogram, control);
     case 5:
-      return sweep<2, true>(law, arrays, random, histogram);
+      return sweep<2, true>(law, arrays, random, histogram, control);
     case 6:
-      return sweep<3, false>(law, arrays, random, histogram);
+      return sweep<3, false>(law, arrays, random, histogram, control);
     case 7:
-      return sweep<3, true>(law, arrays, random, histogram);
+      return sweep<3, true>(law, arrays, random, histogram, control);
     case 8:
-      return sweep<4, false>(law, arrays, random, histogram);
+      return sweep<4, false>(law, arrays, random, histogram, control);
     case 9:
-      return sweep<4, true>(law, arrays, random, histogram);
+      return sweep<4, true>(law, arrays, random, histogram, control);
     default:
       return;
   }

@@ -15,6 +15,7 @@
 #include "core/fit/linear_states.hpp"
 #include "core/fit/outlier_mixture.hpp"
 #include "core/process/random.hpp"
+#include "core/signal/progress.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,8 +44,8 @@ struct CompletionLaw {
 };
 
 /// One sweep. `histogram`: of the residuals of recorded samples, in units of `unit`, added to.
-/// Deterministic in the generator's state.
+/// Deterministic in the generator's state. Broken off where `control.stop` asked, which is polled every 2,048 samples.
 void sweep_completion(const CompletionLaw& law, const CompletionArrays& arrays, Random& random,
-                      ResidualHistogram& histogram);
+                      ResidualHistogram& histogram, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -11,6 +11,7 @@ constexpr double kMadToSd = 1.4826022185056018;
 constexpr double kPatchLimit = 5.5;
 constexpr double kClip = 5.0;
 constexpr std::size_t kLooks = 2000;  ///< places at which predictors are compared
+constexpr std::size_t kPoll = 1U << 18U;
 
 double median_of(std::vector<double>& values) {
   if (values.empty()) {
@@ -77,12 +78,15 @@ class Predictor {
 };
 
 /// Residuals from running medians of 2 reach + 1 samples, taken at every `stride`-th sample.
-std::vector<double> median_residuals(std::span<const double> samples, std::size_t reach) {
+std::vector<double> median_residuals(std::span<const double> samples, std::size_t reach, const RunControl& control) {
   const std::size_t stride = std::max<std::size_t>(1, reach / 2);
   Predictor predictor(samples);
   std::vector<double> residual(samples.size());
   double left = predictor.window(0, reach);
   for (std::size_t first = 0; first < samples.size(); first += stride) {
+    if (first % kPoll < stride && control.stop.stop_requested()) {
+      break;
+    }
     const std::size_t next = std::min(first + stride, samples.size() - 1);
     const double right = predictor.window(next, reach);
     for (std::size_t t = first; t < std::min(first + stride, samples.size()); ++t) {
@@ -146,20 +150,29 @@ void mark_patches(const std::vector<double>& residual, std::size_t length, std::
 
 }  // namespace
 
-OutlierScreen screen_outliers(std::span<const double> samples) {
+OutlierScreen screen_outliers(std::span<const double> samples, const RunControl& control) {
   OutlierScreen screen;
   screen.patch.assign(samples.size(), 0);
-  std::vector<double> residual = median_residuals(samples, kReach.back());
-  mark_patches(residual, 8, screen.patch);
-  mark_patches(residual, 20, screen.patch);
+  std::vector<double> residual = median_residuals(samples, kReach.back(), control);
+  for (const std::size_t length : {std::size_t{8}, std::size_t{20}}) {
+    if (!control.stop.stop_requested()) {
+      mark_patches(residual, length, screen.patch);
+    }
+  }
   const std::size_t best = best_predictor(samples);
   if (best < 2) {
     Predictor predictor(samples);
     for (std::size_t t = 0; t < samples.size(); ++t) {
+      if (t % kPoll == 0 && control.stop.stop_requested()) {
+        break;
+      }
       residual[t] = samples[t] - (best == 0 ? predictor.neighbours(t) : predictor.around(t, 2));
     }
   } else if (best < 1 + kReach.size()) {
-    residual = median_residuals(samples, kReach[best - 2]);
+    residual = median_residuals(samples, kReach[best - 2], control);
+  }
+  if (control.stop.stop_requested()) {
+    return {};
   }
   screen.sd = robust_sd(residual);
   screen.residual.resize(samples.size());

@@ -6,6 +6,8 @@
 /// robust standard deviations is suspect. A patch is a window of 8 or 20 samples whose mean clipped residual from the
 /// longest median is further out than 5.5 robust standard deviations of such means. Medians of w samples are taken at
 /// every w/4-th and interpolated between.
+#include "core/signal/progress.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,7 +21,8 @@ struct OutlierScreen {
   double sd = 0.0;                  ///< robust standard deviation of the residuals; 0: more than half are equal
 };
 
-/// `samples`: at least 1; missing ones left out by the caller. O(N), about 100 ns a sample.
-[[nodiscard]] OutlierScreen screen_outliers(std::span<const double> samples);
+/// `samples`: at least 1; missing ones left out by the caller. O(N), about 100 ns a sample. No
+/// residuals where `control.stop` asked.
+[[nodiscard]] OutlierScreen screen_outliers(std::span<const double> samples, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -4,33 +4,20 @@
 #include "core/variance/prefix_sums.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <memory>
 
 namespace driftlab {
 
 std::vector<double> allan_variance(std::span<const double> samples, double pivot, std::span<const std::size_t> m,
                                    const RunControl& control) {
-  const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot);
+  const auto power = [](const double* now, std::size_t half, std::size_t count) {
+    double sum = 0.0;
+    kernels().octave_powers(now, half, 1, count, &sum);
+    return sum;
+  };
+  std::vector<double> sum = filter_powers(samples, pivot, m, 2, power, control);
   const std::size_t n = samples.size();
-  std::vector<double> sum(m.size(), 0.0);
-  // Block by block, so that the block of the newest prefix sums stays in cache for all half lengths.
-  constexpr std::size_t kBlock = 4096;
-  for (std::size_t start = 1; start <= n; start += kBlock) {
-    if (control.stop.stop_requested()) {
-      return {};
-    }
-    const std::size_t end = std::min(n + 1, start + kBlock);
-    for (std::size_t k = 0; k < m.size(); ++k) {
-      assert(m[k] > 0 && 2 * m[k] <= n);
-      const std::size_t first = std::max(start, 2 * m[k]);
-      if (first < end) {
-        kernels().octave_powers(prefix.get() + first, m[k], 1, end - first, &sum[k]);
-      }
-    }
-  }
-  for (std::size_t k = 0; k < m.size(); ++k) {
+  for (std::size_t k = 0; k < sum.size(); ++k) {
     const auto half = static_cast<double>(m[k]);
     sum[k] /= 2.0 * half * half * static_cast<double>(n - 2 * m[k] + 1);
   }

@@ -6,6 +6,7 @@
 /// coefficients (it tends to k4 N/M_j^2: the same amount at every scale, which matters where the equivalent degrees of
 /// freedom are many).
 #include "core/process/model.hpp"
+#include "core/signal/progress.hpp"
 
 #include <Eigen/Core>
 
@@ -16,8 +17,8 @@ namespace driftlab {
 
 /// Excess kurtosis of the first differences of the samples, 0 where it is within two standard errors (sqrt(24/N),
 /// doubled for the correlation of neighbours) of that of a Gaussian. One read. Needs at least 3 samples; 0 for a
-/// constant.
-[[nodiscard]] double difference_excess_kurtosis(std::span<const double> samples);
+/// constant, and where `control.stop` asked (polled every million samples).
+[[nodiscard]] double difference_excess_kurtosis(std::span<const double> samples, const RunControl& control = {});
 
 /// T_j/(M_j L_j)^2 for half length m: the relative variance per unit of excess kurtosis.
 [[nodiscard]] double kurtosis_share(std::size_t half, std::size_t samples);

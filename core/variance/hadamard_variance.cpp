@@ -4,32 +4,15 @@
 #include "core/variance/kernels.hpp"
 #include "core/variance/prefix_sums.hpp"
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace driftlab {
 
 std::vector<double> hadamard_variance(std::span<const double> samples, double pivot, std::span<const std::size_t> m,
                                       const RunControl& control) {
-  const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot);
+  std::vector<double> sum = filter_powers(samples, pivot, m, 3, kernels().third_difference_power, control);
   const std::size_t n = samples.size();
-  std::vector<double> sum(m.size(), 0.0);
-  constexpr std::size_t kBlock = 4096;
-  for (std::size_t start = 1; start <= n; start += kBlock) {
-    if (control.stop.stop_requested()) {
-      return {};
-    }
-    const std::size_t end = std::min(n + 1, start + kBlock);
-    for (std::size_t k = 0; k < m.size(); ++k) {
-      assert(m[k] > 0 && 3 * m[k] <= n);
-      const std::size_t first = std::max(start, 3 * m[k]);
-      if (first < end) {
-        sum[k] += kernels().third_difference_power(prefix.get() + first, m[k], end - first);
-      }
-    }
-  }
-  for (std::size_t k = 0; k < m.size(); ++k) {
+  for (std::size_t k = 0; k < sum.size(); ++k) {
     const auto length = static_cast<double>(m[k]);
     sum[k] /= 6.0 * length * length * static_cast<double>(n - 3 * m[k] + 1);
   }

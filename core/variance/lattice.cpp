@@ -135,18 +135,18 @@ bool add_scale(std::span<const std::unique_ptr<double[]>> records, std::size_t s
                const Biweight& biweight, double gaussian, RobustShape& shape) {
   double expected = 0.0;
   for (const auto& record : records) {
-    const std::span<const double> prefix{record.get(), samples + 1};
-    const double mean_square = robust_root(prefix, half, biweight, biweight.mean).mean_square;
+    const ScaleCoefficients coefficients{{record.get(), samples + 1}, half, smooth_stride(half)};
+    const double mean_square = robust_root(coefficients, biweight, biweight.mean).mean_square;
     if (!(mean_square > 0.0)) {
       return false;
     }
-    expected += mean_biweight(prefix, half, biweight, mean_square) / static_cast<double>(records.size());
+    expected += mean_biweight(coefficients, biweight, mean_square) / static_cast<double>(records.size());
   }
   double count = 0.0;
   double mean = 0.0;
   double square = 0.0;
   for (const auto& record : records) {
-    const RobustRoot root = robust_root({record.get(), samples + 1}, half, biweight, expected);
+    const RobustRoot root = robust_root({{record.get(), samples + 1}, half, smooth_stride(half)}, biweight, expected);
     if (root.variance) {
       const double d = std::log(*root.variance / root.mean_square);
       count += 1.0;
@@ -200,7 +200,8 @@ std::optional<double> lattice_step(std::span<const double> samples) {
   return sum / steps;
 }
 
-std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, double step, std::size_t stretch) {
+std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, double step, std::size_t stretch,
+                                          const RunControl& control) {
   if (samples.empty() || !(step > 0.0)) {
     return std::nullopt;
   }
@@ -211,6 +212,9 @@ std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, doubl
   std::vector<int> values;
   std::vector<ProbitLine> lines;
   for (std::size_t first = 0; first + stretch <= samples.size(); first += stretch) {
+    if (control.stop.stop_requested()) {
+      return std::nullopt;
+    }
     values.clear();
     for (const double sample : samples.subspan(first, stretch)) {
       const double steps = (sample - origin) / step;
@@ -251,7 +255,7 @@ std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, doubl
 }
 
 RobustShape lattice_shape(std::span<const double> samples, double unit_square, const VarianceIntervals& intervals,
-                          HaarCovariance& plan, std::uint64_t seed) {
+                          HaarCovariance& plan, std::uint64_t seed, const RunControl& control) {
   RobustShape shape;
   const std::optional<double> step = lattice_step(samples);
   if (!step) {
@@ -266,7 +270,7 @@ RobustShape lattice_shape(std::span<const double> samples, double unit_square, c
   double deviation = std::sqrt(std::max(0.0, first - 1.0 / 12.0));
   if (slow_share < 0.1) {
     const std::size_t stretch = quiet_stretch(slow, plan.dt_s(), samples.size());
-    if (const auto counted = lattice_noise(samples, *step, std::min(stretch, samples.size()))) {
+    if (const auto counted = lattice_noise(samples, *step, std::min(stretch, samples.size()), control)) {
       noise = *counted;
       deviation = counted->sd;
     } else {
@@ -290,6 +294,9 @@ RobustShape lattice_shape(std::span<const double> samples, double unit_square, c
   // The mean of the simulations has an error of its own.
   const double own = 1.0 + static_cast<double>(samples.size()) / static_cast<double>(kRuns * length);
   for (std::size_t j = 0; j < half.size(); ++j) {
+    if (control.stop.stop_requested()) {
+      return {};
+    }
     const Biweight biweight = tune_biweight(plan.correlation_sums(j, j, intervals.mixture), kLatticeTarget);
     const auto sums = brief.correlation_sums(j, j, intervals.mixture);
     const double gaussian = 2.0 * (1.0 / biweight.efficiency(sums) - 1.0) * sums[0];

@@ -30,9 +30,10 @@ struct LatticeNoise {
 };
 
 /// Probit regression with one slope and one offset per stretch of `stretch` samples. Nothing where no stretch holds
-/// three values in usable numbers. Gross errors should be left out. O(N).
+/// three values in usable numbers. Gross errors should be left out. O(N). Nothing where `control.stop` asked, polled
+/// per stretch.
 [[nodiscard]] std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, double step,
-                                                        std::size_t stretch);
+                                                        std::size_t stretch, const RunControl& control = {});
 
 /// Coarser than this (standard deviation over step) a shape is simulated; coarser than the second it is refused.
 inline constexpr double kCoarseLattice = 0.8;
@@ -40,8 +41,10 @@ inline constexpr double kTooCoarseLattice = 0.35;
 
 /// The shape of a record on a lattice: empty where it is on none or the lattice is fine. 32 records of at most 16,384
 /// samples are simulated. `intervals`, `plan`: of the record's classical curve in the units of the samples times
-/// 1/`unit_square`. Same seed, same bits.
+/// 1/`unit_square`. Same seed, same bits. Empty
+/// where `control.stop` asked.
 [[nodiscard]] RobustShape lattice_shape(std::span<const double> samples, double unit_square,
-                                        const VarianceIntervals& intervals, HaarCovariance& plan, std::uint64_t seed);
+                                        const VarianceIntervals& intervals, HaarCovariance& plan, std::uint64_t seed,
+                                        const RunControl& control = {});
 
 }  // namespace driftlab

@@ -49,21 +49,23 @@ double mean_with_uniform_share(const Biweight& biweight, double uniform_share) {
   return mean;
 }
 
+double quantization_share(const VarianceIntervals& intervals, const HaarCovariance& plan, std::size_t j) {
+  const double total = intervals.modelled(static_cast<Eigen::Index>(j));
+  double sum = 0.0;
+  for (const Process& process : intervals.mixture) {
+    sum += process.kind->symbol == "QN" ? process.haar_variance(plan.half()[j], plan.dt_s()) : 0.0;
+  }
+  return total > 0.0 ? sum / total : 0.0;
+}
+
 RobustShape quantization_shape(const VarianceIntervals& intervals, const HaarCovariance& plan, double excess) {
   RobustShape shape;
-  const auto share_at = [&](double half, double total) {
-    double sum = 0.0;
-    for (const Process& process : intervals.mixture) {
-      sum += process.kind->symbol == "QN" ? process.haar_variance(half, plan.dt_s()) : 0.0;
-    }
-    return total > 0.0 ? sum / total : 0.0;
-  };
-  const double first = share_at(plan.half().front(), intervals.modelled(0));
+  const double first = quantization_share(intervals, plan, 0);
   if (!(excess < 0.5 * -0.6 * first * first) || !(first > 0.0)) {
     return shape;
   }
   for (std::size_t j = 0; j < plan.half().size(); ++j) {
-    shape.uniform_share.push_back(share_at(plan.half()[j], intervals.modelled(static_cast<Eigen::Index>(j))));
+    shape.uniform_share.push_back(quantization_share(intervals, plan, j));
   }
   return shape;
 }

@@ -26,12 +26,20 @@ struct RobustShape {
 
   [[nodiscard]] double uniform_at(std::size_t j) const { return uniform_share.empty() ? 0.0 : uniform_share[j]; }
   [[nodiscard]] bool simulated(std::size_t j) const { return j < biweight.size(); }
-  [[nodiscard]] double inflation_at(std::size_t j) const { return simulated(j) ? inflation[j] : 1.0; }
+  /// Of ln(robust/classical) against Gaussian data. Uniform errors lower it: 1 - 0.6 share^4 is a fit to simulations at
+  /// shares of 0.7 to 1, good to a tenth.
+  [[nodiscard]] double inflation_at(std::size_t j) const {
+    const double square = uniform_at(j) * uniform_at(j);
+    return simulated(j) ? inflation[j] : 1.0 - 0.6 * square * square;
+  }
 };
 
 /// E chi(W) for W of variance 1 whose share `uniform_share` is three-point differences of uniform errors and whose rest
 /// is Gaussian: the Hermite expansion of chi with the moments that the cumulants of W give (to order 16).
 [[nodiscard]] double mean_with_uniform_share(const Biweight& biweight, double uniform_share);
+
+/// Share of quantization noise in the modelled variance of scale `j`.
+[[nodiscard]] double quantization_share(const VarianceIntervals& intervals, const HaarCovariance& plan, std::size_t j);
 
 /// Uniform shares per scale where the mixture holds quantization noise and `excess`, the excess kurtosis of the first
 /// differences, is at least half of what uniform errors would give them; none otherwise.

@@ -15,10 +15,13 @@ namespace {
 
 constexpr double kTarget = 0.6;
 constexpr double kHigherOrder = 2.0;  ///< measured: white noise 0.55 at edf 46-93, random walk 0.585 at 28-58
+constexpr double kRoughShare = 0.02;  ///< of quantization noise, from which on every coefficient counts
 
-/// Squares of every m/8-th coefficient at half length m, from prefix sums.
-void thinned_squares(std::span<const double> prefix, std::size_t m, std::vector<double>& squares) {
-  const std::size_t stride = std::max<std::size_t>(1, m / 8);
+/// Squares of the coefficients.
+void thinned_squares(const ScaleCoefficients& coefficients, std::vector<double>& squares) {
+  const std::span<const double> prefix = coefficients.prefix;
+  const std::size_t m = coefficients.half;
+  const std::size_t stride = coefficients.stride;
   const double scale = 1.0 / (4.0 * static_cast<double>(m) * static_cast<double>(m));
   squares.resize((prefix.size() - 2 * m + stride - 1) / stride);
   if (stride == 1) {
@@ -47,7 +50,8 @@ struct Equation {
 
 /// Root in [low, high], where the equation is >= 0 at `low` and < 0 at `high`; `expand`: the ends are guesses, to be
 /// moved until they are. Illinois.
-std::optional<double> bracketed_root(const Equation& equation, double low, double high, bool expand) {
+std::optional<double> bracketed_root(const Equation& equation, double low, double high, bool expand,
+                                     const RunControl& control) {
   double at_low = equation(low);
   double at_high = equation(high);
   const double widen = high / low;
@@ -71,6 +75,9 @@ std::optional<double> bracketed_root(const Equation& equation, double low, doubl
     if (!(middle > low && middle < high)) {
       middle = 0.5 * (low + high);
     }
+    if (control.stop.stop_requested()) {
+      return std::nullopt;
+    }
     const double value = equation(middle);
     if (std::fabs(value) < 1e-10 * equation.expected) {
       return middle;
@@ -92,7 +99,7 @@ std::optional<double> bracketed_root(const Equation& equation, double low, doubl
 /// squares, then on all of them from a bracket of that root's standard error, which takes four or five looks at the
 /// data.
 std::optional<double> upper_root(const std::vector<double>& squares, double classical, const Biweight& biweight,
-                                 double expected) {
+                                 double expected, const RunControl& control) {
   constexpr std::size_t kScan = 20000;
   constexpr double kStep = 1.25;
   std::vector<double> few;
@@ -110,12 +117,12 @@ std::optional<double> upper_root(const std::vector<double>& squares, double clas
   if (!crossed) {
     return std::nullopt;
   }
-  const std::optional<double> near = bracketed_root(over_few, here, here * kStep, false);
+  const std::optional<double> near = bracketed_root(over_few, here, here * kStep, false, control);
   if (!near || stride == 1) {
     return near;
   }
   const double error = 1.0 + 3.0 / std::sqrt(static_cast<double>(few.size()));
-  return bracketed_root({squares, biweight, expected}, *near / error, *near * error, true);
+  return bracketed_root({squares, biweight, expected}, *near / error, *near * error, true, control);
 }
 
 /// How one scale is estimated.
@@ -138,21 +145,25 @@ Choice choose(const RobustShape& shape, std::size_t j, const std::array<double, 
   Choice choice;
   choice.biweight = tune_biweight(sums, kTarget + higher_order);
   choice.expected = mean_with_uniform_share(choice.biweight, shape.uniform_at(j));
-  choice.efficiency = choice.biweight.efficiency(sums) - higher_order;
+  const double scatter = (1.0 / choice.biweight.efficiency(sums) - 1.0) * shape.inflation_at(j);
+  choice.efficiency = 1.0 / (1.0 + scatter) - higher_order;
   return choice;
 }
 
 }  // namespace
 
-double mean_biweight(std::span<const double> prefix, std::size_t half, const Biweight& biweight, double nu) {
+std::size_t smooth_stride(std::size_t half) { return std::max<std::size_t>(1, half / 8); }
+
+double mean_biweight(const ScaleCoefficients& coefficients, const Biweight& biweight, double nu) {
   std::vector<double> squares;
-  thinned_squares(prefix, half, squares);
+  thinned_squares(coefficients, squares);
   return Equation{squares, biweight, 0.0}(nu);
 }
 
-RobustRoot robust_root(std::span<const double> prefix, std::size_t half, const Biweight& biweight, double expected) {
+RobustRoot robust_root(const ScaleCoefficients& coefficients, const Biweight& biweight, double expected,
+                       const RunControl& control) {
   std::vector<double> squares;
-  thinned_squares(prefix, half, squares);
+  thinned_squares(coefficients, squares);
   RobustRoot root;
   bool any = false;
   for (const double square : squares) {
@@ -160,24 +171,35 @@ RobustRoot robust_root(std::span<const double> prefix, std::size_t half, const B
     any = any || square > 0.0;
   }
   root.mean_square /= static_cast<double>(squares.size());
-  if (any) {
-    root.variance = upper_root(squares, root.mean_square, biweight, expected);
+  if (any && !control.stop.stop_requested()) {
+    root.variance = upper_root(squares, root.mean_square, biweight, expected, control);
   }
   return root;
 }
 
 RobustVariance robust_variance(std::span<const double> samples, double pivot, const HaarVariance& curve,
-                               const VarianceIntervals& classical, HaarCovariance& plan, RobustShape shape) {
-  const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot);
+                               const VarianceIntervals& classical, HaarCovariance& plan, RobustShape shape,
+                               const RunControl& control) {
+  const std::unique_ptr<double[]> prefix = prefix_sums(samples, pivot, control);
   RobustVariance result;
+  if (!prefix) {
+    return result;
+  }
   result.shape = std::move(shape);
   for (std::size_t j = 0; j < curve.scales(); ++j) {
+    if (control.stop.stop_requested()) {
+      return {};
+    }
     const auto sums = plan.correlation_sums(j, j, classical.mixture);
     const Choice choice = choose(result.shape, j, sums, classical.edf[j]);
     const Biweight& biweight = choice.biweight;
+    const double rough = quantization_share(classical, plan, j);
+    const std::size_t stride = rough < kRoughShare ? smooth_stride(curve.half[j]) : 1;
     std::optional<double> root;
     if (!result.shape.refused) {
-      root = robust_root({prefix.get(), samples.size() + 1}, curve.half[j], biweight, choice.expected).variance;
+      root =
+          robust_root({{prefix.get(), samples.size() + 1}, curve.half[j], stride}, biweight, choice.expected, control)
+              .variance;
     }
     if (root) {
       *root /= choice.ratio;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kLanes = 8;
 constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kPollBlocks = 256;
 
 tl::unexpected<Error> reject(std::span<const double> samples) {
   const auto bad =
@@ -25,7 +26,7 @@ tl::unexpected<Error> reject(std::span<const double> samples) {
 
 }  // namespace
 
-Result<SampleSummary> summarise(std::span<const double> samples) {
+Result<SampleSummary> summarise(std::span<const double> samples, const RunControl& control) {
   if (samples.empty()) {
     return fail(ErrorCode::TooFewSamples, "There are no samples.");
   }
@@ -38,6 +39,9 @@ Result<SampleSummary> summarise(std::span<const double> samples) {
   high.fill(pivot);
   bool sound = std::fabs(pivot) <= kLargestSample;
   for (std::size_t start = 0; start < samples.size(); start += kBlock) {
+    if (start / kBlock % kPollBlocks == 0 && control.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The computation was cancelled.");
+    }
     const std::size_t count = std::min(kBlock, samples.size() - start);
     const double* block = samples.data() + start;
     std::array<double, kLanes> sum{};

@@ -1,5 +1,6 @@
 #pragma once
 /// What must hold of a series before any variance is formed, and its mean without loss of digits.
+#include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
 #include <span>
@@ -17,7 +18,8 @@ struct SampleSummary {
 inline constexpr double kLargestSample = 1e140;
 
 /// One read of the array. The mean is summed block by block relative to the first sample, so that a bias costs no
-/// digits. Errors: NonFinite and OutOfRange, naming the row (field `row`, counted from 1).
-[[nodiscard]] Result<SampleSummary> summarise(std::span<const double> samples);
+/// digits. Errors: NonFinite and OutOfRange, naming the row (field `row`, counted from 1); Cancelled,
+/// the token being polled every million samples.
+[[nodiscard]] Result<SampleSummary> summarise(std::span<const double> samples, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -2,6 +2,9 @@
 
 #include "core/process/random.hpp"
 #include "core/variance/allan_variance.hpp"
+#include "core/variance/excess_kurtosis.hpp"
+#include "core/variance/prefix_sums.hpp"
+#include "core/variance/robust_variance.hpp"
 #include "core/variance/samples.hpp"
 
 #include <gtest/gtest.h>
@@ -163,6 +166,23 @@ TEST(Samples, NamesTheFirstBadRow) {
   EXPECT_EQ(summarise(x).error().fields.at(0), (ErrorField{"row", "18"}));
   x[17] = 1e300;
   EXPECT_EQ(summarise(x).error().code, ErrorCode::OutOfRange);
+}
+
+TEST(Samples, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  const RunControl stopped{.stop = source.get_token(), .progress = {}};
+  const std::vector<double> x = white(5000, 1);
+  EXPECT_EQ(summarise(x, stopped).error().code, ErrorCode::Cancelled);
+  EXPECT_EQ(prefix_sums(x, 0.0, stopped), nullptr);
+  std::vector<double> peaked = x;
+  peaked[17] = 1000.0;
+  EXPECT_GT(difference_excess_kurtosis(peaked), 100.0);
+  EXPECT_EQ(difference_excess_kurtosis(peaked, stopped), 0.0);
+  const HaarVariance curve = variances(x);
+  HaarCovariance plan(curve.half, x.size(), 1.0);
+  const VarianceIntervals intervals = variance_intervals(curve, plan);
+  EXPECT_TRUE(robust_variance(x, 0.0, curve, intervals, plan, {}, stopped).variance.empty());
 }
 
 TEST(Samples, MeanKeepsItsDigitsUnderABias) {
