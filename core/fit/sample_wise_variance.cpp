@@ -7,7 +7,9 @@
 #include "core/variance/samples.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,11 +33,14 @@ constexpr double kIgnored = 1e6;
 constexpr std::size_t kFewestScales = 5;
 constexpr double kLevelSpread = 1e6;  ///< variance of the unknown level, in squares of the unit
 
+/// Fall of the weighted squared distance that a further process must bring to be believed. Without it, the scatter
+/// of the drawn variances is fitted, drawn from and fitted again, and long scales drift up (a fifth, for QN+WN).
+constexpr double kEvidence = 10.0;
+
 /// The model that good samples are taken to follow, from their wavelet variances.
 class ModelFitter {
  public:
-  explicit ModelFitter(HaarCovariance& plan)
-      : plan_(plan), structure_(*parse_model(plan.half().size() >= 6 ? "QN+WN+GM+RW" : "WN+RW")) {
+  explicit ModelFitter(HaarCovariance& plan) : plan_(plan), enough_(plan.half().size() >= 6) {
     const auto scales = static_cast<Eigen::Index>(plan.half().size());
     relative_.resize(scales);
     for (Eigen::Index j = 0; j < scales; ++j) {  // before any model: one degree of freedom per filter length or so
@@ -65,7 +70,7 @@ class ModelFitter {
         level = std::max({moments.nu(j), floor, relative_(j) > kScattered ? 0.5 * level : 0.0});
         sd_(j) = relative_(j) * level * (static_cast<std::size_t>(j) < scales ? 1.0 : kIgnored);
       }
-      model = fit_gmwm(moments, structure_, MomentWeights::from_sd(sd_)).active();
+      model = best_fit(moments, MomentWeights::from_sd(sd_));
       if (model.empty()) {
         return model;
       }
@@ -78,8 +83,29 @@ class ModelFitter {
   [[nodiscard]] const Eigen::VectorXd& sd() const { return sd_; }
 
  private:
+  /// WN+RW, and quantization noise and a Gauss-Markov process where the data insist.
+  [[nodiscard]] Model best_fit(const WaveletMoments& moments, const MomentWeights& weights) const {
+    GmwmSolution best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < structures_.size() && (k < 1 || enough_); ++k) {
+      GmwmSolution found = fit_gmwm(moments, structures_[k], weights);
+      const double extra = static_cast<double>(structures_[k].kinds.size()) - 2.0;
+      const bool good_enough = found.objective < kEvidence;
+      if (found.objective + kEvidence * extra < least) {
+        least = found.objective + kEvidence * extra;
+        best = std::move(found);
+      }
+      if (good_enough) {
+        break;
+      }
+    }
+    return best.active();
+  }
+
   HaarCovariance& plan_;
-  ModelStructure structure_;
+  bool enough_;  ///< scales for more than white noise and a random walk
+  std::array<ModelStructure, 4> structures_{*parse_model("WN+RW"), *parse_model("QN+WN+RW"), *parse_model("WN+GM+RW"),
+                                            *parse_model("QN+WN+GM+RW")};
   Eigen::VectorXd relative_;
   Eigen::VectorXd sd_;  ///< of the wavelet variances under the last fit
 };
@@ -106,7 +132,7 @@ std::uint8_t size_state(const OutlierMixture& mixture, double magnitude) {
 }
 
 /// Screens the record; false if it has no spread.
-bool prepare(const GappySamples& samples, bool look, Work& work) {
+bool prepare(const GappySamples& samples, bool look, Work& work, const RunControl& control) {
   std::vector<double> there;
   std::vector<std::size_t> place;
   for (std::size_t t = 0; t < samples.size(); ++t) {
@@ -115,7 +141,7 @@ bool prepare(const GappySamples& samples, bool look, Work& work) {
       place.push_back(t);
     }
   }
-  const OutlierScreen screen = screen_outliers(there);
+  const OutlierScreen screen = screen_outliers(there, control);
   if (!(screen.sd > 0.0) || !std::isfinite(1.0 / screen.sd)) {
     return false;
   }
@@ -155,7 +181,8 @@ bool prepare(const GappySamples& samples, bool look, Work& work) {
 
 /// Wavelet variances to start from: of whole windows without suspects, up to the scale where they become too few; with
 /// fewer than kFewestScales such scales, of the series with suspects and gaps closed up.
-std::vector<double> first_variances(const Work& work, const HaarCovariance& plan, std::size_t& scales) {
+std::vector<double> first_variances(const Work& work, const HaarCovariance& plan, std::size_t& scales,
+                                    const RunControl& control) {
   GappySamples good{work.recorded, std::vector<std::uint8_t>(work.state.size())};
   std::vector<double> closed;
   for (std::size_t t = 0; t < good.missing.size(); ++t) {
@@ -164,13 +191,13 @@ std::vector<double> first_variances(const Work& work, const HaarCovariance& plan
       closed.push_back(work.recorded[t]);
     }
   }
-  std::vector<double> variance = haar_variance(closed, 0.0).variance;
+  std::vector<double> variance = haar_variance(closed, 0.0, control).variance;
   variance.resize(plan.half().size(), variance.empty() ? 0.0 : variance.back());
   scales = variance.size();
   if (closed.size() == good.size()) {
     return variance;
   }
-  for (std::size_t j = 0; j < variance.size(); ++j) {
+  for (std::size_t j = 0; j < variance.size() && !control.stop.stop_requested(); ++j) {
     const auto windows = whole_window_variance(good, static_cast<std::size_t>(plan.half()[j]));
     if (!windows || windows->share < 0.1 || windows->windows < 50) {
       scales = j >= kFewestScales ? j : scales;
@@ -210,20 +237,24 @@ class DrawnCurves {
 /// Sweeps, fits and what they leave.
 class Sampler {
  public:
-  Sampler(Work work, HaarCovariance& plan, std::uint64_t seed)
+  Sampler(Work work, HaarCovariance& plan, std::uint64_t seed, const RunControl& control)
       : work_(std::move(work)),
         plan_(plan),
+        control_(control),
         fitter_(plan),
         random_(seed),
         completed_(work_.state.size()),
         residual_(work_.state.size()) {
     law_.mixture = std::move(work_.mixture);
     std::size_t scales = 0;
-    const std::vector<double> variance = first_variances(work_, plan, scales);
-    model_ = fitter_.fit(variance, scales);
+    const std::vector<double> variance = first_variances(work_, plan, scales, control);
+    if (!control.stop.stop_requested()) {
+      model_ = fitter_.fit(variance, scales);
+    }
   }
 
-  /// One sweep, new shares and a new fit. Nothing where the model has no states (a degenerate record).
+  /// One sweep, new shares and a new fit. Nothing where the model has no states (a degenerate record), or the token
+  /// asked.
   std::optional<HaarVariance> sweep() {
     const auto states = linear_states(model_, plan_.dt_s(), kLevelSpread);
     if (!states) {
@@ -242,13 +273,16 @@ class Sampler {
     }
     law_.unit = unit;
     histogram_.clear();
-    sweep_completion(law_, {work_.recorded, work_.state, completed_, residual_}, random_, histogram_);
+    sweep_completion(law_, {work_.recorded, work_.state, completed_, residual_}, random_, histogram_, control_);
     law_.mixture.refine(histogram_, kSteps);
-    const Result<SampleSummary> summary = summarise(completed_);
+    const Result<SampleSummary> summary = summarise(completed_, control_);
     if (!summary) {
       return std::nullopt;
     }
-    HaarVariance curve = haar_variance(completed_, summary->mean);
+    HaarVariance curve = haar_variance(completed_, summary->mean, control_);
+    if (control_.stop.stop_requested()) {
+      return std::nullopt;
+    }
     model_ = fitter_.fit(curve.variance, curve.scales());
     return curve;
   }
@@ -291,6 +325,7 @@ class Sampler {
  private:
   Work work_;
   HaarCovariance& plan_;
+  const RunControl& control_;
   ModelFitter fitter_;
   Random random_;
   std::vector<double> completed_;
@@ -331,7 +366,7 @@ void restore_units(const Work& work, SampleWiseVariance& result) {
 }  // namespace
 
 SampleWiseVariance sample_wise_variance(const GappySamples& samples, HaarCovariance& plan,
-                                        const SampleWiseOptions& options) {
+                                        const SampleWiseOptions& options, const RunControl& control) {
   SampleWiseVariance result;
   const std::size_t absent = samples.missing_count();
   const std::size_t recorded = samples.size() - absent;
@@ -340,11 +375,14 @@ SampleWiseVariance sample_wise_variance(const GappySamples& samples, HaarCovaria
     return result;
   }
   Work work;
-  result.outcome = SampleWiseOutcome::Degenerate;
-  if (!prepare(samples, options.look_for_errors, work)) {
+  const auto ended = [&] {
+    result.outcome = control.stop.stop_requested() ? SampleWiseOutcome::Cancelled : SampleWiseOutcome::Degenerate;
     return result;
+  };
+  if (!prepare(samples, options.look_for_errors, work, control)) {
+    return ended();
   }
-  Sampler sampler(std::move(work), plan, options.seed);
+  Sampler sampler(std::move(work), plan, options.seed, control);
   DrawnCurves curves;
   HaarVariance last;
   double replaced = 0.0;
@@ -356,7 +394,7 @@ SampleWiseVariance sample_wise_variance(const GappySamples& samples, HaarCovaria
     settled = settled || sampler.settled(sweep);
     std::optional<HaarVariance> curve = sampler.sweep();
     if (!curve) {
-      return result;
+      return ended();
     }
     // Nothing to draw again: the record is its own completion.
     const bool clean = absent == 0 && sweep > 0 && std::isinf(sampler.limit()) && !sampler.work().patched;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stop_token>
 
 namespace driftlab {
 namespace {
@@ -197,6 +198,16 @@ TEST(SampleWiseVariance, SameSeedSameBits) {
   const auto b = sample_wise_variance(samples, plan, {.seed = 5});
   EXPECT_EQ(a.curve.variance, b.curve.variance);
   EXPECT_EQ(a.completed, b.completed);
+}
+
+TEST(SampleWiseVariance, StopsWhenAsked) {
+  Random random(1);
+  const GappySamples samples{simulate(truths()[0], random, 1.0, kSamples), {}};
+  HaarCovariance plan = plan_for(kSamples);
+  std::stop_source source;
+  source.request_stop();
+  const RunControl stopped{.stop = source.get_token(), .progress = {}};
+  EXPECT_EQ(sample_wise_variance(samples, plan, {}, stopped).outcome, SampleWiseOutcome::Cancelled);
 }
 
 }  // namespace
