@@ -63,7 +63,8 @@ struct FittedProcess {
   std::vector<FittedParameter> parameters;
 };
 
-/// Over-identification test of a fit: statistic ~ chi-square(dof) where the model is right (Hansen 1982).
+/// Over-identification test of a fit: statistic ~ chi-square(dof) where the model is right (Hansen 1982); dof is the
+/// number of scales less that of parameters, less 1.15 for what the longest scales scatter too little.
 struct JTest {
   double statistic = 0.0;
   double dof = 0.0;

@@ -74,11 +74,17 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
   return reported;
 }
 
+/// The longest two scales scatter less than the chi-squares they are taken for: the distance falls short of its degrees
+/// of freedom by this much on average, whatever the model (1.1-1.3 in 4,000 simulations each at N = 9,000 and 90,000).
+/// Without it the test rejects 2.4 % of true models at 5 %, with it 4.2-5.9 %.
+constexpr double kLongScales = 1.15;
+
 std::optional<JTest> j_test(const Candidate& candidate) {
-  const double dof = static_cast<double>(candidate.log_fit->scales()) - static_cast<double>(candidate.parameters);
-  if (dof < 1.0) {
+  const double over = static_cast<double>(candidate.log_fit->scales()) - static_cast<double>(candidate.parameters);
+  if (over < 2.0) {
     return std::nullopt;
   }
+  const double dof = over - kLongScales;
   const double statistic = candidate.log_fit->minimum();
   const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), statistic));
   return JTest{statistic, dof, p};

@@ -18,6 +18,31 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxRestarts = 20;
 
+/// Terms of the covariance of two logarithms of chi-squares of eta degrees of freedom, a = eta/2, in powers of the
+/// correlation of the chi-squares (Kibble's expansion): t_k = (k - 1)! Gamma(a)/(k Gamma(a + k)); all of them make
+/// psi'(a).
+constexpr std::size_t kTerms = 48;
+std::array<double, kTerms> log_terms(double a) {
+  std::array<double, kTerms> terms{};
+  double ratio = 1.0 / a;  // (k - 1)! Gamma(a)/Gamma(a + k)
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const auto k = static_cast<double>(i + 1);
+    terms[i] = std::sqrt(ratio / k);  // the root: two scales give the product of theirs
+    ratio *= k / (a + k);
+  }
+  return terms;
+}
+
+double log_covariance(const std::array<double, kTerms>& a, const std::array<double, kTerms>& b, double correlation) {
+  double sum = 0.0;
+  double power = 1.0;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    power *= correlation;
+    sum += power * a[i] * b[i];
+  }
+  return sum;
+}
+
 }  // namespace
 
 LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd& covariance)
@@ -31,13 +56,18 @@ LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd
   const Eigen::VectorXd fitted = modelled_variance(moments, model_);
   Eigen::MatrixXd relative(count, count);
   y_.resize(count);
+  std::vector<std::array<double, kTerms>> terms;
   for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      relative(i, j) = covariance(used_[i], used_[j]) / (fitted(used_[i]) * fitted(used_[j]));
-    }
-    const double half_edf = 1.0 / relative(j, j);  // eta/2 = nu^2/Var
+    const double half_edf = fitted(used_[j]) * fitted(used_[j]) / covariance(used_[j], used_[j]);  // eta/2 = nu^2/Var
     y_(j) = std::log(moments.nu(used_[j])) - (boost::math::digamma(half_edf) - std::log(half_edf));
+    terms.push_back(log_terms(half_edf));
     relative(j, j) = boost::math::trigamma(half_edf);
+    for (Eigen::Index i = 0; i < j; ++i) {
+      const double correlation =
+          covariance(used_[i], used_[j]) / std::sqrt(covariance(used_[i], used_[i]) * covariance(used_[j], used_[j]));
+      relative(i, j) = log_covariance(terms[static_cast<std::size_t>(i)], terms.back(), correlation);
+      relative(j, i) = relative(i, j);
+    }
   }
   whitening_ = MomentWeights::from_covariance(relative).whitening;
 
