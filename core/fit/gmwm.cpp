@@ -101,12 +101,24 @@ class Search {
   std::vector<ShapeSlot> slots_;
 };
 
+/// The best levels where a search has last looked: it asks for the slope where it has just asked for the value.
+struct LastLook {
+  Eigen::VectorXd at;
+  Eigen::MatrixXd design;
+  SubsetSolution levels;
+};
+
 /// The projected residual as a function of the logarithms of the shapes.
-void projected_residual(const Search& search, const Eigen::VectorXd& log_shapes, Eigen::VectorXd& residuals,
-                        Eigen::MatrixXd* jacobian) {
+void projected_residual(const Search& search, LastLook& last, const Eigen::VectorXd& log_shapes,
+                        Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
   const Eigen::VectorXd at = search.clamped(log_shapes);
-  const Eigen::MatrixXd a = search.design(at);
-  const SubsetSolution levels = subset_least_squares(a, search.target());
+  if (last.at.size() != at.size() || last.at != at) {
+    last.at = at;
+    last.design = search.design(at);
+    last.levels = subset_least_squares(last.design, search.target());
+  }
+  const Eigen::MatrixXd& a = last.design;
+  const SubsetSolution& levels = last.levels;
   residuals = search.target() - a * levels.x;
   if (jacobian == nullptr) {
     return;
@@ -221,6 +233,14 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
   return candidates;
 }
 
+/// By how much one Gauss-Newton step from here promises to lower the squared residual.
+double promised_fall(const ResidualFunction& residual, const Eigen::VectorXd& at) {
+  Eigen::VectorXd r;
+  Eigen::MatrixXd jacobian;
+  residual(at, r, &jacobian);
+  return (jacobian * least_squares(jacobian, r)).squaredNorm();
+}
+
 /// Processes of one kind in a fixed order: the largest shape (fastest) first, vanished ones last.
 void sort_repeats(Model& model) {
   std::sort(model.begin(), model.end(), [](const Process& a, const Process& b) {
@@ -283,11 +303,16 @@ GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& struc
   if (search.shapes() == 0) {
     best.log_shapes.resize(0);
   } else {
+    LastLook last;
     const auto residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
-      projected_residual(search, at, residuals, jacobian);
+      projected_residual(search, last, at, residuals, jacobian);
     };
     LeastSquaresLimits limits{.max_iterations = 60, .gradient_tolerance = 1e-13, .parameter_tolerance = 1e-10};
     for (Candidate candidate : scan(search, structure)) {
+      // A minimum that three times what its slope promises would not lower below the best is none worth finding.
+      if (candidate.objective - 3.0 * promised_fall(residual, candidate.log_shapes) > best.objective) {
+        continue;
+      }
       limits.function_tolerance = 1e-13 * std::max(1.0, candidate.objective);
       Eigen::VectorXd at = candidate.log_shapes;
       const LeastSquaresOutcome outcome = levenberg_marquardt(residual, search.scales(), limits, at);

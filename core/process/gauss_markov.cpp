@@ -105,7 +105,8 @@ double GaussMarkov::haar_cross(double mi, double mj, double h, double dt_s) cons
     const double sinh_x = std::sinh(x);
     return scale * haar_cross_of(mi, mj, h, [x, sinh_x](double lag) {
              const double distance = std::fabs(lag);
-             return std::exp(-x * distance) + distance * sinh_x;
+             const double fallen = x * distance;  // beyond 60 the exponential is lost beside the rest's rounding
+             return (fallen < 60.0 ? std::exp(-fallen) : 0.0) + distance * sinh_x;
            });
   }
   // K = cosh(xh) - [ (sinh x|h| - x|h|) - |h| (sinh x - x) ]: differences of cosh are products of sinh.
