@@ -14,7 +14,8 @@ Installs what is missing, builds the release preset and runs every suite, with 5
   --sanitize          also the suites under address, undefined-behaviour and thread sanitizers
   --tidy              also clang-tidy over every source, warnings as errors, and the clang-format check
   --fuzz [SECONDS]    fuzz longer: this long for each target (60 when no number follows)
-  --long              also the long simulation suites (label `long`: accuracy and coverage)
+  --long              also the long simulation suites (label `long`: accuracy and coverage), and their page anew:
+                      tests/ACCURACY.md; $DRIFTLAB_ACCURACY_SHARE scales their repetitions
   --help              this text
 
 Recordings that may not be in the repository are looked for in $DRIFTLAB_SHARED (default ../shared); the tests that need
@@ -118,11 +119,16 @@ labels=(--label-exclude long)
 if [ "$long" = yes ]; then
   labels=()
   step "build long suites" build release long_suites
+  export DRIFTLAB_ACCURACY_DIR=${DRIFTLAB_ACCURACY_DIR:-$repository/build/accuracy}
+  mkdir -p "$DRIFTLAB_ACCURACY_DIR"
 fi
 if [ "${#trees[@]}" -gt 0 ]; then
   mkdir -p build/all
   printf 'subdirs("%s")\n' "${trees[@]/#/$repository/build/}" >build/all/CTestTestfile.cmake
   step "test" run_tests all "${labels[@]}"
+fi
+if [ "$long" = yes ]; then
+  step "accuracy page" python3 tests/accuracy/page.py "$DRIFTLAB_ACCURACY_DIR"
 fi
 
 printf '\n'

@@ -1,6 +1,7 @@
 // Coverage of the 95 % intervals of fitted parameters; every repetition counts, a parameter not identified as an
 // interval from nothing to its upper limit.
 #include "core/fit/candidate.hpp"
+#include "core/fit/channel_variances.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
@@ -78,13 +79,15 @@ TEST(Accuracy, ParameterIntervalsCoverTheTruth) {
         Random random(2000 + samples, run);
         const std::vector<double> x = simulate(one.model, random, kDt, samples);
         const HaarVariance curve = haar_variance(x, summarise(x)->mean);
-        const VarianceIntervals intervals = variance_intervals(curve, plan);
+        const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(x));
+        const FittedVariances fitted{
+            curve.variance, intervals.estimate_variance.cwiseSqrt(), {}, intervals.shape, false};
         const WaveletMoments moments{
             Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
             {plan.half().begin(), plan.half().end()},
             static_cast<double>(samples),
             kDt};
-        Candidate candidate = fit_candidate(moments, structure, intervals.estimate_variance.cwiseSqrt(), plan);
+        Candidate candidate = fit_candidate(moments, structure, fitted.sd, fitted.covariance(plan));
         const ModelFit fit = report_fit(candidate, 1.0, static_cast<double>(samples), IntervalMethod::Preview);
         rejected += fit.j_test && fit.j_test->p < 0.05 ? 1 : 0;
         count(candidate, one.model, tally);

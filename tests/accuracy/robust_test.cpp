@@ -1,4 +1,5 @@
 // Robust wavelet variance and contamination test: efficiency and size on clean data, bias and power with outliers.
+#include "core/fit/channel_variances.hpp"
 #include "core/variance/contamination.hpp"
 #include "core/variance/robust_variance.hpp"
 #include "core/variance/samples.hpp"
@@ -17,15 +18,14 @@ struct Truth {
   const char* name;
   Model model;
   double innovation;  ///< standard deviation that outliers are measured in
-  bool gaussian;      ///< uniform quantization errors are not: their robust variance is that of another shape
 };
 
 std::vector<Truth> truths() {
-  return {{"WN", model_of({{"white_noise", {1.0}}}), 1.0, true},
-          {"WN+GM+RW", model_of({{"white_noise", {1.0}}, {"gauss_markov", {0.3, 0.02}}, {"random_walk", {0.001}}}), 1.0,
-           true},
-          {"RW", model_of({{"random_walk", {1.0}}}), 1.0, true},
-          {"QN+WN", model_of({{"quantization_noise", {1.0}}, {"white_noise", {0.3}}}), 1.0, false}};
+  return {
+      {"WN", model_of({{"white_noise", {1.0}}}), 1.0},
+      {"WN+GM+RW", model_of({{"white_noise", {1.0}}, {"gauss_markov", {0.3, 0.02}}, {"random_walk", {0.001}}}), 1.0},
+      {"RW", model_of({{"random_walk", {1.0}}}), 1.0},
+      {"QN+WN", model_of({{"quantization_noise", {1.0}}, {"white_noise", {0.3}}}), 1.0}};
 }
 
 struct Outliers {
@@ -48,7 +48,8 @@ TEST(Accuracy, RobustVarianceResistsOutliers) {
   Section section("robust");
   section.print(
       "\n## Robust wavelet variance, coefficient by coefficient\n\nMean ratio to the truth and efficiency (variance of "
-      "the classical over that of the robust estimate, clean data) over scales with edf >= 50, lowest-highest; scales "
+      "the classical over that of the robust estimate, clean data; standard error 0.013 at 4,000 runs, 0.026 at 1,000) "
+      "over scales with edf >= 50, lowest-highest; scales "
       "without a root as a share; verdicts of the contamination test.\n\n| truth | N | outliers | runs | ratio | "
       "efficiency | undefined [%%] | contaminated [%%] | undecided [%%] |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const std::size_t samples : {std::size_t{1} << 13U, std::size_t{1} << 15U}) {
@@ -58,7 +59,7 @@ TEST(Accuracy, RobustVarianceResistsOutliers) {
       for (const Outliers& outliers : {Outliers{"none", 0.0, 0.0}, Outliers{"1 % at 100 sd", 0.01, 100.0},
                                        Outliers{"0.1 % at 1,000 sd", 0.001, 1000.0}, Outliers{"5 % at 5 sd", 0.05, 5.0},
                                        Outliers{"0.1 % at 10 sd", 0.001, 10.0}}) {
-        const std::size_t runs = repetitions(outliers.fraction == 0.0 ? 1000 : 200);
+        const std::size_t runs = repetitions(outliers.fraction > 0.0 ? 200 : samples < 10000 ? 4000 : 1000);
         std::vector<double> sum(grid.scales(), 0.0);
         std::vector<double> square(grid.scales(), 0.0);
         std::vector<double> classical_sum(grid.scales(), 0.0);
@@ -74,7 +75,8 @@ TEST(Accuracy, RobustVarianceResistsOutliers) {
           const double pivot = summarise(x)->mean;
           const HaarVariance curve = haar_variance(x, pivot);
           const VarianceIntervals classical = variance_intervals(curve, plan);
-          const RobustVariance robust = robust_variance(x, pivot, curve, classical, plan);
+          const RobustVariance robust =
+              robust_variance(x, pivot, curve, classical, plan, clean_shape(x, 1.0, classical, plan, run + 1));
           const ContaminationTest test = test_contamination(x, 1.0, curve, classical, robust, plan);
           contaminated += test.verdict == ContaminationVerdict::Contaminated ? 1 : 0;
           undecided += test.verdict == ContaminationVerdict::Undecided ? 1 : 0;
@@ -124,8 +126,7 @@ TEST(Accuracy, RobustVarianceResistsOutliers) {
         }
         section.print(" | %.0f | %.1f | %.1f |\n", 100.0 * undefined / static_cast<double>(scales),
                       100.0 * static_cast<double>(contaminated) / n, 100.0 * static_cast<double>(undecided) / n);
-        if (outliers.fraction == 0.0 &&
-            truth.gaussian) {  // means of 1,000 runs: half a percent of scatter and a small-sample bias
+        if (outliers.fraction == 0.0) {  // means of 1,000 runs: half a percent of scatter and a small-sample bias
           EXPECT_GT(low, 0.96) << truth.name;
           EXPECT_LT(high, 1.06) << truth.name;
         }

@@ -1,5 +1,6 @@
 // How often the criteria choose the model that made the data (15 min at 100 Hz, phone-like values).
 #include "core/fit/candidate.hpp"
+#include "core/fit/channel_variances.hpp"
 #include "core/fit/characterise.hpp"
 #include "core/fit/kalman_likelihood.hpp"
 #include "core/variance/haar_variance.hpp"
@@ -95,7 +96,7 @@ TEST(Accuracy, CriterionFindsTheTruth) {
     }
     const std::vector<std::string> criteria{"L + p ln N (default)", "L + 2p", "own quasi-likelihood + p ln N",
                                             "equation 8, diagonal W", "Kalman BIC (yardstick)"};
-    const std::size_t yardstick_runs = std::min(runs, repetitions(40));
+    const std::size_t yardstick_runs = std::min(runs, repetitions(20));
     std::vector<Tally> tally(criteria.size());
     for (std::size_t run = 0; run < runs; ++run) {
       Random random(3000, run);
@@ -105,8 +106,9 @@ TEST(Accuracy, CriterionFindsTheTruth) {
       for (double& variance : curve.variance) {
         variance /= unit;
       }
-      const VarianceIntervals intervals = variance_intervals(curve, plan);
+      const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(x));
       const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
+      const FittedVariances fitted{curve.variance, sd, {}, intervals.shape, false};
       const WaveletMoments moments{
           Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
           {plan.half().begin(), plan.half().end()},
@@ -115,7 +117,7 @@ TEST(Accuracy, CriterionFindsTheTruth) {
       std::vector<Candidate> candidates;
       candidates.reserve(options.models.size());
       for (const std::string& candidate : options.models) {
-        candidates.push_back(fit_candidate(moments, *parse_model(candidate), sd, plan));
+        candidates.push_back(fit_candidate(moments, *parse_model(candidate), sd, fitted.covariance(plan)));
       }
       const Eigen::MatrixXd common = candidates.back().covariance;
       std::vector<std::vector<double>> value(criteria.size());
