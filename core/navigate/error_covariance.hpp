@@ -1,0 +1,83 @@
+#pragma once
+/// Covariance of the filter's error state, stored by what its structure allows to skip.
+///
+/// States: position, velocity and attitude error in e (9), then the sensor states. Over a step
+///   x_n' = F x_n + B x_s + noise,   x_s' = D x_s + noise,
+/// with D block diagonal (one block per axis, mostly a diagonal), F nearly the identity, and B filled. P is kept as the
+/// blocks P_nn (9 x 9), P_ns (9 x m) and P_ss (m x m); a step costs about 9 m^2 + 100 m multiplications instead of the
+/// 2 n^3 of the textbook. Every entry and its mirror image are computed by the same operations, so P stays symmetric to
+/// the bit; updates are scalar and in Joseph's form, which keeps P positive definite under rounding.
+#include "core/navigate/earth.hpp"
+
+#include <array>
+
+namespace driftlab {
+
+inline constexpr int kNavigationStates = 9;
+inline constexpr int kMaxSensorStates = 64;
+
+/// The parts of a step that are not in the axis models. Rows r, v, phi of F:
+///   r' = r + T v - [V2 x] phi,  v' = (I - 2 [w_ie x] T) v + G T r - [V x] phi,  phi' = (I - [w_ie x] T) phi.
+struct NavigationTransition {
+  double step_s = 0.0;
+  Matrix3 gravity_step = Matrix3::Zero();  ///< gravity gradient times T
+  Vector3 velocity = Vector3::Zero();      ///< V: integral of the force in e
+  Vector3 position = Vector3::Zero();      ///< V2: integral of V
+};
+
+/// Work space of one step, laid out for vector units: rows of `stride` doubles, the unused ones 0.
+struct SensorTransition {
+  alignas(32) std::array<double, 9 * kMaxSensorStates> gain{};         ///< B
+  alignas(32) std::array<double, 9 * kMaxSensorStates> cross_noise{};  ///< covariance of navigation with sensor noise
+  alignas(32) std::array<double, kMaxSensorStates> phi{};              ///< diagonal of D
+  Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
+};
+
+/// One scalar measurement: innovation = h . (navigation error) + noise.
+struct ScalarMeasurement {
+  Eigen::Matrix<double, 9, 1> h = Eigen::Matrix<double, 9, 1>::Zero();
+  double innovation = 0.0;
+  double variance = 0.0;
+};
+
+class ErrorCovariance {
+ public:
+  using Navigation = Eigen::Matrix<double, 9, 9>;
+  using State = Eigen::Matrix<double, 9 + kMaxSensorStates, 1>;
+
+  /// `sensor_states` at most kMaxSensorStates; all zero.
+  explicit ErrorCovariance(int sensor_states = 0);
+
+  [[nodiscard]] int sensor_states() const { return sensor_states_; }
+  [[nodiscard]] int stride() const { return stride_; }
+  [[nodiscard]] const Navigation& navigation() const { return nn_; }
+  [[nodiscard]] Navigation& navigation() { return nn_; }
+  [[nodiscard]] double sensor(int i, int j) const { return ss_[at(i, j)]; }
+  /// Adds to one entry; the caller adds to its mirror image too.
+  void add_sensor(int i, int j, double value) { ss_[at(i, j)] += value; }
+  /// The whole matrix, for tests.
+  [[nodiscard]] Eigen::MatrixXd dense() const;
+
+  /// F, B and the diagonal of D, without noise. A step is `propagate`, then `mix` for every block of D that is not
+  /// diagonal (its diagonal given as 1 to `propagate`), then `add_noise` and `add_sensor`.
+  void propagate(const NavigationTransition& navigation, const SensorTransition& sensors);
+  /// Applies a block of D to the sensor states from `first` on.
+  void mix(int first, const Eigen::Ref<const Eigen::MatrixXd>& block);
+  /// Adds the noise of the navigation states and its covariance with the sensor states.
+  void add_noise(const SensorTransition& sensors);
+
+  /// Scalar Kalman update; the correction is added to `state`, which holds what earlier measurements of this moment
+  /// gave.
+  void update(const ScalarMeasurement& measurement, State& state);
+
+ private:
+  [[nodiscard]] std::size_t at(int i, int j) const { return static_cast<std::size_t>(i * stride_ + j); }
+
+  int sensor_states_ = 0;
+  int stride_ = 12;
+  Navigation nn_ = Navigation::Zero();
+  alignas(32) std::array<double, 9 * kMaxSensorStates> ns_{};
+  alignas(32) std::array<double, kMaxSensorStates * kMaxSensorStates> ss_{};
+};
+
+}  // namespace driftlab

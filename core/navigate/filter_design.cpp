@@ -1,0 +1,67 @@
+#include "core/navigate/navigation_filter.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace driftlab {
+namespace {
+
+Status check(const FilterSettings& settings) {
+  const auto bad = [](const char* member) {
+    return fail(ErrorCode::InvalidArgument, "The filter's " + std::string(member) + " is not a possible value.",
+                {{"parameter", member}});
+  };
+  const InitialUncertainty& initial = settings.initial;
+  if (!(initial.position_sd_m.allFinite() && initial.position_sd_m.minCoeff() > 0.0 &&
+        initial.velocity_sd_m_s.allFinite() && initial.velocity_sd_m_s.minCoeff() > 0.0)) {
+    return bad("initial.position_sd_m or velocity_sd_m_s");
+  }
+  if (!(initial.tilt_sd_rad > 0.0 && initial.tilt_sd_rad < 4.0 && initial.heading_sd_rad > 0.0 &&
+        initial.heading_sd_rad < 4.0)) {
+    return bad("initial.tilt_sd_deg or heading_sd_deg");
+  }
+  if (settings.covariance_samples < 1 || settings.covariance_samples > 100) {
+    return bad("covariance_samples");
+  }
+  if (settings.non_holonomic && !(settings.non_holonomic->rate_hz > 0.0 && settings.non_holonomic->sd_m_s > 0.0)) {
+    return bad("non_holonomic");
+  }
+  for (const AxisModel& axis : settings.imu.axes) {
+    if (!(axis.bias_sd >= 0.0 && std::isfinite(axis.bias_sd))) {
+      return bad("bias_sd");
+    }
+  }
+  return settings.lever_arm_m.allFinite() ? Status{} : bad("lever_arm_m");
+}
+
+}  // namespace
+
+Result<FilterDesign> FilterDesign::make(const FilterSettings& settings, double dt_s) {
+  if (auto status = check(settings); !status) {
+    return fail(status.error());
+  }
+  FilterDesign design;
+  design.settings_ = settings;
+  design.dt_s_ = dt_s;
+  for (std::size_t c = 0; c < kImuChannels; ++c) {
+    const AxisModel& axis = settings.imu.axes[c];
+    const std::size_t bands = c < 3 ? axis.processes.size() : 1;
+    for (std::size_t band = 0; band < bands; ++band) {
+      auto dynamics =
+          make_channel_dynamics(axis.processes.model(band), axis.bias_sd, dt_s, settings.covariance_samples);
+      if (!dynamics) {
+        return fail(dynamics.error());
+      }
+      design.channels_[c].push_back(std::move(*dynamics));
+    }
+    design.first_[c] = design.sensor_states_;
+    design.sensor_states_ += design.channels_[c].front().states;
+  }
+  if (design.sensor_states_ > kMaxSensorStates) {
+    return fail(ErrorCode::LimitExceeded, "The error models ask for more than 64 sensor states.",
+                {{"limit", std::to_string(kMaxSensorStates)}});
+  }
+  return design;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,55 @@
+#pragma once
+/// Which error model holds under which angular rate.
+///
+/// Radi, Nassar and El-Sheimy (2017) fit one model per dynamic condition and switch between them by the gyro's own
+/// reading (their Table 5). A schedule is that table: ascending bounds of |rate| and one model per band. A band is left
+/// only when the reading is outside it by more than `hysteresis`, so that noise at a bound does not make the schedule
+/// flutter. Trends over the rate, continuous in the parameters, are the same thing with narrow bands (`interpolated`).
+///
+/// All models of a schedule hold the same kinds of processes in the same order: a Kalman filter keeps its states when
+/// the parameters change.
+#include "core/process/model.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace driftlab {
+
+class ModelSchedule {
+ public:
+  /// No error at all.
+  ModelSchedule() : models_(1) {}
+
+  /// One model whatever the rate.
+  [[nodiscard]] static ModelSchedule constant(Model model);
+
+  /// `models` has one member more than `bounds_rad_s`; band i reaches to bounds[i], the last one to infinity. Errors:
+  /// InvalidArgument (numbers of models and bounds, bounds not ascending and positive, hysteresis negative or wider
+  /// than half a band, models of different structure).
+  [[nodiscard]] static Result<ModelSchedule> by_rate(std::vector<double> bounds_rad_s, std::vector<Model> models,
+                                                     double hysteresis_rad_s);
+
+  /// Parameters as functions of |rate|: straight lines between the given rates (of the logarithm where a parameter is
+  /// positive by its declaration and its values are), constant beyond the ends, tabulated in bands of `step_rad_s`.
+  /// Bands need no hysteresis: neighbours differ by little. Errors: InvalidArgument (rates not ascending from 0 or
+  /// above, models of different structure, more than 4096 bands).
+  [[nodiscard]] static Result<ModelSchedule> interpolated(const std::vector<double>& rates_rad_s,
+                                                          const std::vector<Model>& models, double step_rad_s);
+
+  [[nodiscard]] std::size_t size() const { return models_.size(); }
+  [[nodiscard]] const Model& model(std::size_t band) const { return models_[band]; }
+  [[nodiscard]] const std::vector<double>& bounds_rad_s() const { return bounds_; }
+  [[nodiscard]] double hysteresis_rad_s() const { return hysteresis_; }
+
+  /// The band of |rate| by the bounds alone: what truth does.
+  [[nodiscard]] std::size_t band(double rate_rad_s) const;
+  /// The band a filter goes to that is in `current` and reads `rate_rad_s`.
+  [[nodiscard]] std::size_t next_band(std::size_t current, double rate_rad_s) const;
+
+ private:
+  std::vector<double> bounds_;
+  std::vector<Model> models_;
+  double hysteresis_ = 0.0;
+};
+
+}  // namespace driftlab

@@ -1,0 +1,37 @@
+#pragma once
+/// What a comparison says about the paper's claims, in words.
+///
+/// Attribution walks from M_stat(AV) to M_dyn(GMWM) over the controls, one change at a time; the parts add up to the
+/// whole:
+///   low-frequency process noise   M_stat(Neq)+RW  against  M_stat(AV)        the noise at low frequency told, no new
+///   states Gauss-Markov states           M_stat(GMWM)    against  M_stat(Neq)+RW    the same noise, now estimated
+///   switching                     M_dyn(GMWM)     against  M_stat(GMWM)      parameters that follow the rate
+/// and, for Allan variance alone, switching is M_dyn(AV) against M_stat(AV). Negative differences are gains.
+///
+/// A claim that one filter is better is supported where the whole 95 % interval of the paired difference is below 0,
+/// and a size where the interval of the relative difference holds it.
+#include "core/navigate/outage_evaluation.hpp"
+
+namespace driftlab {
+
+struct Attribution {
+  PairedDifference total;
+  PairedDifference low_frequency_noise;
+  PairedDifference gauss_markov_states;
+  PairedDifference switching;
+  PairedDifference switching_av;
+};
+
+struct Claim {
+  std::string claim;
+  bool supported = false;
+  std::string because;
+};
+
+/// Nothing where the six filters of the paper's comparison are not all there.
+[[nodiscard]] std::optional<Attribution> attribute(const OutageEvaluation& evaluation);
+
+/// Claims of the paper that the evaluation can judge; empty where `attribute` gives nothing.
+[[nodiscard]] std::vector<Claim> judge_claims(const OutageEvaluation& evaluation);
+
+}  // namespace driftlab

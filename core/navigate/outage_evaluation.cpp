@@ -1,0 +1,270 @@
+#include "core/navigate/outage_evaluation.hpp"
+
+#include "core/navigate/outage_runs.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+namespace driftlab {
+namespace {
+
+constexpr std::size_t kBatch = 20;
+
+/// Squared radius of the ellipse that holds a fraction of a plane normal distribution: -2 ln(1 - fraction).
+double ellipse_bound(double fraction) { return -2.0 * std::log(1.0 - fraction); }
+
+/// scores[run][filter][outage]
+using Scores = std::vector<std::vector<std::vector<OutageScore>>>;
+
+/// Mean and interval of independent values.
+Estimate mean_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += value;
+  }
+  Estimate estimate;
+  estimate.value = sum / n;
+  if (values.size() > 1) {
+    double squares = 0.0;
+    for (const double value : values) {
+      squares += (value - estimate.value) * (value - estimate.value);
+    }
+    const double half = student_quantile95(n - 1.0) * std::sqrt(squares / (n - 1.0) / n);
+    estimate.ci95 = {estimate.value - half, estimate.value + half};
+  }
+  return estimate;
+}
+
+/// One number per run: the mean of `value` over the outages of a filter.
+template <class Value>
+std::vector<double> per_run(const Scores& scores, std::size_t filter, const Value& value) {
+  std::vector<double> out;
+  out.reserve(scores.size());
+  for (const auto& run : scores) {
+    double sum = 0.0;
+    for (const OutageScore& score : run[filter]) {
+      sum += value(score);
+    }
+    out.push_back(sum / static_cast<double>(run[filter].size()));
+  }
+  return out;
+}
+
+template <class Value>
+std::vector<double> at_outage(const Scores& scores, std::size_t filter, std::size_t outage, const Value& value) {
+  std::vector<double> out;
+  out.reserve(scores.size());
+  for (const auto& run : scores) {
+    out.push_back(value(run[filter][outage]));
+  }
+  return out;
+}
+
+double error_m(const OutageScore& score) { return score.error_m(); }
+double nees(const OutageScore& score) { return score.nees(); }
+double heading_squared(const OutageScore& score) { return score.heading_rad * score.heading_rad; }
+double tilt_squared(const OutageScore& score) { return score.tilt_rad * score.tilt_rad; }
+double within50(const OutageScore& score) { return score.nees() <= ellipse_bound(0.5) ? 1.0 : 0.0; }
+double within95(const OutageScore& score) { return score.nees() <= ellipse_bound(0.95) ? 1.0 : 0.0; }
+
+/// The value below which a fraction of the sorted values lies, linear between neighbours.
+double quantile(std::vector<double> values, double fraction) {
+  std::sort(values.begin(), values.end());
+  const double at = fraction * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+OutageSummary summarise(const Scores& scores, const OutageScenario& scenario, std::size_t filter, std::size_t outage,
+                        int scatter_runs) {
+  const auto mean = [&](const auto& value) { return mean_of(at_outage(scores, filter, outage, value)).value; };
+  OutageSummary summary;
+  summary.index = outage + 1;
+  summary.start_s = scenario.outages[outage].start_s;
+  summary.end_s = scenario.outages[outage].end_s();
+  const std::vector<double> errors = at_outage(scores, filter, outage, error_m);
+  summary.error_m = mean_of(errors);
+  summary.median_m = quantile(errors, 0.5);
+  summary.p95_m = quantile(errors, 0.95);
+  summary.nees = mean_of(at_outage(scores, filter, outage, nees));
+  summary.coverage50 = mean(within50);
+  summary.coverage95 = mean(within95);
+  summary.heading_rms_rad = std::sqrt(mean(heading_squared));
+  summary.tilt_rms_rad = std::sqrt(mean(tilt_squared));
+  summary.predicted = {mean([](const OutageScore& s) { return s.var_north; }),
+                       mean([](const OutageScore& s) { return s.var_east; }),
+                       mean([](const OutageScore& s) { return s.cov_north_east; })};
+  summary.actual = {mean([](const OutageScore& s) { return s.north_m * s.north_m; }),
+                    mean([](const OutageScore& s) { return s.east_m * s.east_m; }),
+                    mean([](const OutageScore& s) { return s.north_m * s.east_m; })};
+  summary.rms_m = std::sqrt(summary.actual.north + summary.actual.east);
+  summary.mean_north_m = mean([](const OutageScore& s) { return s.north_m; });
+  summary.mean_east_m = mean([](const OutageScore& s) { return s.east_m; });
+  for (std::size_t run = 0; run < scores.size() && run < static_cast<std::size_t>(std::max(scatter_runs, 0)); ++run) {
+    const OutageScore& score = scores[run][filter][outage];
+    summary.scatter.push_back({score.north_m, score.east_m});
+  }
+  return summary;
+}
+
+FilterEvaluation evaluate(const Scores& scores, const OutageExperiment& experiment, std::size_t filter,
+                          int scatter_runs) {
+  const OutageScenario& scenario = experiment.scenario();
+  const auto mean = [&](const auto& value) { return mean_of(per_run(scores, filter, value)).value; };
+  FilterEvaluation result;
+  result.name = scenario.filters[filter].name;
+  result.about = scenario.filters[filter].about;
+  result.states = 9 + experiment.design(filter).sensor_states();
+  result.mean_error_m = mean_of(per_run(scores, filter, error_m));
+  result.nees = mean_of(per_run(scores, filter, nees));
+  result.coverage50 = mean(within50);
+  result.coverage95 = mean(within95);
+  result.heading_rms_rad = std::sqrt(mean(heading_squared));
+  result.tilt_rms_rad = std::sqrt(mean(tilt_squared));
+  for (std::size_t outage = 0; outage < scenario.outages.size(); ++outage) {
+    result.outages.push_back(summarise(scores, scenario, filter, outage, scatter_runs));
+  }
+  return result;
+}
+
+std::vector<double> difference_of(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> out(a.size());
+  std::transform(a.begin(), a.end(), b.begin(), out.begin(), [](double x, double y) { return x - y; });
+  return out;
+}
+
+PairedDifference compare(const Scores& scores, const OutageScenario& scenario, std::size_t filter,
+                         std::size_t against) {
+  const std::vector<double> mine = per_run(scores, filter, error_m);
+  const std::vector<double> theirs = per_run(scores, against, error_m);
+  PairedDifference pair;
+  pair.filter = scenario.filters[filter].name;
+  pair.against = scenario.filters[against].name;
+  pair.difference_m = mean_of(difference_of(mine, theirs));
+  // Ratio of means R: by the delta method its error is the mean of (a - R b)/mean(b).
+  const double base = mean_of(theirs).value;
+  const double ratio = mean_of(mine).value / base;
+  std::vector<double> residual(mine.size());
+  std::transform(mine.begin(), mine.end(), theirs.begin(), residual.begin(),
+                 [&](double a, double b) { return (a - ratio * b) / base; });
+  const Estimate spread = mean_of(residual);
+  pair.relative.value = ratio - 1.0;
+  pair.relative.ci95 = {ratio - 1.0 + spread.ci95.low - spread.value, ratio - 1.0 + spread.ci95.high - spread.value};
+  for (std::size_t outage = 0; outage < scenario.outages.size(); ++outage) {
+    pair.by_outage_m.push_back(mean_of(
+        difference_of(at_outage(scores, filter, outage, error_m), at_outage(scores, against, outage, error_m))));
+  }
+  return pair;
+}
+
+bool precise_enough(const Scores& scores, std::size_t filters, double relative_precision) {
+  for (std::size_t f = 0; f < filters; ++f) {
+    const Estimate mean = mean_of(per_run(scores, f, error_m));
+    if (mean.ci95.high - mean.value > relative_precision * mean.value) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Runs `first` to `last` - 1 on `threads` threads; the calling one works too and alone reports.
+void run_batch(const OutageExperiment& experiment, const OutageOptions& options, std::size_t first, std::size_t last,
+               Scores& scores, std::vector<OutagePath>& paths, const RunControl& control) {
+  std::atomic<std::size_t> next{first};
+  std::atomic<std::size_t> done{first};
+  const auto work = [&](bool reports) {
+    for (std::size_t run = next++; run < last && !control.stop.stop_requested(); run = next++) {
+      scores[run] = experiment.run(options.seed, run, run == 0 ? &paths : nullptr, control.stop);
+      const std::size_t finished = ++done;
+      if (reports) {
+        control.report("outages", static_cast<double>(finished) / static_cast<double>(options.runs));
+      }
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < options.threads; ++i) {
+    helpers.emplace_back([&] { work(false); });
+  }
+  work(true);
+}
+
+}  // namespace
+
+double OutageScore::error_m() const { return std::hypot(north_m, east_m); }
+
+double OutageScore::nees() const {
+  const double determinant = var_north * var_east - cov_north_east * cov_north_east;
+  return (var_east * north_m * north_m - 2.0 * cov_north_east * north_m * east_m + var_north * east_m * east_m) /
+         determinant;
+}
+
+double student_quantile95(double dof) {
+  constexpr double kZ = 1.959963984540054;
+  constexpr double kZ3 = kZ * kZ * kZ;
+  constexpr double kZ5 = kZ3 * kZ * kZ;
+  return kZ + (kZ3 + kZ) / (4.0 * dof) + (5.0 * kZ5 + 16.0 * kZ3 + 3.0 * kZ) / (96.0 * dof * dof) +
+         (3.0 * kZ5 * kZ * kZ + 19.0 * kZ5 + 17.0 * kZ3 - 15.0 * kZ) / (384.0 * dof * dof * dof);
+}
+
+std::optional<PairedDifference> OutageEvaluation::difference(std::string_view filter, std::string_view against) const {
+  for (const PairedDifference& pair : paired) {
+    if (pair.filter == filter && pair.against == against) {
+      return pair;
+    }
+  }
+  return std::nullopt;
+}
+
+Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const OutageOptions& options,
+                                          const RunControl& control) {
+  if (options.runs < 2 || options.runs > 100000 || options.threads < 1 || !(options.relative_precision >= 0.0)) {
+    return fail(ErrorCode::InvalidArgument,
+                "An evaluation takes 2 to 100000 runs and a precision that is not negative.", {{"parameter", "runs"}});
+  }
+  control.report("trajectory", 0.0);
+  auto experiment = OutageExperiment::make(scenario);
+  if (!experiment) {
+    return fail(experiment.error());
+  }
+  const std::size_t filters = scenario.filters.size();
+  const auto most = static_cast<std::size_t>(options.runs);
+  Scores scores(most);
+  std::vector<OutagePath> paths(filters);
+  OutageEvaluation result;
+  std::size_t done = 0;
+  while (done < most && !result.stopped_early) {
+    const std::size_t last =
+        options.relative_precision > 0.0 ? std::min(done + kBatch, most) : most;  // a batch is never split by threads
+    run_batch(*experiment, options, done, last, scores, paths, control);
+    if (control.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The outage evaluation was cancelled.");
+    }
+    done = last;
+    if (options.relative_precision > 0.0 && done < most) {
+      const Scores so_far(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(done));
+      result.stopped_early = precise_enough(so_far, filters, options.relative_precision);
+    }
+  }
+  scores.resize(done);
+  result.scenario = scenario.name;
+  result.runs = static_cast<int>(done);
+  result.seed = options.seed;
+  result.truth = experiment->true_path();
+  for (std::size_t f = 0; f < filters; ++f) {
+    result.filters.push_back(evaluate(scores, *experiment, f, options.scatter_runs));
+    result.filters.back().path = std::move(paths[f]);
+    for (std::size_t against = 0; against < filters; ++against) {
+      if (against != f) {
+        result.paired.push_back(compare(scores, scenario, f, against));
+      }
+    }
+  }
+  control.report("outages", 1.0);
+  return result;
+}
+
+}  // namespace driftlab

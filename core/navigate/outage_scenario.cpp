@@ -1,0 +1,55 @@
+#include "core/navigate/outage_scenario.hpp"
+
+#include <algorithm>
+
+namespace driftlab {
+namespace {
+
+tl::unexpected<Error> bad(std::string why, const char* parameter) {
+  return fail(ErrorCode::InvalidArgument, std::move(why), {{"parameter", parameter}});
+}
+
+Status check_outages(const OutageScenario& scenario) {
+  if (scenario.outages.empty()) {
+    return bad("The scenario has no outage.", "outages");
+  }
+  double before = 1.0 / scenario.gnss.rate_hz;
+  for (const Outage& outage : scenario.outages) {
+    if (!(outage.duration_s > 0.0 && outage.start_s >= before && outage.end_s() <= scenario.drive.duration_s)) {
+      return bad(
+          "Outages must last longer than 0 s, follow each other, begin after the first fix and end with the drive.",
+          "outages");
+    }
+    before = outage.end_s();
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check(const OutageScenario& scenario) {
+  if (scenario.filters.empty() || scenario.filters.size() > 32) {
+    return bad("The scenario needs 1 to 32 filters.", "filters");
+  }
+  for (auto filter = scenario.filters.begin(); filter != scenario.filters.end(); ++filter) {
+    if (std::any_of(scenario.filters.begin(), filter,
+                    [&](const FilterCandidate& f) { return f.name == filter->name; })) {
+      return bad("Two filters are called " + filter->name + ".", "filters");
+    }
+  }
+  if (!(scenario.imu_rate_hz >= 1.0 && scenario.imu_rate_hz <= 10000.0)) {
+    return bad("The rate of the inertial unit must be 1 to 10000 Hz.", "imu_rate_hz");
+  }
+  if (scenario.drive.duration_s > 86400.0) {
+    return bad("The drive must not be longer than a day.", "duration_s");
+  }
+  if (auto status = check(scenario.gnss); !status) {
+    return status;
+  }
+  if (auto status = check(scenario.hardware); !status) {
+    return status;
+  }
+  return check_outages(scenario);
+}
+
+}  // namespace driftlab

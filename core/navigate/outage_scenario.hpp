@@ -1,0 +1,36 @@
+#pragma once
+/// One simulated experiment: a drive, an inertial unit, a receiver with outages, and the filters that are compared.
+#include "core/navigate/imu_simulator.hpp"
+#include "core/navigate/navigation_filter.hpp"
+#include "core/navigate/segment_motion.hpp"
+
+#include <string>
+#include <vector>
+
+namespace driftlab {
+
+struct FilterCandidate {
+  std::string name;
+  std::string about;  ///< what it believes, in words
+  FilterSettings settings;
+};
+
+struct OutageScenario {
+  std::string name;
+  std::string about;
+  SegmentPlan drive;
+  double imu_rate_hz = 100.0;
+  ImuModel truth;
+  ImuHardware hardware;
+  GnssModel gnss;
+  std::vector<Outage> outages;
+  /// The first estimate is the truth plus a draw of these; every filter starts from the same one.
+  InitialUncertainty initial;
+  std::vector<FilterCandidate> filters;
+};
+
+/// Errors: InvalidArgument (no filter or two of one name, no outage, outages that overlap, begin before the first fix
+/// or end after the drive), and those of the parts.
+[[nodiscard]] Status check(const OutageScenario& scenario);
+
+}  // namespace driftlab

@@ -1,0 +1,47 @@
+#pragma once
+/// The filter on recorded data: a real inertial unit and real fixes, artificial outages, a reference to score against.
+///
+/// Fixes inside an outage are withheld. At its end the estimate is compared with the reference (straight line between
+/// its two neighbours in time) before the first returning fix, next to the simplest rival: the position and velocity of
+/// the filter at the outage's start, carried on in a straight line.
+#include "core/navigate/navigation_filter.hpp"
+
+#include <vector>
+
+namespace driftlab {
+
+struct ReferencePoint {
+  double time_s = 0.0;
+  Vector3 position_ecef_m = Vector3::Zero();
+};
+
+/// Readings are uniform: readings[i] is the mean over the interval that ends at start_s + (i + 1) dt_s.
+struct RecordedDrive {
+  double start_s = 0.0;
+  double dt_s = 0.01;
+  std::vector<ImuSample> readings;
+  std::vector<GnssFix> fixes;             ///< by arrival
+  std::vector<ReferencePoint> reference;  ///< by time
+};
+
+struct RecordedOutage {
+  Outage outage;
+  double north_m = 0.0, east_m = 0.0;  ///< estimate minus reference
+  double nees = 0.0;                   ///< two dimensions; counts the reference's own error too
+  double error_m = 0.0;
+  double straight_line_error_m = 0.0;  ///< of the rival
+};
+
+/// Errors: TooFewSamples (no readings, fixes or reference), NonMonotonicTime (fixes or reference), InvalidArgument (an
+/// outage that does not lie within readings and reference).
+[[nodiscard]] Result<std::vector<RecordedOutage>> evaluate_recorded(const RecordedDrive& drive,
+                                                                    const FilterDesign& design,
+                                                                    const NavigationState& start,
+                                                                    const std::vector<Outage>& outages);
+
+/// Attitude of a unit at rest or in even motion: roll and pitch from the direction of the mean specific force of
+/// `readings`, heading as given. Tilt is wrong by acceleration over gravity.
+[[nodiscard]] Quaternion level_attitude(std::span<const ImuSample> readings, const Vector3& position_ecef_m,
+                                        double heading_rad);
+
+}  // namespace driftlab

@@ -1,0 +1,25 @@
+#pragma once
+/// A recorded trajectory as a motion: velocities and attitude angles through natural cubic splines.
+///
+/// Between its samples a recording says nothing; the spline is the twice differentiable curve of least curvature
+/// through them, so specific force and rates are continuous. Angles are unwrapped first. Position is integrated from
+/// the velocities and therefore follows the recording's velocities, not its positions.
+#include "core/navigate/motion.hpp"
+#include "core/signal/result.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace driftlab {
+
+struct RecordedPose {
+  double time_s = 0.0;
+  Vector3 velocity_ned_m_s = Vector3::Zero();
+  EulerAngles attitude;
+};
+
+/// Time 0 of the motion is that of the first pose. Errors: TooFewSamples (fewer than 4), NonMonotonicTime, NonFinite.
+[[nodiscard]] Result<std::unique_ptr<Motion>> make_recorded_motion(const Geodetic& start,
+                                                                   const std::vector<RecordedPose>& poses);
+
+}  // namespace driftlab
