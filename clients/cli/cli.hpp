@@ -29,6 +29,7 @@ void add_trends(CLI::App& app, Command& chosen);
 void add_investigate(CLI::App& app, Command& chosen);
 void add_simulate(CLI::App& app, Command& chosen);
 void add_calibrate(CLI::App& app, Command& chosen);
+void add_outages(CLI::App& app, Command& chosen);
 
 /// Stops on Ctrl-C: `interrupt_token` is requested at the first SIGINT or SIGTERM, the second ends the process.
 /// Call once, before threads start.

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   driftlab::cli::add_investigate(app, chosen);
   driftlab::cli::add_simulate(app, chosen);
   driftlab::cli::add_calibrate(app, chosen);
+  driftlab::cli::add_outages(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,83 +1,230 @@
 #include "clients/cli/cli.hpp"
+#include "clients/cli/scenario_input.hpp"
+#include "clients/cli/table_file.hpp"
+#include "core/navigate/outage_runs.hpp"
 #include "core/process/published_models.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/unit.hpp"
+#include "schema/json/error_model.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <cstdio>
 #include <fstream>
 #include <memory>
+#include <numbers>
+#include <sstream>
 
 namespace driftlab::cli {
 namespace {
 
+constexpr double kDegree = std::numbers::pi / 180.0;
+
 struct Flags {
   std::string preset = "iphone5s-z";
   std::string condition = "static";
+  std::string model;
+  std::string quantity = "angular_rate";
   double rate_hz = 100.0;
   double duration_s = 900.0;
   std::uint64_t seed = 1;
   std::string out;
+  std::string scenario;
+  std::uint64_t run = 0;
+  std::string gnss;
+  std::string truth;
 };
 
 /// What the sensor would read besides its error: 0, the constant rate, or the ramp from rest [rad/s].
 double reference(const Condition& condition, double t_s) {
   switch (condition.kind) {
     case ConditionKind::ConstantRate:
-      return condition.value.value_or(0.0);
+      return *condition.value;
     case ConditionKind::ConstantAngularAcceleration:
-      return condition.value.value_or(0.0) * t_s;
+      return *condition.value * t_s;
     default:
       return 0.0;
   }
 }
 
-Exit run(const Flags& flags) {
+/// The processes of a file: a list, or an object that has them (a model, a fit).
+Result<Model> read_model(const std::string& path, Dimension dimension) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return fail(ErrorCode::NotFound, "There is no file '" + path + "'.");
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document) {
+    return fail(document.error());
+  }
+  const bool wrapped = document->is_object() && document->contains("processes");
+  Faults faults;
+  Model model =
+      model_from_json(wrapped ? (*document)["processes"] : *document, dimension, wrapped ? "/processes" : "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  return model;
+}
+
+std::string provenance(const Flags& flags) {
+  std::string text = "Simulated by driftlab " DRIFTLAB_VERSION ", ";
+  if (!flags.scenario.empty()) {
+    text.append("scenario ").append(flags.scenario).append(", run ").append(std::to_string(flags.run));
+    return text.append(", seed ").append(std::to_string(flags.seed));
+  }
+  if (flags.model.empty()) {
+    text.append("preset ").append(flags.preset);
+  } else {
+    text.append("model ").append(flags.model);
+  }
+  text.append(", condition ").append(flags.condition).append(", seed ").append(std::to_string(flags.seed));
+  text.append(", ").append(to_text(flags.rate_hz)).append(" Hz");
+  return flags.model.empty() ? text.append("; see core/process/published_models.hpp") : text;
+}
+
+/// One axis at one condition.
+Exit simulate_axis_file(const Flags& flags) {
   auto condition = parse_condition(flags.condition);
   if (!condition) {
     return complain(condition.error());
   }
-  auto model = published_model(flags.preset, *condition);
+  const bool gyro = flags.quantity == "angular_rate";
+  auto model = flags.model.empty() ? published_model(flags.preset, *condition)
+                                   : read_model(flags.model, gyro ? Dimension::AngularRate : Dimension::SpecificForce);
   if (!model) {
     return complain(model.error());
   }
   const double dt_s = 1.0 / flags.rate_hz;
-  const auto samples = static_cast<std::size_t>(flags.duration_s * flags.rate_hz);
   Random random(flags.seed);
-  const std::vector<double> error = simulate(*model, random, dt_s, samples);
-  std::ofstream out(flags.out, std::ios::binary);
-  out << "# Simulated by driftlab " DRIFTLAB_VERSION ", preset " << flags.preset << ", condition " << flags.condition
-      << ", seed " << flags.seed << ", " << to_text(flags.rate_hz) << " Hz; see core/process/published_models.hpp\n"
-      << "gz [deg/s]\n";
-  const Unit unit = *parse_unit("deg/s");
-  for (std::size_t i = 0; i < samples; ++i) {
-    char line[32];
-    const double value = unit.from_si(reference(*condition, static_cast<double>(i) * dt_s) + error[i]);
-    const int length = std::snprintf(line, sizeof line, "%.6f\n", value);
-    out.write(line, length);
+  TableFile table;
+  table.comment = provenance(flags);
+  table.columns = {gyro ? "gz [deg/s]" : "fz [m/s^2]"};
+  table.decimals = {6};
+  table.rows = static_cast<std::size_t>(flags.duration_s * flags.rate_hz);
+  const std::vector<double> error = simulate(*model, random, dt_s, table.rows);
+  const Unit unit = *parse_unit(gyro ? "deg/s" : "m/s^2");
+  table.cell = [&](std::size_t row, std::size_t) {
+    const double truth = gyro ? reference(*condition, static_cast<double>(row) * dt_s) : 0.0;
+    return unit.from_si(truth + error[row]);
+  };
+  const Status written = write_table(flags.out, table);
+  return written ? Exit::Success : complain(written.error());
+}
+
+Status write_imu(const Flags& flags, const Trajectory& truth, const ImuRun& run) {
+  TableFile table;
+  table.comment = provenance(flags) + "; each row is the mean over the interval that ends at t";
+  table.columns = {"t [s]", "gx [deg/s]", "gy [deg/s]", "gz [deg/s]", "fx [m/s^2]", "fy [m/s^2]", "fz [m/s^2]"};
+  table.decimals = {6, 9, 9, 9, 9, 9, 9};
+  table.rows = run.readings.size();
+  table.cell = [&](std::size_t row, std::size_t column) {
+    if (column == 0) {
+      return static_cast<double>(row + 1) * truth.dt_s;
+    }
+    const double value = run.readings[row][column - 1];
+    return column <= 3 ? value / kDegree : value;
+  };
+  return write_table(flags.out, table);
+}
+
+Status write_gnss(const Flags& flags, const std::vector<GnssFix>& fixes) {
+  TableFile table;
+  table.comment = provenance(flags) + "; fixes";
+  table.columns = {"t [s]",    "lat [deg]", "lon [deg]", "height [m]", "vn [m/s]",
+                   "ve [m/s]", "vd [m/s]",  "sn [m]",    "se [m]",     "sd [m]"};
+  table.decimals = {6, 10, 10, 4, 5, 5, 5, 3, 3, 3};
+  table.rows = fixes.size();
+  table.cell = [&](std::size_t row, std::size_t column) {
+    const GnssFix& fix = fixes[row];
+    const Geodetic place = to_geodetic(fix.position_ecef_m);
+    const Vector3 v =
+        ned_axes(place.latitude_rad, place.longitude_rad).transpose() * fix.velocity_ecef_m_s.value_or(Vector3::Zero());
+    const double cells[] = {
+        fix.arrival_s, place.latitude_rad / kDegree, place.longitude_rad / kDegree, place.height_m,       v.x(), v.y(),
+        v.z(),         fix.position_sd_m.x(),        fix.position_sd_m.y(),         fix.position_sd_m.z()};
+    return cells[column];
+  };
+  return write_table(flags.gnss, table);
+}
+
+Status write_truth(const Flags& flags, const Trajectory& truth) {
+  TableFile table;
+  table.comment = provenance(flags) + "; truth";
+  table.columns = {"t [s]",    "lat [deg]", "lon [deg]",  "height [m]",  "vn [m/s]",
+                   "ve [m/s]", "vd [m/s]",  "roll [deg]", "pitch [deg]", "yaw [deg]"};
+  table.decimals = {6, 11, 11, 5, 6, 6, 6, 7, 7, 7};
+  table.rows = truth.states.size();
+  table.cell = [&](std::size_t row, std::size_t column) {
+    const NavigationState& state = truth.states[row];
+    const Geodetic place = to_geodetic(state.position_ecef_m);
+    const Matrix3 axes = ned_axes(place.latitude_rad, place.longitude_rad);
+    const Vector3 v = axes.transpose() * state.velocity_ecef_m_s;
+    const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * state.attitude);
+    const double cells[] = {static_cast<double>(row) * truth.dt_s,
+                            place.latitude_rad / kDegree,
+                            place.longitude_rad / kDegree,
+                            place.height_m,
+                            v.x(),
+                            v.y(),
+                            v.z(),
+                            angles.roll_rad / kDegree,
+                            angles.pitch_rad / kDegree,
+                            angles.heading_rad / kDegree};
+    return cells[column];
+  };
+  return write_table(flags.truth, table);
+}
+
+/// All axes along a drive, with fixes and truth.
+Exit simulate_drive(const Flags& flags) {
+  auto scenario = read_scenario(flags.scenario);
+  if (!scenario) {
+    return complain(scenario.error());
   }
-  out.close();
-  if (!out) {
-    return complain({ErrorCode::Io, "The file " + flags.out + " cannot be written.", {}});
+  auto experiment = OutageExperiment::make(*scenario);
+  if (!experiment) {
+    return complain(experiment.error());
   }
-  return Exit::Success;
+  const Trajectory& truth = experiment->truth();
+  Status written = write_imu(
+      flags, truth, simulate_imu(truth.imu, truth.dt_s, scenario->truth, scenario->hardware, flags.seed, flags.run));
+  if (written && !flags.gnss.empty()) {
+    written = write_gnss(flags, experiment->fixes(flags.seed, flags.run));
+  }
+  if (written && !flags.truth.empty()) {
+    written = write_truth(flags, truth);
+  }
+  return written ? Exit::Success : complain(written.error());
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, Command& chosen) {
-  CLI::App* const command = app.add_subcommand("simulate", "Write a recording simulated from a published error model");
+  CLI::App* const command = app.add_subcommand(
+      "simulate", "Write a recording simulated from an error model, of one axis or of a whole drive");
   const auto flags = std::make_shared<Flags>();
   command->add_option("--preset", flags->preset, "Published model: iphone5s-z (Radi et al. 2017, Table 4)")
+      ->capture_default_str();
+  command->add_option("--model", flags->model, "JSON file with processes, in place of a preset");
+  command->add_option("--quantity", flags->quantity, "What a model file describes")
+      ->check(CLI::IsMember({"angular_rate", "specific_force"}))
       ->capture_default_str();
   command->add_option("--condition", flags->condition, "Dynamic condition of the source's table")
       ->capture_default_str();
   command->add_option("--rate-hz", flags->rate_hz, "Sampling rate")->check(CLI::Range(0.1, 1e5))->capture_default_str();
   command->add_option("--duration-s", flags->duration_s, "Length")->check(CLI::Range(1.0, 1e6))->capture_default_str();
   command->add_option("--seed", flags->seed, "Same seed, same recording")->capture_default_str();
-  command->add_option("--out", flags->out, "CSV file to write")->required();
-  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+  command->add_option("--out", flags->out, "File to write: .npy, or else CSV")->required();
+  command->add_option("--scenario", flags->scenario,
+                      "Inertial unit along the drive of a scenario (see outages) in place of one axis");
+  command->add_option("--run", flags->run, "Which Monte Carlo run of the scenario")->capture_default_str();
+  command->add_option("--gnss", flags->gnss, "File for the scenario's fixes");
+  command->add_option("--truth", flags->truth, "File for the scenario's true trajectory");
+  command->callback([flags, &chosen] {
+    chosen = [flags] { return flags->scenario.empty() ? simulate_axis_file(*flags) : simulate_drive(*flags); };
+  });
 }
 
 }  // namespace driftlab::cli

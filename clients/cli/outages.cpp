@@ -1,0 +1,82 @@
+#include "clients/cli/cli.hpp"
+#include "clients/cli/progress.hpp"
+#include "clients/cli/scenario_input.hpp"
+#include "schema/json/outage_evaluation.hpp"
+#include "schema/json/outage_scenario.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::string scenario = "paper";
+  int runs = 400;
+  std::uint64_t seed = 1;
+  double precision = 0.0;
+  int threads = 0;
+  bool json = false;
+};
+
+Exit run(const Flags& flags) {
+  auto scenario = read_scenario(flags.scenario);
+  if (!scenario) {
+    return complain(scenario.error());
+  }
+  OutageOptions options;
+  options.runs = flags.runs;
+  options.seed = flags.seed;
+  options.relative_precision = flags.precision;
+  options.threads =
+      flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  RunControl control;
+  control.stop = interrupt_token();
+  Result<OutageEvaluation> evaluation;
+  {
+    ProgressBar bar;
+    control.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
+    evaluation = evaluate_outages(*scenario, options, control);
+  }
+  if (!evaluation) {
+    return complain(evaluation.error(),
+                    evaluation.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput);
+  }
+  const std::string text =
+      flags.json ? to_json(*evaluation, to_json(*scenario)).dump(2) + "\n" : outage_text(*evaluation);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return Exit::Success;
+}
+
+}  // namespace
+
+void add_outages(CLI::App& app, Command& chosen) {
+  CLI::App* const command =
+      app.add_subcommand("outages", "Compare what error models are worth in navigation through GNSS outages");
+  const auto flags = std::make_shared<Flags>();
+  command
+      ->add_option("--scenario", flags->scenario,
+                   "paper, paper-position-only, paper-nhc, paper-s-curves, or a scenario.json")
+      ->capture_default_str();
+  command->add_option("--runs", flags->runs, "Monte Carlo runs, at most")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--seed", flags->seed, "Same seed, same result, for any number of threads")
+      ->capture_default_str();
+  command
+      ->add_option("--precision", flags->precision,
+                   "Stop once every mean error is known to this half-width, relative to it; 0: never")
+      ->check(CLI::Range(0.0, 0.99))
+      ->capture_default_str();
+  command->add_option("--threads", flags->threads, "Threads; 0: one per processor")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "Print the result document instead of tables");
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace driftlab::cli

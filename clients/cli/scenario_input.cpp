@@ -1,0 +1,36 @@
+#include "clients/cli/scenario_input.hpp"
+
+#include "core/navigate/paper_scenario.hpp"
+#include "schema/json/outage_scenario.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace driftlab::cli {
+
+Result<OutageScenario> read_scenario(const std::string& name_or_path) {
+  const auto& names = scenario_names();
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end()) {
+    return paper_scenario(name_or_path);
+  }
+  std::ifstream file(name_or_path, std::ios::binary);
+  if (!file) {
+    return fail(ErrorCode::NotFound, "There is no scenario and no file '" + name_or_path +
+                                         "'; scenarios are paper, paper-position-only, paper-nhc and paper-s-curves.");
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document) {
+    return fail(document.error());
+  }
+  Faults faults;
+  OutageScenario scenario = scenario_from_json(*document, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  return scenario;
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,162 @@
+#include "schema/json/outage_evaluation.hpp"
+
+#include "core/navigate/outage_claims.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace driftlab {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Axes of the ellipse that holds `fraction` of a normal distribution with these second moments.
+Json ellipse(const PlaneCovariance& p, double fraction) {
+  const double mean = 0.5 * (p.north + p.east);
+  const double half = 0.5 * (p.north - p.east);
+  const double root = std::hypot(half, p.north_east);
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - fraction));
+  return Json{{"fraction", fraction},
+              {"semi_major_m", number(radius * std::sqrt(mean + root))},
+              {"semi_minor_m", number(radius * std::sqrt(std::max(mean - root, 0.0)))},
+              {"major_axis_azimuth_deg", number(0.5 * std::atan2(p.north_east, half) / kDegree)}};
+}
+
+Json moments(const PlaneCovariance& p) {
+  return Json{{"north_m2", number(p.north)},
+              {"east_m2", number(p.east)},
+              {"north_east_m2", number(p.north_east)},
+              {"ellipses", Json{ellipse(p, 0.5), ellipse(p, 0.95)}}};
+}
+
+Json path_json(const OutagePath& path) {
+  const auto list = [](const std::vector<double>& values) {
+    Json out = Json::array();
+    for (const double value : values) {
+      out.push_back(number(std::round(value * 1e3) / 1e3));  // millimetres
+    }
+    return out;
+  };
+  return Json{{"time_s", list(path.time_s)}, {"north_m", list(path.north_m)}, {"east_m", list(path.east_m)}};
+}
+
+Json outage_json(const OutageSummary& outage) {
+  Json north = Json::array();
+  Json east = Json::array();
+  for (const auto& point : outage.scatter) {
+    north.push_back(number(std::round(point[0] * 1e3) / 1e3));
+    east.push_back(number(std::round(point[1] * 1e3) / 1e3));
+  }
+  return Json{{"index", outage.index},
+              {"start_s", number(outage.start_s)},
+              {"end_s", number(outage.end_s)},
+              {"error_m", quantity(outage.error_m, 1.0, "m")},
+              {"rms_m", number(outage.rms_m)},
+              {"median_m", number(outage.median_m)},
+              {"p95_m", number(outage.p95_m)},
+              {"nees", number(outage.nees.value)},
+              {"nees_ci95", interval(outage.nees.ci95)},
+              {"coverage50", number(outage.coverage50)},
+              {"coverage95", number(outage.coverage95)},
+              {"heading_rms_deg", number(outage.heading_rms_rad / kDegree)},
+              {"tilt_rms_deg", number(outage.tilt_rms_rad / kDegree)},
+              {"mean_error_m", {{"north", number(outage.mean_north_m)}, {"east", number(outage.mean_east_m)}}},
+              {"predicted", moments(outage.predicted)},
+              {"actual", moments(outage.actual)},
+              {"errors", {{"north_m", std::move(north)}, {"east_m", std::move(east)}}}};
+}
+
+Json filter_json(const FilterEvaluation& filter) {
+  Json outages = Json::array();
+  for (const OutageSummary& outage : filter.outages) {
+    outages.push_back(outage_json(outage));
+  }
+  return Json{{"name", filter.name},
+              {"about", filter.about},
+              {"states", filter.states},
+              {"mean_error_m", quantity(filter.mean_error_m, 1.0, "m")},
+              {"outages", std::move(outages)},
+              {"nees", number(filter.nees.value)},
+              {"nees_ci95", interval(filter.nees.ci95)},
+              {"coverage50", number(filter.coverage50)},
+              {"coverage95", number(filter.coverage95)},
+              {"heading_rms_deg", number(filter.heading_rms_rad / kDegree)},
+              {"tilt_rms_deg", number(filter.tilt_rms_rad / kDegree)},
+              {"trajectory", path_json(filter.path)}};
+}
+
+Json pair_json(const PairedDifference& pair) {
+  Json outages = Json::array();
+  for (const Estimate& difference : pair.by_outage_m) {
+    outages.push_back(quantity(difference, 1.0, "m"));
+  }
+  return Json{{"filter", pair.filter},
+              {"against", pair.against},
+              {"difference_m", quantity(pair.difference_m, 1.0, "m")},
+              {"relative", quantity(pair.relative, 1.0, "1")},
+              {"outages", std::move(outages)}};
+}
+
+}  // namespace
+
+Json to_json(const OutageEvaluation& evaluation, Json scenario) {
+  Json filters = Json::array();
+  for (const FilterEvaluation& filter : evaluation.filters) {
+    filters.push_back(filter_json(filter));
+  }
+  Json paired = Json::array();
+  for (const PairedDifference& pair : evaluation.paired) {
+    paired.push_back(pair_json(pair));
+  }
+  Json attribution(nullptr);
+  if (const auto parts = attribute(evaluation)) {
+    attribution = Json{{"total", pair_json(parts->total)},
+                       {"low_frequency_noise", pair_json(parts->low_frequency_noise)},
+                       {"gauss_markov_states", pair_json(parts->gauss_markov_states)},
+                       {"switching", pair_json(parts->switching)},
+                       {"switching_av", pair_json(parts->switching_av)}};
+  }
+  Json claims = Json::array();
+  for (const Claim& claim : judge_claims(evaluation)) {
+    claims.push_back(Json{{"claim", claim.claim}, {"supported", claim.supported}, {"because", claim.because}});
+  }
+  return Json{{"scenario", std::move(scenario)},
+              {"runs", evaluation.runs},
+              {"seed", evaluation.seed},
+              {"stopped_early", evaluation.stopped_early},
+              {"algorithm_version", kOutageAlgorithmVersion},
+              {"filters", std::move(filters)},
+              {"paired", std::move(paired)},
+              {"attribution", std::move(attribution)},
+              {"claims", std::move(claims)},
+              {"trajectory", path_json(evaluation.truth)}};
+}
+
+OutageOptions outage_options_from_json(const Json& parameters, const std::string& pointer, Faults& faults) {
+  OutageOptions options;
+  ObjectReader reader(parameters, pointer, faults);
+  const std::int64_t runs = reader.integer("runs").value_or(options.runs);
+  const std::int64_t seed = reader.integer("seed").value_or(1);
+  options.relative_precision = reader.real("relative_precision").value_or(0.0);
+  reader.reject_unknown();
+  if (runs < 2 || runs > 100000) {
+    faults.add(pointer + "/runs", ErrorCode::InvalidArgument, "The runs are a whole number from 2 to 100000.");
+  }
+  if (seed < 0) {
+    faults.add(pointer + "/seed", ErrorCode::InvalidArgument, "The seed is a whole number from 0.");
+  }
+  if (!(options.relative_precision >= 0.0 && options.relative_precision < 1.0)) {
+    faults.add(pointer + "/relative_precision", ErrorCode::InvalidArgument, "The precision lies from 0 to below 1.");
+  }
+  options.runs = static_cast<int>(std::clamp<std::int64_t>(runs, 2, 100000));
+  options.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
+  return options;
+}
+
+Json to_json(const OutageOptions& options) {
+  return Json{
+      {"runs", options.runs}, {"seed", options.seed}, {"relative_precision", number(options.relative_precision)}};
+}
+
+}  // namespace driftlab
