@@ -314,7 +314,8 @@ TEST(NavigationFilter, KnowsItsLeverArmAndLateFixes) {
     }
     const double error = error_of(filter.state(), truth.states[done]).position_ned_m.norm();
     if (compensate) {
-      EXPECT_LT(error, 0.05);
+      EXPECT_LT(error,
+                0.2);  // 3.6 m of lever arm under a heading that fixes of an even drive leave open by a degree or two
     } else {
       EXPECT_GT(error, 1.0);
     }
