@@ -110,6 +110,18 @@ Result<ModelSchedule> ModelSchedule::interpolated(const std::vector<double>& rat
   return schedule;
 }
 
+ModelSchedule ModelSchedule::without(const std::function<bool(const Process&)>& drop) const {
+  ModelSchedule rest = *this;
+  for (std::size_t k = models_.front().size(); k-- > 0;) {
+    if (drop(models_.front()[k])) {
+      for (Model& model : rest.models_) {
+        model.erase(model.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+  }
+  return rest;
+}
+
 std::size_t ModelSchedule::band(double rate_rad_s) const {
   const auto above = std::upper_bound(bounds_.begin(), bounds_.end(), std::fabs(rate_rad_s));
   return static_cast<std::size_t>(above - bounds_.begin());

@@ -11,6 +11,7 @@
 #include "core/process/model.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace driftlab {
@@ -35,6 +36,9 @@ class ModelSchedule {
   /// above, models of different structure, more than 4096 bands).
   [[nodiscard]] static Result<ModelSchedule> interpolated(const std::vector<double>& rates_rad_s,
                                                           const std::vector<Model>& models, double step_rad_s);
+
+  /// The same schedule with the processes left out for which `drop` holds in the first band's model.
+  [[nodiscard]] ModelSchedule without(const std::function<bool(const Process&)>& drop) const;
 
   [[nodiscard]] std::size_t size() const { return models_.size(); }
   [[nodiscard]] const Model& model(std::size_t band) const { return models_[band]; }
