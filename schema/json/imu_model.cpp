@@ -171,27 +171,30 @@ void read_sensor(const Json& sensor, std::size_t first, const std::string& point
   reader.reject_unknown();
 }
 
+Json schedule_to_json(const ModelSchedule& schedule, Dimension dimension) {
+  if (schedule.size() == 1) {
+    return Json{{"processes", to_json(schedule.model(0), dimension)}};
+  }
+  Json bounds = Json::array();
+  Json models = Json::array();
+  for (const double bound : schedule.bounds_rad_s()) {
+    bounds.push_back(number(bound / kDegree));
+  }
+  for (std::size_t band = 0; band < schedule.size(); ++band) {
+    models.push_back(to_json(schedule.model(band), dimension));
+  }
+  return Json{{"by_rate",
+               {{"bounds_deg_s", std::move(bounds)},
+                {"processes", std::move(models)},
+                {"hysteresis_deg_s", number(schedule.hysteresis_rad_s() / kDegree)}}}};
+}
+
 Json sensor_to_json(const ImuModel& model, std::size_t first) {
   Json sensor = Json::object();
   for (std::size_t k = 0; k < 3; ++k) {
     const AxisModel& axis = model.axes[first + k];
     const Dimension dimension = dimension_of(first);
-    Json document = Json::object();
-    if (axis.processes.size() == 1) {
-      document["processes"] = to_json(axis.processes.model(0), dimension);
-    } else {
-      Json bounds = Json::array();
-      Json models = Json::array();
-      for (const double bound : axis.processes.bounds_rad_s()) {
-        bounds.push_back(number(bound / kDegree));
-      }
-      for (std::size_t band = 0; band < axis.processes.size(); ++band) {
-        models.push_back(to_json(axis.processes.model(band), dimension));
-      }
-      document["by_rate"] = Json{{"bounds_deg_s", std::move(bounds)},
-                                 {"processes", std::move(models)},
-                                 {"hysteresis_deg_s", number(axis.processes.hysteresis_rad_s() / kDegree)}};
-    }
+    Json document = schedule_to_json(axis.processes, dimension);
     if (first == 0) {
       document["constant_bias_sd_deg_s"] = number(axis.bias_sd / kDegree);
     } else {

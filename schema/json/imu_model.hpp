@@ -1,6 +1,7 @@
 #pragma once
 /// Sensor members of a scenario document: what a unit's axes do wrong.
 #include "core/navigate/imu_simulator.hpp"
+#include "core/signal/unit.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab {
@@ -14,6 +15,9 @@ namespace driftlab {
 ///   "tau_s"}}
 /// Bias: constant_bias_sd_deg_s, constant_bias_sd_mg.
 void read_sensor(const Json& sensor, std::size_t first, const std::string& pointer, ImuModel& model, Faults& faults);
+
+/// `processes` or `by_rate`, as above.
+[[nodiscard]] Json schedule_to_json(const ModelSchedule& schedule, Dimension dimension);
 
 [[nodiscard]] Json sensor_to_json(const ImuModel& model, std::size_t first);
 
