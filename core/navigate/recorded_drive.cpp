@@ -54,6 +54,9 @@ RecordedOutage score(NavigationFilter& filter, const NavigationState& at_start, 
   result.nees =
       (p(1, 1) * error.x() * error.x() - 2.0 * p(0, 1) * error.x() * error.y() + p(0, 0) * error.y() * error.y()) /
       determinant;
+  const Vector3 before =
+      axes.transpose() * (at_start.position_ecef_m - reference_at(drive.reference, now_s - outage.duration_s));
+  result.start_error_m = std::hypot(before.x(), before.y());
   const Vector3 straight =
       axes.transpose() * (at_start.position_ecef_m + outage.duration_s * at_start.velocity_ecef_m_s - truth);
   result.straight_line_error_m = std::hypot(straight.x(), straight.y());

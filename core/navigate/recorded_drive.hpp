@@ -4,6 +4,9 @@
 /// Fixes inside an outage are withheld. At its end the estimate is compared with the reference (straight line between
 /// its two neighbours in time) before the first returning fix, next to the simplest rival: the position and velocity of
 /// the filter at the outage's start, carried on in a straight line.
+///
+/// Readings and fixes must share one clock. A unit that is seconds off costs metres after an outage and shows as a NEES
+/// far above 2; core/calibrate/time_alignment.hpp finds the delay from the turns of both.
 #include "core/navigate/navigation_filter.hpp"
 
 #include <vector>
@@ -29,6 +32,7 @@ struct RecordedOutage {
   double north_m = 0.0, east_m = 0.0;  ///< estimate minus reference
   double nees = 0.0;                   ///< two dimensions; counts the reference's own error too
   double error_m = 0.0;
+  double start_error_m = 0.0;          ///< what was there before the outage
   double straight_line_error_m = 0.0;  ///< of the rival
 };
 
