@@ -84,7 +84,7 @@ Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario) 
   if (auto status = check(scenario); !status) {
     return fail(status.error());
   }
-  auto motion = make_segment_motion(scenario.drive);
+  auto motion = make_motion(scenario);
   if (!motion) {
     return fail(motion.error());
   }

@@ -27,6 +27,17 @@ Status check_outages(const OutageScenario& scenario) {
 
 }  // namespace
 
+Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario) {
+  if (scenario.recorded.empty()) {
+    return make_segment_motion(scenario.drive);
+  }
+  auto motion = make_recorded_motion(scenario.drive.start, scenario.recorded);
+  if (motion && !(scenario.drive.duration_s > 0.0 && scenario.drive.duration_s <= (*motion)->duration_s() + 1e-9)) {
+    return bad("The drive lasts longer than its recorded poses.", "duration_s");
+  }
+  return motion;
+}
+
 Status check(const OutageScenario& scenario) {
   if (scenario.filters.empty() || scenario.filters.size() > 32) {
     return bad("The scenario needs 1 to 32 filters.", "filters");

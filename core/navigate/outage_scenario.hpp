@@ -2,8 +2,10 @@
 /// One simulated experiment: a drive, an inertial unit, a receiver with outages, and the filters that are compared.
 #include "core/navigate/imu_simulator.hpp"
 #include "core/navigate/navigation_filter.hpp"
+#include "core/navigate/recorded_motion.hpp"
 #include "core/navigate/segment_motion.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,9 @@ struct OutageScenario {
   std::string name;
   std::string about;
   SegmentPlan drive;
+  /// Where it is not empty the vehicle follows these poses instead of the segments of `drive`, from the place where
+  /// `drive` starts, and to their end; `drive.duration_s` is then at most theirs.
+  std::vector<RecordedPose> recorded;
   double imu_rate_hz = 100.0;
   ImuModel truth;
   ImuHardware hardware;
@@ -28,6 +33,10 @@ struct OutageScenario {
   InitialUncertainty initial;
   std::vector<FilterCandidate> filters;
 };
+
+/// The motion of the scenario. Errors: those of make_segment_motion and make_recorded_motion; InvalidArgument (the
+/// drive lasts longer than the poses).
+[[nodiscard]] Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario);
 
 /// Errors: InvalidArgument (no filter or two of one name, no outage, outages that overlap, begin before the first fix
 /// or end after the drive), and those of the parts.

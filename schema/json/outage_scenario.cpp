@@ -2,6 +2,7 @@
 
 #include "core/navigate/paper_scenario.hpp"
 #include "schema/json/imu_model.hpp"
+#include "schema/json/recorded_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,8 @@ Segment read_segment(const Json& document, const std::string& pointer, Faults& f
   return segment;
 }
 
-void read_trajectory(const Json& document, const std::string& pointer, SegmentPlan& plan, Faults& faults) {
+void read_trajectory(const Json& document, const std::string& pointer, OutageScenario& scenario, Faults& faults) {
+  SegmentPlan& plan = scenario.drive;
   ObjectReader reader(document, pointer, faults);
   if (const Json* const start = reader.member("start")) {
     ObjectReader inner(*start, pointer + "/start", faults);
@@ -63,7 +65,16 @@ void read_trajectory(const Json& document, const std::string& pointer, SegmentPl
   }
   plan.ramp_s = reader.real("ramp_s").value_or(0.5);
   const Json* const segments = reader.member("segments_by_start_time");
-  if (segments == nullptr || !segments->is_array() || segments->size() > 10000) {
+  const Json* const recorded = reader.member("recorded");
+  if (recorded != nullptr) {
+    scenario.recorded = recorded_from_json(*recorded, pointer + "/recorded", faults);
+    if (segments != nullptr) {
+      faults.add(pointer + "/recorded", ErrorCode::InvalidArgument, "A trajectory is recorded or made of segments.");
+    }
+    if (plan.duration_s == 0.0 && !scenario.recorded.empty()) {
+      plan.duration_s = scenario.recorded.back().time_s - scenario.recorded.front().time_s;
+    }
+  } else if (segments == nullptr || !segments->is_array() || segments->size() > 10000) {
     faults.add(pointer + "/segments_by_start_time", ErrorCode::InvalidArgument, "The segments are a list.");
   } else {
     for (std::size_t i = 0; i < segments->size(); ++i) {
@@ -195,6 +206,35 @@ FilterCandidate read_filter(const Json& document, const std::string& pointer, co
   return filter;
 }
 
+Json trajectory_to_json(const OutageScenario& scenario) {
+  const SegmentPlan& drive = scenario.drive;
+  Json segments = Json::array();
+  for (const Segment& segment : drive.segments) {
+    Json item{{"t_s", number(segment.start_s)}, {"kind", name_of(segment.kind)}};
+    if (segment.kind == SegmentKind::Turn || segment.kind == SegmentKind::SCurve) {
+      item["rate_deg_s"] = number(segment.rate_rad_s / kDegree);
+      item["duration_s"] = number(segment.duration_s);
+    } else if (segment.kind != SegmentKind::Straight) {
+      item["m_s2"] = number(segment.acceleration_m_s2);
+      item["until_speed_m_s"] = number(segment.until_speed_m_s);
+    }
+    segments.push_back(std::move(item));
+  }
+  Json trajectory{{"start",
+                   {{"speed_m_s", number(drive.speed_m_s)},
+                    {"heading_deg", number(drive.heading_rad / kDegree)},
+                    {"latitude_deg", number(drive.start.latitude_rad / kDegree)},
+                    {"longitude_deg", number(drive.start.longitude_rad / kDegree)},
+                    {"height_m", number(drive.start.height_m)}}},
+                  {"ramp_s", number(drive.ramp_s)}};
+  if (scenario.recorded.empty()) {
+    trajectory["segments_by_start_time"] = std::move(segments);
+  } else {
+    trajectory["recorded"] = recorded_to_json(scenario.recorded);
+  }
+  return trajectory;
+}
+
 }  // namespace
 
 OutageScenario scenario_from_json(const Json& document, const std::string& pointer, Faults& faults) {
@@ -213,7 +253,7 @@ OutageScenario scenario_from_json(const Json& document, const std::string& point
       faults.add(pointer + "/" + name, ErrorCode::InvalidArgument, std::string("The member ") + name + " is missing.");
     }
   };
-  part("trajectory", true, [&](const Json& d, const std::string& p) { read_trajectory(d, p, scenario.drive, faults); });
+  part("trajectory", true, [&](const Json& d, const std::string& p) { read_trajectory(d, p, scenario, faults); });
   part("outages", true, [&](const Json& d, const std::string& p) { read_outages(d, p, scenario, faults); });
   part("gnss", false, [&](const Json& d, const std::string& p) { read_gnss(d, p, scenario.gnss, faults); });
   Initial initial;
@@ -260,18 +300,6 @@ OutageScenario scenario_or_name(const Json& value, const std::string& pointer, F
 
 Json to_json(const OutageScenario& scenario) {
   const SegmentPlan& drive = scenario.drive;
-  Json segments = Json::array();
-  for (const Segment& segment : drive.segments) {
-    Json item{{"t_s", number(segment.start_s)}, {"kind", name_of(segment.kind)}};
-    if (segment.kind == SegmentKind::Turn || segment.kind == SegmentKind::SCurve) {
-      item["rate_deg_s"] = number(segment.rate_rad_s / kDegree);
-      item["duration_s"] = number(segment.duration_s);
-    } else if (segment.kind != SegmentKind::Straight) {
-      item["m_s2"] = number(segment.acceleration_m_s2);
-      item["until_speed_m_s"] = number(segment.until_speed_m_s);
-    }
-    segments.push_back(std::move(item));
-  }
   Json outages = Json::array();
   for (const Outage& outage : scenario.outages) {
     outages.push_back(Json{{"start_s", number(outage.start_s)}, {"duration_s", number(outage.duration_s)}});
@@ -296,15 +324,7 @@ Json to_json(const OutageScenario& scenario) {
                 {"duration_s", number(drive.duration_s)},
                 {"imu_rate_hz", number(scenario.imu_rate_hz)},
                 {"gnss_rate_hz", number(scenario.gnss.rate_hz)},
-                {"trajectory",
-                 {{"start",
-                   {{"speed_m_s", number(drive.speed_m_s)},
-                    {"heading_deg", number(drive.heading_rad / kDegree)},
-                    {"latitude_deg", number(drive.start.latitude_rad / kDegree)},
-                    {"longitude_deg", number(drive.start.longitude_rad / kDegree)},
-                    {"height_m", number(drive.start.height_m)}}},
-                  {"ramp_s", number(drive.ramp_s)},
-                  {"segments_by_start_time", std::move(segments)}}},
+                {"trajectory", trajectory_to_json(scenario)},
                 {"outages", std::move(outages)},
                 {"truth", std::move(truth)},
                 {"gnss",

@@ -124,6 +124,44 @@ TEST(ScenarioDocument, NamesEveryFaultByItsPlace) {
   EXPECT_NE(named.find("/scenario/truth/gyro/model"), std::string::npos) << named;
 }
 
+TEST(ScenarioDocument, ARecordedDriveLooksWhereItGoesAndKeepsItsLength) {
+  const Json document = *parse_json(R"({"name": "recorded", "imu_rate_hz": 20,
+    "trajectory": {"recorded": {"time_s": [100, 110, 120, 130, 140],
+      "velocity_ned_m_s": [[0, 0, 0], [10, 0, 0], [7, 7, 0], [0, 10, -0.5], [0, 10, 0]]}},
+    "outages": [{"start_s": 20, "duration_s": 10}],
+    "truth": {"gyro": {"processes": [{"process": "white_noise", "params": {"N": 1e-4}}]},
+              "accelerometer": {"white_noise_mg_per_sqrt_hz": 2}},
+    "filters": [{"name": "matched"}]})");
+  Faults faults;
+  const OutageScenario scenario = scenario_from_json(document, "", faults);
+  ASSERT_TRUE(faults.none()) << faults.error().message;
+  EXPECT_EQ(scenario.drive.duration_s, 40.0);
+  ASSERT_EQ(scenario.recorded.size(), 5U);
+  EXPECT_EQ(scenario.recorded[0].attitude.heading_rad, 0.0);
+  EXPECT_NEAR(scenario.recorded[2].attitude.heading_rad, 45.0 * kDegree, 1e-12);
+  EXPECT_NEAR(scenario.recorded[3].attitude.pitch_rad, std::atan(0.05), 1e-12);
+  OutageOptions options;
+  options.runs = 2;
+  const auto evaluation = evaluate_outages(scenario, options);
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  // The path is the integral of the velocities: 5 + 8.5 + 3.5 s north times 10 m/s, give or take what the spline bends.
+  EXPECT_NEAR(evaluation->truth.north_m.back(), 170.0, 15.0);
+  EXPECT_EQ(evaluation->truth.time_s.back(), 40.0);
+  Faults again;
+  const OutageScenario back = scenario_from_json(to_json(scenario), "", again);
+  ASSERT_TRUE(again.none()) << again.error().message;
+  EXPECT_EQ(back.recorded.size(), 5U);
+  EXPECT_NEAR(back.recorded[3].attitude.pitch_rad, scenario.recorded[3].attitude.pitch_rad, 1e-12);
+
+  Json bad = document;
+  bad["trajectory"]["recorded"]["heading_deg"] = {1, 2};
+  bad["duration_s"] = 50;
+  Faults named;
+  (void)scenario_from_json(bad, "", named);
+  ASSERT_FALSE(named.none());
+  EXPECT_EQ(named.error().fields.front().name, "/trajectory/recorded/heading_deg");
+}
+
 TEST(EvaluationDocument, HoldsEllipsesAndText) {
   OutageScenario scenario = *paper_scenario("paper");
   scenario.drive.duration_s = 102.0;

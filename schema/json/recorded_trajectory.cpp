@@ -1,0 +1,110 @@
+#include "schema/json/recorded_trajectory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace driftlab {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kSlow = 0.5;  ///< [m/s]: below it a velocity has no direction worth following
+constexpr std::size_t kMostPoses = 100000;
+constexpr std::array kAngles{"roll_deg", "pitch_deg", "heading_deg"};
+
+bool is_vector(const Json& value) {
+  return value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() && value[2].is_number();
+}
+
+/// Angles of a vehicle that looks where it goes.
+void look_ahead(std::vector<RecordedPose>& poses, bool pitch, bool heading) {
+  const auto level = [](const RecordedPose& p) { return std::hypot(p.velocity_ned_m_s.x(), p.velocity_ned_m_s.y()); };
+  EulerAngles held;
+  for (const RecordedPose& pose : poses) {  // before it moves it looks where it will go
+    if (level(pose) >= kSlow) {
+      held.heading_rad = std::atan2(pose.velocity_ned_m_s.y(), pose.velocity_ned_m_s.x());
+      break;
+    }
+  }
+  for (RecordedPose& pose : poses) {
+    if (level(pose) >= kSlow) {
+      held.heading_rad = std::atan2(pose.velocity_ned_m_s.y(), pose.velocity_ned_m_s.x());
+      held.pitch_rad = std::atan2(-pose.velocity_ned_m_s.z(), level(pose));
+    }
+    if (heading) {
+      pose.attitude.heading_rad = held.heading_rad;
+    }
+    if (pitch) {
+      pose.attitude.pitch_rad = held.pitch_rad;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<RecordedPose> recorded_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  const Json* const times = reader.member("time_s");
+  const Json* const velocities = reader.member("velocity_ned_m_s");
+  std::array<const Json*, 3> angles{};
+  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    angles[k] = reader.member(kAngles[k]);
+  }
+  reader.reject_unknown();
+  if (times == nullptr || !times->is_array() || times->size() < 4 || times->size() > kMostPoses) {
+    faults.add(pointer + "/time_s", ErrorCode::InvalidArgument, "A recorded trajectory has 4 to 100000 times.");
+    return {};
+  }
+  const auto fits = [&](const Json* list, const char* name, const auto& good) {
+    const bool right = list != nullptr && list->is_array() && list->size() == times->size() &&
+                       std::all_of(list->begin(), list->end(), good);
+    if (!right) {
+      faults.add(pointer + "/" + name, ErrorCode::InvalidArgument, "A list as long as that of the times belongs here.");
+    }
+    return right;
+  };
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  bool good = fits(times, "time_s", is_number) && fits(velocities, "velocity_ned_m_s", is_vector);
+  for (std::size_t k = 0; good && k < kAngles.size(); ++k) {
+    good = angles[k] == nullptr || fits(angles[k], kAngles[k], is_number);
+  }
+  if (!good) {
+    return {};
+  }
+  std::vector<RecordedPose> poses(times->size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Json& v = (*velocities)[i];
+    const auto angle = [&](std::size_t k) {
+      return angles[k] == nullptr ? 0.0 : (*angles[k])[i].get<double>() * kDegree;
+    };
+    poses[i].time_s = (*times)[i].get<double>();
+    poses[i].velocity_ned_m_s = {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+    poses[i].attitude = {angle(0), angle(1), angle(2)};
+  }
+  look_ahead(poses, angles[1] == nullptr, angles[2] == nullptr);
+  return poses;
+}
+
+Json recorded_to_json(const std::vector<RecordedPose>& poses) {
+  Json times = Json::array();
+  Json velocities = Json::array();
+  Json roll = Json::array();
+  Json pitch = Json::array();
+  Json heading = Json::array();
+  for (const RecordedPose& pose : poses) {
+    const Vector3& v = pose.velocity_ned_m_s;
+    times.push_back(number(pose.time_s));
+    velocities.push_back(Json{number(v.x()), number(v.y()), number(v.z())});
+    roll.push_back(number(pose.attitude.roll_rad / kDegree));
+    pitch.push_back(number(pose.attitude.pitch_rad / kDegree));
+    heading.push_back(number(pose.attitude.heading_rad / kDegree));
+  }
+  return Json{{"time_s", std::move(times)},
+              {"velocity_ned_m_s", std::move(velocities)},
+              {"roll_deg", std::move(roll)},
+              {"pitch_deg", std::move(pitch)},
+              {"heading_deg", std::move(heading)}};
+}
+
+}  // namespace driftlab
