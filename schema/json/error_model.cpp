@@ -1,79 +1,10 @@
 #include "schema/json/error_model.hpp"
 
 #include "core/process/registry.hpp"
-
-#include <cmath>
-#include <numbers>
+#include "schema/json/parameter_unit.hpp"
 
 namespace driftlab {
 namespace {
-
-/// A unit as factor and powers of its base quantities; powers of length and time count halves.
-struct Power {
-  double factor = 1.0;
-  int angle = 0, length = 0, time = 0;
-};
-
-struct Named {
-  std::string_view symbol;
-  Power power;
-};
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::array kKnown{Named{"deg", {kDegree, 2, 0, 0}},
-                            Named{"rad", {1.0, 2, 0, 0}},
-                            Named{"g", {kStandardGravity, 0, 2, -4}},
-                            Named{"mg", {1e-3 * kStandardGravity, 0, 2, -4}},
-                            Named{"ug", {1e-6 * kStandardGravity, 0, 2, -4}},
-                            Named{"m", {1.0, 0, 2, 0}},
-                            Named{"s", {1.0, 0, 0, 2}},
-                            Named{"min", {60.0, 0, 0, 2}},
-                            Named{"h", {3600.0, 0, 0, 2}},
-                            Named{"Hz", {1.0, 0, 0, -2}},
-                            Named{"1", {1.0, 0, 0, 0}}};
-
-std::optional<Power> factor_of(std::string_view token) {
-  int halves = 2;
-  if (token.starts_with("sqrt(") && token.ends_with(")")) {
-    token = token.substr(5, token.size() - 6);
-    halves = 1;
-  } else if (token.ends_with("^2")) {
-    token.remove_suffix(2);
-    halves = 4;
-  }
-  for (const Named& named : kKnown) {
-    if (named.symbol == token) {
-      Power power = named.power;
-      power.factor = std::pow(power.factor, 0.5 * halves);
-      power.angle = power.angle * halves / 2;
-      power.length = power.length * halves / 2;
-      power.time = power.time * halves / 2;
-      return power;
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<Power> parse(std::string_view text) {
-  Power total;
-  int sign = 1;
-  for (;;) {
-    const std::size_t end = text.find_first_of("*/");
-    const auto factor = factor_of(text.substr(0, end));
-    if (!factor) {
-      return std::nullopt;
-    }
-    total.factor *= sign > 0 ? factor->factor : 1.0 / factor->factor;
-    total.angle += sign * factor->angle;
-    total.length += sign * factor->length;
-    total.time += sign * factor->time;
-    if (end == std::string_view::npos) {
-      return total;
-    }
-    sign = text[end] == '*' ? 1 : -1;
-    text.remove_prefix(end + 1);
-  }
-}
 
 Process process_from_json(const Json& document, Dimension channel, const std::string& pointer, Faults& faults) {
   ObjectReader reader(document, pointer, faults);
@@ -120,22 +51,21 @@ Process process_from_json(const Json& document, Dimension channel, const std::st
 }  // namespace
 
 Result<double> parameter_factor(std::string_view symbol, Dimension channel, const ParameterSpec& spec) {
-  const auto unit = parse(symbol);
+  const auto unit = parse_parameter_unit(symbol);
   if (!unit) {
-    return fail(ErrorCode::UnknownUnit, "The unit '" + std::string(symbol) + "' is not known.",
-                {{"unit", std::string(symbol)}});
+    return fail(unit.error());
   }
   int angle = 0;
   int length = 0;
-  int time = spec.second_power_halves;
+  int second = spec.second_power_halves;
   if (spec.channel_power == 1 && channel == Dimension::AngularRate) {
     angle = 2;
-    time -= 2;
+    second -= 2;
   } else if (spec.channel_power == 1 && channel == Dimension::SpecificForce) {
     length = 2;
-    time -= 4;
+    second -= 4;
   }
-  if (unit->angle != angle || unit->length != length || unit->time != time) {
+  if (unit->angle != angle || unit->length != length || unit->second != second) {
     return fail(ErrorCode::UnitMismatch,
                 "The unit '" + std::string(symbol) + "' does not fit the parameter " + std::string(spec.name) + ".",
                 {{"unit", std::string(symbol)}});

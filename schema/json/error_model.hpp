@@ -9,9 +9,8 @@
 
 namespace driftlab {
 
-/// SI units in one of `symbol`, a parameter unit such as deg/sqrt(h), deg/h/sqrt(h), ug/sqrt(Hz), m/s/sqrt(h), 1/s:
-/// factors deg rad g mg ug m s min h Hz 1, each also under sqrt( ) or with ^2, joined by * and /. Error: UnknownUnit (a
-/// factor that is not known), UnitMismatch (not of dimension (channel unit)^channel_power s^(second_power_halves/2)).
+/// SI units in one of `symbol`, a parameter unit (schema/json/parameter_unit.hpp) such as deg/sqrt(h), ug/sqrt(Hz),
+/// 1/s. Errors: UnknownUnit, UnitMismatch (not of dimension (channel unit)^channel_power s^(second_power_halves/2)).
 [[nodiscard]] Result<double> parameter_factor(std::string_view symbol, Dimension channel, const ParameterSpec& spec);
 
 /// Faults are added at `pointer` and below. A number alone, without value and unit, is SI.
