@@ -55,7 +55,7 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
                                 : std::vector<std::string>{finding.channels.front(), "others"}));
   text.append(". ");
   if (evidence.cause->family == Family::File) {
-    text.append("The file itself shows it. ");
+    text.append("The file itself shows it. ").append(evidence.note).append(evidence.note.empty() ? "" : " ");
   } else {
     text.append("Adding it to the model raises twice the log likelihood by ");
     text.append(short_text(evidence.gain, 3)).append(". ");

@@ -46,7 +46,7 @@ Lattice find_lattice(std::span<const double> rows) {
   std::sort(sorted.begin(), sorted.end());
   double step = sorted[sorted.size() / 3];
   const double blur = std::max(lattice.decimals, 1e-9 * std::fabs(values.back()));
-  if (step < 5.0 * blur) {
+  if (step < 4.5 * blur) {  // five times, but for rounding
     const bool few = values.size() < 200 && lattice.decimals > 0.0 && std::fabs(step - lattice.decimals) < 0.1 * step;
     lattice.step = few ? lattice.decimals : 0.0;
     return lattice;

@@ -18,7 +18,11 @@ namespace {
 struct Shape {
   double log_likelihood = 0.0;
   double density = 0.0;
+  double floor = 0.0;  ///< beyond that of rounding
 };
+
+/// A stop band filled by more than this share of the density is none: some other shape has been approximated.
+constexpr double kFilled = 0.2;
 
 /// Mean of a gain over a bin of the spectrum by Simpson's rule: at a steep edge the middle alone is off by its
 /// curvature.
@@ -59,7 +63,7 @@ Shape fit_shape(const FullRate& data, const std::function<double(double)>& gain)
   Eigen::VectorXd start = Eigen::VectorXd::Constant(density.shape.cols(), data.model.white);
   start[0] = 1e-4 * data.model.white;  // the floor
   const LevelFit fit = fit_levels(density, start);
-  return {fit.log_likelihood, fit.level[fit.level.size() - 1]};
+  return {fit.log_likelihood, fit.level[fit.level.size() - 1], fit.level[0]};
 }
 
 std::vector<Evidence> examine(const FullRate& data) {
@@ -98,6 +102,10 @@ std::vector<Evidence> examine(const FullRate& data) {
       }
     }
   }
+  const Shape shape = fit_shape(data, [&](double f) { return butterworth_gain(f, std::exp(best), data.dt_s); });
+  if (!data.given && shape.floor > kFilled * shape.density) {
+    return {};
+  }
   Evidence evidence;
   evidence.members = all_members(*data.group);
   evidence.gain = 2.0 * (top - none);
@@ -105,11 +113,11 @@ std::vector<Evidence> examine(const FullRate& data) {
   double first_order = none;
   for (double f = 0.02 * nyquist; f < nyquist; f *= 1.3) {
     const double phi = std::exp(-2.0 * std::numbers::pi * f * data.dt_s);
-    const Shape shape = fit_shape(data, [&](double g) {
+    const Shape slower = fit_shape(data, [&](double g) {
       return (1.0 - phi) * (1.0 - phi) /
              (1.0 - 2.0 * phi * std::cos(2.0 * std::numbers::pi * g * data.dt_s) + phi * phi);
     });
-    first_order = std::max(first_order, shape.log_likelihood);
+    first_order = std::max(first_order, slower.log_likelihood);
   }
   evidence.score = std::min(evidence.gain - 3.0, 2.0 * (top - first_order));
   evidence.shape = std::exp(best);

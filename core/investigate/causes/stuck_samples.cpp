@@ -1,7 +1,8 @@
 /// stuck_samples: runs in which the last value repeats.
 /// On a lattice repeats are normal: with a chance p that the next value is the same, runs of k repeats or more occur N
 /// p^k times. Runs beyond the k at which that falls below 0.001 are stuck. Shorter stuck runs are counted by the
-/// geometric law of the longer.
+/// geometric law of the longer. A run of more than a hundredth of the record is a freeze: it says nothing about chance,
+/// and one is enough.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace driftlab::investigate {
@@ -19,7 +21,31 @@ struct Runs {
   double samples = 0.0;
   double chance = 0.0;       ///< of two equal neighbours without sticking, its upper end
   double coincidence = 0.0;  ///< share of equal values far apart
+  double freeze = 0.0;       ///< repeats in the longest freeze; 0: none
+  std::size_t freeze_row = 0;
 };
+
+/// The rows outside freezes.
+std::vector<double> without_freezes(std::span<const double> v, Runs& runs) {
+  const double least = std::max(100.0, 0.01 * static_cast<double>(v.size()));
+  std::vector<double> rest;
+  for (std::size_t from = 0; from < v.size();) {
+    std::size_t to = from + 1;
+    while (to < v.size() && v[to] == v[from]) {
+      ++to;
+    }
+    const auto repeats = static_cast<double>(to - from - 1);
+    if (repeats <= least) {
+      rest.insert(rest.end(), v.begin() + static_cast<std::ptrdiff_t>(from),
+                  v.begin() + static_cast<std::ptrdiff_t>(to));
+    } else if (repeats > runs.freeze) {
+      runs.freeze = repeats;
+      runs.freeze_row = from;
+    }
+    from = to;
+  }
+  return rest;
+}
 
 /// Largest share of one value in any of 32 parts of the record: while the mean stays there, a repeat is that likely.
 double commonest_share(std::span<const double> values) {
@@ -45,12 +71,11 @@ double commonest_share(std::span<const double> values) {
 Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   Runs runs;
   runs.of.assign(2, 0.0);
-  const auto& v = channel.rows;
-  runs.samples = static_cast<double>(v.size());
+  runs.samples = static_cast<double>(channel.rows.size());
   std::size_t repeats = 0;
   double equal_far = 0.0;
-  for (std::size_t i = 1; i <= v.size(); ++i) {
-    if (i < v.size() && v[i] == v[i - 1]) {
+  for (std::size_t i = 1; i <= channel.rows.size(); ++i) {
+    if (i < channel.rows.size() && channel.rows[i] == channel.rows[i - 1]) {
       ++repeats;
       continue;
     }
@@ -60,13 +85,15 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
     runs.of[repeats] += 1.0;
     repeats = 0;
   }
+  const std::vector<double> v = without_freezes(channel.rows, runs);
+  const auto awake = static_cast<double>(v.size());
   constexpr std::size_t kFar = 37;
   for (std::size_t i = kFar; i < v.size(); ++i) {
     equal_far += v[i] == v[i - kFar] ? 1.0 : 0.0;
   }
   // An upper end of the chance: few coincidences say little about it.
-  const double far = (equal_far + 3.0 * std::sqrt(equal_far) + 5.0) / std::max(1.0, runs.samples - kFar);
-  runs.coincidence = equal_far / std::max(1.0, runs.samples - kFar);
+  const double far = (equal_far + 3.0 * std::sqrt(equal_far) + 5.0) / std::max(1.0, awake - kFar);
+  runs.coincidence = equal_far / std::max(1.0, awake - kFar);
   double once = 0.0;
   double twice = 0.0;
   for (std::size_t k = 1; k < runs.of.size(); ++k) {
@@ -86,11 +113,11 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
 }
 
 std::size_t longest_by_chance(const Runs& runs) {
-  std::size_t k = 1;
-  while (k < 1000 && runs.samples * std::pow(runs.chance, static_cast<double>(k)) > 1e-3) {
-    ++k;
+  if (!(runs.chance > 0.0)) {
+    return 1;
   }
-  return k;
+  const double k = std::log(1e-3 / std::max(1.0, runs.samples)) / std::log(std::min(runs.chance, 0.99999));
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(k)));
 }
 
 struct Stuck {
@@ -125,8 +152,16 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
     }
     const Runs all = count_runs(*group.members[r].recording, channel);
     const Stuck stuck = stuck_in(all);
-    if (stuck.repeats < 4.0 || stuck.runs < 2.0) {
+    const bool freezes = all.freeze >= static_cast<double>(stuck.from);
+    if (stuck.repeats < 4.0 || (stuck.runs < 2.0 && !freezes)) {
       continue;
+    }
+    if (freezes) {
+      const double dt_s = group.members[r].recording->dt_s;
+      char note[96];
+      std::snprintf(note, sizeof note, "The longest run begins %.1f s after the first sample and lasts %.1f s.",
+                    static_cast<double>(all.freeze_row) * dt_s, all.freeze * dt_s);
+      evidence.note = note;
     }
     evidence.members.push_back(r);
     from = std::max(from, stuck.from);
@@ -162,12 +197,13 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   const double sd_fraction = std::sqrt(mean * (2.0 * mean - 1.0) * variance) / samples;
   evidence.score = 1000.0 + repeats;
   evidence.gain = evidence.score;
-  evidence.parameters = {{"fraction",
-                          {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), fraction + 1.96 * sd_fraction}},
-                          units::one(group.unit)},
-                         {"mean_run",
-                          {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean + (unseen ? 1.0 : 0.0)}},
-                          units::one(group.unit)}};
+  evidence.parameters = {
+      {"fraction",
+       {fraction, {std::max(0.0, fraction - 1.96 * sd_fraction), std::min(1.0, fraction + 1.96 * sd_fraction)}},
+       units::one(group.unit)},
+      {"mean_run",
+       {mean, {std::max(1.0, mean - 1.96 * sd_mean), mean + 1.96 * sd_mean + (unseen ? 1.0 : 0.0)}},
+       units::one(group.unit)}};
   return {evidence};
 }
 

@@ -23,6 +23,18 @@ TEST(Lattice, AStepWrittenWithFourDecimalsIsFoundToItsRounding) {
   EXPECT_NEAR(lattice.decimals, 1e-4, 1e-12);
 }
 
+/// A recording in multiples of 0.05 deg/s was called finer than its decimals: 0.05 is five times 0.01 but for rounding.
+TEST(Lattice, AStepOfFiveDecimalsIsFound) {
+  Random random(4);
+  std::vector<double> rows;
+  for (int i = 0; i < 20000; ++i) {
+    rows.push_back(0.05 * std::round(0.35 * random.normal() / 0.05));
+  }
+  const Lattice lattice = find_lattice(rows);
+  EXPECT_NEAR(lattice.step, 0.05, 1e-9);
+  EXPECT_NEAR(lattice.decimals, 0.01, 1e-12);
+}
+
 TEST(Lattice, DecimalsFinerThanTheNoiseAreNoLattice) {
   Random random(2);
   std::vector<double> rows;
