@@ -4,6 +4,8 @@
 /// anything else; the careful one reads that row again, with quotes, blanks, holes and words. A cell that is no number
 /// becomes a missing sample that says what stood there (core/signal/missing.hpp); only a file without any number is
 /// refused for it.
+#include "core/read/csv_cells.hpp"
+#include "core/read/csv_header.hpp"
 #include "core/read/csv_time.hpp"
 #include "core/read/decimal.hpp"
 #include "core/read/dialect.hpp"
@@ -14,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +24,6 @@ namespace driftlab::formats {
 namespace {
 
 constexpr std::size_t kBatchValues = 16384;
-
-/// What was met in one column that is no number.
-struct Holes {
-  std::uint64_t texts = 0;
-  std::string first_text;  ///< an excerpt in quotes
-};
 
 class CsvDecoder {
  public:
@@ -52,20 +47,15 @@ class CsvDecoder {
   Status take_lines(std::string_view lines);
   Status take_line(std::string_view line);
   Status take_first_line(std::string_view line);
-  Status begin(const std::vector<std::string>& cells, bool named);
-  Result<std::string> column_name(const std::string& cell, std::size_t column, bool named);
+  Status begin(const CsvFirstLine& first);
   Status take_row_carefully(std::string_view line);
-  double take_cell(std::string_view cell, std::size_t column);
-  double number_in(std::string_view cell) const;
   void close_row(double* row);
   Status flush();
   Status finish();
-  void note_dialect();
-  void note_texts();
 
-  [[nodiscard]] std::string line_name() const { return "Line " + std::to_string(line_); }
   [[nodiscard]] tl::unexpected<Error> at_line(ErrorCode code, const std::string& what) const {
-    return fail(code, line_name() + " " + what, {{"row", std::to_string(line_)}});
+    const std::string line = std::to_string(line_);
+    return fail(code, "Line " + line + " " + what, {{"row", line}});
   }
   [[nodiscard]] Status too_long() const {
     return at_line(ErrorCode::LimitExceeded,
@@ -84,13 +74,10 @@ class CsvDecoder {
   std::uint64_t inner_comments_ = 0;  ///< between rows
   std::uint64_t rows_ = 0;
   bool units_follow_ = false;  ///< the next line is the second of two header lines
-  bool any_number_ = false;
-  bool dates_ = false;
-  Error first_fault_;       ///< the first cell that is no number; the answer where there is no number at all
-  ColumnNames names_;       ///< of the file's columns; empty until the first row is seen
-  std::size_t stride_ = 0;  ///< values a row: the file's columns, and the time made from a stated rate
+  ColumnNames names_;          ///< of the file's columns; empty until the first row is seen
+  std::size_t stride_ = 0;     ///< values a row: the file's columns, and the time made from a stated rate
   TimeFromRate time_;
-  std::vector<Holes> holes_;
+  CsvCells cells_;
   std::vector<double> batch_;
   std::size_t filled_ = 0;
 };
@@ -243,9 +230,11 @@ const char* CsvDecoder::take_rows_fast(const char* p, const char* const end) {
     if (q == nullptr || static_cast<std::size_t>(q - p) > limits_.max_line_bytes) {
       break;
     }
-    any_number_ = any_number_ || std::any_of(into, into + width, [](double value) { return !std::isnan(value); });
-    if (!any_number_) {
-      break;  // the careful reader keeps the fault
+    if (!cells_.any_number()) {
+      if (std::all_of(into, into + width, [](double value) { return std::isnan(value); })) {
+        break;  // the careful reader keeps the fault
+      }
+      cells_.number_met();
     }
     p = q;
     ++line_;
@@ -306,68 +295,23 @@ Status CsvDecoder::take_first_line(std::string_view line) {
     dialect_ = text::find_dialect(line, true);
   }
   fast_ = choose_fast_reader(dialect_);
-  std::vector<std::string> cells = text::split_cells(line, dialect_.separator);
-  if (dialect_.trailing_separator && cells.size() > dialect_.width && cells.back().empty()) {
-    cells.pop_back();
-  }
-  if (!dialect_.has_names) {
-    const bool commented = dialect_.names.size() == cells.size();
-    if (commented) {
-      sink_.note("The names of the columns are those of the comment above the first row.");
-    }
-    auto status = begin(commented ? dialect_.names : cells, commented);
-    return status ? take_row_carefully(line) : status;
-  }
-  units_follow_ = !dialect_.units.empty();
-  for (std::size_t i = 0; i < std::min(cells.size(), dialect_.units.size()); ++i) {
-    cells[i] += dialect_.units[i].empty() ? "" : " (" + dialect_.units[i] + ")";
-  }
-  for (const std::size_t column : dialect_.dates) {  // as numbers they are seconds, and their name has to say so
-    if (column < cells.size() && !cells[column].empty() && cells[column].back() != ')') {
-      cells[column] += " (s)";
-    }
-  }
-  return begin(cells, true);
+  const CsvFirstLine first = read_first_line(line, dialect_, sink_);
+  units_follow_ = dialect_.has_names && !dialect_.units.empty();
+  auto status = begin(first);
+  return status && first.is_row ? take_row_carefully(line) : status;
 }
 
-Result<std::string> CsvDecoder::column_name(const std::string& cell, std::size_t column, bool named) {
-  std::string name = named ? text::to_utf8(cell) : std::to_string(column);
-  if (name.empty()) {
-    name = std::to_string(column);
-    sink_.note("Column " + std::to_string(column + 1) + " has no name in the header; it is called '" + name + "'.");
+Status CsvDecoder::begin(const CsvFirstLine& first) {
+  note_dialect(dialect_, comments_, sink_);
+  auto names = column_names(first, line_, limits_, sink_);
+  if (!names) {
+    return fail(names.error());
   }
-  if (name.size() > limits_.max_name_bytes) {
-    return at_line(ErrorCode::LimitExceeded,
-                   "has a column name longer than " + std::to_string(limits_.max_name_bytes) + " bytes.");
-  }
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (std::any_of(name.begin(), name.end(), control)) {
-    return at_line(ErrorCode::NotANumber, "holds control characters; is this a text file?");
-  }
-  return name;
-}
-
-Status CsvDecoder::begin(const std::vector<std::string>& cells, bool named) {
-  if (cells.size() > limits_.max_columns) {
-    return at_line(ErrorCode::LimitExceeded, "has " + std::to_string(cells.size()) + " columns; at most " +
-                                                 std::to_string(limits_.max_columns) + " are read.");
-  }
-  note_dialect();
+  names_ = std::move(*names);
+  cells_ = CsvCells(names_, dialect_.decimal_comma);
   ColumnLayout layout;
-  layout.has_header = named;
-  std::set<std::string> seen;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    auto name = column_name(cells[i], i, named);
-    if (!name) {
-      return fail(name.error());
-    }
-    if (!seen.insert(*name).second) {
-      return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + *name + "'; give each its own name.",
-                  {{"row", std::to_string(line_)}, {"column", *name}});
-    }
-    layout.names.push_back(std::move(*name));
-  }
-  names_ = layout.names;
+  layout.has_header = first.named;
+  layout.names = names_;
   if (dialect_.rate_hz) {
     time_ = TimeFromRate(names_, *dialect_.rate_hz);
     sink_.note(time_.sentence());
@@ -376,7 +320,6 @@ Status CsvDecoder::begin(const std::vector<std::string>& cells, bool named) {
     layout.names.emplace_back(TimeFromRate::kName);
   }
   stride_ = layout.names.size();
-  holes_.resize(names_.size());
   batch_.resize(std::max<std::size_t>(kBatchValues / stride_, 1) * stride_);
   return sink_.begin(layout);
 }
@@ -391,7 +334,7 @@ Status CsvDecoder::take_row_carefully(std::string_view line) {
                                              std::to_string(names_.size()) + ".");
   }
   for (std::size_t column = 0; column < cells.size(); ++column) {
-    batch_[filled_ + column] = take_cell(cells[column], column);
+    batch_[filled_ + column] = cells_.take(cells[column], column, line_);
   }
   close_row(batch_.data() + filled_);
   filled_ += stride_;
@@ -404,54 +347,6 @@ void CsvDecoder::close_row(double* row) {
     row[stride_ - 1] = time_.at(rows_, row);
   }
   ++rows_;
-}
-
-/// The number that is all of `cell`, or a NaN that says why there is none.
-double CsvDecoder::number_in(std::string_view cell) const {
-  if (cell.empty()) {
-    return missing_sample(Missing::Empty, line_);
-  }
-  if (text::is_non_finite_word(cell)) {
-    const bool nan = (cell.back() | 0x20) == 'n';
-    return missing_sample(nan ? Missing::Nan : Missing::Infinite, line_);
-  }
-  const std::string terminated(cell);
-  double value = 0.0;
-  const char* const end = dialect_.decimal_comma ? decimal::parse<','>(terminated.c_str(), value)
-                                                 : decimal::parse<'.'>(terminated.c_str(), value);
-  if (end != terminated.c_str() + terminated.size()) {
-    return text::seconds_of_date(cell).value_or(missing_sample(Missing::Text, line_));
-  }
-  return std::isfinite(value) ? value : missing_sample(Missing::OutOfRange, line_);
-}
-
-double CsvDecoder::take_cell(std::string_view cell, std::size_t column) {
-  const double value = number_in(cell);
-  if (!std::isnan(value)) {
-    any_number_ = true;
-    dates_ = dates_ || (cell.size() > 10 && cell[4] == '-' && cell[7] == '-');
-    return value;
-  }
-  const Missing why = why_missing(value).why;
-  if (why == Missing::Text) {
-    Holes& holes = holes_[column];
-    holes.first_text = holes.texts == 0 ? text::excerpt(cell) : holes.first_text;
-    ++holes.texts;
-  }
-  if (!any_number_ && first_fault_.message.empty()) {
-    const bool word = why == Missing::Nan || why == Missing::Infinite;
-    const std::string what = why == Missing::Empty        ? "the cell is empty."
-                             : word                       ? text::excerpt(cell) + " is not a finite number."
-                             : why == Missing::OutOfRange ? text::excerpt(cell) + " is larger than a double can hold."
-                                                          : text::excerpt(cell) + " is not a number.";
-    const ErrorCode code = word                         ? ErrorCode::NonFinite
-                           : why == Missing::OutOfRange ? ErrorCode::OutOfRange
-                                                        : ErrorCode::NotANumber;
-    first_fault_ = Error{code,
-                         line_name() + ", column '" + names_[column] + "': " + what,
-                         {{"row", std::to_string(line_)}, {"column", names_[column]}}};
-  }
-  return value;
 }
 
 Status CsvDecoder::flush() {
@@ -467,45 +362,14 @@ Status CsvDecoder::finish() {
   if (rows_ == 0) {
     return fail(ErrorCode::NoSamples, "The file has a header and no samples under it.");
   }
-  if (!any_number_) {
-    return fail(first_fault_);
+  if (!cells_.any_number()) {
+    return fail(cells_.first_fault());
   }
   if (inner_comments_ > 0) {
     sink_.note(std::to_string(inner_comments_) + " comment lines between the rows were skipped.");
   }
-  if (dates_) {
-    sink_.note("Dates are read as seconds since 1970-01-01 UTC.");
-  }
-  note_texts();
+  cells_.note(rows_, sink_);
   return {};
-}
-
-void CsvDecoder::note_dialect() {
-  if (comments_ > 0) {
-    sink_.note(std::to_string(comments_) + " comment lines above the first row were skipped.");
-  }
-  if (dialect_.preamble_lines > 0) {
-    sink_.note(std::to_string(dialect_.preamble_lines) +
-               " lines above the names of the columns are no samples and were skipped.");
-  }
-  if (!dialect_.units.empty()) {
-    sink_.note("The second header line is read as the units of the columns.");
-  }
-  if (dialect_.decimal_comma) {
-    sink_.note("Numbers are read with a decimal comma.");
-  }
-  if (dialect_.trailing_separator) {
-    sink_.note("The separator behind the last cell of each row is ignored.");
-  }
-}
-
-void CsvDecoder::note_texts() {
-  for (std::size_t column = 0; column < holes_.size(); ++column) {
-    if (holes_[column].texts > 0) {
-      sink_.note("Column '" + names_[column] + "' holds text in " + std::to_string(holes_[column].texts) + " of " +
-                 std::to_string(rows_) + " rows, first " + holes_[column].first_text + ".");
-    }
-  }
 }
 
 /// True if a format of one kind of text takes it: the table of numbers is for what nobody else knows.

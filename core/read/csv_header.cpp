@@ -1,0 +1,104 @@
+#include "core/read/csv_header.hpp"
+
+#include "core/read/text_shape.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace driftlab::formats {
+namespace {
+
+tl::unexpected<Error> at_line(std::uint64_t line, ErrorCode code, const std::string& what) {
+  const std::string number = std::to_string(line);
+  return fail(code, "Line " + number + " " + what, {{"row", number}});
+}
+
+Result<std::string> column_name(const std::string& cell, std::size_t column, bool named, std::uint64_t line,
+                                const DecodeLimits& limits, ColumnSink& sink) {
+  std::string name = named ? text::to_utf8(cell) : std::to_string(column);
+  if (name.empty()) {
+    name = std::to_string(column);
+    sink.note("Column " + std::to_string(column + 1) + " has no name in the header; it is called '" + name + "'.");
+  }
+  if (name.size() > limits.max_name_bytes) {
+    return at_line(line, ErrorCode::LimitExceeded,
+                   "has a column name longer than " + std::to_string(limits.max_name_bytes) + " bytes.");
+  }
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (std::any_of(name.begin(), name.end(), control)) {
+    return at_line(line, ErrorCode::NotANumber, "holds control characters; is this a text file?");
+  }
+  return name;
+}
+
+}  // namespace
+
+CsvFirstLine read_first_line(std::string_view line, const text::Dialect& dialect, ColumnSink& sink) {
+  CsvFirstLine first{text::split_cells(line, dialect.separator), dialect.has_names, !dialect.has_names};
+  std::vector<std::string>& cells = first.cells;
+  if (dialect.trailing_separator && cells.size() > dialect.width && cells.back().empty()) {
+    cells.pop_back();
+  }
+  if (!dialect.has_names) {
+    first.named = dialect.names.size() == cells.size();
+    if (first.named) {
+      sink.note("The names of the columns are those of the comment above the first row.");
+      cells = dialect.names;
+    }
+    return first;
+  }
+  for (std::size_t i = 0; i < std::min(cells.size(), dialect.units.size()); ++i) {
+    cells[i] += dialect.units[i].empty() ? "" : " (" + dialect.units[i] + ")";
+  }
+  for (const std::size_t column : dialect.dates) {  // as numbers they are seconds, and their name has to say so
+    if (column < cells.size() && !cells[column].empty() && cells[column].back() != ')') {
+      cells[column] += " (s)";
+    }
+  }
+  return first;
+}
+
+Result<ColumnNames> column_names(const CsvFirstLine& first, std::uint64_t line, const DecodeLimits& limits,
+                                 ColumnSink& sink) {
+  if (first.cells.size() > limits.max_columns) {
+    return at_line(line, ErrorCode::LimitExceeded,
+                   "has " + std::to_string(first.cells.size()) + " columns; at most " +
+                       std::to_string(limits.max_columns) + " are read.");
+  }
+  ColumnNames names;
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < first.cells.size(); ++i) {
+    auto name = column_name(first.cells[i], i, first.named, line, limits, sink);
+    if (!name) {
+      return fail(name.error());
+    }
+    if (!seen.insert(*name).second) {
+      return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + *name + "'; give each its own name.",
+                  {{"row", std::to_string(line)}, {"column", *name}});
+    }
+    names.push_back(std::move(*name));
+  }
+  return names;
+}
+
+void note_dialect(const text::Dialect& dialect, std::uint64_t comments, ColumnSink& sink) {
+  if (comments > 0) {
+    sink.note(std::to_string(comments) + " comment lines above the first row were skipped.");
+  }
+  if (dialect.preamble_lines > 0) {
+    sink.note(std::to_string(dialect.preamble_lines) +
+              " lines above the names of the columns are no samples and were skipped.");
+  }
+  if (!dialect.units.empty()) {
+    sink.note("The second header line is read as the units of the columns.");
+  }
+  if (dialect.decimal_comma) {
+    sink.note("Numbers are read with a decimal comma.");
+  }
+  if (dialect.trailing_separator) {
+    sink.note("The separator behind the last cell of each row is ignored.");
+  }
+}
+
+}  // namespace driftlab::formats
