@@ -145,6 +145,7 @@ void add_all_routes(Router& router, ApiContext& context) {
   add_fit_routes(router, context);
   add_parameter_table_routes(router, context);
   add_study_routes(router, context);
+  add_outage_evaluation_routes(router, context);
 }
 
 }  // namespace driftlab::server

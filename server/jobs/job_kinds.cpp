@@ -1,5 +1,6 @@
 #include "server/jobs/characterise.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/outage_evaluation.hpp"
 
 namespace driftlab::server {
 
@@ -7,6 +8,7 @@ const std::vector<std::unique_ptr<JobKind>>& job_kinds() {
   static const std::vector<std::unique_ptr<JobKind>> kinds = [] {
     std::vector<std::unique_ptr<JobKind>> list;
     list.push_back(make_characterise_kind());
+    list.push_back(make_outage_evaluation_kind());
     return list;
   }();
   return kinds;

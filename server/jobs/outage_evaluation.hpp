@@ -1,0 +1,18 @@
+#pragma once
+/// The job kind `outage_evaluation`: filters compared through simulated GNSS outages
+/// (core/navigate/outage_evaluation.hpp).
+///
+/// `inputs`: {"scenario": NAME or document}; a sensor of the document may be {"fit": "fit_..."}, a stored fit, whose
+/// processes are written into the request when it is queued. `parameters`: {"runs", "seed", "relative_precision"}, all
+/// optional.
+#include "server/jobs/job_kind.hpp"
+
+#include <memory>
+
+namespace driftlab::server {
+
+inline constexpr std::string_view kOutageEvaluationKind = "outage_evaluation";
+
+[[nodiscard]] std::unique_ptr<JobKind> make_outage_evaluation_kind();
+
+}  // namespace driftlab::server

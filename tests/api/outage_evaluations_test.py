@@ -1,0 +1,120 @@
+"""Outage evaluations over HTTP: queued, followed, read; scenarios by name and as documents; faults by place."""
+from __future__ import annotations
+
+import copy
+import unittest
+from typing import Any
+
+import samples
+from suite import DaemonTest
+
+SCENARIO: dict[str, Any] = {
+    "name": "one turn", "duration_s": 45, "imu_rate_hz": 20,
+    "trajectory": {"start": {"speed_m_s": 15}, "segments_by_start_time": [{"t_s": 30, "kind": "turn", "rate_deg_s": 9, "duration_s": 10}]},
+    "outages": [{"start_s": 30, "duration_s": 10}],
+    "truth": {"gyro": {"processes": [{"process": "white_noise", "params": {"N": {"value": 1.03, "unit": "deg/sqrt(h)"}}},
+                                     {"process": "gauss_markov", "params": {"sigma": {"value": 62, "unit": "deg/h"}, "beta": {"value": 0.01, "unit": "1/s"}}}],
+                       "constant_bias_sd_deg_s": 0.05},
+              "accelerometer": {"white_noise_mg_per_sqrt_hz": 2, "constant_bias_sd_mg": 10}},
+    "filters": [{"name": "matched"},
+                {"name": "too quiet", "gyro": {"processes": [{"process": "white_noise", "params": {"N": {"value": 0.1, "unit": "deg/sqrt(h)"}}}],
+                                               "constant_bias_sd_deg_s": 0.001}}],
+}
+
+
+class OutageEvaluations(DaemonTest):
+    arguments = ("--workers", "1")
+
+    def evaluated(self, **body: Any) -> dict[str, Any]:
+        queued = self.expect(202, self.daemon.post("/v1/outage-evaluations", body))
+        self.assertEqual(queued.headers["location"], "/v1/outage-evaluations/" + queued.json["id"])
+        self.assertEqual(self.daemon.finished(queued.json["id"])["state"], "succeeded")
+        return dict(self.expect(200, self.daemon.get(queued.headers["location"])).json)
+
+    def test_an_evaluation_holds_what_a_dashboard_draws(self) -> None:
+        found = self.evaluated(scenario=SCENARIO, runs=30, seed=5)
+        self.assertEqual((found["scenario_name"], found["runs"], found["seed"], found["progress"]), ("one turn", 30, 5, 1))
+        result = found["evaluation"]
+        self.assertEqual([f["name"] for f in result["filters"]], ["matched", "too quiet"])
+        matched, quiet = result["filters"]
+        self.assertGreater(quiet["nees"], 2 * matched["nees"], "a filter that believes in a perfect gyro is too sure of itself")
+        self.assertEqual(len(matched["outages"][0]["errors"]["north_m"]), 30)
+        self.assertEqual(len(matched["trajectory"]["time_s"]), 46)
+        self.assertEqual(len(result["trajectory"]["north_m"]), 46)
+        ellipse50, ellipse95 = matched["outages"][0]["predicted"]["ellipses"]
+        self.assertLess(ellipse50["semi_major_m"], ellipse95["semi_major_m"])
+        pair = next(p for p in result["paired"] if p["filter"] == "too quiet")
+        mean = quiet["mean_error_m"]["value"] - matched["mean_error_m"]["value"]
+        self.assertAlmostEqual(pair["difference_m"]["value"], mean, places=9)
+        self.assertIsNone(result["attribution"])
+
+    def test_the_papers_scenario_by_name_is_judged_in_words(self) -> None:
+        result = self.evaluated(scenario="paper", runs=2, seed=9)["evaluation"]
+        self.assertEqual(len(result["filters"]), 6)
+        parts = result["attribution"]
+        total = sum(parts[name]["difference_m"]["value"] for name in ("low_frequency_noise", "gauss_markov_states", "switching"))
+        self.assertAlmostEqual(total, parts["total"]["difference_m"]["value"], places=9)
+        self.assertTrue(all(claim["because"] for claim in result["claims"]))
+
+    def test_the_same_request_is_the_same_evaluation(self) -> None:
+        first = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": SCENARIO, "runs": 4}))
+        same = self.expect(200, self.daemon.post("/v1/outage-evaluations", {"runs": 4, "scenario": SCENARIO}))
+        self.assertEqual(same.json["id"], first.json["id"])
+        as_job = {"kind": "outage_evaluation", "inputs": {"scenario": SCENARIO}, "parameters": {"runs": 4}}
+        self.assertEqual(self.expect(200, self.daemon.post("/v1/jobs", as_job)).json["id"], first.json["id"])
+        self.daemon.finished(first.json["id"])
+        whole = self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{first.json['id']}")).json["evaluation"]
+        self.assertEqual(self.expect(200, self.daemon.get(f"/v1/jobs/{first.json['id']}/result")).json, whole)
+        listed = self.daemon.items("/v1/outage-evaluations?state=succeeded")
+        self.assertIn(first.json["id"], [item["id"] for item in listed])
+
+    def test_a_stored_fit_is_a_truth(self) -> None:
+        recording = self.expect(201, self.daemon.upload(samples.gyro_csv(4096, seed=3), rate_hz=100, columns=samples.GYRO_Z)).json["id"]
+        self.daemon.finished(self.daemon.characterise(recording, models=["WN"]).json["id"])
+        [fit] = self.daemon.items("/v1/fits?model=WN")
+        scenario = copy.deepcopy(SCENARIO)
+        scenario["truth"]["gyro"] = {"fit": fit["id"], "constant_bias_sd_deg_s": 0.05}
+        result = self.evaluated(scenario=scenario, runs=2)["evaluation"]
+        [process] = result["scenario"]["truth"]["gyro"]["x"]["processes"]
+        self.assertAlmostEqual(process["params"]["N"]["value"], fit["processes"][0]["params"]["N"]["value"], places=9)
+        scenario["truth"]["gyro"] = {"fit": "fit_nobody"}
+        answer = self.expect(404, self.daemon.post("/v1/outage-evaluations", {"scenario": scenario}))
+        self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro/fit"])
+
+    def test_a_long_evaluation_is_cancelled(self) -> None:
+        job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100000})).json["id"]
+        self.expect(202, self.daemon.post(f"/v1/jobs/{job}/cancel"))
+        self.assertEqual(self.daemon.finished(job)["state"], "cancelled")
+        self.assertIsNone(self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{job}")).json["evaluation"])
+
+    def test_faults_are_named_by_their_place(self) -> None:
+        def changed(**members: Any) -> dict[str, Any]:
+            return {**copy.deepcopy(SCENARIO), **members}
+        bad_unit = copy.deepcopy(SCENARIO)
+        bad_unit["truth"]["gyro"]["processes"][0]["params"]["N"]["unit"] = "deg/h"
+        cases: list[tuple[Any, set[str]]] = [
+            ({}, {"/scenario"}),
+            ({"scenario": "nowhere"}, {"/scenario"}),
+            ({"scenario": SCENARIO, "runs": 1}, {"/runs"}),
+            ({"scenario": SCENARIO, "seed": -1}, {"/seed"}),
+            ({"scenario": SCENARIO, "relative_precision": 2}, {"/relative_precision"}),
+            ({"scenario": SCENARIO, "colour": 1}, {"/colour"}),
+            ({"scenario": changed(colour=1)}, {"/scenario/colour"}),
+            ({"scenario": changed(outages=[])}, {"/scenario"}),
+            ({"scenario": changed(filters=[{"name": "a"}, {"name": "a"}])}, {"/scenario"}),
+            ({"scenario": bad_unit}, {"/scenario/truth/gyro/processes/0/params/N/unit"}),
+        ]
+        for body, pointers in cases:
+            with self.subTest(pointers=pointers):
+                answer = self.daemon.post("/v1/outage-evaluations", body)
+                self.assertIn(answer.status, (400, 404), answer.describe())
+                self.assertEqual({error["pointer"] for error in answer.json["errors"]}, pointers, answer.describe())
+        self.problem(404, "not_found", self.daemon.get("/v1/outage-evaluations/job_nobody"))
+        self.problem(400, "invalid_argument", self.daemon.get("/v1/outage-evaluations?state=asleep"), parameter="state")
+        recording = self.expect(201, self.daemon.upload(samples.gyro_csv(64, seed=77), rate_hz=100)).json["id"]
+        other = self.daemon.characterise(recording, models=["WN"]).json["id"]
+        self.problem(404, "not_found", self.daemon.get(f"/v1/outage-evaluations/{other}"))
+
+
+if __name__ == "__main__":
+    unittest.main()
