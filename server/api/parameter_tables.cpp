@@ -3,31 +3,10 @@
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
+#include "server/jobs/stored_table.hpp"
 
 namespace driftlab::server {
 namespace {
-
-Result<TableRequest> table_request(const Request& request, const Device& device) {
-  TableRequest table;
-  table.device = device.name;
-  auto quantity = quantity_of_sensor(request.parameter("sensor").value_or("gyroscope"));
-  if (!quantity) {
-    return fail(Error(quantity.error()).with("parameter", "sensor"));
-  }
-  table.quantity = *quantity;
-  table.axis = request.parameter("axis").value_or("");
-  if (!table.axis.empty() && !is_axis_of(table.axis, table.quantity)) {
-    return fail(ErrorCode::InvalidArgument, "The axis must be x, y or z, not '" + table.axis + "'.",
-                {{"parameter", "axis"}});
-  }
-  auto method = parse_table_method(request.parameter("method").value_or("gmwm"));
-  if (!method) {
-    return fail(method.error());
-  }
-  table.method = *method;
-  table.model = request.parameter("model").value_or("");
-  return table;
-}
 
 /// The table that a request asks for, from stored results alone.
 Result<Json> read_table(ApiContext& context, const Request& request) {
@@ -35,29 +14,13 @@ Result<Json> read_table(ApiContext& context, const Request& request) {
   if (!name || name->empty()) {
     return fail(ErrorCode::InvalidArgument, "Name the device: ?device=…", {{"parameter", "device"}});
   }
-  auto device = context.store.device(*name);
-  if (!device) {
-    return fail(device.error());
-  }
-  auto wanted = table_request(request, *device);
-  if (!wanted) {
-    return fail(wanted.error());
-  }
-  const std::string_view quantity = driftlab::name_of(wanted->quantity);
-  auto rows = context.store.latest_channel_results(device->id, quantity, wanted->axis);
-  if (!rows) {
-    return fail(rows.error());
-  }
-  auto pooled = context.store.pooled_result(device->id, quantity, wanted->axis);
-  if (!pooled) {
-    return fail(pooled.error());
-  }
-  std::vector<TableSource> sources;
-  for (const ChannelResult& row : *rows) {
-    sources.push_back({row.recording_id, row.condition, stored(row.document_json), row.id});
-  }
-  const Json together = *pooled ? stored((*pooled)->document_json) : Json();
-  return build_parameter_table(*wanted, sources, together.is_object() ? &together : nullptr);
+  StoredTableRequest wanted;
+  wanted.device = *name;
+  wanted.sensor = request.parameter("sensor").value_or(wanted.sensor);
+  wanted.axis = request.parameter("axis").value_or("");
+  wanted.method = request.parameter("method").value_or(wanted.method);
+  wanted.model = request.parameter("model").value_or("");
+  return stored_table(context.store, wanted);
 }
 
 Result<Response> get_table(ApiContext& context, const Request& request) {

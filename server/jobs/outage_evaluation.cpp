@@ -1,40 +1,85 @@
 #include "server/jobs/outage_evaluation.hpp"
 
+#include "schema/json/imu_model.hpp"
 #include "schema/json/outage_evaluation.hpp"
 #include "schema/json/outage_scenario.hpp"
+#include "schema/json/table_schedule.hpp"
+#include "server/jobs/stored_table.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <thread>
 
 namespace driftlab::server {
 namespace {
 
-/// Puts the processes of stored fits in the place of their ids.
-Status resolve_fits(Json& node, const std::string& pointer, JobContext& context, Faults& faults, int depth = 0) {
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Puts the processes of a stored fit in the place of its id.
+Status resolve_fit(Json& node, const std::string& pointer, JobContext& context, Faults& faults) {
+  auto fit = context.store.fit(node["fit"].get<std::string>());
+  if (!fit && fit.error().code != ErrorCode::NotFound) {
+    return fail(fit.error());
+  }
+  auto document = fit ? parse_json(fit->document_json) : Result<Json>(Json::object());
+  if (!fit || !document || !document->contains("processes")) {
+    faults.add(pointer + "/fit", ErrorCode::NotFound, "There is no fit " + node["fit"].get<std::string>() + ".");
+    return {};
+  }
+  node.erase("fit");
+  node["processes"] = (*document)["processes"];
+  for (Json& process : node["processes"]) {
+    process.erase("reasons");
+  }
+  return {};
+}
+
+/// Puts the models of a device's parameter table in the place of the table's query.
+Status resolve_table(Json& node, const std::string& pointer, JobContext& context, Faults& faults) {
+  ObjectReader reader(node["table"], pointer + "/table", faults);
+  StoredTableRequest wanted;
+  wanted.device = reader.required_text("device");
+  wanted.axis = reader.text("axis").value_or("");
+  wanted.method = reader.text("method").value_or(wanted.method);
+  wanted.model = reader.text("model").value_or("");
+  const std::string schedule = reader.text("schedule").value_or("switched");
+  TableScheduleOptions options;
+  options.continuous = schedule == "continuous";
+  options.hysteresis_rad_s = reader.real("hysteresis_deg_s").value_or(0.0) * kDegree;
+  options.step_rad_s = reader.real("step_deg_s").value_or(1.0) * kDegree;
+  reader.reject_unknown();
+  if (!options.continuous && schedule != "switched") {
+    faults.add(pointer + "/table/schedule", ErrorCode::InvalidArgument, "A schedule is switched or continuous.");
+  }
+  if (!faults.none()) {
+    return {};
+  }
+  auto table = stored_table(context.store, wanted);
+  if (!table) {
+    faults.add(pointer + "/table", table.error());
+    return {};
+  }
+  const ModelSchedule made = schedule_from_table(*table, options, pointer + "/table", faults);
+  node.erase("table");
+  node.update(schedule_to_json(made, Dimension::AngularRate));
+  return {};
+}
+
+/// Puts what is stored in the place of its names, so that the request says all by itself.
+Status resolve_stored(Json& node, const std::string& pointer, JobContext& context, Faults& faults, int depth = 0) {
   if (!node.is_structured() || depth > kMaxJsonDepth) {
     return {};
   }
   if (node.is_object() && node.contains("fit") && node["fit"].is_string()) {
-    auto fit = context.store.fit(node["fit"].get<std::string>());
-    if (!fit && fit.error().code != ErrorCode::NotFound) {
-      return fail(fit.error());
-    }
-    auto document = fit ? parse_json(fit->document_json) : Result<Json>(Json::object());
-    if (!fit || !document || !document->contains("processes")) {
-      faults.add(pointer + "/fit", ErrorCode::NotFound, "There is no fit " + node["fit"].get<std::string>() + ".");
-      return {};
-    }
-    node.erase("fit");
-    node["processes"] = (*document)["processes"];
-    for (Json& process : node["processes"]) {
-      process.erase("reasons");
-    }
-    return {};
+    return resolve_fit(node, pointer, context, faults);
+  }
+  if (node.is_object() && node.contains("table") && node["table"].is_object()) {
+    return resolve_table(node, pointer, context, faults);
   }
   for (const auto& [name, child] : node.items()) {  // of an array the names are the indices
     std::string where = pointer;
     where.append("/").append(name);
-    if (auto status = resolve_fits(child, where, context, faults, depth + 1); !status) {
+    if (auto status = resolve_stored(child, where, context, faults, depth + 1); !status) {
       return status;
     }
   }
@@ -65,7 +110,7 @@ class OutageEvaluationKind final : public JobKind {
       faults.add("/inputs/scenario", ErrorCode::InvalidArgument, "Name a scenario or give its document.");
     } else {
       resolved = *scenario;
-      if (auto status = resolve_fits(resolved, "/inputs/scenario", context, faults); !status) {
+      if (auto status = resolve_stored(resolved, "/inputs/scenario", context, faults); !status) {
         return fail(status.error());
       }
     }
