@@ -81,6 +81,31 @@ class OutageEvaluations(DaemonTest):
         answer = self.expect(404, self.daemon.post("/v1/outage-evaluations", {"scenario": scenario}))
         self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro/fit"])
 
+    def test_a_parameter_table_is_a_schedule_by_rate(self) -> None:
+        recordings = [self.expect(201, self.daemon.upload(samples.gyro_csv(4096, seed=seed), device="table", condition=condition,
+                                                          rate_hz=100, columns=samples.GYRO_Z)).json["id"]
+                      for seed, condition in ((31, "static"), (32, "constant_rate:z:20:deg/s"))]
+        self.daemon.finished(self.daemon.characterise(*recordings, models=["WN"]).json["id"])
+        table = self.expect(200, self.daemon.get("/v1/parameter-tables?device=table&axis=z")).json
+        scenario = copy.deepcopy(SCENARIO)
+        flat = {"processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}], "constant_bias_sd_deg_s": 0.05}
+        for schedule, bands in (("switched", 2), ("continuous", 21)):
+            by_table = {"table": {"device": "table", "axis": "z", "schedule": schedule}, "constant_bias_sd_deg_s": 0.05}
+            scenario["filters"] = [{"name": schedule, "gyro": {"x": flat, "y": flat, "z": by_table}}]
+            result = self.evaluated(scenario=scenario, runs=2)["evaluation"]
+            by_rate = result["scenario"]["filters"][0]["gyro"]["z"]["by_rate"]
+            self.assertEqual(len(by_rate["processes"]), bands)
+            if schedule == "switched":
+                self.assertAlmostEqual(by_rate["bounds_deg_s"][0], 10, places=9)
+                for row, model in zip(table["rows"], by_rate["processes"]):
+                    self.assertAlmostEqual(model[0]["params"]["N"]["value"], row["values"]["white_noise.N"]["value"], places=9)
+        for member, value, pointer in (("device", "nobody", "/scenario/filters/0/gyro/table"), ("schedule", "now and then", "/scenario/filters/0/gyro/table/schedule"),
+                                       ("colour", 1, "/scenario/filters/0/gyro/table/colour")):
+            scenario["filters"] = [{"name": "a", "gyro": {"table": {"device": "table", "axis": "z", member: value}}}]
+            answer = self.daemon.post("/v1/outage-evaluations", {"scenario": scenario})
+            self.assertIn(answer.status, (400, 404), answer.describe())
+            self.assertEqual([e["pointer"] for e in answer.json["errors"]], [pointer], answer.describe())
+
     def test_a_long_evaluation_is_cancelled(self) -> None:
         job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100000})).json["id"]
         self.expect(202, self.daemon.post(f"/v1/jobs/{job}/cancel"))
