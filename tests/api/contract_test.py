@@ -137,7 +137,9 @@ class Operations(DaemonTest):
             daemon.get("/v1/parameter-tables?device=phone-07&axis=z", Accept=media)
         body = {"device": {"id": "phone-07"}, "recordings": [{"recording": first.json["id"]}]}
         study, _ = (daemon.post("/v1/studies", body) for _ in range(2))
-        values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
+        evaluation, _ = (daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}) for _ in range(2))
+        daemon.finished(evaluation.json["id"])
+        values = {"/v1/outage-evaluations/{id}": evaluation.json["id"], "/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
                   "/v1/studies/{id}": study.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
         for path, operations in self.contract.paths.items():

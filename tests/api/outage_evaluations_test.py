@@ -71,7 +71,7 @@ class OutageEvaluations(DaemonTest):
     def test_a_stored_fit_is_a_truth(self) -> None:
         recording = self.expect(201, self.daemon.upload(samples.gyro_csv(4096, seed=3), rate_hz=100, columns=samples.GYRO_Z)).json["id"]
         self.daemon.finished(self.daemon.characterise(recording, models=["WN"]).json["id"])
-        [fit] = self.daemon.items("/v1/fits?model=WN")
+        [fit] = self.daemon.items(f"/v1/fits?model=WN&recording={recording}")
         scenario = copy.deepcopy(SCENARIO)
         scenario["truth"]["gyro"] = {"fit": fit["id"], "constant_bias_sd_deg_s": 0.05}
         result = self.evaluated(scenario=scenario, runs=2)["evaluation"]
