@@ -30,18 +30,13 @@ std::optional<std::array<const ChannelView*, 3>> triad_of(const RecordingView& v
 
 /// The mean of a triad in SI.
 Result<TriadMean> mean_of(const std::array<const ChannelView*, 3>& triad) {
-  std::size_t first = 0;
-  std::size_t last = static_cast<std::size_t>(-1);
-  for (const ChannelView* channel : triad) {
-    first = std::max(first, channel->first_row);
-    last = std::min(last, channel->first_row + channel->values.size());
-  }
-  if (last <= first) {
+  const auto [first, count] = longest_shared_run(triad);
+  if (count == 0) {
     return fail(ErrorCode::TooFewSamples, "The three axes of a triad share no sound samples.");
   }
   std::array<std::span<const double>, 3> values;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    values[axis] = triad[axis]->values.subspan(first - triad[axis]->first_row, last - first);
+    values[axis] = triad[axis]->rows(first, count);
   }
   auto mean = triad_mean(values);
   for (std::size_t axis = 0; axis < 3 && mean; ++axis) {

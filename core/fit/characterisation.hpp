@@ -26,6 +26,8 @@ struct HaarCurve {
   std::vector<double> variance;
   std::vector<Interval> ci95;
   std::vector<double> edf;
+  /// Variance of the estimate without gaps over that of this one, per scale; empty where nothing is missing.
+  std::vector<double> efficiency;
   /// Robust estimate per scale. While no sample is flagged that of the Tukey biweight, tuned to an efficiency of 0.6
   /// and empty where undefined, its interval {0, 0} there (core/variance/robust_variance.hpp); else the sample-wise one
   /// (core/fit/sample_wise_variance.hpp).

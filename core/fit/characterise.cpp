@@ -230,6 +230,7 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   lower_degrees(classical.efficiency, curve, intervals);
   lower_degrees(classical.efficiency, curve, gaussian);
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
+  result.haar.efficiency = classical.efficiency;
   control.report("robust variance", 0.25);
   RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed, control);
   if (control.stop.stop_requested()) {

@@ -74,14 +74,15 @@ void withdraw_ambiguous(const Model& model, double dt_s, ModelFit& fit) {
 
 WaveletRecord record_of(const ChannelCharacterisation& channel) {
   WaveletRecord record;
-  record.samples = channel.samples;
+  record.samples = channel.samples + channel.missing;  // the grid
   record.dt_s = channel.dt_s;
   const HaarCurve& haar = channel.haar;
   const bool robust = channel.contamination.verdict == "contaminated" && !haar.robust_variance.empty();
   for (std::size_t j = 0; j < haar.scale.size(); ++j) {
     record.half.push_back(haar.scale[j] / 2);
     record.variance.push_back(robust ? haar.robust_variance[j].value_or(0.0) : haar.variance[j]);
-    record.inflation.push_back(robust && haar.robust_efficiency[j] > 0.0 ? 1.0 / haar.robust_efficiency[j] : 1.0);
+    const double efficiency = robust ? haar.robust_efficiency[j] : haar.efficiency.empty() ? 1.0 : haar.efficiency[j];
+    record.inflation.push_back(efficiency > 0.0 ? 1.0 / efficiency : 1.0);
   }
   return record;
 }

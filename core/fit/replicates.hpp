@@ -31,9 +31,10 @@ namespace driftlab {
 struct WaveletRecord {
   std::vector<std::size_t> half;  ///< half lengths m, rising, in samples
   std::vector<double> variance;   ///< [unit^2]; entries that are not positive are left out
-  /// Variance of each entry relative to the classical estimate's: 1 over the efficiency of a robust estimate. Empty: 1.
+  /// Variance of each entry relative to the classical estimate's of a whole record: 1 over the efficiency of a robust
+  /// estimate or of one with gaps. Empty: 1.
   std::vector<double> inflation = {};
-  std::size_t samples = 0;
+  std::size_t samples = 0;  ///< of the grid: those that are missing count
   double dt_s = 0.0;
 };
 

@@ -307,31 +307,6 @@ Status check_holes(const std::string& column, std::span<const double> values, co
   return {};
 }
 
-std::pair<std::size_t, std::size_t> longest_sound(const ChannelSurvey& survey, std::size_t first, std::size_t last) {
-  std::pair<std::size_t, std::size_t> best{first, first};
-  std::size_t begin = first;
-  const auto close = [&](std::size_t end, std::size_t next) {
-    if (end > begin && end - begin > best.second - best.first) {
-      best = {begin, end};
-    }
-    begin = std::max(begin, next);
-  };
-  auto hole = std::lower_bound(survey.unsound.begin(), survey.unsound.end(), first);
-  bool frozen_ahead = survey.frozen.second > std::max(first, survey.frozen.first);
-  while (begin < last) {
-    const std::size_t next_hole = hole == survey.unsound.end() ? last : std::min(*hole, last);
-    if (frozen_ahead && survey.frozen.first <= next_hole) {
-      frozen_ahead = false;
-      close(std::min(std::max(survey.frozen.first, begin), last), survey.frozen.second);
-      hole = std::lower_bound(hole, survey.unsound.end(), begin);
-      continue;
-    }
-    close(next_hole, next_hole + 1);
-    hole += hole == survey.unsound.end() ? 0 : 1;
-  }
-  return best;
-}
-
 std::string describe(const ChannelQuality& quality, std::size_t window_rows) {
   std::vector<std::string> facts;
   if (quality.missing > 0) {
@@ -355,8 +330,9 @@ std::string describe(const ChannelQuality& quality, std::size_t window_rows) {
                     (quality.resolution > 0.0 ? ", " + short_text(quality.resolution) + " apart" : std::string()));
   }
   if (quality.analysed < window_rows) {
-    facts.push_back("samples " + std::to_string(quality.first) + " to " +
-                    std::to_string(quality.first + quality.analysed - 1) + " are analysed");
+    const bool all = quality.last + 1 - quality.first == quality.analysed;
+    facts.push_back((all ? "samples " : std::to_string(quality.analysed) + " of the samples ") +
+                    std::to_string(quality.first) + " to " + std::to_string(quality.last) + " are analysed");
   }
   std::string sentence;
   for (const std::string& fact : facts) {

@@ -1,7 +1,7 @@
 #pragma once
 /// What is true of one sensor channel as it came: holes, garbage, coarse steps, a stuck or saturated sensor.
 ///
-/// Nothing is changed: the survey says which samples are sound, and analysis takes the longest stretch of those.
+/// Nothing is changed: the survey says which samples are sound, and analysis takes those (core/signal/stretch.hpp).
 ///
 /// missing      a NaN (core/signal/missing.hpp says why).
 /// implausible  a number that stands for "missing" (-9999, 9999, -99999, 99999, -999) and lies more than 100 times
@@ -47,10 +47,6 @@ struct ChannelSurvey {
 /// or more; empty cells in more than 5 %. Errors: NotANumber, NonFinite, OutOfRange; each names the first `row` and the
 /// `column`.
 [[nodiscard]] Status check_holes(const std::string& column, std::span<const double> values, const Passed& passed = {});
-
-/// The longest run of rows of [first, last) that is sound; the earliest of equals.
-[[nodiscard]] std::pair<std::size_t, std::size_t> longest_sound(const ChannelSurvey& survey, std::size_t first,
-                                                                std::size_t last);
 
 /// One sentence about everything unusual in a channel; empty where there is nothing.
 [[nodiscard]] std::string describe(const ChannelQuality& quality, std::size_t window_rows);

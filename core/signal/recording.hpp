@@ -4,6 +4,7 @@
 /// The samples themselves live in a column table (core/read/column_file.hpp maps one from disk) in the file's own
 /// units; this header holds their *meaning*. One `RecordingSpec` is one member of `recordings` in spec/study.md.
 #include "core/signal/condition.hpp"
+#include "core/signal/gappy_samples.hpp"
 #include "core/signal/quantity.hpp"
 #include "core/signal/result.hpp"
 #include "core/signal/unit.hpp"
@@ -41,6 +42,7 @@ struct RecordingSpec {
   std::map<std::string, ColumnRole> columns;
   Condition condition;
   Trim trim;
+  std::string calibration;  ///< reference to the calibration of the readings: a file or an id; empty: none
 
   friend bool operator==(const RecordingSpec&, const RecordingSpec&) = default;
 };
@@ -64,6 +66,7 @@ struct TimeBase {
   double dt_s = 0.0;     ///< sample interval: 1/rate_hz, or where a time column disagrees or is alone, the mean step of
                          ///< the analysed stretch
   double start_s = 0.0;  ///< first time stamp, 0 without a time column
+  double first_s = 0.0;  ///< time of the first analysed row since the first row of the file
 };
 
 /// What is true of one sensor channel as it came (core/signal/channel_survey.hpp finds it). Counts are over the whole
@@ -79,13 +82,15 @@ struct ChannelQuality {
   std::size_t frozen = 0;               ///< samples of a stretch in which the sensor gives one value only
   std::size_t frozen_from = 0;          ///< its first sample, from 1
   std::size_t first = 0;                ///< first analysed sample, from 1
-  std::size_t analysed = 0;  ///< samples analysed: the longest stretch in the window without any of the above
+  std::size_t last = 0;                 ///< last analysed sample
+  std::size_t analysed = 0;             ///< samples analysed: those of [first, last] without any of the above
 };
 
 /// What is true of the recording as it came, reported and never silently repaired.
 struct Quality {
   std::size_t samples = 0;          ///< rows of the file
   std::size_t analysed = 0;         ///< rows of the analysed part, after trims
+  std::size_t missing = 0;          ///< samples that the time column says are missing between them
   std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 intervals of the samples they join
   std::size_t repeated_stamps = 0;  ///< steps of the time column equal to 0
   std::size_t backward_steps = 0;   ///< steps of the time column below 0 that are no counter wrap
@@ -104,12 +109,15 @@ struct Window {
   TimeBase time;
   std::size_t first = 0;  ///< first analysed row
   std::size_t count = 0;  ///< analysed rows
+  std::vector<Gap> gaps;  ///< rows of the file, inside the window, before which samples are missing
   Quality quality;
 };
 
 /// Reads the time column (in `time_unit`; empty span: none), the stated rate and the trims, and decides which rows are
-/// analysed: where the time column has gaps or steps back, the longest stretch without one, which a note in `quality`
-/// says. Stamps in bursts (more than 2 % of the steps look like gaps) are read as those of evenly spaced samples.
+/// analysed: where the time column has gaps, one stretch with them (core/signal/stretch.hpp); where it steps back, the
+/// part before or after. A note in `quality` says what is left out. How many samples a gap lacks is counted on the grid
+/// of the sample interval from the rows on both sides, so that a late stamp which the next ones make up for lacks none.
+/// Stamps in bursts (more than 2 % of the steps look like gaps) are read as those of evenly spaced samples.
 /// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (one row
 /// in a thousand steps back, or more; naming the first), NonFinite, TooFewSamples (naming the parameter when a trim
 /// leaves nothing), InvalidArgument. O(rows) time, O(rows) memory for the median step.

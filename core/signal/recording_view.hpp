@@ -7,30 +7,42 @@
 /// of the file; where a reference column of the same axis exists, it is the reference. Both need a copy of the channel.
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/recording.hpp"
+#include "core/signal/stretch.hpp"
 
 #include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace driftlab {
 
-/// One sensor channel: the longest stretch of the analysed window in which it is sound
-/// (core/signal/channel_survey.hpp), so that no value is missing, implausible or frozen. What is left out stands in
+/// One sensor channel: the sound samples of the analysed window (core/signal/channel_survey.hpp), so that no value is
+/// missing, implausible or frozen, with the places where samples are missing between them. What is left out stands in
 /// `window.quality`.
 struct ChannelView {
   std::string column;
   ColumnRole role;                 ///< unit `1` where none is stated
-  std::size_t first_row = 0;       ///< row of the file that values[0] comes from
+  Stretch stretch;                 ///< rows of the file that `values` come from
   std::span<const double> values;  ///< error series in the channel's unit; the file's memory, or `owned`
-  std::vector<double> owned;       ///< filled where a reference had to be subtracted
+  std::vector<Gap> gaps;           ///< where samples are missing between two of `values`; empty: evenly spaced
+  std::vector<double> owned;       ///< filled where rows are left out or a reference had to be subtracted
+  /// The reference that was subtracted, one per value, in the channel's unit; empty where none had to be.
+  std::vector<double> reference;
+  std::string reference_column;  ///< where it comes from; empty: from the condition
+
+  /// The values of rows [first, first + count) of the file, which one run must hold.
+  [[nodiscard]] std::span<const double> rows(std::size_t first, std::size_t count) const;
 };
 
 struct RecordingView {
   Window window;
   std::vector<ChannelView> channels;  ///< sensors in file order
 };
+
+/// The rows that every one of `channels` has without a gap, at their longest: the first, and how many (0: none).
+[[nodiscard]] std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelView* const> channels);
 
 /// `column(i)` gives the samples of column i of the file in its own unit; they must outlive the view.
 /// Errors: those of assign_roles, plan_window and, for sensor columns, check_holes; TooFewSamples; UnknownColumn (no

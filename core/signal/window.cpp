@@ -1,4 +1,6 @@
+#include "core/signal/gap_sizes.hpp"
 #include "core/signal/recording.hpp"
+#include "core/signal/stretch.hpp"
 #include "core/signal/time_column.hpp"
 
 #include <algorithm>
@@ -66,6 +68,7 @@ Result<Window> plan_uniform(const RecordingSpec& spec, std::size_t rows) {
   Window window;
   window.time.dt_s = 1.0 / *spec.rate_hz;
   window.first = from_start;
+  window.time.first_s = window.time.dt_s * static_cast<double>(from_start);
   window.count = rows - from_start - from_end;
   window.quality.samples = rows;
   window.quality.analysed = window.count;
@@ -157,9 +160,28 @@ std::vector<double> forward_steps(const std::vector<double>& stamps) {
 struct Spacing {
   std::vector<std::size_t> gaps;  ///< rows before which samples are missing
   double interval_s = 0.0;        ///< median step a sample
+  double mean_s = 0.0;            ///< mean step a sample where nothing is missing
   double jitter_s = 0.0;
   bool bursts = false;
 };
+
+/// Mean step a sample over the groups that are not behind a gap (rows, rising).
+double mean_interval(const std::vector<double>& stamps, const std::vector<Group>& groups,
+                     const std::vector<std::size_t>& gaps) {
+  double sum = 0.0;
+  double samples = 0.0;
+  auto gap = gaps.begin();
+  for (std::size_t g = 1; g < groups.size(); ++g) {
+    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
+    if (gap != gaps.end() && *gap == groups[g].first) {
+      ++gap;
+    } else if (step > 0.0) {
+      sum += step;
+      samples += 0.5 * static_cast<double>(groups[g - 1].count + groups[g].count);
+    }
+  }
+  return samples > 0.0 ? sum / samples : 0.0;
+}
 
 /// Stamps given on arrival come in bursts: many steps look like gaps, though none of the samples is lost. The recording
 /// is then read as evenly spaced, and a gap is what is far beyond every other step.
@@ -177,6 +199,7 @@ Spacing find_spacing(const std::vector<double>& stamps, const std::vector<Group>
   spacing.bursts = static_cast<double>(spacing.gaps.size()) > kBurstGaps * static_cast<double>(stamps.size()) &&
                    stamps.size() >= 100;
   if (!spacing.bursts) {
+    spacing.mean_s = mean_interval(stamps, groups, spacing.gaps);
     return spacing;
   }
   const double largest_common = quantile(steps, 0.99);
@@ -194,6 +217,7 @@ Spacing find_spacing(const std::vector<double>& stamps, const std::vector<Group>
       spacing.gaps.push_back(i);
     }
   }
+  spacing.mean_s = spacing.interval_s;
   return spacing;
 }
 
@@ -214,23 +238,23 @@ Quality survey(const TimeColumn& time, std::size_t groups, const Spacing& spacin
   return quality;
 }
 
-/// The longest run of rows in [first, last) without a gap; the earliest of equals.
-std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& gaps, std::size_t first,
-                                                    std::size_t last) {
-  std::pair<std::size_t, std::size_t> best{first, first};
-  std::size_t begin = first;
-  const auto close = [&](std::size_t end) {
-    if (end - begin > best.second - best.first) {
-      best = {begin, end};
+/// The part of rows [first, last) to analyse: between two steps back, with the gaps in it.
+Stretch stretch_between(std::size_t first, std::size_t last, const std::vector<std::size_t>& backward,
+                        const std::vector<Gap>& gaps) {
+  Stretch best;
+  const auto take = [&](std::size_t end) {
+    Stretch part = choose_stretch(cut_at_gaps(first, end, gaps));
+    if (part.rows() > best.rows()) {
+      best = std::move(part);
     }
-    begin = end;
+    first = end;
   };
-  for (const std::size_t row : gaps) {
+  for (const std::size_t row : backward) {
     if (row > first && row < last) {
-      close(row);
+      take(row);
     }
   }
-  close(last);
+  take(last);
   return best;
 }
 
@@ -304,9 +328,13 @@ void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& w
     quality.notes.push_back("The time column steps back " + std::to_string(quality.backward_steps) +
                             " times, by at most " + short_text(step_back_s) + " s; the recording is split there.");
   }
+  if (quality.missing > 0) {
+    quality.notes.push_back(std::to_string(quality.missing) +
+                            " samples are missing in the gaps of the analysed part; nothing is put in their place.");
+  }
   if (window.count < trimmed_rows) {
-    quality.notes.push_back("Only the longest stretch without a gap is analysed: " + std::to_string(window.count) +
-                            " of " + std::to_string(trimmed_rows) + " samples, from sample " +
+    quality.notes.push_back("Too much is missing to analyse the recording as one: " + std::to_string(window.count) +
+                            " of " + std::to_string(trimmed_rows) + " samples are analysed, from sample " +
                             std::to_string(window.first + 1) + ".");
   }
 }
@@ -340,17 +368,22 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
   if (last < first + 2) {
     return trimmed_away(spec, stamps.back() - stamps.front());
   }
-  std::vector<std::size_t> breaks(spacing.gaps.size() + time->backward.size());
-  std::merge(spacing.gaps.begin(), spacing.gaps.end(), time->backward.begin(), time->backward.end(), breaks.begin());
-  const auto [from, to] = longest_stretch(breaks, first, last);
-  window.first = from;
-  window.count = to - from;
+  const Stretch stretch =
+      stretch_between(first, last, time->backward, gap_sizes(stamps, spacing.gaps, time->backward, spacing.mean_s));
+  window.first = stretch.runs.front().first;
+  window.count = stretch.rows();
+  window.time.first_s = stamps[window.first] - stamps.front();
+  for (std::size_t i = 1; i < stretch.runs.size(); ++i) {
+    window.gaps.push_back({stretch.runs[i].first, stretch.runs[i].missing});
+  }
   window.quality.analysed = window.count;
-  const double span = stamps[to - 1] - stamps[from];
+  window.quality.missing = stretch.missing();
+  const double span = stamps[window.first + window.count - 1] - stamps[window.first];
   if (window.count < 2 || span <= 0.0) {
     return fail(ErrorCode::TooFewSamples, "No two consecutive samples are without a gap between them.");
   }
-  if (auto status = settle_rate(spec, unit, span / static_cast<double>(window.count - 1), window); !status) {
+  const auto steps = static_cast<double>(window.count - 1 + stretch.missing());
+  if (auto status = settle_rate(spec, unit, span / steps, window); !status) {
     return fail(status.error());
   }
   note_irregularities(last - first, time->largest_step_back_s, window);

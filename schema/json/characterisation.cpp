@@ -61,10 +61,16 @@ Json haar_json(const HaarCurve& curve, double factor) {
     variance.push_back(number(curve.variance[i] * factor * factor));
     ci95.push_back(interval(curve.ci95[i], factor * factor));
   }
-  return Json{{"scale", std::move(scale)},
-              {"variance", std::move(variance)},
-              {"ci95", std::move(ci95)},
-              {"robust", robust_json(curve, factor * factor)}};
+  Json document{{"scale", std::move(scale)},
+                {"variance", std::move(variance)},
+                {"ci95", std::move(ci95)},
+                {"robust", robust_json(curve, factor * factor)}};
+  if (!curve.efficiency.empty()) {
+    for (const double efficiency : curve.efficiency) {
+      document["efficiency_by_scale"].push_back(number(efficiency));
+    }
+  }
+  return document;
 }
 
 Json contamination_json(const Contamination& contamination) {
@@ -203,7 +209,7 @@ Json recording_document(const std::string& id, const RecordingSpec& spec, const 
                         std::vector<Json> channels) {
   return Json{{"id", id},
               {"condition", to_json(spec.condition)},
-              {"duration_s", number(static_cast<double>(window.count) * window.time.dt_s)},
+              {"duration_s", number(static_cast<double>(window.count + window.quality.missing) * window.time.dt_s)},
               {"rate_hz", number(1.0 / window.time.dt_s)},
               {"quality", to_json(window.quality)},
               {"channels", std::move(channels)}};

@@ -49,15 +49,15 @@ std::vector<std::string> members_of(const Group& group) {
 /// The stored curve in SI. Robust values, where they exist, for a contaminated channel.
 WaveletRecord record_of(const Json& channel, double factor) {
   WaveletRecord record;
-  record.samples = channel.at("samples").get<std::size_t>();
+  record.samples = channel.at("samples").get<std::size_t>() + channel.value("missing", std::size_t{0});
   record.dt_s = channel.at("dt_s").get<double>();
   const Json& haar = channel.at("haar");
   const bool robust = contaminated(channel) && haar.contains("robust");
   const Json& variances = robust ? haar["robust"]["variance"] : haar.at("variance");
-  const Json efficiencies = robust ? haar["robust"].value("efficiency_by_scale", Json()) : Json();
+  const Json efficiencies = (robust ? haar["robust"] : haar).value("efficiency_by_scale", Json());
   for (std::size_t j = 0; j < haar.at("scale").size(); ++j) {
     const double value = variances[j].is_number() ? variances[j].get<double>() : 0.0;
-    const bool known = robust && efficiencies.is_array() && efficiencies[j].is_number();
+    const bool known = efficiencies.is_array() && efficiencies[j].is_number();
     const double efficiency = known ? efficiencies[j].get<double>() : 1.0;
     record.half.push_back(haar["scale"][j].get<std::size_t>() / 2);
     record.variance.push_back(value * factor * factor);

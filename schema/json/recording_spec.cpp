@@ -113,6 +113,9 @@ Json to_json(const RecordingSpec& spec) {
   if (spec.trim.start_s != 0.0 || spec.trim.end_s != 0.0) {
     document["trim"] = Json{{"start_s", spec.trim.start_s}, {"end_s", spec.trim.end_s}};
   }
+  if (!spec.calibration.empty()) {
+    document["calibration"] = spec.calibration;
+  }
   return document;
 }
 
@@ -151,6 +154,7 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
       faults.add(reader.pointer("trim"), ErrorCode::InvalidArgument, "A trim must not be negative.");
     }
   }
+  spec.calibration = reader.text("calibration").value_or("");
   reader.reject_unknown();
   return spec;
 }
@@ -209,6 +213,7 @@ Json to_json(const ChannelQuality& channel) {
               {"frozen", channel.frozen},
               {"frozen_from", channel.frozen > 0 ? Json(channel.frozen_from) : Json(nullptr)},
               {"first", channel.first},
+              {"last", channel.last},
               {"analysed", channel.analysed}};
 }
 
@@ -218,6 +223,7 @@ Json to_json(const Quality& quality) {
   Json document{{"samples", quality.samples},
                 {"analysed", quality.analysed},
                 {"gaps", quality.gaps},
+                {"missing", quality.missing},
                 {"repeated_stamps", quality.repeated_stamps},
                 {"backward_steps", quality.backward_steps},
                 {"counter_wraps", quality.counter_wraps},

@@ -92,8 +92,10 @@ std::string row(const fs::path& file, const std::string& name, const fs::path& s
   for (const ChannelView& channel : seen->channels) {
     CharacteriseOptions options;
     options.models = {"WN"};
-    const auto result = characterise_channel(
-        {channel.values.first(std::min(channel.values.size(), kMostSamples)), seen->window.time.dt_s, 1.0}, options);
+    const auto values = channel.values.first(std::min(channel.values.size(), kMostSamples));
+    std::vector<Gap> gaps = channel.gaps;
+    std::erase_if(gaps, [&](const Gap& gap) { return gap.row >= values.size(); });
+    const auto result = characterise_channel({values, seen->window.time.dt_s, 1.0, gaps}, options);
     characterised += result ? 1 : 0;
     if (!result && first_fault.empty()) {
       first_fault = "Column '" + channel.column + "': " + result.error().message;

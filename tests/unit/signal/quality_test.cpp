@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -71,21 +72,26 @@ TEST(Quality, IsSilentAboutASoundChannel) {
   EXPECT_TRUE(seen->window.quality.notes.empty()) << seen->window.quality.notes.front();
 }
 
-TEST(Quality, CountsMissingSamplesAndTakesTheLongestStretchWithout) {
+TEST(Quality, CountsMissingSamplesAndTakesTheOthers) {
   std::vector<double> values = noise(5000);
   values[1000] = missing_sample(Missing::Empty, 1002);
   values[1001] = missing_sample(Missing::Nan, 1003);
   values[4000] = missing_sample(Missing::Nan, 4002);
   const auto seen = view({values}, {"gz"});
   ASSERT_TRUE(seen) << seen.error().message;
-  EXPECT_EQ(seen->channels[0].values.size(), 2998U);
-  EXPECT_EQ(seen->channels[0].first_row, 1002U);
+  const ChannelView& view = seen->channels[0];
+  EXPECT_EQ(view.values.size(), 4997U);
+  EXPECT_EQ(view.values[1000], values[1002]);
+  EXPECT_THAT(view.gaps, ElementsAre(Gap{1000, 2}, Gap{3998, 1}));
+  EXPECT_THAT(view.stretch.runs, ElementsAre(RowRun{0, 1000, 0}, RowRun{1002, 2998, 2}, RowRun{4001, 999, 1}));
+  EXPECT_EQ(view.rows(1500, 10).data(), view.values.data() + 1498);
   const ChannelQuality& channel = seen->window.quality.channels.at(0);
   EXPECT_EQ(channel.missing, 3U);
-  EXPECT_EQ(channel.first, 1003U);
-  EXPECT_EQ(channel.analysed, 2998U);
-  EXPECT_THAT(seen->window.quality.notes,
-              Contains(AllOf(HasSubstr("3 samples are missing"), HasSubstr("1003 to 4000 are analysed"))));
+  EXPECT_EQ(channel.first, 1U);
+  EXPECT_EQ(channel.last, 5000U);
+  EXPECT_EQ(channel.analysed, 4997U);
+  EXPECT_THAT(seen->window.quality.notes, Contains(AllOf(HasSubstr("3 samples are missing"),
+                                                         HasSubstr("4997 of the samples 1 to 5000 are analysed"))));
 }
 
 TEST(Quality, RefusesAChannelOfWhichTooMuchIsMissingByItsFirstRow) {
@@ -129,8 +135,8 @@ TEST(Quality, TakesNumbersThatMeanNothingAsMissing) {
   values[300] = -9999.0;
   const ChannelQuality channel = quality_of(values);
   EXPECT_EQ(channel.implausible, 3U);
-  EXPECT_EQ(channel.first, 302U);
-  EXPECT_EQ(channel.analysed, 5699U);
+  EXPECT_EQ(channel.first, 1U);
+  EXPECT_EQ(channel.analysed, 5997U);
   // In a channel of counts they are measurements.
   std::vector<double> counts = noise(6000);
   for (double& count : counts) {
@@ -153,7 +159,7 @@ TEST(Quality, SeesASensorThatFreezes) {
 TEST(Quality, LeavesOutASensorThatIsFrozenThroughoutTheWindow) {
   std::vector<double> stamps = clock(6000);
   for (std::size_t i = 1000; i < stamps.size(); ++i) {
-    stamps[i] += 10.0;
+    stamps[i] += 30.0;  // more than a fifth of the recording
   }
   std::vector<double> values = noise(6000);
   std::fill(values.begin() + 900, values.end(), values[900]);
@@ -245,8 +251,9 @@ TEST(Quality, ReadsBurstsAsEvenlySpacedSamples) {
   ASSERT_TRUE(seen) << seen.error().message;
   EXPECT_TRUE(seen->window.quality.bursts);
   EXPECT_EQ(seen->window.quality.gaps, 1U);
-  EXPECT_EQ(seen->window.count, 3000U);
-  // 2999 steps from the first sample of the first FIFO to the last of the last: 29.9615 s instead of 29.99 s.
+  EXPECT_EQ(seen->window.count, 4000U);
+  EXPECT_THAT(seen->window.gaps, ElementsAre(Gap{3000, 200}));
+  // 4199 steps from the first sample of the first FIFO to the last of the last: 41.9615 s instead of 41.99 s.
   EXPECT_NEAR(seen->window.time.dt_s, 0.01, 0.01 * 1.1e-3);
   EXPECT_NEAR(seen->window.quality.jitter_s, 0.5 * (0.0385 - 0.0005), 1e-9);
 }
@@ -276,8 +283,43 @@ TEST(Quality, LeavesOutTheErrorWhereTheReferenceIsMissing) {
   const auto seen =
       view_recording(spec, {"gz", "rz"}, 3000, [&](std::size_t i) { return std::span<const double>(table[i]); });
   ASSERT_TRUE(seen) << seen.error().message;
-  EXPECT_EQ(seen->channels[0].values.size(), 1999U);
-  EXPECT_EQ(seen->channels[0].first_row, 1001U);
+  EXPECT_EQ(seen->channels[0].values.size(), 2999U);
+  EXPECT_THAT(seen->channels[0].gaps, ElementsAre(Gap{1000, 1}));
+}
+
+TEST(Quality, RampsFromRestThroughAGap) {
+  // 2 deg/s^2 from the first row on, read without error; 5 s are lost after 10 s.
+  std::vector<double> stamps = clock(6000);
+  std::vector<double> rate(6000);
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    stamps[i] += i >= 1000 ? 5.0 : 0.0;
+    rate[i] = 2.0 * stamps[i];
+  }
+  RecordingSpec spec;
+  spec.condition = *parse_condition("constant_angular_acceleration:z:2:deg/s^2");
+  spec.trim.start_s = 1.0;
+  const Table table{stamps, rate};
+  const auto seen = view_recording(spec, {"time (s)", "gz (deg/s)"}, 6000,
+                                   [&](std::size_t i) { return std::span<const double>(table[i]); });
+  ASSERT_TRUE(seen) << seen.error().message;
+  const ChannelView& channel = seen->channels[0];
+  ASSERT_EQ(channel.values.size(), 5900U);
+  EXPECT_THAT(channel.gaps, ElementsAre(Gap{900, 500}));
+  for (const std::size_t i : {std::size_t{0}, std::size_t{899}, std::size_t{900}, std::size_t{5899}}) {
+    EXPECT_NEAR(channel.values[i], 0.0, 1e-9) << i;
+    EXPECT_NEAR(channel.reference[i], rate[i + 100], 1e-9) << i;
+  }
+}
+
+TEST(Quality, FindsTheRowsThatAllAxesHave) {
+  Table table{noise(3000, 1), noise(3000, 2), noise(3000, 3)};
+  table[0][500] = missing_sample(Missing::Nan, 502);
+  table[1][1700] = missing_sample(Missing::Nan, 1702);
+  const auto seen = view(table, {"gx", "gy", "gz"});
+  ASSERT_TRUE(seen) << seen.error().message;
+  const std::array<const ChannelView*, 3> triad{&seen->channels[0], &seen->channels[1], &seen->channels[2]};
+  EXPECT_EQ(longest_shared_run(triad), (std::pair<std::size_t, std::size_t>{1701, 1299}));
+  EXPECT_EQ(seen->channels[0].rows(1701, 1299).front(), table[0][1701]);
 }
 
 }  // namespace

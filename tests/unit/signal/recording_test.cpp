@@ -11,6 +11,7 @@ namespace driftlab {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -269,7 +270,7 @@ TEST(PlanWindow, CountsRepeatedStampsAndKeepsThem) {
   EXPECT_THAT(window->quality.notes, Contains(HasSubstr("1 time stamps repeat")));
 }
 
-TEST(PlanWindow, AnalysesTheLongestStretchWithoutAGap) {
+TEST(PlanWindow, SplitsAtGapsOfMoreThanAFifth) {
   // 100 samples, a gap of 5 s, 300 samples, a gap of 2 s, 200 samples.
   std::vector<double> time;
   double now = 10.0;
@@ -286,7 +287,56 @@ TEST(PlanWindow, AnalysesTheLongestStretchWithoutAGap) {
   EXPECT_EQ(window->quality.samples, 600U);
   EXPECT_NEAR(window->time.dt_s, 0.01, 1e-12);
   EXPECT_NEAR(window->time.start_s, 10.01, 1e-12);
-  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("300 of 600 samples, from sample 101")));
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("300 of 600 samples are analysed, from sample 101")));
+}
+
+TEST(PlanWindow, AnalysesWhatLiesOnBothSidesOfAGap) {
+  // 2000 samples, 0.5 s lost, 3000 samples, 2 s lost, 1000 samples.
+  std::vector<double> time = stamps(6000, 0.01);
+  for (std::size_t i = 2000; i < time.size(); ++i) {
+    time[i] += i >= 5000 ? 2.5 : 0.5;
+  }
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->count, 6000U);
+  EXPECT_THAT(window->gaps, ElementsAre(Gap{2000, 50}, Gap{5000, 200}));
+  EXPECT_EQ(window->quality.missing, 250U);
+  EXPECT_EQ(window->time.dt_s, 0.01);
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("250 samples are missing")));
+}
+
+TEST(PlanWindow, TakesALateStampThatIsMadeUpForAsNoGap) {
+  // Stamps of a host: every hundredth is 8 ms late, the next ones on time again. One sample is really lost.
+  std::vector<double> time = stamps(5001, 0.01);
+  time.erase(time.begin() + 2350);
+  for (std::size_t i = 50; i < time.size(); i += 100) {
+    time[i] += 0.008;
+  }
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  EXPECT_EQ(window->quality.gaps, 51U);
+  EXPECT_THAT(window->gaps, ElementsAre(Gap{2350, 1}));
+  EXPECT_EQ(window->count, 5000U);
+}
+
+TEST(PlanWindow, CountsGapsThatLieCloseTogether) {
+  // Of 4000 samples, at 1000, 1003 and 1010 one, two and three are lost.
+  std::vector<double> time;
+  for (std::size_t i = 0; i < 4000; ++i) {
+    const bool lost = i == 1000 || (i >= 1004 && i < 1006) || (i >= 1013 && i < 1016);
+    if (!lost) {
+      time.push_back(0.01 * static_cast<double>(i));
+    }
+  }
+  const auto window = plan(at_rate(100.0), time);
+  ASSERT_TRUE(window) << window.error().message;
+  std::size_t missing = 0;
+  for (const Gap& gap : window->gaps) {
+    missing += gap.missing;
+    EXPECT_NEAR(static_cast<double>(gap.row), 1005.0, 5.0);
+  }
+  EXPECT_EQ(missing, 6U);
+  EXPECT_EQ(window->time.dt_s, 0.01);
 }
 
 TEST(PlanWindow, UnderstandsFifosStampedAtOnce) {
@@ -300,10 +350,10 @@ TEST(PlanWindow, UnderstandsFifosStampedAtOnce) {
   ASSERT_TRUE(window) << window.error().message;
   EXPECT_EQ(window->quality.repeated_stamps, 300U);
   EXPECT_EQ(window->quality.gaps, 1U);
-  EXPECT_EQ(window->first, 40U);
-  EXPECT_EQ(window->count, 360U);
-  // 359 steps over 89 FIFOs of 40 ms: the last FIFO counts at its first sample, a bias of 3 in 359.
-  EXPECT_NEAR(window->time.dt_s, 0.01, 0.01 * 3.0 / 359.0 * 1.01);
+  EXPECT_EQ(window->count, 400U);
+  EXPECT_THAT(window->gaps, ElementsAre(Gap{40, 4}));
+  // 403 steps over 100 FIFOs of 40 ms: the last FIFO counts at its first sample, a bias of 3 in 403.
+  EXPECT_NEAR(window->time.dt_s, 0.01, 0.01 * 3.0 / 403.0 * 1.01);
 }
 
 TEST(PlanWindow, SeesOneMissingSample) {
@@ -312,7 +362,8 @@ TEST(PlanWindow, SeesOneMissingSample) {
   const auto window = plan(at_rate(100.0), time);
   ASSERT_TRUE(window) << window.error().message;
   EXPECT_EQ(window->quality.gaps, 1U);
-  EXPECT_EQ(window->count, 700U);
+  EXPECT_EQ(window->count, 999U);
+  EXPECT_THAT(window->gaps, ElementsAre(Gap{700, 1}));
 }
 
 TEST(PlanWindow, MeasuresTheMeanOfCoarseStamps) {
