@@ -15,7 +15,8 @@ struct Failure {
 /// Decodes, maps and characterises each file here. Cancelled by interrupt_token.
 [[nodiscard]] tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options);
 
-/// Uploads each file, queues one job for all of them, follows its events and fetches its result.
+/// Uploads each file, and a study as a study, queues one job for all of them, follows its events and fetches its
+/// result. Calibrations that files name are stored there first.
 [[nodiscard]] tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const CharacteriseOptions& options,
                                                              const std::string& server);
 

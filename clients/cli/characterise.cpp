@@ -60,6 +60,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--device", flags->file.device,
                       "Device the recordings belong to; default: the first file's name");
+  command->add_option("--calibration", flags->file.calibration,
+                      "Correct the readings by what `driftlab calibrate --json` wrote to this file");
   command
       ->add_option("--models", flags->models,
                    "Candidate models, e.g. WN,WN+GM; default: the nine of Radi et al. (2017)")

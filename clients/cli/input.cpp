@@ -1,6 +1,7 @@
 #include "clients/cli/input.hpp"
 
 #include "core/signal/number.hpp"
+#include "schema/json/calibration.hpp"
 #include "schema/json/recording_spec.hpp"
 
 #include <fstream>
@@ -35,19 +36,51 @@ Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
     return fail(condition.error());
   }
   spec.condition = *condition;
+  spec.calibration = flags.calibration;
   return spec;
 }
 
-Result<Inputs> read_study(const std::filesystem::path& path) {
+/// The document in a file; `what` it is, for the sentence that says it is not there.
+Result<Json> read_document(const std::filesystem::path& path, const std::string& what) {
   const std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    return fail(ErrorCode::NotFound, "The study " + path.string() + " cannot be opened.");
+    return fail(ErrorCode::NotFound, "The " + what + " " + path.string() + " cannot be opened.");
   }
   std::ostringstream text;
   text << stream.rdbuf();
   auto document = parse_json(text.str());
   if (!document) {
     return fail(document.error().code, path.string() + ": " + document.error().message);
+  }
+  return document;
+}
+
+/// Reads the calibrations that the recordings name; names in a study are relative to its folder.
+Status read_calibrations(const std::filesystem::path& folder, Inputs& inputs) {
+  for (InputFile& file : inputs.files) {
+    if (file.spec.calibration.empty()) {
+      continue;
+    }
+    const std::filesystem::path path = folder / file.spec.calibration;
+    auto document = read_document(path, "calibration");
+    if (!document) {
+      return fail(document.error());
+    }
+    Faults faults;
+    file.calibration = calibration_from_json(*document, "", faults);
+    if (!faults.none()) {
+      const Error error = faults.error();
+      return fail(error.code, path.string() + ": " + error.message, error.fields);
+    }
+    file.calibration_document = std::move(*document);
+  }
+  return {};
+}
+
+Result<Inputs> read_study(const std::filesystem::path& path) {
+  auto document = read_document(path, "study");
+  if (!document) {
+    return fail(document.error());
   }
   Inputs inputs;
   inputs.study = stem_of(path);
@@ -81,6 +114,9 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
     const Error error = faults.error();
     return fail(error.code, path.string() + ", " + error.fields.front().name + ": " + error.message, error.fields);
   }
+  if (auto read = read_calibrations(path.parent_path(), inputs); !read) {
+    return fail(read.error());
+  }
   return inputs;
 }
 
@@ -106,6 +142,9 @@ Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlag
     inputs.files.push_back(std::move(file));
   }
   inputs.device = flags.device.empty() ? inputs.files.front().spec.id : flags.device;
+  if (auto read = read_calibrations({}, inputs); !read) {
+    return fail(read.error());
+  }
   return inputs;
 }
 

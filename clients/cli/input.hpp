@@ -1,6 +1,7 @@
 #pragma once
 /// What a user hands to a command: recording files with flags, or a study document (spec/study.md) with files beside
 /// it.
+#include "core/calibrate/sensor_calibration.hpp"
 #include "core/signal/recording.hpp"
 #include "schema/json/json.hpp"
 
@@ -16,11 +17,14 @@ struct FileFlags {
   std::string columns;
   std::string condition = "static";
   std::string device;
+  std::string calibration;
 };
 
 struct InputFile {
   std::filesystem::path path;
-  RecordingSpec spec;  ///< `id` is never empty
+  RecordingSpec spec;              ///< `id` is never empty
+  Calibration calibration = {};    ///< what the file that `spec.calibration` names holds
+  Json calibration_document = {};  ///< the same as it was read, or null
 };
 
 struct Inputs {

@@ -1,9 +1,8 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/workspace.hpp"
-#include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
-#include "core/signal/recording_view.hpp"
+#include "core/read/open_recording.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "schema/json/parameter_table.hpp"
@@ -22,21 +21,15 @@ Result<Json> characterise_file(const InputFile& file, const CharacteriseOptions&
   if (!decoded) {
     return fail(decoded.error());
   }
-  auto columns = ColumnFile::open(workspace.file());
-  if (!columns) {
-    return fail(columns.error());
+  auto opened = open_recording(workspace.file(), file.spec);
+  if (!opened) {
+    return fail(opened.error());
   }
-  auto view =
-      view_recording(file.spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
-  if (!view) {
-    return fail(view.error());
-  }
-  for (const std::string& note : decoded->notes) {
-    view->window.quality.notes.push_back(note);
-  }
+  RecordingView& view = opened->view;
+  view.window.quality.notes.insert(view.window.quality.notes.end(), decoded->notes.begin(), decoded->notes.end());
   const RunControl fitting{control.stop,
                            [&](std::string_view stage, double f) { control.report(stage, 0.3 + 0.7 * f); }};
-  return characterise_recording(file.spec.id, file.spec, *view, options, fitting);
+  return characterise_recording(file.spec.id, file.spec, view, file.calibration, options, fitting);
 }
 
 }  // namespace

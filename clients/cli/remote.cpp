@@ -51,13 +51,73 @@ std::string upload_target(const std::string& device, const RecordingSpec& spec) 
   if (spec.trim.end_s > 0.0) {
     target += "&trim_end_s=" + to_text(spec.trim.end_s);
   }
+  if (!spec.calibration.empty()) {
+    target += "&calibration=" + percent_encode(spec.calibration);
+  }
   return target;
+}
+
+/// Posts a document and takes the id of what it made, `what`.
+tl::expected<Json, Failure> post_for_id(HttpClient& client, const std::string& target, const Json& document,
+                                        const std::string& what) {
+  auto reply = client.post(target, to_text(document));
+  if (!reply) {
+    return unreachable(reply.error());
+  }
+  if (reply->status < 200 || reply->status > 202) {
+    return refused(*reply);
+  }
+  auto made = parse_json(reply->body);
+  if (!made || !made->contains("id")) {
+    return unreachable(Error{ErrorCode::ParseError, "The daemon's answer to " + what + " is not understood.", {}});
+  }
+  return (*made)["id"];
+}
+
+/// Stores the calibrations that files name in the daemon, and names those instead.
+tl::expected<std::vector<InputFile>, Failure> with_stored_calibrations(HttpClient& client, const Inputs& inputs) {
+  std::vector<InputFile> files = inputs.files;
+  for (InputFile& file : files) {
+    if (file.spec.calibration.empty()) {
+      continue;
+    }
+    const Json request{{"device", {{"id", inputs.device}}}, {"calibration", file.calibration_document}};
+    auto id = post_for_id(client, "/v1/calibrations", request, "a calibration");
+    if (!id) {
+      return tl::unexpected(id.error());
+    }
+    file.spec.calibration = id->get<std::string>();
+  }
+  return files;
+}
+
+/// What the job works on: the uploaded recordings, or where they are a study, that.
+tl::expected<Json, Failure> job_inputs(HttpClient& client, const Inputs& inputs, const Json& ids) {
+  if (!inputs.study.is_string()) {
+    return Json{{"recordings", ids}};
+  }
+  Json study{{"device", {{"id", inputs.device}}}, {"recordings", Json::array()}};
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    study["recordings"].push_back(Json{{"recording", ids[i]}, {"id", inputs.files[i].spec.id}});
+  }
+  if (!inputs.baseline.is_null()) {
+    study["baseline"] = inputs.baseline;
+  }
+  auto id = post_for_id(client, "/v1/studies", study, "a study");
+  if (!id) {
+    return tl::unexpected(id.error());
+  }
+  return Json{{"study", *id}};
 }
 
 /// The ids of the uploaded recordings, in order.
 tl::expected<Json, Failure> upload_all(HttpClient& client, const Inputs& inputs, ProgressBar& bar) {
+  auto files = with_stored_calibrations(client, inputs);
+  if (!files) {
+    return tl::unexpected(files.error());
+  }
   Json ids = Json::array();
-  for (const InputFile& file : inputs.files) {
+  for (const InputFile& file : *files) {
     const auto done = static_cast<double>(ids.size());
     auto reply = client.upload(upload_target(inputs.device, file.spec), file.path, [&](double fraction) {
       bar.show("upload " + file.spec.id, 0.3 * (done + fraction) / static_cast<double>(inputs.files.size()));
@@ -123,19 +183,16 @@ tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const Chara
   if (!ids) {
     return tl::unexpected(ids.error());
   }
-  const Json request{{"kind", "characterise"}, {"inputs", {{"recordings", *ids}}}, {"parameters", to_json(options)}};
-  auto reply = client->post("/v1/jobs", to_text(request));
-  if (!reply) {
-    return unreachable(reply.error());
+  auto wanted = job_inputs(*client, inputs, *ids);
+  if (!wanted) {
+    return tl::unexpected(wanted.error());
   }
-  if (reply->status != 202 && reply->status != 200) {
-    return refused(*reply);
+  const Json request{{"kind", "characterise"}, {"inputs", *wanted}, {"parameters", to_json(options)}};
+  auto queued = post_for_id(*client, "/v1/jobs", request, "a job");
+  if (!queued) {
+    return tl::unexpected(queued.error());
   }
-  auto queued = parse_json(reply->body);
-  if (!queued || !queued->contains("id")) {
-    return unreachable(Error{ErrorCode::ParseError, "The daemon's answer to a job is not understood.", {}});
-  }
-  const std::string job_id = (*queued)["id"].get<std::string>();
+  const auto job_id = queued->get<std::string>();
   auto job = wait_for(*client, job_id, bar);
   if (!job) {
     return tl::unexpected(job.error());

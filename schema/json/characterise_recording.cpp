@@ -1,11 +1,36 @@
 #include "schema/json/characterise_recording.hpp"
 
+#include "core/calibrate/aligned_reference.hpp"
 #include "schema/json/characterisation.hpp"
 
-namespace driftlab {
+#include <algorithm>
 
-Result<Json> characterise_recording(const std::string& id, const RecordingSpec& spec, const RecordingView& view,
-                                    const CharacteriseOptions& options, const RunControl& control) {
+namespace driftlab {
+namespace {
+
+Json to_json(const ReferenceAlignment& alignment) {
+  Json document{{"column", alignment.reference}, {"applied", alignment.applied}, {"delay", nullptr}};
+  if (const auto& found = alignment.estimate) {
+    document["delay"] = quantity(found->delay_s, 1.0, "s");
+    document["gain"] = number(found->gain);
+    document["correlation"] = number(found->correlation);
+    document["warnings"] = found->warnings;
+  }
+  if (!alignment.reason.empty()) {
+    document["reason"] = alignment.reason;
+  }
+  return document;
+}
+
+}  // namespace
+
+Result<Json> characterise_recording(const std::string& id, const RecordingSpec& spec, RecordingView& view,
+                                    const Calibration& calibration, const CharacteriseOptions& options,
+                                    const RunControl& control) {
+  if (auto applied = apply_calibration(calibration, view); !applied) {
+    return fail(applied.error());
+  }
+  const std::vector<ReferenceAlignment> alignments = align_references(view);
   std::vector<Json> channels;
   const auto count = static_cast<double>(view.channels.size());
   for (const ChannelView& channel : view.channels) {
@@ -16,13 +41,23 @@ Result<Json> characterise_recording(const std::string& id, const RecordingSpec& 
       control.report(channel.column + ": " + std::string(stage), (done + fraction) / count);
     };
     const double factor = channel.role.unit ? channel.role.unit->factor : 1.0;
-    auto result = characterise_channel({channel.values, view.window.time.dt_s, factor}, options, part);
+    auto result = characterise_channel({channel.values, view.window.time.dt_s, factor, channel.gaps}, options, part);
     if (!result) {
       return fail(Error(result.error()).with("column", channel.column));
     }
     channels.push_back(to_json(ChannelIdentity{channel.column, channel.role}, *result));
+    const auto aligned = std::find_if(alignments.begin(), alignments.end(), [&](const ReferenceAlignment& alignment) {
+      return alignment.channel == channel.column;
+    });
+    if (aligned != alignments.end()) {
+      channels.back()["reference"] = to_json(*aligned);
+    }
   }
-  return recording_document(id, spec, view.window, std::move(channels));
+  Json document = recording_document(id, spec, view.window, std::move(channels));
+  if (!spec.calibration.empty()) {
+    document["calibration"] = spec.calibration;
+  }
+  return document;
 }
 
 Json to_json(const CharacteriseOptions& options) {

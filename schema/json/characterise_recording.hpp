@@ -1,5 +1,6 @@
 #pragma once
 /// From a recording's samples to its characterisation document: the one path that CLI and daemon share.
+#include "core/calibrate/sensor_calibration.hpp"
 #include "core/fit/characterise.hpp"
 #include "core/signal/recording_view.hpp"
 #include "schema/json/json.hpp"
@@ -8,10 +9,12 @@
 
 namespace driftlab {
 
-/// One member of `recordings` of the characterisation document (spec/results.md). Channels are characterised in file
-/// order; progress runs over them all. Errors: those of characterise_channel, with field "column".
-[[nodiscard]] Result<Json> characterise_recording(const std::string& id, const RecordingSpec& spec,
-                                                  const RecordingView& view, const CharacteriseOptions& options,
+/// One member of `recordings` of the characterisation document (spec/results.md). Readings are corrected by the
+/// calibration, where there is one, and references put in time (core/calibrate/aligned_reference.hpp); both change
+/// `view`. Channels are characterised in file order; progress runs over them all. Errors: those of apply_calibration;
+/// those of characterise_channel, with field "column".
+[[nodiscard]] Result<Json> characterise_recording(const std::string& id, const RecordingSpec& spec, RecordingView& view,
+                                                  const Calibration& calibration, const CharacteriseOptions& options,
                                                   const RunControl& control);
 
 /// Settings as stored with each result: models, seed, algorithm version.

@@ -146,6 +146,7 @@ void add_all_routes(Router& router, ApiContext& context) {
   add_parameter_table_routes(router, context);
   add_study_routes(router, context);
   add_outage_evaluation_routes(router, context);
+  add_calibration_routes(router, context);
 }
 
 }  // namespace driftlab::server

@@ -1,10 +1,10 @@
-#include "core/read/column_file.hpp"
-#include "core/signal/recording_view.hpp"
+#include "core/read/open_recording.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/upload.hpp"
 #include "server/http/problem.hpp"
+#include "server/jobs/recording_calibration.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -61,16 +61,19 @@ Result<Response> get_recording(ApiContext& context, const Request& request) {
 
 /// Checks changed metadata against the samples they describe. The quality as JSON text.
 Result<std::string> check_metadata(ApiContext& context, const Recording& recording, const RecordingSpec& spec) {
-  auto columns = ColumnFile::open(context.blobs.columns_path(recording.blob_sha256));
-  if (!columns) {
-    return fail(columns.error());
+  auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec, SurveyedPages::Release);
+  if (!opened) {
+    return fail(opened.error());
   }
-  auto view =
-      view_recording(spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
-  if (!view) {
-    return fail(view.error());
+  std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
+  auto calibration = calibration_of(context.store, spec, recording.device_id);
+  if (!calibration) {
+    return fail(calibration.error());
   }
-  return to_text(driftlab::to_json(view->window.quality));
+  if (auto applied = apply_calibration(*calibration, opened->view); !applied) {
+    return fail(applied.error());
+  }
+  return quality;
 }
 
 Result<Response> patch_recording(ApiContext& context, const Request& request) {
@@ -155,7 +158,7 @@ void add_recording_routes(Router& router, ApiContext& context) {
               "/v1/recordings",
               "uploadRecording",
               {"device", "id", "condition", "axis", "value", "unit", "direction", "rate_hz", "columns", "trim_start_s",
-               "trim_end_s"},
+               "trim_end_s", "calibration"},
               UploadHandler([&](const Request& request) { return begin_upload(context, request); })});
   router.add({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
                 return get_recording(context, request);

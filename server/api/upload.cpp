@@ -1,8 +1,7 @@
 #include "server/api/upload.hpp"
 
-#include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
-#include "core/signal/recording_view.hpp"
+#include "core/read/open_recording.hpp"
 #include "core/signal/text.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
@@ -10,6 +9,7 @@
 #include "server/http/guard.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
+#include "server/jobs/recording_calibration.hpp"
 #include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
 
@@ -229,17 +229,23 @@ class RecordingUpload final : public UploadSession {
 
   /// Metadata and samples must fit together before anything is kept. The recording's quality as JSON text.
   Result<std::string> check_against_columns() {
-    auto columns = ColumnFile::open(columns_);
-    if (!columns) {
-      return fail(columns.error());
+    auto opened = open_recording(columns_, metadata_.spec, SurveyedPages::Release);
+    if (!opened) {
+      return fail(opened.error());
     }
-    auto view = view_recording(
-        metadata_.spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); },
-        [&](std::span<const double> samples) { columns->release(samples); });
-    if (!view) {
-      return fail(view.error());
+    std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
+    if (metadata_.spec.calibration.empty()) {
+      return quality;
     }
-    return to_text(driftlab::to_json(view->window.quality));
+    const auto device = context_.store.device(metadata_.device.name);
+    auto calibration = calibration_of(context_.store, metadata_.spec, device ? device->id : "");
+    if (!calibration) {
+      return fail(calibration.error());
+    }
+    if (auto applied = apply_calibration(*calibration, opened->view); !applied) {
+      return fail(applied.error());
+    }
+    return quality;
   }
 
   ApiContext& context_;

@@ -1,10 +1,11 @@
 #include "server/jobs/characterise.hpp"
 
-#include "core/read/column_file.hpp"
+#include "core/read/open_recording.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/jobs/pool_results.hpp"
+#include "server/jobs/recording_calibration.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -185,16 +186,15 @@ class Characterise final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
-    if (!columns) {
-      return fail(columns.error());
+    auto opened = open_recording(context.blobs.columns_path(recording->blob_sha256), spec);
+    if (!opened) {
+      return fail(opened.error());
     }
-    auto view =
-        view_recording(spec, columns->names(), columns->rows(), [&](std::size_t i) { return columns->column(i); });
-    if (!view) {
-      return fail(view.error());
+    auto calibration = calibration_of(context.store, spec, recording->device_id);
+    if (!calibration) {
+      return fail(calibration.error());
     }
-    auto document = characterise_recording(recording->id, spec, *view, options, control);
+    auto document = characterise_recording(recording->id, spec, opened->view, *calibration, options, control);
     if (document) {
       collect(*recording, *document, options, context, results);
     }

@@ -141,6 +141,15 @@ struct Study {
   UtcMicros created_at = 0;
 };
 
+/// A calibration of a device's sensors. It never changes.
+struct StoredCalibration {
+  std::string id;  ///< `cal_...`
+  std::string device_id;
+  std::string unique_key;     ///< SHA-256 of device and document
+  std::string document_json;  ///< `calibration`, and the recordings and settings it was made from
+  UtcMicros created_at = 0;
+};
+
 /// Everything a finished job writes, in the transaction that finishes it.
 struct JobResults {
   std::string document_json;  ///< the whole result, served as the job's result

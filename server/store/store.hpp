@@ -176,6 +176,17 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<Study>> studies(const std::optional<std::string>& device_id,
                                                            const Page& page) = 0;
 
+  // ---- calibrations
+  struct CalibrationOutcome {
+    StoredCalibration calibration;
+    bool created = false;
+  };
+  /// The calibration of that unique key, added if absent.
+  [[nodiscard]] virtual Result<CalibrationOutcome> add_calibration(const StoredCalibration& calibration) = 0;
+  [[nodiscard]] virtual Result<StoredCalibration> calibration(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<StoredCalibration>> calibrations(const std::optional<std::string>& device_id,
+                                                                            const Page& page) = 0;
+
   // ---- idempotency
   /// The stored reply for a key younger than 24 h.
   [[nodiscard]] virtual Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) = 0;

@@ -139,8 +139,12 @@ class Operations(DaemonTest):
         study, _ = (daemon.post("/v1/studies", body) for _ in range(2))
         evaluation, _ = (daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}) for _ in range(2))
         daemon.finished(evaluation.json["id"])
-        values = {"/v1/outage-evaluations/{id}": evaluation.json["id"], "/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
-                  "/v1/studies/{id}": study.json["id"],
+        apply = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
+        body = {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": apply}}}
+        calibration, _ = (daemon.post("/v1/calibrations", body) for _ in range(2))
+        values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
+                  "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
+                  "/v1/outage-evaluations/{id}": evaluation.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
         for path, operations in self.contract.paths.items():
             if "get" in operations:

@@ -153,6 +153,17 @@ class OpenedStore final : public SqliteStore {
     return readers_->read([&](Connection& c) { return tables::studies(c, device_id, page); });
   }
 
+  [[nodiscard]] Result<CalibrationOutcome> add_calibration(const StoredCalibration& calibration) override {
+    return writer_.write([&](Connection& c) { return tables::add_calibration(c, calibration, now()); });
+  }
+  [[nodiscard]] Result<StoredCalibration> calibration(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::calibration(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<StoredCalibration>> calibrations(const std::optional<std::string>& device_id,
+                                                                    const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::calibrations(c, device_id, page); });
+  }
+
   [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) override {
     return readers_->read([&](Connection& c) { return tables::idempotent_reply(c, key, now()); });
   }

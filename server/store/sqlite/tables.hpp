@@ -156,6 +156,14 @@ class FilteredQuery {
 [[nodiscard]] Result<std::vector<Study>> studies(Connection& connection, const std::optional<std::string>& device_id,
                                                  const Page& page);
 
+// ---- calibrations
+[[nodiscard]] Result<Store::CalibrationOutcome> add_calibration(Connection& connection,
+                                                                const StoredCalibration& calibration, UtcMicros now);
+[[nodiscard]] Result<StoredCalibration> calibration(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<StoredCalibration>> calibrations(Connection& connection,
+                                                                  const std::optional<std::string>& device_id,
+                                                                  const Page& page);
+
 // ---- idempotency
 [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, std::string_view key,
                                                                       UtcMicros now);

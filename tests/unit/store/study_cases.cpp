@@ -41,6 +41,24 @@ TEST_P(StudyStore, StudiesAreListedByDevice) {
   EXPECT_EQ(store().studies(two.id, {})->size(), 1U);
 }
 
+TEST_P(StudyStore, CalibrationsAreKeptOnceAndListedByDevice) {
+  const Device one = add_device(store(), "one");
+  const Device two = add_device(store(), "two");
+  const auto add = [&](const Device& device, const std::string& key) {
+    return store().add_calibration({"", device.id, key, R"({"calibration":{}})", 0});
+  };
+  const auto first = add(one, "a");
+  ASSERT_TRUE(first && first->created);
+  EXPECT_TRUE(first->calibration.id.starts_with("cal_"));
+  EXPECT_EQ(first->calibration.created_at, clock_.now());
+  EXPECT_FALSE(add(one, "a")->created);
+  ASSERT_TRUE(add(two, "b")->created);
+  EXPECT_EQ(store().calibration(first->calibration.id)->document_json, R"({"calibration":{}})");
+  EXPECT_EQ(store().calibration("cal_nobody").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(store().calibrations(std::nullopt, {})->size(), 2U);
+  EXPECT_EQ(store().calibrations(two.id, {})->size(), 1U);
+}
+
 TEST_P(StudyStore, AFinishReplacesThePooledDocumentOfItsAxis) {
   const Recording recording = add_recording(store(), add_device(store()));
   for (const char* const text : {"first", "second"}) {

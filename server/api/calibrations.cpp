@@ -1,0 +1,218 @@
+#include "core/read/open_recording.hpp"
+#include "schema/json/calibrate_recordings.hpp"
+#include "schema/json/calibration.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/store/digest.hpp"
+
+namespace driftlab::server {
+namespace {
+
+constexpr std::size_t kMostRecordings = 100;
+constexpr double kLeastGravity = 9.7;  // the earth's surface has 9.764 to 9.834 m/s^2
+constexpr double kMostGravity = 9.9;
+
+Json to_json(const StoredCalibration& calibration) {
+  Json document = stored(calibration.document_json);
+  document["id"] = calibration.id;
+  document["device"] = calibration.device_id;
+  document["created_at"] = rfc3339(calibration.created_at);
+  return document;
+}
+
+/// What a POST asks for.
+struct Wanted {
+  std::string device;
+  std::vector<std::string> recordings;
+  Json calibration;  ///< one made elsewhere, or null
+  CalibrateOptions options;
+};
+
+std::vector<std::string> listed(const Json& list, Faults& faults) {
+  std::vector<std::string> ids;
+  if (!list.is_array() || list.empty() || list.size() > kMostRecordings) {
+    faults.add("/recordings", ErrorCode::InvalidArgument, "Name 1 to 100 recordings by their ids.");
+    return ids;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string id = list[i].is_string() ? list[i].get<std::string>() : "";
+    if (!is_id(id, "rec") || std::find(ids.begin(), ids.end(), id) != ids.end()) {
+      faults.add("/recordings/" + std::to_string(i), ErrorCode::InvalidArgument,
+                 "Name each recording once, by its id: rec_01H….");
+    }
+    ids.push_back(id);
+  }
+  return ids;
+}
+
+Result<Wanted> read_wanted(const Request& request) {
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  Wanted wanted;
+  ObjectReader reader(*body, "", faults);
+  if (const Json* const device = reader.member("device"); device != nullptr) {
+    ObjectReader named(*device, "/device", faults);
+    wanted.device = named.required_text("id");
+    named.reject_unknown();
+  } else {
+    faults.add("/device/id", ErrorCode::InvalidArgument, "Name the device of the calibration.");
+  }
+  const Json* const recordings = reader.member("recordings");
+  const Json* const calibration = reader.member("calibration");
+  if ((recordings == nullptr) == (calibration == nullptr)) {
+    faults.add("/recordings", ErrorCode::InvalidArgument,
+               "Give either recordings to calibrate from, or a calibration made elsewhere.");
+  } else if (recordings != nullptr) {
+    wanted.recordings = listed(*recordings, faults);
+  } else {
+    (void)calibration_from_json(*calibration, "/calibration", faults);
+    wanted.calibration = *calibration;
+  }
+  wanted.options.gravity_m_s2 = reader.real("gravity_m_s2").value_or(kStandardGravity);
+  if (!(wanted.options.gravity_m_s2 >= kLeastGravity && wanted.options.gravity_m_s2 <= kMostGravity)) {
+    faults.add("/gravity_m_s2", ErrorCode::InvalidArgument, "Gravity lies between 9.7 and 9.9 m/s^2.");
+  }
+  if (const Json* const misalignment = reader.member("misalignment")) {
+    if (!misalignment->is_boolean()) {
+      faults.add("/misalignment", ErrorCode::ParseError, "This member must be true or false.");
+    } else {
+      wanted.options.misalignment = misalignment->get<bool>();
+    }
+  }
+  reader.reject_unknown();
+  return faults.none() ? Result<Wanted>(std::move(wanted)) : fail(faults.error());
+}
+
+/// The error with its place in the request.
+tl::unexpected<Error> at(const std::string& pointer, const Error& error) {
+  return fail(Error(error).with(pointer, error.message));
+}
+
+/// Calibrates from uploaded recordings; `used` gets each with its revision.
+Result<Json> calibrate(ApiContext& context, const Wanted& wanted, const Device& device, Json& used) {
+  RecordingCalibrator calibrator(wanted.recordings.size(), wanted.options);
+  for (std::size_t i = 0; i < wanted.recordings.size(); ++i) {
+    const std::string pointer = "/recordings/" + std::to_string(i);
+    const std::string& id = wanted.recordings[i];
+    auto recording = context.store.recording(id);
+    if (!recording) {
+      return at(pointer, recording.error());
+    }
+    if (recording->device_id != device.id) {
+      return at(pointer, {ErrorCode::InvalidArgument,
+                          "The recording " + id + " belongs to another device than " + device.name + ".",
+                          {}});
+    }
+    Faults faults;
+    const RecordingSpec spec = recording_spec_from_json(stored(recording->metadata_json), "", faults);
+    auto opened = faults.none() ? open_recording(context.blobs.columns_path(recording->blob_sha256), spec)
+                                : Result<OpenRecording>(fail(faults.error()));
+    if (!opened) {
+      return at(pointer, opened.error());
+    }
+    if (auto added = calibrator.add(spec, opened->view); !added) {
+      return at(pointer, added.error());
+    }
+    used.push_back(Json{{"id", id}, {"revision", recording->revision}});
+  }
+  auto report = calibrator.finish();
+  if (!report) {
+    return fail(report.error());
+  }
+  return std::move(report->document);
+}
+
+Result<Response> create_calibration(ApiContext& context, const Request& request) {
+  auto wanted = read_wanted(request);
+  if (!wanted) {
+    return fail(wanted.error());
+  }
+  Device named;
+  named.name = wanted->device;
+  // A calibration made elsewhere may come before the first recording of its device.
+  Result<Device> device = fail(ErrorCode::NotFound, "");
+  if (wanted->recordings.empty()) {
+    auto ensured = context.store.ensure_device(named);
+    device = ensured ? Result<Device>(ensured->device) : fail(ensured.error());
+  } else {
+    device = context.store.device(wanted->device);
+  }
+  if (!device) {
+    return fail(device.error());
+  }
+  Json document{{"recordings", Json::array()}, {"calibration", wanted->calibration}};
+  if (!wanted->recordings.empty()) {
+    auto made = calibrate(context, *wanted, *device, document["recordings"]);
+    if (!made) {
+      return fail(made.error());
+    }
+    document["calibration"] = std::move(*made);
+    document["gravity_m_s2"] = wanted->options.gravity_m_s2;
+    document["misalignment"] = wanted->options.misalignment;
+  }
+  StoredCalibration calibration;
+  calibration.device_id = device->id;
+  calibration.document_json = canonical_text(document);
+  calibration.unique_key = sha256_hex(device->id + calibration.document_json);
+  auto outcome = context.store.add_calibration(calibration);
+  if (!outcome) {
+    return fail(outcome.error());
+  }
+  Response response = json_response(outcome->created ? 201 : 200, to_json(outcome->calibration));
+  response.headers.emplace_back("Location", "/v1/calibrations/" + outcome->calibration.id);
+  return response;
+}
+
+Result<Response> list_calibrations(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  std::optional<std::string> device_id;
+  if (const auto name = request.parameter("device")) {
+    auto device = context.store.device(*name);
+    if (!device) {
+      return fail(device.error());
+    }
+    device_id = device->id;
+  }
+  auto rows = context.store.calibrations(device_id, {page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const StoredCalibration& calibration : *rows) {
+    items.push_back(to_json(calibration));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_calibration(ApiContext& context, const Request& request) {
+  auto calibration = context.store.calibration(request.parameters[0]);
+  if (!calibration) {
+    return fail(calibration.error());
+  }
+  return json_response(200, to_json(*calibration));
+}
+
+}  // namespace
+
+void add_calibration_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/calibrations",
+              "listCalibrations",
+              {"limit", "cursor", "device"},
+              Handler([&](const Request& request) { return list_calibrations(context, request); })});
+  router.add({"POST", "/v1/calibrations", "createCalibration", {}, Handler([&](const Request& request) {
+                return create_calibration(context, request);
+              })});
+  router.add({"GET", "/v1/calibrations/{id}", "getCalibration", {}, Handler([&](const Request& request) {
+                return get_calibration(context, request);
+              })});
+}
+
+}  // namespace driftlab::server
