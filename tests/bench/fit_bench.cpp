@@ -69,6 +69,23 @@ void CharacteriseChannel(benchmark::State& state) {  // NOLINT(readability-ident
   }
 }
 
+/// The same over recordings that grow tenfold: the counter, nanoseconds a sample, stays. The series of a million
+/// samples is repeated, each time from where the last one ended, so that making it costs little beside analysing it.
+void CharacteriseLongChannel(benchmark::State& state) {  // NOLINT(readability-identifier-naming)
+  const std::vector<double> part = series(1000000, 4);
+  std::vector<double> x(static_cast<std::size_t>(state.range(0)));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::size_t turn = i / part.size();
+    // Every other time backwards: without it the ends would not meet.
+    x[i] = turn % 2 == 0 ? part[i % part.size()] : part[part.size() - 1 - i % part.size()];
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(characterise_channel({.values = x, .dt_s = kDt}));
+  }
+  state.counters["ns_per_sample"] = benchmark::Counter(1e-9 * static_cast<double>(x.size()),
+                                                       benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 /// A recording of 15 minutes at 100 Hz, six axes.
 void SixAxesFifteenMinutes(benchmark::State& state) {  // NOLINT(readability-identifier-naming)
   std::vector<std::vector<double>> axes;
@@ -92,6 +109,11 @@ void KalmanLikelihoodOf(benchmark::State& state) {  // NOLINT(readability-identi
 
 BENCHMARK(RankNineModels)->Arg(90000)->Arg(1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(CharacteriseChannel)->Arg(90000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(CharacteriseLongChannel)
+    ->RangeMultiplier(10)
+    ->Range(1000000, 100000000)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(SixAxesFifteenMinutes)->Unit(benchmark::kMillisecond);
 BENCHMARK(KalmanLikelihoodOf)->Unit(benchmark::kMillisecond);
 
