@@ -13,14 +13,9 @@ struct OpenRecording {
   RecordingView view;
 };
 
-/// What happens to the pages of the file that the survey of the channels has read.
-enum class SurveyedPages {
-  Keep,    ///< they stay in memory: analysis reads them next
-  Release  ///< they go, and memory stays flat: only the quality is wanted
-};
-
-/// Errors: those of ColumnFile::open and view_recording. Cost: one or two passes over the sensor columns.
+/// For a survey the pages that were read are let go. Errors: those of ColumnFile::open and view_recording. Cost: one or
+/// two passes over the sensor columns.
 [[nodiscard]] Result<OpenRecording> open_recording(const std::filesystem::path& columns, const RecordingSpec& spec,
-                                                   SurveyedPages pages = SurveyedPages::Keep);
+                                                   ViewUse use = ViewUse::Analysis);
 
 }  // namespace driftlab

@@ -163,7 +163,7 @@ bool may_be_left_out(const ColumnRole& role, const std::string& name, std::size_
 
 /// Surveys a sensor column and adds what is sound in its window as a channel.
 Status add_channel(const RecordingSpec& spec, const Roles& roles, const Columns& column, const ColumnNames& names,
-                   std::size_t index, const Passed& passed, RecordingView& view) {
+                   std::size_t index, ViewUse use, const Passed& passed, RecordingView& view) {
   const std::string& name = names[index];
   const std::span<const double> values = column(index);
   const ColumnRole role = roles[index].value_or(ColumnRole{});
@@ -198,8 +198,10 @@ Status add_channel(const RecordingSpec& spec, const Roles& roles, const Columns&
     view.window.quality.notes.push_back(std::move(sentence));
   }
   view.window.quality.channels.push_back(std::move(survey.quality));
-  set_moving_reference(spec, roles, column, names, view.window, channel);
-  take_values(values, channel);
+  if (use == ViewUse::Analysis) {
+    set_moving_reference(spec, roles, column, names, view.window, channel);
+    take_values(values, channel);
+  }
   view.channels.push_back(std::move(channel));
   return {};
 }
@@ -231,7 +233,7 @@ std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelVi
 }
 
 Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
-                                     const Columns& column, const Passed& passed) {
+                                     const Columns& column, ViewUse use, const Passed& passed) {
   auto roles = assign_roles(spec, names);
   if (!roles) {
     return fail(roles.error());
@@ -280,7 +282,7 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
       view.window.quality.notes.push_back("The unit of column '" + names[i] + "' is not stated; its unit is 1.");
     }
     // A sensor that is frozen throughout does not keep the others from being analysed.
-    if (auto status = add_channel(spec, *roles, column, names, i, passed, view); !status) {
+    if (auto status = add_channel(spec, *roles, column, names, i, use, passed, view); !status) {
       first_fault = first_fault ? first_fault : std::optional(status.error());
       view.window.quality.notes.push_back(status.error().message + " It is left out.");
     }

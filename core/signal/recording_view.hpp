@@ -44,12 +44,19 @@ struct RecordingView {
 /// The rows that every one of `channels` has without a gap, at their longest: the first, and how many (0: none).
 [[nodiscard]] std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelView* const> channels);
 
+/// What a view is made for.
+enum class ViewUse {
+  Analysis,
+  Survey  ///< only `window` is wanted: channels have no values and no reference, and memory stays flat
+};
+
 /// `column(i)` gives the samples of column i of the file in its own unit; they must outlive the view.
 /// Errors: those of assign_roles, plan_window and, for sensor columns, check_holes; TooFewSamples; UnknownColumn (no
-/// sensor column at all). O(rows) time; O(rows) memory per channel with a moving reference, none otherwise.
+/// sensor column at all). O(rows) time; O(rows) memory per channel with a moving reference or rows left out inside,
+/// none otherwise.
 [[nodiscard]] Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names,
                                                    std::size_t rows,
                                                    const std::function<std::span<const double>(std::size_t)>& column,
-                                                   const Passed& passed = {});
+                                                   ViewUse use = ViewUse::Analysis, const Passed& passed = {});
 
 }  // namespace driftlab

@@ -61,11 +61,15 @@ Result<Response> get_recording(ApiContext& context, const Request& request) {
 
 /// Checks changed metadata against the samples they describe. The quality as JSON text.
 Result<std::string> check_metadata(ApiContext& context, const Recording& recording, const RecordingSpec& spec) {
-  auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec, SurveyedPages::Release);
+  auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec,
+                               spec.calibration.empty() ? ViewUse::Survey : ViewUse::Analysis);
   if (!opened) {
     return fail(opened.error());
   }
   std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
+  if (spec.calibration.empty()) {
+    return quality;
+  }
   auto calibration = calibration_of(context.store, spec, recording.device_id);
   if (!calibration) {
     return fail(calibration.error());

@@ -229,12 +229,13 @@ class RecordingUpload final : public UploadSession {
 
   /// Metadata and samples must fit together before anything is kept. The recording's quality as JSON text.
   Result<std::string> check_against_columns() {
-    auto opened = open_recording(columns_, metadata_.spec, SurveyedPages::Release);
+    const bool calibrated = !metadata_.spec.calibration.empty();
+    auto opened = open_recording(columns_, metadata_.spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
     if (!opened) {
       return fail(opened.error());
     }
     std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
-    if (metadata_.spec.calibration.empty()) {
+    if (!calibrated) {
       return quality;
     }
     const auto device = context_.store.device(metadata_.device.name);
