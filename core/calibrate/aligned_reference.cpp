@@ -8,6 +8,8 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kMostCompared = 100'000;
+/// Two noises are most alike at some lag; that is no delay.
+constexpr double kLeastCorrelation = 0.5;
 
 /// Where in `values` a run starts.
 std::size_t place_of(const ChannelView& channel, const RowRun& run) {
@@ -54,7 +56,8 @@ Result<TimeAlignment> estimate(const ChannelView& channel, double dt_s, Alignmen
 
 bool known(const TimeAlignment& found, double dt_s) {
   const Interval& ci95 = found.delay_s.ci95;
-  return found.converged && found.warnings.empty() && 0.5 * (ci95.high - ci95.low) <= dt_s && !ci95.contains(0.0);
+  return found.converged && found.warnings.empty() && found.correlation >= kLeastCorrelation &&
+         0.5 * (ci95.high - ci95.low) <= dt_s && !ci95.contains(0.0);
 }
 
 /// Subtracts the reference as it was `delay_s` earlier.

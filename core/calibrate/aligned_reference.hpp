@@ -3,8 +3,9 @@
 /// taken out before the reference is subtracted.
 ///
 /// A reference that is late by d leaves d times its slope in the error: 10 ms on a table that swings at 1 Hz by
-/// 100 deg/s leave 6 deg/s. Only a reference that moves tells the delay; where the 95 % interval is wider than one
-/// sample interval on either side, or holds 0, the reference stays where it is. The interval of the delay is reported;
+/// 100 deg/s leave 6 deg/s. Only a reference that moves tells the delay: where the channel does not follow it (a
+/// correlation below 0.5), or the 95 % interval is wider than one sample interval on either side or holds 0, the
+/// reference stays where it is. The interval of the delay is reported;
 /// what it leaves uncertain of the error series is not in the intervals of the variances.
 #include "core/calibrate/time_alignment.hpp"
 #include "core/signal/recording_view.hpp"

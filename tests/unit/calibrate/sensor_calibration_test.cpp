@@ -40,7 +40,7 @@ RecordingView view_of(const Table& table, const std::map<std::string, ColumnRole
   auto view = view_recording(spec, names, table.front().size(),
                              [&](std::size_t i) { return std::span<const double>(table[i]); });
   EXPECT_TRUE(view) << view.error().message;
-  return view.value_or(RecordingView{});
+  return view ? std::move(*view) : RecordingView{};  // a copy would point into this one
 }
 
 std::map<std::string, ColumnRole> gyro_columns() {
