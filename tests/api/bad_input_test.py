@@ -191,7 +191,7 @@ class Survived(DaemonTest):
         values[300] = "-9999"
         rows = "".join(f"{value},S\n" for value in values).encode()
         [channel] = self.quality(b"gz,state\n" + rows)["channels"]
-        self.assertEqual((channel["missing"], channel["implausible"], channel["first"], channel["analysed"]), (2, 1, 302, 4699))
+        self.assertEqual((channel["missing"], channel["implausible"], channel["first"], channel["analysed"]), (2, 1, 1, 4997))
 
     def test_clock_set_back_and_counter_that_starts_again(self) -> None:
         def table(stamps: list[int]) -> bytes:
