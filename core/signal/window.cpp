@@ -217,7 +217,13 @@ Spacing find_spacing(const std::vector<double>& stamps, const std::vector<Group>
       spacing.gaps.push_back(i);
     }
   }
-  spacing.mean_s = spacing.interval_s;
+  sum = 0.0;
+  count = 0;
+  for (const double step : steps) {
+    sum += step <= longest ? step : 0.0;
+    count += step <= longest ? 1 : 0;
+  }
+  spacing.mean_s = sum / static_cast<double>(count);
   return spacing;
 }
 
