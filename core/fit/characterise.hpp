@@ -13,7 +13,7 @@
 namespace driftlab {
 
 /// Changes whenever the same input and settings may give other numbers; stored with every result.
-inline constexpr int kAlgorithmVersion = 5;
+inline constexpr int kAlgorithmVersion = 6;
 
 /// Which models are compared.
 enum class ModelSearch {
