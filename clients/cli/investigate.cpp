@@ -8,6 +8,7 @@
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
 #include "schema/json/investigation.hpp"
+#include "schema/json/simulation_model.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,26 +1,15 @@
 #include "core/investigate/checks.hpp"
 
+#include "core/investigate/chi_square.hpp"
 #include "core/investigate/investigate.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace driftlab::investigate {
 namespace {
-
-double normal_tail(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
-
-/// Chi-square by the cube root of Wilson and Hilferty (1931): good to a few percent of p down to 1e-6.
-double chi_square_tail(double x, double dof) {
-  const double v = 2.0 / (9.0 * dof);
-  return normal_tail((std::cbrt(x / dof) - (1.0 - v)) / std::sqrt(v));
-}
-double chi_square_quantile(double z, double dof) {
-  const double v = 2.0 / (9.0 * dof);
-  const double root = std::max(0.0, 1.0 - v + z * std::sqrt(v));
-  return dof * root * root * root;
-}
 
 Check chi_square_check(std::string id, const ChannelGroup::Member& member, double x, double dof) {
   Check check;
@@ -101,7 +90,7 @@ double whiteness_statistic(const std::vector<double>& e, double dt_s) {
 }
 
 /// Spectrum of the innovations in sixteen bands of equal width against their mean.
-double band_statistic(const std::vector<double>& e, double kurtosis) {
+double band_statistic(const std::vector<double>& e) {
   constexpr std::size_t kBands = 16;
   const std::size_t length = fast_length(e.size());
   const auto z = transform(std::span(e).first(length), 0);
@@ -120,8 +109,49 @@ double band_statistic(const std::vector<double>& e, double kurtosis) {
     const double deviation = band[b] / count[b] / total - 1.0;
     sum += count[b] * deviation * deviation;
   }
-  (void)kurtosis;
   return sum;
+}
+
+/// Wavelet variance of the innovations per scale: under a right model Haar coefficients of 2^j innovations are standard
+/// normal and independent, so that their sum of squares is chi-square; too much and too little both count.
+void wavelet_checks(const ChannelGroup::Member& member, const std::vector<double>& e,
+                    const std::vector<unsigned char>& used, double dt_s, double mean_square,
+                    std::vector<Check>& checks) {
+  std::vector<double> sum(e.size());
+  std::vector<double> kept(e.size());
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    sum[i] = used[i] != 0 ? e[i] : 0.0;
+    kept[i] = used[i] != 0 ? 1.0 : 0.0;
+  }
+  for (double length = 2.0; sum.size() >= 32; length *= 2.0) {
+    double square = 0.0;
+    double count = 0.0;
+    const std::size_t pairs = sum.size() / 2;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const double present = kept[2 * k] + kept[2 * k + 1];
+      const double d = sum[2 * k + 1] - sum[2 * k];
+      if (present > 0.9 * length) {
+        square += d * d / present;
+        count += 1.0;
+      }
+      sum[k] = sum[2 * k] + sum[2 * k + 1];
+      kept[k] = present;
+    }
+    sum.resize(pairs);
+    kept.resize(pairs);
+    if (count < 16.0 || length < 4.0) {  // pairs of samples are what `spectrum` looks at
+      continue;
+    }
+    char name[48];
+    std::snprintf(name, sizeof name, ".wavelet_variance_%.3gs", length * dt_s);
+    const double x = square / mean_square;
+    Check check = chi_square_check(member.name() + name, member, x, count);
+    check.p = std::min(1.0, 2.0 * std::min(check.p, 1.0 - check.p));
+    for (double* const value : {&check.observed, &check.q025, &check.median, &check.q975}) {
+      *value /= count;  // as a ratio to the simulated variance
+    }
+    checks.push_back(std::move(check));
+  }
 }
 
 void general_checks(const ChannelGroup& group, const FullRate& data, std::vector<Check>& checks) {
@@ -137,8 +167,9 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
         chi_square_check(stem + "variance_over_time", member, segment_statistic(e, data.used[r], all), 15.0));
     checks.push_back(chi_square_check(stem + "whiteness", member, whiteness_statistic(e, data.dt_s), 10.0));
     if (!data.spectrum[r].power.empty()) {
-      checks.push_back(chi_square_check(stem + "spectrum", member, band_statistic(e, all.kurtosis), 15.0));
+      checks.push_back(chi_square_check(stem + "spectrum", member, band_statistic(e), 15.0));
     }
+    wavelet_checks(member, e, data.used[r], data.dt_s, data.given ? 1.0 : all.mean_square, checks);
     Check tails;
     tails.id = stem + "kurtosis";
     tails.recording = member.recording->id;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -115,9 +117,14 @@ std::string markdown(const Report& report) {
   }
   if (!report.not_examined.empty()) {
     page.append("\n## What could not be examined\n\n");
+    std::map<std::pair<std::string, std::string>, std::string> causes;  // of each need and channel
     for (const NotExamined& item : report.not_examined) {
-      page.append("- ").append(item.cause).append(" on ").append(item.channel).append(": it needs ");
-      page.append(item.needs).append(".\n");
+      std::string& list = causes[{item.needs, item.channel}];
+      list.append(list.empty() ? "" : ", ").append(item.cause);
+    }
+    for (const auto& [what, list] : causes) {
+      page.append("- On ").append(what.second).append(", for want of ").append(what.first).append(": ");
+      page.append(list).append(".\n");
     }
   }
   for (const std::string& note : report.notes) {

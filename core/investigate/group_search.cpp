@@ -1,6 +1,7 @@
 #include "core/investigate/group_search.hpp"
 
 #include "core/investigate/fact_gain.hpp"
+#include "core/investigate/given_model.hpp"
 #include "core/investigate/hold_out.hpp"
 #include "core/investigate/investigate.hpp"
 #include "core/investigate/lattice.hpp"
@@ -64,44 +65,6 @@ void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fre
   }
 }
 
-/// Sum of the squared levels of one process in a given baseline.
-double given_level(const Baseline& baseline, std::string_view name) {
-  double sum = 0.0;
-  for (const GivenProcess& process : baseline.processes) {
-    sum += process.process == name ? process.parameters[0] * process.parameters[0] : 0.0;
-  }
-  return sum;
-}
-
-/// The slow model of a given baseline.
-SlowModel given_model(const Baseline& baseline, double dt_s) {
-  SlowModel model;
-  for (const GivenProcess& process : baseline.processes) {
-    const auto& p = process.parameters;
-    if (process.process == "white_noise") {
-      model.white += p[0] * p[0];
-    } else if (process.process == "gauss_markov") {
-      model.components.push_back({SlowKind::GaussMarkov, p[0] * p[0], p[1], {}});
-    } else if (process.process == "random_walk") {
-      model.components.push_back({SlowKind::RandomWalk, p[0] * p[0], 0.0, {}});
-    } else if (process.process == "flicker_noise") {
-      model.components.push_back({SlowKind::Flicker, p[0] * p[0], 0.0, {}});
-    }
-  }
-  if (!(model.white > 0.0)) {
-    model.white = 1e-12 * dt_s;
-  }
-  return model;
-}
-
-bool applies(const Baseline& baseline, const ChannelGroup& group) {
-  if (baseline.automatic || baseline.quantity != group.role.quantity) {
-    return false;
-  }
-  return baseline.channels.empty() ||
-         std::find(baseline.channels.begin(), baseline.channels.end(), group.column) != baseline.channels.end();
-}
-
 /// N^2 at full rate: the mean of spectrum minus slow part over all recordings.
 double white_at_full_rate(const FullRate& data) {
   double sum = 0.0;
@@ -145,16 +108,23 @@ std::vector<double> white_scale_of(const FullRate& data) {
 class GroupSearch {
  public:
   /// What is found is written to `outcome`.
-  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads, GroupOutcome& outcome)
-      : study_(study), group_(group), index_(index), threads_(threads), outcome_(outcome) {}
+  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
+              const RunControl& control, GroupOutcome& outcome)
+      : study_(study), group_(group), index_(index), threads_(threads), control_(control), outcome_(outcome) {}
 
   void run() {
     if (!check_usable()) {
       return;
     }
+    control_.report("facts of " + group_.column, 0.0);
     look_at_files();
-    search_slow();
-    search_full_rate();
+    if (!stopped()) {
+      search_slow();
+    }
+    if (!stopped()) {
+      control_.report("noise of " + group_.column, 0.9);
+      search_full_rate();
+    }
     for (Evidence& evidence : outcome_.found) {
       evidence.group = index_;
       for (Evidence& rival : evidence.rivals) {
@@ -164,6 +134,8 @@ class GroupSearch {
   }
 
  private:
+  [[nodiscard]] bool stopped() const { return control_.stop.stop_requested(); }
+
   bool check_usable() {
     double samples = 0.0;
     bool constant = true;
@@ -174,15 +146,18 @@ class GroupSearch {
       const double dt = member.recording->dt_s;
       if (std::fabs(dt / group_.members.front().recording->dt_s - 1.0) > 0.01) {
         outcome_.why_not = "its recordings have different sampling rates";
+        outcome_.needs = "recordings at one sampling rate";
         return false;
       }
     }
     if (constant) {
       outcome_.why_not = "it never changes";
+      outcome_.needs = "a channel whose values change";
       return false;
     }
     if (samples < 500.0) {
       outcome_.why_not = "it has fewer than 500 samples";
+      outcome_.needs = "500 samples or more";
       return false;
     }
     outcome_.usable = true;
@@ -250,20 +225,6 @@ class GroupSearch {
     return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }
 
-  /// A drift that the baseline already has is no news.
-  void take_given_drift() {
-    for (const GivenProcess& process : study_.baseline.processes) {
-      if (process.process != "linear_drift") {
-        continue;
-      }
-      for (std::size_t r = 0; r < error_.size(); ++r) {
-        for (std::size_t i = 0; i < error_[r].size(); ++i) {
-          error_[r][i] -= process.parameters[0] * group_.members[r].recording->time_s(i);
-        }
-      }
-    }
-  }
-
   /// The given model as blocks see it: of differenced noise only the two ends of a block remain, 2 Q^2/block^2.
   [[nodiscard]] std::optional<SlowModel> block_model() const {
     std::optional<SlowModel> model = given_;
@@ -276,18 +237,19 @@ class GroupSearch {
   void search_slow() {
     const double dt = group_.members.front().recording->dt_s;
     if (applies(study_.baseline, group_)) {
-      given_ = given_model(study_.baseline, dt);
+      given_ = given_model(study_.baseline, group_);
       given_->white += lattice_step_ * lattice_step_ / 12.0 * dt;
       given_white_ = given_->white;
-      quantization_ = given_level(study_.baseline, "quantization_noise");
-      take_given_drift();
+      quantization_ = given_quantization(study_.baseline, group_);
+      take_given_means(study_.baseline, group_, error_);
     }
-    SlowSearch search(study_, group_, block_model(), threads_);
+    SlowSearch search(study_, group_, block_model(), threads_, control_.stop);
     search.set_data(error_, mask_);
     search.fit_null();
     std::vector<Evidence> slow_found;
     const Cause* const line_cause = find_cause("periodic_disturbance");
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds && !stopped(); ++round) {
+      control_.report("search " + group_.column, 0.1 + 0.6 * round / kRounds);
       FullRate data = full_rate(search, false);
       if (round == 0) {
         const std::vector<double> scale = white_scale_of(data);
@@ -333,6 +295,10 @@ class GroupSearch {
         slow_found.push_back(std::move(winner));
       }
     }
+    if (stopped()) {
+      return;
+    }
+    control_.report("intervals of " + group_.column, 0.7);
     // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
     for (std::size_t i = slow_found.size(); i-- > 0;) {
       search.hold_out(slow_found[i]);
@@ -358,11 +324,18 @@ class GroupSearch {
     outcome_.after = full_rate(search, !given_);
     outcome_.before = outcome_.after;
     if (!outcome_.found.empty()) {  // the recordings as they came, under the base alone
-      std::vector<std::vector<double>> raw;
+      std::vector<std::vector<double>> whole;
       for (const auto& member : group_.members) {
-        const std::vector<double>& e = member.channel->error;
-        raw.emplace_back(e.begin() + static_cast<std::ptrdiff_t>(member.recording->begin),
-                         e.begin() + static_cast<std::ptrdiff_t>(member.recording->end));
+        whole.push_back(member.channel->error);
+      }
+      if (given_) {
+        take_given_means(study_.baseline, group_, whole);
+      }
+      std::vector<std::vector<double>> raw;
+      for (std::size_t r = 0; r < whole.size(); ++r) {
+        const StudyRecording& recording = *group_.members[r].recording;
+        raw.emplace_back(whole[r].begin() + static_cast<std::ptrdiff_t>(recording.begin),
+                         whole[r].begin() + static_cast<std::ptrdiff_t>(recording.end));
         for (double& v : raw.back()) {
           v -= search.null_fit().amplitude[0];
         }
@@ -373,7 +346,9 @@ class GroupSearch {
       SlowModel base = outcome_.after.model;
       outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
     }
-    model.base = search.null_fit().model;
+    model.given = given_.has_value();
+    model.given_processes = given_ ? processes_of(study_.baseline, group_) : std::vector<GivenProcess>{};
+    model.base = search.base();
     model.base.white = outcome_.after.model.white;
     model.bias = search.null_fit().amplitude[0];
   }
@@ -388,7 +363,7 @@ class GroupSearch {
         const bool wanted =
             (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
         const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
-        if (!wanted || cause.examine == nullptr || jittered) {
+        if (!wanted || cause.examine == nullptr || jittered || stopped()) {
           continue;
         }
         for (Evidence& evidence : cause.examine(data)) {
@@ -452,6 +427,7 @@ class GroupSearch {
   const ChannelGroup& group_;
   std::size_t index_;
   unsigned threads_;
+  const RunControl& control_;
   std::optional<SlowModel> given_;
   std::vector<std::vector<double>> error_;
   std::vector<std::vector<unsigned char>> mask_;
@@ -464,9 +440,10 @@ class GroupSearch {
 
 }  // namespace
 
-GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads) {
+GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
+                          const RunControl& control) {
   GroupOutcome outcome;
-  GroupSearch(study, group, index, threads, outcome).run();
+  GroupSearch(study, group, index, threads, control, outcome).run();
   return outcome;
 }
 

@@ -2,6 +2,7 @@
 /// The whole search in one channel group: facts, forward selection, full-rate effects.
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/report.hpp"
+#include "core/signal/progress.hpp"
 
 #include <optional>
 #include <string>
@@ -18,10 +19,11 @@ struct GroupOutcome {
   std::vector<std::string> examined_reasons;
   bool usable = false;
   std::string why_not;  ///< where it is not usable
+  std::string needs;    ///< what would make it usable
 };
 
-/// `group` is number `index` of the study.
+/// `group` is number `index` of the study. Once `stop` is requested it ends soon, with an outcome of no meaning.
 [[nodiscard]] GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index,
-                                        unsigned threads);
+                                        unsigned threads, const RunControl& control = {});
 
 }  // namespace driftlab::investigate

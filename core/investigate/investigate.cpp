@@ -2,7 +2,9 @@
 
 #include "core/investigate/checks.hpp"
 #include "core/investigate/explain.hpp"
+#include "core/investigate/given_model.hpp"
 #include "core/investigate/group_search.hpp"
+#include "core/investigate/series.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +69,34 @@ void examine_together(const std::vector<GroupOutcome>& outcomes, const std::vect
   }
 }
 
+/// What a given model says already is no finding, only a note.
+void drop_confirmed(const Baseline& baseline, const std::vector<ChannelGroup>& groups, std::vector<Evidence>& found,
+                    std::vector<std::string>& notes) {
+  std::erase_if(found, [&](const Evidence& evidence) {
+    const ChannelGroup& group = groups[evidence.group];
+    if (confirmed_by(baseline, group, evidence) == nullptr) {
+      return false;
+    }
+    notes.push_back("The baseline holds " + std::string(evidence.cause->name) + " of " + group.column +
+                    " already, and the recordings agree with it.");
+    return true;
+  });
+}
+
+/// A column that no recording gives a reference for.
+void without_reference(const Channel& channel, const std::vector<ChannelGroup>& groups, Report& report) {
+  const bool elsewhere = std::any_of(groups.begin(), groups.end(),
+                                     [&](const ChannelGroup& group) { return group.column == channel.column; });
+  const bool said = std::any_of(report.not_examined.begin(), report.not_examined.end(),
+                                [&](const NotExamined& item) { return item.channel == channel.column; });
+  for (const Cause& cause : cause_registry()) {
+    if (!elsewhere && !said) {
+      report.not_examined.push_back(
+          {std::string(cause.name), channel.column, "a reference column, or a condition that states the motion"});
+    }
+  }
+}
+
 std::vector<std::string> channels_of(const Evidence& evidence, const std::vector<ChannelGroup>& groups) {
   std::vector<std::string> names;
   std::vector<std::size_t> all{evidence.group};
@@ -90,6 +120,7 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   Report report;
   report.study = study.id;
   report.automatic = study.baseline.automatic;
+  report.baseline = study.baseline;
   report.notes = study.notes;
   const std::vector<ChannelGroup> groups = group_channels(study);
   std::vector<GroupOutcome> outcomes;
@@ -100,6 +131,7 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
       if (channel.error.empty() && !channel.input_only) {
         report.notes.push_back("The channel " + recording.id + "/" + channel.column +
                                " has no reference, so its error is not known and it is not examined.");
+        without_reference(channel, groups, report);
       }
     }
   }
@@ -107,11 +139,21 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The investigation was stopped.");
     }
-    control.report("search " + groups[g].column, static_cast<double>(g) / static_cast<double>(groups.size()));
-    outcomes.push_back(search_group(study, groups[g], g, options.threads));
+    RunControl part;
+    part.stop = control.stop;
+    part.progress = [&](std::string_view stage, double fraction) {
+      control.report(stage, 0.95 * (static_cast<double>(g) + fraction) / static_cast<double>(groups.size()));
+    };
+    outcomes.push_back(search_group(study, groups[g], g, options.threads, part));
+    if (control.stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The investigation was stopped.");
+    }
     GroupOutcome& outcome = outcomes.back();
     if (!outcome.usable) {
       report.notes.push_back("The channel " + groups[g].column + " cannot be examined: " + outcome.why_not + ".");
+      for (const Cause& cause : cause_registry()) {
+        report.not_examined.push_back({std::string(cause.name), groups[g].column, outcome.needs});
+      }
       continue;
     }
     report.models.push_back(outcome.model);
@@ -129,6 +171,7 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   }
   examine_together(outcomes, groups, found, examined);
   join_axes(found);
+  drop_confirmed(study.baseline, groups, found, report.notes);
   std::sort(found.begin(), found.end(), [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
   control.report("checks", 0.95);
   make_checks(groups, outcomes, examined, report);
@@ -142,6 +185,9 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   for (Evidence& evidence : found) {
     Finding finding;
     finding.channels = channels_of(evidence, groups);
+    finding.everywhere = evidence.members.size() == groups[evidence.group].members.size();
+    const std::size_t shown = evidence.members.empty() ? 0 : evidence.members.front();
+    finding.series = series_of(groups[evidence.group], outcomes[evidence.group], shown);
     finding.because = checks_behind(evidence, groups, report);
     if (evidence.heldout && evidence.heldout_samples > 0.0) {
       finding.gain.log_score_per_sample = evidence.heldout_gain / evidence.heldout_samples;

@@ -31,13 +31,31 @@ struct FindingGain {
   double samples = 0.0;
 };
 
+/// 95 % band of a simulated statistic.
+struct Band {
+  std::vector<double> low, median, high;
+};
+
+/// What a figure of a finding shows (core/investigate/series.hpp).
+struct FindingSeries {
+  std::string recording;
+  std::string channel;
+  Unit unit;
+  std::vector<double> scale_s, deviation_before, deviation_after;  ///< deviations [SI]
+  Band baseline, extended;
+  std::vector<double> f_hz, density_before, density_after, density_baseline;  ///< [SI^2/Hz]
+  std::vector<double> time_s, error, effect;                                  ///< [SI]; effect: what was taken off
+};
+
 struct Finding {
   Evidence evidence;
   std::vector<std::string> channels;  ///< recording/column
+  bool everywhere = true;             ///< in every recording of its channels
   std::vector<std::string> because;   ///< ids of checks
   std::string explanation;
   std::string next_measurement;
   FindingGain gain;
+  FindingSeries series;  ///< of the first recording it acts in
 };
 
 /// The noise model of one channel, and what it cannot hold.
@@ -45,9 +63,11 @@ struct ChannelModel {
   std::string channel;
   Unit unit;
   Quantity quantity = Quantity::AngularRate;
-  SlowModel base;     ///< N^2 and the slow processes without the effects
+  SlowModel base;      ///< N^2 and the slow processes without the effects
   double drift = 0.0;  ///< [SI/s], of an automatic baseline
-  double bias = 0.0;  ///< [SI]
+  double bias = 0.0;   ///< [SI]
+  bool given = false;
+  std::vector<GivenProcess> given_processes;  ///< of a given baseline, as they came
 };
 
 struct Unexplained {
@@ -65,6 +85,7 @@ struct NotExamined {
 struct Report {
   std::string study;
   bool automatic = true;
+  Baseline baseline;                 ///< as the study gave it
   std::vector<ChannelModel> models;  ///< one per examined channel
   std::vector<Check> checks;
   std::size_t failed_before = 0;

@@ -76,6 +76,27 @@ void SlowSearch::hold_out(Evidence& evidence) const {
   }
 }
 
+/// The widest base that a given or automatic baseline allows, none of its processes at rest. The search keeps a process
+/// only where it pays; an interval that took the chosen base for certain would be too short where slow noise hides
+/// below that price, and for recorded noise it always does.
+SlowModel SlowSearch::widest_base(const BlockColumns& columns) const {
+  SlowModel model = null_.model;
+  if (given_ || !extra_.empty() || orders_.empty()) {
+    return model;
+  }
+  const auto richer = [](const SlowFit& a, const SlowFit& b) { return a.log_likelihood < b.log_likelihood; };
+  model = std::max_element(orders_.begin(), orders_.end(), richer)->model;
+  const double level = model.white / series_.block_s();
+  if (model.count(SlowKind::RandomWalk) == 0) {
+    model.components.push_back({SlowKind::RandomWalk, 0.0, 0.0, {}});
+  }
+  for (SlowComponent& component : model.components) {
+    const bool walk = component.kind == SlowKind::RandomWalk;
+    component.level = std::max(component.level, walk ? 0.003 * level / series_.longest_s() : 0.003 * level);
+  }
+  return fit_slow(series_, columns, model, freedom()).model;
+}
+
 void SlowSearch::describe_mean(Evidence& evidence) const {
   const auto position = regressor_of(evidence);
   const auto mine = std::find_if(accepted_.begin(), accepted_.end(), [&](const Regressor& r) {
@@ -106,7 +127,8 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
     }
     columns = std::move(wider);
   }
-  const SlowFit fit = evaluate_slow(series_, columns, null_.model);
+  const SlowFit here = evaluate_slow(series_, columns, null_.model);
+  const SlowFit fit = evaluate_slow(series_, columns, widest_base(columns));
   const Unit& unit = group_.unit;
   const auto index = static_cast<Eigen::Index>(*position);
   if (effect.free_phase) {
@@ -132,10 +154,12 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
                             cause.parameters[0].unit(unit)}};
     return;
   }
-  const Interval interval = profile_amplitude(series_, columns, fit, *position + 1, freedom());
+  Interval interval = profile_amplitude(series_, columns, fit, *position + 1, freedom());
+  const double value = here.amplitude[index];
+  interval = {std::min(interval.low, value), std::max(interval.high, value)};
   const CauseParameter& first =
       cause.name == "scale_factor_nonlinearity" && evidence.shape > 2.5 ? cause.parameters[1] : cause.parameters[0];
-  evidence.parameters = {{std::string(first.name), {fit.amplitude[index], interval}, first.unit(unit)}};
+  evidence.parameters = {{std::string(first.name), {value, interval}, first.unit(unit)}};
   if (effect.change_point) {
     place_step(evidence);
   } else if (effect.continuous) {
@@ -145,9 +169,9 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
       moved[which].shape = std::max(0.0, shape);
       SlowFreedom quick = freedom();
       quick.iterations = 3;
-      return fit_slow(series_, columns_with(moved), null_.model, quick).log_likelihood;
+      return fit_slow(series_, columns_with(moved), fit.model, quick).log_likelihood;
     };
-    const double top = std::max(at(evidence.shape), null_.log_likelihood);
+    const double top = at(evidence.shape);
     const double sd = std::max(0.5, 0.15 * evidence.shape);
     const Interval place{evidence.shape > 0.0 ? profile_end(evidence.shape, -sd, top, 3.8415, 0.0, at) : 0.0,
                          profile_end(evidence.shape, sd, top, 3.8415, 1e5, at)};

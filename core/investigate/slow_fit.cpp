@@ -181,7 +181,8 @@ SlowFit fit_slow(const BlockSeries& series, const BlockColumns& columns, const S
   }
   fit.converged = false;
   double damping = 1e-3;
-  for (int iteration = 0; iteration < freedom.iterations && !fit.converged; ++iteration) {
+  for (int iteration = 0; iteration < freedom.iterations && !fit.converged && !freedom.stop.stop_requested();
+       ++iteration) {
     const BlockColumns residuals = residuals_of(columns, fit.amplitude);
     const Evaluation here = evaluate_residuals(series, residuals, fit.model);
     const Derivatives d = differentiate(series, residuals, fit.model, fit.parameters, here.whitened);
@@ -234,6 +235,12 @@ Interval profile_amplitude(const BlockSeries& series, const BlockColumns& column
   SlowModel warm = fit.model;
   SlowFreedom short_fit = freedom;
   short_fit.iterations = 4;
+  // What rests at zero cannot be moved by its logarithm: it starts where it costs next to nothing.
+  const double level = 0.003 * warm.white / series.block_s();
+  for (std::size_t i = freedom.first_free; i < warm.components.size(); ++i) {
+    const bool walk = warm.components[i].kind == SlowKind::RandomWalk;
+    warm.components[i].level = std::max(warm.components[i].level, walk ? level / series.longest_s() : level);
+  }
   const auto at = [&](double amplitude) {
     BlockColumns reduced;
     reduced.width = columns.width - 1;

@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include <limits>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -24,6 +25,7 @@ struct SlowFreedom {
   bool white = true;
   std::size_t first_free = 0;
   int iterations = 25;
+  std::stop_token stop = {};  ///< once requested, the fit ends where it is
 };
 
 /// One noise parameter: component index, or kWhite.

@@ -57,8 +57,9 @@ std::vector<unsigned char> membership(const std::vector<std::size_t>& members, s
 
 }  // namespace
 
-SlowSearch::SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads)
-    : study_(study), group_(group), given_(std::move(given)), threads_(threads) {
+SlowSearch::SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads,
+                       std::stop_token stop)
+    : study_(study), group_(group), given_(std::move(given)), threads_(threads), stop_(std::move(stop)) {
   accepted_.push_back({nullptr, all_members(group), 0.0, 1});
 }
 
@@ -106,7 +107,13 @@ double SlowSearch::cost(const SlowModel& model) const {
 }
 
 SlowFreedom SlowSearch::freedom() const {
-  return given_ ? SlowFreedom{false, given_->components.size()} : SlowFreedom{};
+  SlowFreedom freedom;
+  freedom.stop = stop_;
+  if (given_) {
+    freedom.white = false;
+    freedom.first_free = given_->components.size();
+  }
+  return freedom;
 }
 
 SlowSearch::Templates SlowSearch::make_templates(const Cause* cause, double shape) const {
@@ -236,8 +243,8 @@ std::vector<SlowModel> SlowSearch::starting_orders(const BlockColumns& columns) 
     return best;
   };
   std::vector<SlowModel> starts{white};
-  const SlowFit one = fit_slow(series_, columns, add_best(white, SlowKind::GaussMarkov));
-  const SlowFit walk = fit_slow(series_, columns, add_best(white, SlowKind::RandomWalk));
+  const SlowFit one = fit_slow(series_, columns, add_best(white, SlowKind::GaussMarkov), freedom());
+  const SlowFit walk = fit_slow(series_, columns, add_best(white, SlowKind::RandomWalk), freedom());
   starts.push_back(one.model);
   starts.push_back(walk.model);
   starts.push_back(add_best(one.model, SlowKind::RandomWalk));
@@ -323,6 +330,7 @@ std::vector<SlowModel> SlowSearch::screening_bases() const {
       start.white *= white_scale_[r];
     }
     SlowFreedom quick;
+    quick.stop = stop_;
     quick.iterations = 8;
     SlowModel model = fit_slow(single, columns, start, quick).model;
     if (!white_scale_.empty()) {
@@ -579,6 +587,9 @@ std::vector<Evidence> SlowSearch::examine() {
   const std::vector<SlowModel> bases = screening_bases();
   std::vector<std::vector<Screened>> per_base(bases.size());
   parallel_for(bases.size(), threads_, [&](std::size_t i) {
+    if (stop_.stop_requested()) {
+      return;
+    }
     const SlowFit at_base = evaluate_slow(series_, columns_with(accepted_), bases[i]);
     const double base_score = 2.0 * at_base.log_likelihood - cost(bases[i]);
     screen(bases[i], base_score, per_base[i]);
@@ -619,6 +630,9 @@ std::vector<Evidence> SlowSearch::examine() {
   }
   std::vector<Evidence> found(chosen.size());
   parallel_for(chosen.size(), threads_, [&](std::size_t i) { found[i] = fit_jointly(chosen[i]); });
+  if (stop_.stop_requested()) {
+    return {};
+  }
   for (Evidence& evidence : examine_slow()) {
     found.push_back(std::move(evidence));
   }
@@ -681,6 +695,12 @@ std::optional<std::size_t> SlowSearch::regressor_of(const Evidence& evidence) co
     at += static_cast<std::size_t>(regressor.columns);
   }
   return std::nullopt;
+}
+
+SlowModel SlowSearch::base() const {
+  SlowModel model = null_.model;
+  model.components.resize(base_count_);
+  return model;
 }
 
 std::vector<std::vector<double>> SlowSearch::residuals(const std::vector<std::vector<double>>& error) const {

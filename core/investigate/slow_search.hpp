@@ -28,7 +28,9 @@ struct Regressor {
 class SlowSearch {
  public:
   /// `given`: the baseline's slow model where it is given. `threads` share the joint fits; results do not depend on it.
-  SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads);
+  /// Once `stop` is requested everything ends soon, with results of no meaning.
+  SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads,
+             std::stop_token stop = {});
 
   /// (Re)reads the error of the group: `error[r]` over the grid of member r; `mask[r]` removes samples.
   void set_data(const std::vector<std::vector<double>>& error, const std::vector<std::vector<unsigned char>>& mask);
@@ -55,6 +57,8 @@ class SlowSearch {
   void hold_out(Evidence& evidence) const;
 
   [[nodiscard]] const SlowFit& null_fit() const { return null_; }
+  /// The null's model without the accepted slow processes.
+  [[nodiscard]] SlowModel base() const;
   /// Error minus the accepted mean effects and the bias over the analysed part, at full rate.
   [[nodiscard]] std::vector<std::vector<double>> residuals(const std::vector<std::vector<double>>& error) const;
   [[nodiscard]] const BlockSeries& series() const { return series_; }
@@ -90,11 +94,13 @@ class SlowSearch {
   void hold_out_mean(Evidence& evidence) const;
   void hold_out_slow(Evidence& evidence) const;
   void place_step(Evidence& evidence) const;
+  [[nodiscard]] SlowModel widest_base(const BlockColumns& columns) const;
 
   const Study& study_;
   const ChannelGroup& group_;
   std::optional<SlowModel> given_;
   unsigned threads_;
+  std::stop_token stop_;
   BlockSeries series_;
   std::vector<std::vector<double>> error_;
   std::vector<std::vector<unsigned char>> mask_;

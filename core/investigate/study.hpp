@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,12 +66,24 @@ struct GivenProcess {
   std::vector<double> parameters;
 };
 
-/// The simulation that is criticised.
+/// An effect that a given model holds besides its processes: a cause with its parameters.
+struct GivenEffect {
+  std::string cause;
+  std::vector<std::string> channels;    ///< columns; empty: all of the model's quantity
+  std::vector<std::string> recordings;  ///< ids; empty: all
+  std::vector<double> values;           ///< SI, as `inject` takes them (core/investigate/draft.hpp)
+};
+
+/// A simulation model: the one that is criticised, or the one that is simulated.
 struct Baseline {
   bool automatic = true;
   std::vector<GivenProcess> processes;  ///< given baselines only
   Quantity quantity = Quantity::AngularRate;
-  std::vector<std::string> channels;  ///< columns it applies to; empty: all of its quantity
+  std::vector<std::string> channels;                            ///< columns it applies to; empty: all of its quantity
+  std::map<std::string, std::vector<GivenProcess>> by_channel;  ///< where columns have processes of their own
+  std::map<std::string, double> drift;                          ///< by column [SI/s]
+  std::map<std::string, double> bias;                           ///< by column [SI]; for simulations
+  std::vector<GivenEffect> effects;
 };
 
 struct Study {

@@ -32,6 +32,8 @@ void add_parameter_table_routes(Router& router, ApiContext& context);
 void add_study_routes(Router& router, ApiContext& context);
 void add_outage_evaluation_routes(Router& router, ApiContext& context);
 void add_calibration_routes(Router& router, ApiContext& context);
+void add_investigation_routes(Router& router, ApiContext& context);
+void add_model_routes(Router& router, ApiContext& context);
 void add_service_routes(Router& router, ApiContext& context);
 
 /// Every route of the daemon.

@@ -147,6 +147,8 @@ void add_all_routes(Router& router, ApiContext& context) {
   add_study_routes(router, context);
   add_outage_evaluation_routes(router, context);
   add_calibration_routes(router, context);
+  add_investigation_routes(router, context);
+  add_model_routes(router, context);
 }
 
 }  // namespace driftlab::server

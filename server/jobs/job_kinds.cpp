@@ -1,4 +1,5 @@
 #include "server/jobs/characterise.hpp"
+#include "server/jobs/investigate.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/outage_evaluation.hpp"
 
@@ -9,6 +10,7 @@ const std::vector<std::unique_ptr<JobKind>>& job_kinds() {
     std::vector<std::unique_ptr<JobKind>> list;
     list.push_back(make_characterise_kind());
     list.push_back(make_outage_evaluation_kind());
+    list.push_back(make_investigate_kind());
     return list;
   }();
   return kinds;

@@ -150,12 +150,39 @@ struct StoredCalibration {
   UtcMicros created_at = 0;
 };
 
+/// A simulation model. It never changes: a changed one is a child.
+struct Model {
+  std::string id;          ///< `mod_...`
+  std::string parent_id;   ///< empty: a first model
+  std::string device_id;   ///< empty: of no device in particular
+  std::string unique_key;  ///< one model per key
+  std::string name;
+  std::string document_json;    ///< `processes`, `deterministic`, `channels`, `effects`
+  std::string provenance_json;  ///< where it came from; for a child what changed and why
+  UtcMicros created_at = 0;
+};
+
+/// What was found wrong with a baseline. The report is the document of its job's result.
+struct Investigation {
+  std::string id;      ///< `inv_...`
+  std::string job_id;  ///< known once it is stored
+  std::string device_id;
+  std::string study_id;
+  std::string baseline_id;   ///< the model that was criticised
+  std::string model_id;      ///< the extended one; the baseline where nothing was found
+  std::string summary_json;  ///< findings in a few words, for lists
+  std::string page;          ///< the report as Markdown
+  UtcMicros created_at = 0;
+};
+
 /// Everything a finished job writes, in the transaction that finishes it.
 struct JobResults {
   std::string document_json;  ///< the whole result, served as the job's result
   std::vector<ChannelResult> channels;
   std::vector<Fit> fits;
   std::vector<PooledResult> pooled = {};  ///< each replaces the one of its axis
+  std::vector<Model> models = {};         ///< parents before children
+  std::vector<Investigation> investigations = {};
 };
 
 /// A stored answer to a POST that carried an Idempotency-Key.

@@ -44,6 +44,17 @@ struct FitFilter {
   bool latest_only = false;
 };
 
+struct ModelFilter {
+  std::optional<std::string> device_id;
+  std::optional<std::string> parent_id;
+};
+
+struct InvestigationFilter {
+  std::optional<std::string> device_id;
+  std::optional<std::string> study_id;
+  std::optional<std::string> job_id;
+};
+
 struct DeviceChange {
   std::optional<std::string> model, imu, serial, labels_json;
 };
@@ -186,6 +197,19 @@ class Store {
   [[nodiscard]] virtual Result<StoredCalibration> calibration(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<StoredCalibration>> calibrations(const std::optional<std::string>& device_id,
                                                                             const Page& page) = 0;
+
+  // ---- models and investigations (written by `succeed`; models also by people)
+  struct ModelOutcome {
+    Model model;
+    bool created = false;
+  };
+  /// The model of that unique key, added if absent. NotFound (field "parent", "device").
+  [[nodiscard]] virtual Result<ModelOutcome> add_model(const Model& model) = 0;
+  [[nodiscard]] virtual Result<Model> model(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Model>> models(const ModelFilter& filter, const Page& page) = 0;
+  [[nodiscard]] virtual Result<Investigation> investigation(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<Investigation>> investigations(const InvestigationFilter& filter,
+                                                                          const Page& page) = 0;
 
   // ---- idempotency
   /// The stored reply for a key younger than 24 h.

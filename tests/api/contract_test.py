@@ -109,11 +109,14 @@ class Requests(DaemonTest):
 
     def test_jobs(self) -> None:
         recording = self.expect(201, self.daemon.upload(samples.gyro_csv(64, seed=99), rate_hz=100)).json["id"]
+        study = self.daemon.post("/v1/studies", {"device": {"id": "phone-07"}, "recordings": [{"recording": recording}]}).json["id"]
         good = {"kind": "characterise", "inputs": {"recordings": [recording]}, "parameters": {"models": ["WN"]}}
         for body in (good, {**good, "priority": 0}, {**good, "priority": 9}, {**good, "priority": -1}, {**good, "priority": 10}, {**good, "priority": 1.5}, {**good, "kind": "x"},
                      {**good, "inputs": {}}, {**good, "inputs": []}, {**good, "inputs": {"recordings": [recording] * 101}}, {**good, "parameters": {"seed": 0}},
                      {**good, "parameters": {"seed": -1}}, {**good, "parameters": {"seed": 0.5}}, {**good, "parameters": []}, {**good, "parameters": {"model": []}},
-                     {**good, "colour": 1}, {"kind": "characterise"}):
+                     {**good, "colour": 1}, {"kind": "characterise"}, {"kind": "investigate", "inputs": {}}, {"kind": "investigate", "inputs": {"recordings": [recording]}},
+                     {"kind": "investigate", "inputs": {"study": study}}, {"kind": "investigate", "inputs": {"study": study}, "parameters": {"models": []}},
+                     {"kind": "investigate", "inputs": {"study": study}, "parameters": {"baseline": {"kind": "auto"}}}):
             self.agree({"$ref": "#/$defs/job-request.schema.json"}, body, self.daemon.post("/v1/jobs", body))
 
 
@@ -142,9 +145,16 @@ class Operations(DaemonTest):
         apply = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
         body = {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": apply}}}
         calibration, _ = (daemon.post("/v1/calibrations", body) for _ in range(2))
+        asked = daemon.post("/v1/jobs", {"kind": "investigate", "inputs": {"study": study.json["id"]}})
+        daemon.finished(asked.json["id"])
+        investigation = daemon.items("/v1/investigations")[0]["id"]
+        daemon.get(f"/v1/investigations/{investigation}", Accept="text/markdown")
+        body = {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]}
+        model, _ = (daemon.post("/v1/models", body) for _ in range(2))
         values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
+                  "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
         for path, operations in self.contract.paths.items():
             if "get" in operations:

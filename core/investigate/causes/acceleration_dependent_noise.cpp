@@ -1,6 +1,7 @@
 /// acceleration_dependent_noise: N(w) = N0 (1 + k abs(a)), a the reference acceleration about the channel's axis (for
 /// accelerometers: about z). Innovations have variance c [1 + rho ((1 + k u)^2 - 1)].
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -65,6 +66,7 @@ Cause acceleration_dependent_noise() {
           .needs = "several accelerations or a profile",
           .separates = "several accelerations through the same rates",
           .parameters = {{"k", units::per_acceleration}},
+          .lacks = lacks_slopes,
           .examine = examine,
           .deviation = deviation,
           .inject = inject_effect};

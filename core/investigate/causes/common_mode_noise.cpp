@@ -2,6 +2,7 @@
 /// The pooled correlation r of the innovations has variance 1/(pairs samples) under independence; the white parts' is
 /// r / rho.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -149,6 +150,7 @@ Cause common_mode_noise() {
           .needs = "several axes recorded together",
           .separates = "",
           .parameters = {{"correlation", units::one}},
+          .lacks = lacks_axes,
           .examine_together = examine,
           .inject = inject_effect};
 }

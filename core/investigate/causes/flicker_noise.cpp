@@ -18,7 +18,8 @@ Cause flicker_noise() {
           .needs = "a baseline that does not already hold it",
           .separates = "a longer recording: flicker keeps its floor over decades of averaging time",
           .parameters = {{"B", units::level}},
-          .slow = &kKind};
+          .slow = &kKind,
+          .lacks = lacks_motion};
 }
 
 }  // namespace driftlab::investigate

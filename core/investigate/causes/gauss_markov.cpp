@@ -18,7 +18,8 @@ Cause gauss_markov() {
           .needs = "a baseline that does not already hold it",
           .separates = "a recording many correlation times long",
           .parameters = {{"sigma", units::level}, {"beta", units::per_hertz_rate}},
-          .slow = &kKind};
+          .slow = &kKind,
+          .lacks = lacks_motion};
 }
 
 }  // namespace driftlab::investigate

@@ -103,4 +103,53 @@ std::string lacks_force(const Study& /*study*/, const ChannelGroup& group) {
   return "a specific-force column along the gyroscope's axis";
 }
 
+std::string lacks_stamps(const Study& /*study*/, const ChannelGroup& group) {
+  const bool any = std::any_of(group.members.begin(), group.members.end(),
+                               [](const auto& member) { return member.recording->stamps.present; });
+  return any ? "" : "a time column";
+}
+
+std::string lacks_axes(const Study& study, const ChannelGroup& group) {
+  for (const StudyRecording& recording : study.recordings) {
+    const auto axes = std::count_if(recording.channels.begin(), recording.channels.end(), [&](const Channel& channel) {
+      return channel.role.quantity == group.role.quantity && !channel.error.empty() && !channel.input_only;
+    });
+    if (axes > 1) {
+      return "";
+    }
+  }
+  return "several axes recorded together";
+}
+
+std::string lacks_recordings(const Study& /*study*/, const ChannelGroup& group) {
+  return group.members.size() > 2 ? "" : "three recordings or more";
+}
+
+std::string lacks_rates(const Study& /*study*/, const ChannelGroup& group) {
+  return turns_about(group, group.axis()) ? "" : "several rates or a profile";
+}
+
+std::string lacks_slopes(const Study& /*study*/, const ChannelGroup& group) {
+  for (const auto& member : group.members) {
+    for (const double a : member.recording->acceleration[group.axis()]) {
+      if (a != 0.0) {
+        return "";
+      }
+    }
+  }
+  return "several accelerations or a profile";
+}
+
+std::string lacks_contrast(const Study& study, const ChannelGroup& group) {
+  const bool shown = !study.baseline.automatic || group.members.size() > 1;
+  return shown ? "" : "a second recording, or a given baseline";
+}
+
+std::string lacks_motion(const Study& study, const ChannelGroup& group) {
+  const auto moving = static_cast<std::size_t>(std::count_if(
+      group.members.begin(), group.members.end(), [](const auto& member) { return !member.recording->is_static(); }));
+  const bool shown = !study.baseline.automatic || (moving > 0 && moving < group.members.size());
+  return shown ? "" : "recordings at rest and in motion, or a given baseline";
+}
+
 }  // namespace driftlab::investigate

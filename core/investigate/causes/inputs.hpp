@@ -28,5 +28,14 @@ bool follow_slope(const StudyRecording& recording, const ChannelGroup& group, st
 [[nodiscard]] std::string lacks_rotation(const Study& study, const ChannelGroup& group);
 [[nodiscard]] std::string lacks_profile(const Study& study, const ChannelGroup& group);
 [[nodiscard]] std::string lacks_force(const Study& study, const ChannelGroup& group);
+[[nodiscard]] std::string lacks_stamps(const Study& study, const ChannelGroup& group);
+[[nodiscard]] std::string lacks_axes(const Study& study, const ChannelGroup& group);
+[[nodiscard]] std::string lacks_recordings(const Study& study, const ChannelGroup& group);
+[[nodiscard]] std::string lacks_rates(const Study& study, const ChannelGroup& group);
+[[nodiscard]] std::string lacks_slopes(const Study& study, const ChannelGroup& group);
+/// Under an automatic baseline: a noise that all recordings share is the baseline's.
+[[nodiscard]] std::string lacks_contrast(const Study& study, const ChannelGroup& group);
+/// The same for slow noise, which single recordings do not contrast.
+[[nodiscard]] std::string lacks_motion(const Study& study, const ChannelGroup& group);
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,6 @@
 /// missing_samples: samples are absent and the time column jumps. Counted on the grid that fits the stamps.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 
@@ -51,6 +52,7 @@ Cause missing_samples() {
           .needs = "a time column",
           .separates = "",
           .parameters = {{"fraction", units::one}},
+          .lacks = lacks_stamps,
           .file_fact = file_fact,
           .inject = inject_effect};
 }

@@ -3,6 +3,7 @@
 /// free in every bin that the recordings outside the scope share.
 #include "core/investigate/added_density.hpp"
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -66,6 +67,7 @@ Cause quantization_noise() {
           .needs = "any recording; with an automatic baseline recordings of several conditions",
           .separates = "a recording at a higher rate",
           .parameters = {{"Q", units::integral}},
+          .lacks = lacks_contrast,
           .examine = examine,
           .log_gain = log_gain,
           .inject = inject_effect};

@@ -18,7 +18,8 @@ Cause random_walk() {
           .needs = "a baseline that does not already hold it",
           .separates = "a recording many times longer than the correlation time in question",
           .parameters = {{"K", units::per_root_second}},
-          .slow = &kKind};
+          .slow = &kKind,
+          .lacks = lacks_motion};
 }
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,7 @@
 /// rate_dependent_noise: N(w) = N0 (1 + k abs(w)), w the reference rate about the channel's axis (for accelerometers:
 /// about z). Innovations have variance c [1 + rho ((1 + k u)^2 - 1)].
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -65,6 +66,7 @@ Cause rate_dependent_noise() {
           .needs = "several rates or a profile",
           .separates = "more rates, at constant acceleration",
           .parameters = {{"k", units::per_rate}},
+          .lacks = lacks_rates,
           .examine = examine,
           .deviation = deviation,
           .inject = inject_effect};

@@ -1,6 +1,7 @@
 /// saturation: the output is clipped at +-limit: at least eight values at one extreme while the reference comes near
 /// it.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/lattice.hpp"
@@ -95,6 +96,7 @@ Cause saturation() {
           .needs = "motion beyond the range, with a reference",
           .separates = "",
           .parameters = {{"limit", units::level}},
+          .lacks = lacks_rates,
           .file_fact = file_fact,
           .spoils = spoils,
           .inject = inject_effect};

@@ -1,6 +1,7 @@
 /// timestamp_jitter: the stamps scatter around the uniform grid by more than 0.2 % of the interval and their own
 /// resolution.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 
@@ -54,6 +55,7 @@ Cause timestamp_jitter() {
           .needs = "a time column",
           .separates = "stamps from the sensor's own data-ready line",
           .parameters = {{"sigma_s", units::seconds}},
+          .lacks = lacks_stamps,
           .file_fact = file_fact,
           .inject = inject_effect};
 }

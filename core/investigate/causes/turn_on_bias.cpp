@@ -19,7 +19,8 @@ Cause turn_on_bias() {
           .needs = "several recordings",
           .separates = "the same condition several times, switched off in between",
           .parameters = {{"sigma", units::level}},
-          .slow = &kKind};
+          .slow = &kKind,
+          .lacks = lacks_recordings};
 }
 
 }  // namespace driftlab::investigate

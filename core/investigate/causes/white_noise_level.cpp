@@ -2,6 +2,7 @@
 /// Innovations in the scope have variance c [1 + rho (R^2 - 1)], R the ratio of densities and rho the share of the
 /// white part.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -61,6 +62,7 @@ Cause white_noise_level() {
       .needs = "any recording; with an automatic baseline recordings of several conditions",
       .separates = "a profile through many rates",
       .parameters = {{"N", units::density}},
+      .lacks = lacks_contrast,
       .examine = examine,
       .deviation = deviation,
       .inject = inject_effect};

@@ -36,7 +36,8 @@ constexpr std::string_view kLiveJob =
 /// They speak of all recordings of the device together, the removed one among them.
 constexpr std::string_view kRemovePooled = "DELETE FROM pooled_results WHERE device_id = ?";
 constexpr std::string_view kRemoveDocuments =
-    "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?)";
+    "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?1"
+    " UNION SELECT id FROM jobs WHERE instr(request_json, ?1) > 0)";
 
 Blob read_blob(const Statement& row) {
   Blob blob;

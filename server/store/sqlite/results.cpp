@@ -110,7 +110,7 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
                    .bind(pooled->device_id, pooled->quantity, pooled->axis, job_id, pooled->document_json, now)
                    .run();
   }
-  return inserted;
+  return inserted ? insert_investigations(connection, job_id, results, now) : inserted;
 }
 
 Result<std::optional<PooledResult>> pooled_result(Connection& connection, std::string_view device_id,

@@ -164,6 +164,23 @@ class OpenedStore final : public SqliteStore {
     return readers_->read([&](Connection& c) { return tables::calibrations(c, device_id, page); });
   }
 
+  [[nodiscard]] Result<ModelOutcome> add_model(const Model& model) override {
+    return writer_.write([&](Connection& c) { return tables::add_model(c, model, now()); });
+  }
+  [[nodiscard]] Result<Model> model(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::model(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Model>> models(const ModelFilter& filter, const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::models(c, filter, page); });
+  }
+  [[nodiscard]] Result<Investigation> investigation(std::string_view id) override {
+    return readers_->read([&](Connection& c) { return tables::investigation(c, id); });
+  }
+  [[nodiscard]] Result<std::vector<Investigation>> investigations(const InvestigationFilter& filter,
+                                                                  const Page& page) override {
+    return readers_->read([&](Connection& c) { return tables::investigations(c, filter, page); });
+  }
+
   [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) override {
     return readers_->read([&](Connection& c) { return tables::idempotent_reply(c, key, now()); });
   }

@@ -164,6 +164,17 @@ class FilteredQuery {
                                                                   const std::optional<std::string>& device_id,
                                                                   const Page& page);
 
+// ---- models and investigations
+[[nodiscard]] Result<Store::ModelOutcome> add_model(Connection& connection, const Model& model, UtcMicros now);
+[[nodiscard]] Result<Model> model(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Model>> models(Connection& connection, const ModelFilter& filter, const Page& page);
+[[nodiscard]] Result<Investigation> investigation(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Investigation>> investigations(Connection& connection,
+                                                                const InvestigationFilter& filter, const Page& page);
+/// After the job's result document.
+[[nodiscard]] Status insert_investigations(Connection& connection, std::string_view job_id, const JobResults& results,
+                                           UtcMicros now);
+
 // ---- idempotency
 [[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, std::string_view key,
                                                                       UtcMicros now);

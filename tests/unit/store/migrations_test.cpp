@@ -43,11 +43,20 @@ Device fill(Store& store) {
   const Job done = claim_one(store);
   JobResults results = results_for(done, recording);
   results.pooled.push_back({device.id, "angular_rate", "z", "{}"});
-  EXPECT_TRUE(store.succeed(lease_of(done), results)->held);
   Study study;
   study.device_id = device.id;
   study.unique_key = "study";
-  EXPECT_TRUE(store.add_study(study));
+  const std::string study_id = store.add_study(study)->study.id;
+  Model model;
+  model.unique_key = "model";
+  const std::string model_id = store.add_model(model)->model.id;
+  Investigation investigation;
+  investigation.device_id = device.id;
+  investigation.study_id = study_id;
+  investigation.baseline_id = model_id;
+  investigation.model_id = model_id;
+  results.investigations.push_back(investigation);
+  EXPECT_TRUE(store.succeed(lease_of(done), results)->held);
   add_job(store, "failed");
   EXPECT_TRUE(store.fail_attempt(lease_of(claim_one(store)), {"{}"})->held);
   add_job(store, "queued");
@@ -62,6 +71,7 @@ void expect_filled(Store& store, const Device& device) {
   EXPECT_THAT(*store.recordings({}, {}), SizeIs(1));
   EXPECT_THAT(*store.jobs({}, {}), SizeIs(3));
   EXPECT_THAT(*store.fits({}, {}), SizeIs(2));
+  EXPECT_THAT(*store.investigations({}, {}), SizeIs(1));
 }
 
 TEST(Migrations, EmbeddedTextsAreTheFilesOfTheRepository) {

@@ -1,0 +1,387 @@
+#include "schema/json/simulation_model.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+#include "core/process/registry.hpp"
+#include "schema/json/parameter_unit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab {
+namespace {
+
+using investigate::Baseline;
+using investigate::Cause;
+using investigate::CauseParameter;
+using investigate::ChannelModel;
+using investigate::Finding;
+using investigate::GivenEffect;
+using investigate::GivenProcess;
+using investigate::Report;
+using investigate::SlowComponent;
+using investigate::SlowKind;
+
+/// A number with its unit; an interval beside it (a stored estimate has one) is let be.
+struct Measured {
+  double value = 0.0;
+  std::string unit;
+};
+
+Measured read_measured(const Json& document, const std::string& pointer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  Measured measured{reader.real("value").value_or(0.0), reader.required_text("unit")};
+  (void)reader.member("ci95");
+  reader.reject_unknown();
+  return measured;
+}
+
+/// One parameter of a given process, its unit checked against the process and the quantity it implies.
+double read_parameter(const Json& document, const ParameterSpec& spec, const std::string& pointer, Quantity& quantity,
+                      Faults& faults) {
+  const Measured measured = read_measured(document, pointer, faults);
+  auto unit = parse_parameter_unit(measured.unit);
+  if (!unit) {
+    faults.add(pointer + "/unit", unit.error());
+    return 0.0;
+  }
+  const bool gyro = unit->angle == 2;
+  const bool accelerometer = unit->length == 2;
+  const int second = unit->second + (spec.channel_power == 0 ? 0 : gyro ? 2 : accelerometer ? 4 : 0);
+  if (second != spec.second_power_halves || (spec.channel_power == 0 && (unit->angle != 0 || unit->length != 0))) {
+    faults.add(pointer + "/unit", ErrorCode::UnitMismatch,
+               "The unit " + measured.unit + " does not measure the parameter " + std::string(spec.name) + ".");
+  }
+  if (spec.channel_power == 1) {
+    quantity = gyro ? Quantity::AngularRate : accelerometer ? Quantity::SpecificForce : Quantity::Unspecified;
+  }
+  if (!(measured.value >= 0.0) && spec.lower >= 0.0) {
+    faults.add(pointer + "/value", ErrorCode::InvalidArgument, "A level or rate of a process is not negative.");
+  }
+  return measured.value * unit->factor;
+}
+
+std::vector<GivenProcess> read_processes(const Json& list, const std::string& pointer, Quantity& quantity,
+                                         Faults& faults) {
+  std::vector<GivenProcess> processes;
+  if (!list.is_array()) {
+    faults.add(pointer, ErrorCode::ParseError, "Processes are a list.");
+    return processes;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string here = pointer + "/" + std::to_string(i);
+    ObjectReader reader(list[i], here, faults);
+    const std::string name = reader.required_text("process");
+    const Json* const params = reader.member("params");
+    reader.reject_unknown();
+    const ProcessKind* const kind = find_process(name);
+    if (kind == nullptr || params == nullptr || !params->is_object()) {
+      faults.add(here + "/process", ErrorCode::InvalidArgument, "There is no process called '" + name + "'.");
+      continue;
+    }
+    GivenProcess process{std::string(kind->name), {}};
+    ObjectReader values(*params, here + "/params", faults);
+    for (const ParameterSpec& spec : kind->parameters) {
+      const Json* const value = values.member(spec.name);
+      if (value == nullptr) {
+        faults.add(here + "/params", ErrorCode::InvalidArgument,
+                   "The parameter " + std::string(spec.name) + " of " + name + " is missing.");
+        break;
+      }
+      process.parameters.push_back(
+          read_parameter(*value, spec, here + "/params/" + std::string(spec.name), quantity, faults));
+    }
+    values.reject_unknown();
+    if (process.parameters.size() == kind->parameters.size()) {
+      processes.push_back(std::move(process));
+    }
+  }
+  return processes;
+}
+
+/// The SI value of a cause's parameter: in the unit in which reports write it for one kind of sensor or another, or in
+/// any that converts to it.
+std::optional<double> cause_value(const Measured& measured, const CauseParameter& parameter) {
+  for (const char* const sensor : {"rad/s", "m/s^2", "1"}) {
+    const investigate::LabUnit unit = parameter.unit(*parse_unit(sensor));
+    if (unit.symbol == measured.unit) {
+      return measured.value / unit.per_si;
+    }
+    const auto expected = parse_parameter_unit(unit.symbol);
+    const auto said = parse_parameter_unit(measured.unit);
+    if (expected && said && expected->angle == said->angle && expected->length == said->length &&
+        expected->second == said->second) {
+      return measured.value * said->factor;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> texts(const Json* list) {
+  std::vector<std::string> names;
+  if (list != nullptr && list->is_array()) {
+    for (const Json& name : *list) {
+      if (name.is_string()) {
+        names.push_back(name.get<std::string>());
+      }
+    }
+  }
+  return names;
+}
+
+void read_effect(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  GivenEffect effect;
+  effect.cause = reader.required_text("cause");
+  effect.channels = texts(reader.member("channels"));
+  effect.recordings = texts(reader.member("recordings"));
+  const Json* const params = reader.member("params");
+  reader.reject_unknown();
+  const Cause* const cause = investigate::find_cause(effect.cause);
+  if (cause == nullptr || params == nullptr || !params->is_object()) {
+    faults.add(pointer + "/cause", ErrorCode::InvalidArgument,
+               "An effect names a cause, and there is none called '" + effect.cause + "'.");
+    return;
+  }
+  for (std::size_t k = 0; k < cause->parameters.size(); ++k) {
+    const CauseParameter& parameter = cause->parameters[k];
+    const auto found = params->find(std::string(parameter.name));
+    if (found == params->end()) {
+      continue;
+    }
+    const std::string here = pointer + "/params/" + std::string(parameter.name);
+    const std::optional<double> value = cause_value(read_measured(*found, here, faults), parameter);
+    if (!value) {
+      faults.add(here + "/unit", ErrorCode::UnitMismatch,
+                 "This unit does not measure " + std::string(parameter.name) + " of " + effect.cause + ".");
+      continue;
+    }
+    effect.values.push_back(*value);
+    if (effect.cause == "scale_factor_nonlinearity") {  // its template's shape is the power of the rate
+      effect.values = {*value, k == 0 ? 2.0 : 3.0};
+      break;
+    }
+  }
+  if (effect.values.empty()) {
+    faults.add(pointer + "/params", ErrorCode::InvalidArgument, "The effect has none of the parameters of its cause.");
+    return;
+  }
+  model.effects.push_back(std::move(effect));
+}
+
+void read_deterministic(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {
+  for (const auto& [column, terms] : document.items()) {
+    for (const char* const name : {"bias", "drift"}) {
+      if (!terms.is_object() || !terms.contains(name)) {
+        continue;
+      }
+      const std::string here = pointer + "/" + column + "/" + name;
+      const Measured measured = read_measured(terms[name], here, faults);
+      auto unit = parse_parameter_unit(measured.unit);
+      if (!unit) {
+        faults.add(here + "/unit", unit.error());
+        continue;
+      }
+      (name == std::string_view("bias") ? model.bias : model.drift)[column] = measured.value * unit->factor;
+    }
+  }
+}
+
+Json value_json(double si, double per_si, const std::string& unit) {
+  return Json{{"value", number(si * per_si)}, {"unit", unit}};
+}
+
+Json process_json(const GivenProcess& process, Dimension channel) {
+  const ProcessKind* const kind = find_process(process.process);
+  Json params = Json::object();
+  for (std::size_t k = 0; kind != nullptr && k < kind->parameters.size() && k < process.parameters.size(); ++k) {
+    const ParameterSpec& spec = kind->parameters[k];
+    const bool rate = spec.channel_power == 0;
+    const ParameterUnit unit = rate ? ParameterUnit{"1/s", 1.0} : lab_unit(channel, spec.second_power_halves);
+    params[std::string(spec.name)] = value_json(process.parameters[k], unit.per_si, unit.symbol);
+  }
+  return Json{{"process", process.process}, {"params", std::move(params)}};
+}
+
+Json processes_json(const std::vector<GivenProcess>& processes, Dimension channel) {
+  Json list = Json::array();
+  for (const GivenProcess& process : processes) {
+    list.push_back(process_json(process, channel));
+  }
+  return list;
+}
+
+/// The fitted model of a channel as processes.
+std::vector<GivenProcess> fitted_processes(const ChannelModel& model) {
+  std::vector<GivenProcess> list{{"white_noise", {std::sqrt(model.base.white)}}};
+  for (const SlowComponent& component : model.base.components) {
+    const double level = std::sqrt(component.level);
+    switch (component.kind) {
+      case SlowKind::GaussMarkov:
+        list.push_back({"gauss_markov", {level, component.beta}});
+        break;
+      case SlowKind::RandomWalk:
+        list.push_back({"random_walk", {level}});
+        break;
+      case SlowKind::Flicker:
+        list.push_back({"flicker_noise", {level}});
+        break;
+      case SlowKind::Offset:
+        break;
+    }
+  }
+  return list;
+}
+
+/// The effects of a given baseline, in the units of their channels.
+Json given_effects_json(const Baseline& baseline, const Unit& channel) {
+  Json list = Json::array();
+  for (const GivenEffect& effect : baseline.effects) {
+    const Cause& cause = *investigate::find_cause(effect.cause);
+    Json params = Json::object();
+    const bool powers = effect.cause == "scale_factor_nonlinearity";
+    const std::size_t first = powers && effect.values.size() > 1 && effect.values[1] > 2.5 ? 1 : 0;
+    const std::size_t count = powers ? 1 : std::min(effect.values.size(), cause.parameters.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      const CauseParameter& parameter = cause.parameters[first + k];
+      const investigate::LabUnit unit = parameter.unit(channel);
+      params[std::string(parameter.name)] = value_json(effect.values[k], unit.per_si, unit.symbol);
+    }
+    Json item{{"cause", effect.cause}, {"channels", effect.channels}, {"params", std::move(params)}};
+    if (!effect.recordings.empty()) {
+      item["recordings"] = effect.recordings;
+    }
+    list.push_back(std::move(item));
+  }
+  return list;
+}
+
+/// "static-1/gz" apart.
+std::pair<std::string, std::string> apart(const std::string& channel) {
+  const std::size_t slash = channel.rfind('/');
+  return {channel.substr(0, slash), channel.substr(slash + 1)};
+}
+
+Json found_effect_json(const Finding& finding) {
+  std::vector<std::string> columns;
+  std::vector<std::string> recordings;
+  const auto add = [](std::vector<std::string>& list, const std::string& name) {
+    if (std::find(list.begin(), list.end(), name) == list.end()) {
+      list.push_back(name);
+    }
+  };
+  for (const std::string& channel : finding.channels) {
+    const auto [recording, column] = apart(channel);
+    add(recordings, recording);
+    add(columns, column);
+  }
+  Json item{{"cause", std::string(finding.evidence.cause->name)},
+            {"channels", std::move(columns)},
+            {"params", parameters_json(finding.evidence)}};
+  if (!finding.everywhere) {
+    item["recordings"] = std::move(recordings);
+  }
+  return item;
+}
+
+}  // namespace
+
+Json parameters_json(const investigate::Evidence& evidence) {
+  Json parameters = Json::object();
+  for (const auto& parameter : evidence.parameters) {
+    parameters[parameter.name] = quantity(parameter.estimate, parameter.unit.per_si, parameter.unit.symbol);
+  }
+  return parameters;
+}
+
+Baseline simulation_model_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  Baseline model;
+  model.automatic = false;
+  ObjectReader reader(document, pointer, faults);
+  const Json* const processes = reader.member("processes");
+  const Json* const channels = reader.member("channels");
+  const Json* const deterministic = reader.member("deterministic");
+  const Json* const effects = reader.member("effects");
+  if (processes == nullptr || !processes->is_array() || processes->empty()) {
+    faults.add(pointer + "/processes", ErrorCode::InvalidArgument, "A model has at least one process.");
+    return model;
+  }
+  model.processes = read_processes(*processes, pointer + "/processes", model.quantity, faults);
+  if (channels != nullptr && channels->is_object()) {
+    for (const auto& [column, own] : channels->items()) {
+      const std::string here = pointer + "/channels/" + column + "/processes";
+      Quantity quantity = model.quantity;
+      model.by_channel[column] = read_processes(own.value("processes", Json()), here, quantity, faults);
+    }
+  } else {
+    model.channels = texts(channels);
+  }
+  if (deterministic != nullptr && deterministic->is_object()) {
+    read_deterministic(*deterministic, pointer + "/deterministic", model, faults);
+  }
+  for (std::size_t i = 0; effects != nullptr && effects->is_array() && i < effects->size(); ++i) {
+    read_effect((*effects)[i], pointer + "/effects/" + std::to_string(i), model, faults);
+  }
+  return model;
+}
+
+Baseline baseline_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  const std::string kind = reader.required_text("kind");
+  const bool stored = reader.member("id") != nullptr;
+  for (const char* const name : {"processes", "channels", "deterministic", "effects"}) {
+    (void)reader.member(name);
+  }
+  reader.reject_unknown();
+  if (kind == "auto") {
+    return {};
+  }
+  if (kind == "fit" || stored) {
+    faults.add(pointer + "/kind", ErrorCode::InvalidArgument,
+               "A stored fit or model as baseline needs the daemon that stores it.");
+    return {};
+  }
+  if (kind != "model") {
+    faults.add(pointer + "/kind", ErrorCode::InvalidArgument, "A baseline is \"auto\", a \"model\" or a \"fit\".");
+    return {};
+  }
+  return simulation_model_from_json(document, pointer, faults);
+}
+
+Json baseline_json(const Report& report) {
+  Json document{{"processes", Json::array()}, {"deterministic", Json::object()}};
+  if (report.models.empty()) {
+    return document;
+  }
+  Json channels = Json::object();
+  for (const ChannelModel& model : report.models) {
+    const Dimension dimension = model.unit.dimension;
+    const Json processes = processes_json(model.given ? model.given_processes : fitted_processes(model), dimension);
+    if (channels.empty()) {
+      document["processes"] = processes;
+    }
+    const investigate::LabUnit unit = investigate::level_unit(model.unit);
+    document["deterministic"][model.channel] = Json{{"bias", value_json(model.bias, unit.per_si, unit.symbol)}};
+    if (model.drift != 0.0) {
+      const investigate::LabUnit slope = investigate::level_unit(model.unit, "/s");
+      document["deterministic"][model.channel]["drift"] = value_json(model.drift, slope.per_si, slope.symbol);
+    }
+    channels[model.channel] = Json{{"processes", processes}};
+  }
+  document["channels"] = std::move(channels);
+  if (!report.baseline.effects.empty()) {
+    document["effects"] = given_effects_json(report.baseline, report.models.front().unit);
+  }
+  return document;
+}
+
+Json extended_json(const Report& report) {
+  Json document = baseline_json(report);
+  Json effects = document.value("effects", Json::array());
+  for (const Finding& finding : report.findings) {
+    effects.push_back(found_effect_json(finding));
+  }
+  document["effects"] = std::move(effects);
+  return document;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,89 @@
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/http/problem.hpp"
+
+namespace driftlab::server {
+namespace {
+
+Json summary(const Investigation& row) {
+  return Json{{"id", row.id},
+              {"job", row.job_id},
+              {"device", row.device_id},
+              {"study", row.study_id},
+              {"baseline_model", row.baseline_id},
+              {"model", row.model_id},
+              {"findings", stored(row.summary_json)},
+              {"created_at", rfc3339(row.created_at)}};
+}
+
+Result<Response> list_investigations(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  InvestigationFilter filter;
+  if (const auto name = request.parameter("device")) {
+    auto device = context.store.device(*name);
+    if (!device) {
+      return fail(device.error());
+    }
+    filter.device_id = device->id;
+  }
+  if (const auto study = request.parameter("study")) {
+    filter.study_id = *study;
+  }
+  if (const auto job = request.parameter("job")) {
+    filter.job_id = *job;
+  }
+  auto rows = context.store.investigations(filter, {page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const Investigation& row : *rows) {
+    items.push_back(summary(row));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_investigation(ApiContext& context, const Request& request) {
+  const auto type = negotiate(request.header("accept"), {"application/json", "text/markdown"});
+  if (!type) {
+    return problem_response(HttpFault::NotAcceptable, "Offered are application/json and text/markdown.");
+  }
+  auto row = context.store.investigation(request.parameters[0]);
+  if (!row) {
+    return fail(row.error());
+  }
+  Response response;
+  if (*type == "text/markdown") {
+    response.content_type = "text/markdown; charset=utf-8";
+    response.body = row->page;
+  } else {
+    auto report = context.store.result_document(row->job_id);
+    if (!report) {
+      return fail(report.error());
+    }
+    Json document = stored(*report);
+    document["job"] = row->job_id;
+    document["created_at"] = rfc3339(row->created_at);
+    response = json_response(200, document);
+  }
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_investigation_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/investigations",
+              "listInvestigations",
+              {"limit", "cursor", "device", "study", "job"},
+              Handler([&](const Request& request) { return list_investigations(context, request); })});
+  router.add({"GET", "/v1/investigations/{id}", "getInvestigation", {}, Handler([&](const Request& request) {
+                return get_investigation(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

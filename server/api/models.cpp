@@ -1,0 +1,124 @@
+#include "schema/json/simulation_model.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/store/digest.hpp"
+
+namespace driftlab::server {
+namespace {
+
+Json to_json(const Model& model) {
+  Json document{{"id", model.id},
+                {"parent", model.parent_id.empty() ? Json(nullptr) : Json(model.parent_id)},
+                {"device", model.device_id.empty() ? Json(nullptr) : Json(model.device_id)},
+                {"name", model.name},
+                {"processes", Json::array()},
+                {"deterministic", Json::object()},
+                {"effects", Json::array()}};
+  const Json content = stored(model.document_json);
+  for (const char* const member : {"processes", "channels", "deterministic", "effects"}) {
+    if (content.contains(member)) {
+      document[member] = content[member];
+    }
+  }
+  document["provenance"] = stored(model.provenance_json);
+  document["created_at"] = rfc3339(model.created_at);
+  return document;
+}
+
+Result<Response> list_models(ApiContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  ModelFilter filter;
+  if (const auto name = request.parameter("device")) {
+    auto device = context.store.device(*name);
+    if (!device) {
+      return fail(device.error());
+    }
+    filter.device_id = device->id;
+  }
+  if (const auto parent = request.parameter("parent")) {
+    filter.parent_id = *parent;
+  }
+  auto rows = context.store.models(filter, {page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const Model& model : *rows) {
+    items.push_back(to_json(model));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
+Result<Response> get_model(ApiContext& context, const Request& request) {
+  auto model = context.store.model(request.parameters[0]);
+  if (!model) {
+    return fail(model.error());
+  }
+  return json_response(200, to_json(*model));
+}
+
+Result<Response> create_model(ApiContext& context, const Request& request) {
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  ObjectReader reader(*body, "", faults);
+  Model model;
+  model.name = reader.required_text("name");
+  model.parent_id = reader.text("parent").value_or("");
+  const auto device_name = reader.text("device");
+  const auto why = reader.text("why");
+  Json content = Json::object();
+  for (const char* const member : {"processes", "channels", "deterministic", "effects"}) {
+    if (const Json* const value = reader.member(member)) {
+      content[member] = *value;
+      const bool list = member == std::string_view("processes") || member == std::string_view("effects");
+      if (list ? !value->is_array() : !value->is_object()) {
+        faults.add(reader.pointer(member), ErrorCode::ParseError, list ? "This is a list." : "This is an object.");
+      }
+    }
+  }
+  reader.reject_unknown();
+  (void)simulation_model_from_json(content, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  if (device_name) {
+    auto device = context.store.device(*device_name);
+    if (!device) {
+      return fail(device.error());
+    }
+    model.device_id = device->id;
+  }
+  model.document_json = to_text(content);
+  model.provenance_json = to_text(Json{{"made_by", "hand"}, {"why", why ? Json(*why) : Json(nullptr)}});
+  model.unique_key = sha256_hex(canonical_text(*body));
+  auto outcome = context.store.add_model(model);
+  if (!outcome) {
+    return fail(outcome.error());
+  }
+  Response response = json_response(outcome->created ? 201 : 200, to_json(outcome->model));
+  response.headers.emplace_back("Location", "/v1/models/" + outcome->model.id);
+  return response;
+}
+
+}  // namespace
+
+void add_model_routes(Router& router, ApiContext& context) {
+  router.add(
+      {"GET", "/v1/models", "listModels", {"limit", "cursor", "device", "parent"}, Handler([&](const Request& request) {
+         return list_models(context, request);
+       })});
+  router.add({"POST", "/v1/models", "createModel", {}, Handler([&](const Request& request) {
+                return create_model(context, request);
+              })});
+  router.add({"GET", "/v1/models/{id}", "getModel", {}, Handler([&](const Request& request) {
+                return get_model(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

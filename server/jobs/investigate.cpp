@@ -1,0 +1,298 @@
+#include "server/jobs/investigate.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/explain.hpp"
+#include "core/investigate/investigate.hpp"
+#include "core/read/column_file.hpp"
+#include "schema/json/investigation.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "schema/json/simulation_model.hpp"
+#include "server/jobs/stored_baseline.hpp"
+
+#include <deque>
+
+namespace driftlab::server {
+namespace {
+
+/// Grows whenever the same study could give another report.
+constexpr int kInvestigationVersion = 1;
+/// Of the progress; the rest is the search.
+constexpr double kLoadShare = 0.1;
+
+/// The study with its decoded columns, which the recordings point into.
+struct LoadedStudy {
+  investigate::Study study;
+  std::deque<ColumnFile> columns;
+};
+
+/// A recording of the request: {"id", "revision", "name"}.
+Status load_recording(const Json& input, JobContext& context, LoadedStudy& loaded) {
+  auto recording = context.store.recording(input["id"].get<std::string>());
+  if (!recording) {
+    return fail(recording.error());
+  }
+  if (recording->revision != input["revision"].get<std::int64_t>()) {
+    return fail(ErrorCode::Conflict,
+                "The recording " + recording->id + " was revised after the job was queued; queue it again.");
+  }
+  auto metadata = parse_json(recording->metadata_json);
+  if (!metadata) {
+    return fail(metadata.error());
+  }
+  Faults faults;
+  RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  spec.id = input["name"].get<std::string>();
+  auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
+  if (!columns) {
+    return fail(columns.error());
+  }
+  loaded.columns.push_back(std::move(*columns));
+  const ColumnFile& table = loaded.columns.back();
+  auto made = investigate::make_study_recording(spec, table.names(), table.rows(),
+                                                [&](std::size_t i) { return table.column(i); });
+  if (!made) {
+    return fail(made.error());
+  }
+  for (const std::string& note : made->notes) {
+    loaded.study.notes.push_back(spec.id + ": " + note);
+  }
+  loaded.study.recordings.push_back(std::move(*made));
+  return {};
+}
+
+/// {"id", "revision", "name"} of every recording of a stored study.
+Result<Json> pinned_recordings(const Json& study, JobContext& context, Faults& faults) {
+  Json pinned = Json::array();
+  for (const Json& entry : study["recordings"]) {
+    const std::string id = entry["recording"].get<std::string>();
+    auto recording = context.store.recording(id);
+    if (!recording) {
+      if (recording.error().code != ErrorCode::NotFound) {
+        return fail(recording.error());
+      }
+      faults.add("/inputs/study", ErrorCode::NotFound, "The study's recording " + id + " has been removed.");
+      continue;
+    }
+    pinned.push_back(Json{{"id", id}, {"revision", recording->revision}, {"name", entry.value("id", id)}});
+  }
+  return pinned;
+}
+
+/// What one finding changes in the model, and why.
+Json change_of(const investigate::Finding& finding) {
+  return Json{{"change", "added"},
+              {"cause", std::string(finding.evidence.cause->name)},
+              {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
+              {"channels", finding.channels},
+              {"why", finding.explanation},
+              {"log_score_per_sample", number(finding.gain.log_score_per_sample)}};
+}
+
+/// The rows that a finished investigation leaves behind.
+class Rows {
+ public:
+  Rows(const Json& request, const Study& study, UtcMicros now)
+      : request_(request), study_(study), now_(now), id_(make_id("inv", now)) {}
+
+  [[nodiscard]] JobResults of(const investigate::Report& report) {
+    JobResults results;
+    Investigation row;
+    row.id = id_;
+    row.device_id = study_.device_id;
+    row.study_id = study_.id;
+    row.baseline_id = baseline_model(report, results);
+    row.model_id = report.findings.empty() ? row.baseline_id : extended_model(report, row.baseline_id, results);
+    Json findings = Json::array();
+    for (const auto& finding : report.findings) {
+      Json change = change_of(finding);
+      change.erase("change");
+      change.erase("why");
+      findings.push_back(std::move(change));
+    }
+    row.summary_json = to_text(findings);
+    row.page = investigate::markdown(report);
+    Json document = to_json(report);
+    document["id"] = row.id;
+    document["device"] = row.device_id;
+    document["baseline_model"] = row.baseline_id;
+    document["model"] = row.model_id;
+    results.document_json = to_text(document);
+    results.investigations.push_back(std::move(row));
+    return results;
+  }
+
+ private:
+  [[nodiscard]] Json provenance(const std::string& what) const {
+    return Json{{"made_by", what},
+                {"investigation", id_},
+                {"study", study_.id},
+                {"recordings", request_["inputs"]["recordings"]},
+                {"algorithm_version", kInvestigationVersion},
+                {"driftlab_version", DRIFTLAB_VERSION}};
+  }
+
+  /// The stored model that was named, or a first model made of what was given or fitted.
+  [[nodiscard]] std::string baseline_model(const investigate::Report& report, JobResults& results) const {
+    const Json& baseline = request_["parameters"]["baseline"];
+    if (baseline.value("kind", "") == "model" && baseline.contains("id")) {
+      return baseline["id"].get<std::string>();
+    }
+    Model model;
+    model.id = make_id("mod", now_);
+    model.device_id = study_.device_id;
+    model.unique_key = model.id;
+    model.name = "baseline of " + study_.id;
+    model.document_json = to_text(baseline_json(report));
+    Json from = provenance("investigation");
+    from["baseline"] = baseline;
+    model.provenance_json = to_text(from);
+    results.models.push_back(std::move(model));
+    return results.models.back().id;
+  }
+
+  [[nodiscard]] std::string extended_model(const investigate::Report& report, const std::string& parent,
+                                           JobResults& results) const {
+    Model model;
+    model.id = make_id("mod", now_);
+    model.parent_id = parent;
+    model.device_id = study_.device_id;
+    model.unique_key = model.id;
+    model.name = "extended model of " + study_.id;
+    model.document_json = to_text(extended_json(report));
+    Json from = provenance("investigation");
+    Json changes = Json::array();
+    for (const auto& finding : report.findings) {
+      changes.push_back(change_of(finding));
+    }
+    from["changes"] = std::move(changes);
+    model.provenance_json = to_text(from);
+    results.models.push_back(std::move(model));
+    return results.models.back().id;
+  }
+
+  const Json& request_;
+  const Study& study_;
+  UtcMicros now_;
+  std::string id_;
+};
+
+class Investigate final : public JobKind {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "investigate"; }
+
+  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
+                                                      JobContext& context) const override {
+    auto inputs = parse_json(inputs_json);
+    auto parameters = parse_json(parameters_json);
+    if (!inputs || !parameters) {
+      return fail(inputs ? parameters.error() : inputs.error());
+    }
+    Faults faults;
+    ObjectReader input_reader(*inputs, "/inputs", faults);
+    const std::string study_id = input_reader.required_text("study");
+    input_reader.reject_unknown();
+    ObjectReader parameter_reader(*parameters, "/parameters", faults);
+    const Json* const asked = parameter_reader.member("baseline");
+    parameter_reader.reject_unknown();
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    auto study = context.store.study(study_id);
+    if (!study) {
+      if (study.error().code != ErrorCode::NotFound) {
+        return fail(study.error());
+      }
+      faults.add("/inputs/study", ErrorCode::NotFound, "There is no study " + study_id + ".");
+      return fail(faults.error());
+    }
+    auto document = parse_json(study->document_json);
+    if (!document) {
+      return fail(document.error());
+    }
+    auto pinned = pinned_recordings(*document, context, faults);
+    if (!pinned) {
+      return fail(pinned.error());
+    }
+    const Json baseline = asked != nullptr ? *asked : document->value("baseline", Json{{"kind", "auto"}});
+    const std::string pointer = asked != nullptr ? "/parameters/baseline" : "/inputs/study";
+    auto whole = stored_baseline(baseline, context.store, pointer, faults);
+    if (!whole) {
+      return fail(whole.error());
+    }
+    (void)baseline_from_json(*whole, pointer, faults);
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    return canonical_text(Json{{"kind", name()},
+                               {"inputs", {{"study", study_id}, {"recordings", std::move(*pinned)}}},
+                               {"parameters", {{"baseline", baseline}}},
+                               {"algorithm_version", kInvestigationVersion}});
+  }
+
+  [[nodiscard]] Result<JobResults> run(std::string_view request_json, JobContext& context,
+                                       const RunControl& control) const override {
+    auto request = parse_json(request_json);
+    if (!request) {
+      return fail(request.error());
+    }
+    auto row = context.store.study((*request)["inputs"]["study"].get<std::string>());
+    if (!row) {
+      return fail(row.error());
+    }
+    auto loaded = load(*request, *row, context, control);
+    if (!loaded) {
+      return fail(loaded.error());
+    }
+    RunControl search;
+    search.stop = control.stop;
+    search.progress = [&](std::string_view stage, double fraction) {
+      control.report(stage, kLoadShare + (1.0 - kLoadShare) * fraction);
+    };
+    investigate::InvestigateOptions options;
+    options.threads = 1;  // other jobs run beside this one
+    auto report = investigate::investigate(loaded->study, options, search);
+    if (!report) {
+      return fail(report.error());
+    }
+    return Rows(*request, *row, context.clock.now()).of(*report);
+  }
+
+ private:
+  [[nodiscard]] static Result<LoadedStudy> load(const Json& request, const Study& row, JobContext& context,
+                                                const RunControl& control) {
+    LoadedStudy loaded;
+    loaded.study.id = row.id;
+    loaded.study.device = row.device_id;
+    Faults faults;
+    auto baseline = stored_baseline(request["parameters"]["baseline"], context.store, "/parameters/baseline", faults);
+    if (!baseline) {
+      return fail(baseline.error());
+    }
+    loaded.study.baseline = baseline_from_json(*baseline, "/parameters/baseline", faults);
+    if (!faults.none()) {
+      return fail(faults.error());
+    }
+    const Json& recordings = request["inputs"]["recordings"];
+    for (const Json& input : recordings) {
+      if (control.stop.stop_requested()) {
+        return fail(ErrorCode::Cancelled, "The investigation was stopped.");
+      }
+      control.report("load",
+                     kLoadShare * static_cast<double>(loaded.columns.size()) / static_cast<double>(recordings.size()));
+      if (Status status = load_recording(input, context, loaded); !status) {
+        return fail(Error(status.error()).with("recording", input["id"].get<std::string>()));
+      }
+    }
+    investigate::settle_channels(loaded.study);
+    return loaded;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<JobKind> make_investigate_kind() { return std::make_unique<Investigate>(); }
+
+}  // namespace driftlab::server
