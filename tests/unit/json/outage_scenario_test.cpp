@@ -97,7 +97,7 @@ TEST(ScenarioDocument, TheSharedPaperScenarioIsTheOneByName) {
   std::ifstream file(folder / "spec" / "scenario-paper.json");
   if (!file) {
     std::cerr << "SKIPPED, NOT PASSED: no scenario under " << folder << "; set DRIFTLAB_SHARED to the shared folder\n";
-    GTEST_SKIP() << "no scenario";
+    GTEST_SKIP() << "SKIPPED: no scenario; set DRIFTLAB_SHARED to the directory that holds spec/";
   }
   std::ostringstream text;
   text << file.rdbuf();

@@ -116,7 +116,7 @@ Figures figures_of(const std::vector<RecordedOutage>& outages, const char* name)
 TEST(RecordedDrive, CarOnAMotorwayWithAPhonesSensors) {
   const auto data = data_folder();
   if (!data) {
-    GTEST_SKIP() << "no recordings";
+    GTEST_SKIP() << "SKIPPED: no recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
   const auto folder = *data / "comma2k19-segment40";
   const auto t = read_npy(folder / "processed_log/IMU/accelerometer/t.npy");
@@ -280,7 +280,7 @@ Figures rover(const std::filesystem::path& folder, double delay_s, bool constrai
 TEST(RecordedDrive, RoverOverRoughGround) {
   const auto data = data_folder();
   if (!data) {
-    GTEST_SKIP() << "no recordings";
+    GTEST_SKIP() << "SKIPPED: no recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
   const auto folder = *data / "nav" / "navego_canada";
   std::vector<ImuSample> readings;
@@ -311,7 +311,7 @@ TEST(RecordedDrive, ARealDriveThroughTownIsAScenario) {
   // filter that believes the truth knows how good it is on real roads too.
   const auto data = data_folder();
   if (!data) {
-    GTEST_SKIP() << "no recordings";
+    GTEST_SKIP() << "SKIPPED: no recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
   const auto rows = read_csv(*data / "nav" / "navego_turin" / "ref.csv");
   OutageScenario scenario = prediction_scenario();
