@@ -172,15 +172,11 @@ Result<Response> list_calibrations(ApiContext& context, const Request& request) 
   if (!page) {
     return fail(page.error());
   }
-  std::optional<std::string> device_id;
-  if (const auto name = request.parameter("device")) {
-    auto device = context.store.device(*name);
-    if (!device) {
-      return fail(device.error());
-    }
-    device_id = device->id;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
   }
-  auto rows = context.store.calibrations(device_id, {page->after, page->limit + 1});
+  auto rows = context.store.calibrations(*device_id, {page->after, page->limit + 1});
   if (!rows) {
     return fail(rows.error());
   }

@@ -149,6 +149,31 @@ tl::expected<std::int64_t, Response> expected_revision(const Request& request, s
                                          "The object has changed; its ETag is now " + etag_of(id, current) + "."));
 }
 
+Result<std::optional<std::string>> device_filter(Store& store, const Request& request) {
+  const auto name = request.parameter("device");
+  if (!name) {
+    return std::optional<std::string>{};
+  }
+  auto device = store.device(*name);
+  if (!device) {
+    return fail(device.error());
+  }
+  return std::optional<std::string>{device->id};
+}
+
+Result<std::optional<JobState>> state_filter(const Request& request) {
+  const auto name = request.parameter("state");
+  if (!name) {
+    return std::optional<JobState>{};
+  }
+  const std::optional<JobState> state = parse_job_state(*name);
+  if (!state) {
+    return fail(ErrorCode::InvalidArgument, "The state must be queued, running, succeeded, failed, cancelled or dead.",
+                {{"parameter", "state"}});
+  }
+  return state;
+}
+
 Result<Page> page_of(const Request& request) {
   Page page;
   if (const auto limit = request.parameter("limit")) {

@@ -5,6 +5,7 @@
 #include "server/store/store.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace driftlab::server {
@@ -39,6 +40,12 @@ namespace driftlab::server {
 
 /// `?limit=` (1 to 500, default 50) and `?cursor=`. Error: InvalidArgument naming the parameter.
 [[nodiscard]] Result<Page> page_of(const Request& request);
+
+/// The id of the device that `?device=` names by id or name; nothing where it is not asked for. Error: NotFound.
+[[nodiscard]] Result<std::optional<std::string>> device_filter(Store& store, const Request& request);
+
+/// `?state=` of a job; nothing where it is not asked for. Error: InvalidArgument naming the parameter.
+[[nodiscard]] Result<std::optional<JobState>> state_filter(const Request& request);
 
 /// {"items": [...], "next_cursor": ...} with `Link: rel="next"`, from a page that was fetched with one row more than
 /// asked.

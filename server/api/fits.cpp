@@ -15,13 +15,11 @@ Result<Response> list_fits(ApiContext& context, const Request& request) {
     return fail(page.error());
   }
   FitFilter filter;
-  if (const auto name = request.parameter("device")) {
-    auto device = context.store.device(*name);
-    if (!device) {
-      return fail(device.error());
-    }
-    filter.device_id = device->id;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
   }
+  filter.device_id = std::move(*device_id);
   filter.recording_id = text_parameter(request, "recording");
   filter.job_id = text_parameter(request, "job");
   filter.quantity = text_parameter(request, "quantity");

@@ -22,13 +22,11 @@ Result<Response> list_investigations(ApiContext& context, const Request& request
     return fail(page.error());
   }
   InvestigationFilter filter;
-  if (const auto name = request.parameter("device")) {
-    auto device = context.store.device(*name);
-    if (!device) {
-      return fail(device.error());
-    }
-    filter.device_id = device->id;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
   }
+  filter.device_id = std::move(*device_id);
   if (const auto study = request.parameter("study")) {
     filter.study_id = *study;
   }

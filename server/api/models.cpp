@@ -31,13 +31,11 @@ Result<Response> list_models(ApiContext& context, const Request& request) {
     return fail(page.error());
   }
   ModelFilter filter;
-  if (const auto name = request.parameter("device")) {
-    auto device = context.store.device(*name);
-    if (!device) {
-      return fail(device.error());
-    }
-    filter.device_id = device->id;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
   }
+  filter.device_id = std::move(*device_id);
   if (const auto parent = request.parameter("parent")) {
     filter.parent_id = *parent;
   }

@@ -118,13 +118,11 @@ Result<Response> list(ApiContext& context, const Request& request) {
   }
   JobFilter filter;
   filter.kind = std::string(kOutageEvaluationKind);
-  if (const auto state = request.parameter("state")) {
-    filter.state = parse_job_state(*state);
-    if (!filter.state) {
-      return fail(ErrorCode::InvalidArgument,
-                  "The state must be queued, running, succeeded, failed, cancelled or dead.", {{"parameter", "state"}});
-    }
+  auto state = state_filter(request);
+  if (!state) {
+    return fail(state.error());
   }
+  filter.state = *state;
   auto rows = context.store.jobs(filter, {page->after, page->limit + 1});
   if (!rows) {
     return fail(rows.error());

@@ -26,13 +26,11 @@ Result<Response> list_recordings(ApiContext& context, const Request& request) {
     return fail(page.error());
   }
   RecordingFilter filter;
-  if (const auto name = request.parameter("device")) {
-    auto device = context.store.device(*name);
-    if (!device) {
-      return fail(device.error());
-    }
-    filter.device_id = device->id;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
   }
+  filter.device_id = std::move(*device_id);
   if (const auto text = request.parameter("condition")) {
     auto condition = parse_condition(*text);
     if (!condition) {
