@@ -3,7 +3,7 @@
 #include "core/read/open_recording.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
-#include "schema/json/recording_spec.hpp"
+#include "server/jobs/pinned_recording.hpp"
 #include "server/jobs/pool_results.hpp"
 #include "server/jobs/recording_calibration.hpp"
 
@@ -169,34 +169,22 @@ class Characterise final : public JobKind {
  private:
   [[nodiscard]] static Result<Json> run_one(const Json& input, const CharacteriseOptions& options, JobContext& context,
                                             const RunControl& control, JobResults& results) {
-    auto recording = context.store.recording(input["id"].get<std::string>());
-    if (!recording) {
-      return fail(recording.error());
+    auto pinned = pinned_recording(input, context);
+    if (!pinned) {
+      return fail(pinned.error());
     }
-    if (recording->revision != input["revision"].get<std::int64_t>()) {
-      return fail(ErrorCode::Conflict,
-                  "The recording " + recording->id + " was revised after the job was queued; queue it again.");
-    }
-    auto metadata = parse_json(recording->metadata_json);
-    if (!metadata) {
-      return fail(metadata.error());
-    }
-    Faults faults;
-    const RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
-    if (!faults.none()) {
-      return fail(faults.error());
-    }
-    auto opened = open_recording(context.blobs.columns_path(recording->blob_sha256), spec);
+    const auto& [recording, spec] = *pinned;
+    auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec);
     if (!opened) {
       return fail(opened.error());
     }
-    auto calibration = calibration_of(context.store, spec, recording->device_id);
+    auto calibration = calibration_of(context.store, spec, recording.device_id);
     if (!calibration) {
       return fail(calibration.error());
     }
-    auto document = characterise_recording(recording->id, spec, opened->view, *calibration, options, control);
+    auto document = characterise_recording(recording.id, spec, opened->view, *calibration, options, control);
     if (document) {
-      collect(*recording, *document, options, context, results);
+      collect(recording, *document, options, context, results);
     }
     return document;
   }

@@ -5,8 +5,8 @@
 #include "core/investigate/investigate.hpp"
 #include "core/read/column_file.hpp"
 #include "schema/json/investigation.hpp"
-#include "schema/json/recording_spec.hpp"
 #include "schema/json/simulation_model.hpp"
+#include "server/jobs/pinned_recording.hpp"
 #include "server/jobs/stored_baseline.hpp"
 
 #include <deque>
@@ -27,25 +27,13 @@ struct LoadedStudy {
 
 /// A recording of the request: {"id", "revision", "name"}.
 Status load_recording(const Json& input, JobContext& context, LoadedStudy& loaded) {
-  auto recording = context.store.recording(input["id"].get<std::string>());
-  if (!recording) {
-    return fail(recording.error());
+  auto pinned = pinned_recording(input, context);
+  if (!pinned) {
+    return fail(pinned.error());
   }
-  if (recording->revision != input["revision"].get<std::int64_t>()) {
-    return fail(ErrorCode::Conflict,
-                "The recording " + recording->id + " was revised after the job was queued; queue it again.");
-  }
-  auto metadata = parse_json(recording->metadata_json);
-  if (!metadata) {
-    return fail(metadata.error());
-  }
-  Faults faults;
-  RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
-  if (!faults.none()) {
-    return fail(faults.error());
-  }
+  RecordingSpec spec = std::move(pinned->spec);
   spec.id = input["name"].get<std::string>();
-  auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
+  auto columns = ColumnFile::open(context.blobs.columns_path(pinned->recording.blob_sha256));
   if (!columns) {
     return fail(columns.error());
   }
