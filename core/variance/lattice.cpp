@@ -62,7 +62,8 @@ ProbitLine probit_line(std::span<const int> values) {
   const boost::math::normal normal;
   double below = 0.0;
   for (int k = -kReach; k < kReach; ++k) {
-    below += count[static_cast<std::size_t>(k + kReach)];
+    const int at = k + kReach;
+    below += count[static_cast<std::size_t>(at)];
     if (below < kFewest || total - below < kFewest) {
       continue;
     }
