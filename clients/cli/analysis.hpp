@@ -2,15 +2,10 @@
 /// Two ways to the same characterisation document: in this process, or through a daemon.
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
+#include "clients/cli/remote_job.hpp"
 #include "core/fit/characterise.hpp"
 
 namespace driftlab::cli {
-
-/// What went wrong and how the process ends because of it.
-struct Failure {
-  Error error;
-  Exit exit = Exit::BadInput;
-};
 
 /// Decodes, maps and characterises each file here. Cancelled by interrupt_token.
 [[nodiscard]] tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options);

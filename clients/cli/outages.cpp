@@ -1,5 +1,6 @@
 #include "clients/cli/cli.hpp"
 #include "clients/cli/progress.hpp"
+#include "clients/cli/remote_job.hpp"
 #include "clients/cli/scenario_input.hpp"
 #include "schema/json/outage_evaluation.hpp"
 #include "schema/json/outage_scenario.hpp"
@@ -21,9 +22,40 @@ struct Flags {
   double precision = 0.0;
   int threads = 0;
   bool json = false;
+  std::string server;
 };
 
+/// The same evaluation as a job of a daemon, which may name its stored fits and tables.
+Exit run_there(const Flags& flags) {
+  auto scenario = scenario_document(flags.scenario);
+  if (!scenario) {
+    return complain(scenario.error());
+  }
+  auto client = HttpClient::to(flags.server);
+  if (!client) {
+    return complain(client.error());
+  }
+  const Json request{
+      {"kind", "outage_evaluation"},
+      {"inputs", {{"scenario", std::move(*scenario)}}},
+      {"parameters", {{"runs", flags.runs}, {"seed", flags.seed}, {"relative_precision", flags.precision}}}};
+  tl::expected<Json, Failure> document;
+  {
+    ProgressBar bar;
+    document = run_job(*client, request, bar);
+  }
+  if (!document) {
+    return complain(document.error().error, document.error().exit);
+  }
+  const std::string text = document->dump(2) + "\n";
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return Exit::Success;
+}
+
 Exit run(const Flags& flags) {
+  if (!flags.server.empty()) {
+    return run_there(flags);
+  }
   auto scenario = read_scenario(flags.scenario);
   if (!scenario) {
     return complain(scenario.error());
@@ -75,6 +107,7 @@ void add_outages(CLI::App& app, Command& chosen) {
   command->add_option("--threads", flags->threads, "Threads; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  command->add_option("--server", flags->server, "Address of a daemon that does the work; prints the result document");
   command->add_flag("--json", flags->json, "Print the result document instead of tables");
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

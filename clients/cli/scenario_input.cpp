@@ -9,10 +9,10 @@
 
 namespace driftlab::cli {
 
-Result<OutageScenario> read_scenario(const std::string& name_or_path) {
+Result<Json> scenario_document(const std::string& name_or_path) {
   const auto& names = scenario_names();
   if (std::find(names.begin(), names.end(), name_or_path) != names.end()) {
-    return paper_scenario(name_or_path);
+    return Json(name_or_path);
   }
   std::ifstream file(name_or_path, std::ios::binary);
   if (!file) {
@@ -21,12 +21,16 @@ Result<OutageScenario> read_scenario(const std::string& name_or_path) {
   }
   std::ostringstream text;
   text << file.rdbuf();
-  auto document = parse_json(text.str());
+  return parse_json(text.str());
+}
+
+Result<OutageScenario> read_scenario(const std::string& name_or_path) {
+  const auto document = scenario_document(name_or_path);
   if (!document) {
     return fail(document.error());
   }
   Faults faults;
-  OutageScenario scenario = scenario_from_json(*document, "", faults);
+  OutageScenario scenario = scenario_or_name(*document, "", faults);
   if (!faults.none()) {
     return fail(faults.error());
   }

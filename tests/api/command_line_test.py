@@ -1,0 +1,109 @@
+"""driftlab as a user runs it: every command in its process and through a daemon, the same result, sentences and exit codes."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+from typing import Any
+
+from daemon import PATIENCE_S
+from suite import DaemonTest
+
+PROGRAM = os.environ["DRIFTLAB"]
+
+SCENARIO: dict[str, Any] = {
+    "name": "one turn", "duration_s": 45, "imu_rate_hz": 20,
+    "trajectory": {"start": {"speed_m_s": 15}, "segments_by_start_time": [{"t_s": 30, "kind": "turn", "rate_deg_s": 9, "duration_s": 10}]},
+    "outages": [{"start_s": 30, "duration_s": 10}],
+    "truth": {"gyro": {"processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]},
+              "accelerometer": {"white_noise_mg_per_sqrt_hz": 2, "constant_bias_sd_mg": 10}},
+    "filters": [{"name": "matched"}],
+}
+
+
+class CommandLine(DaemonTest):
+    folder: Path
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-test-")))
+        for condition, name in (("static", "rest.csv"), ("constant_rate:z:9:deg/s", "turning.csv")):
+            made = cls.driftlab("simulate", "--preset", "iphone5s-z", "--condition", condition, "--duration-s", "60", "--seed", "4", "--out", name)
+            if made.returncode != 0:
+                raise AssertionError(made.stderr)
+
+    @classmethod
+    def driftlab(cls, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([PROGRAM, *arguments], cwd=cls.folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+
+    def said(self, *arguments: str) -> str:
+        """What a command that must succeed prints."""
+        done = self.driftlab(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def refused(self, exit_code: int, *arguments: str) -> str:
+        """The one sentence of a command that must fail."""
+        done = self.driftlab(*arguments)
+        self.assertEqual((done.returncode, done.stdout), (exit_code, ""), done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertNotIn("\r", done.stderr, "a progress bar belongs on a terminal")
+        return done.stderr
+
+    @property
+    def server(self) -> tuple[str, str]:
+        return ("--server", f"http://127.0.0.1:{self.daemon.port}")
+
+    def test_characterise_prints_a_table_of_the_condition(self) -> None:
+        table = self.said("characterise", "rest.csv", "--rate-hz", "100")
+        self.assertIn("static", table)
+        self.assertIn("deg/sqrt(h)", table)
+
+    def test_a_bare_file_takes_rate_columns_and_condition(self) -> None:
+        rows = [row for row in (self.folder / "rest.csv").read_text().splitlines() if not row.startswith("#")]
+        (self.folder / "bare.csv").write_text("v\n" + "\n".join(rows[1:]) + "\n")
+        bare = ("bare.csv", "--rate-hz", "100", "--columns", "v=angular_rate:z:deg/s", "--condition", "static")
+        found = json.loads(self.said("characterise", *bare, "--json"))
+        channels = found["recordings"][0]["channels"]
+        self.assertEqual([(c["quantity"], c["axis"]) for c in channels], [("angular_rate", "z")])
+        self.assertIn("stated rate", self.refused(2, "characterise", "bare.csv", "--columns", "v=angular_rate:z:deg/s"))
+
+    def test_through_a_daemon_it_finds_the_same(self) -> None:
+        here = json.loads(self.said("characterise", "rest.csv", "turning.csv", "--rate-hz", "100", "--json"))
+        there = json.loads(self.said("characterise", "rest.csv", "turning.csv", "--rate-hz", "100", "--json",
+                                     *self.server, "--device", "same"))
+        for mine, theirs in zip(here["recordings"], there["recordings"], strict=True):
+            for channel, other in zip(mine["channels"], theirs["channels"], strict=True):
+                self.assertEqual(channel["fits"], other["fits"])
+                self.assertEqual(channel["allan"], other["allan"])
+        table = self.said("table", *self.server, "--device", "same", "--sensor", "gyroscope", "--axis", "z")
+        self.assertIn("static", table)
+
+    def test_outages_through_a_daemon_are_the_same_to_the_bit(self) -> None:
+        (self.folder / "turn.json").write_text(json.dumps(SCENARIO))
+        run = ("outages", "--scenario", "turn.json", "--runs", "8", "--seed", "3", "--json")
+        here, there = json.loads(self.said(*run)), json.loads(self.said(*run, *self.server))
+        self.assertEqual(here["filters"], there["filters"])
+
+    def test_an_investigation_of_a_study_is_a_page(self) -> None:
+        study = {"device": {"id": "paged"}, "recordings": [
+            {"id": "rest", "file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}},
+            {"id": "again", "file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}}]}
+        (self.folder / "study.json").write_text(json.dumps(study))
+        self.assertTrue(self.said("investigate", "study.json").startswith("#"))
+
+    def test_what_cannot_be_is_one_sentence_and_an_exit_code(self) -> None:
+        self.assertIn("absent.csv", self.refused(2, "characterise", "absent.csv"))
+        (self.folder / "broken.csv").write_text("t [s],gz [deg/s]\n0,1\n0.01,x\n")
+        self.assertIn("Row 3", self.refused(2, "characterise", "broken.csv"))
+        self.refused(4, "characterise", "rest.csv", "--rate-hz", "100", "--server", "http://127.0.0.1:1")
+        self.refused(4, "outages", "--runs", "2", "--server", "http://127.0.0.1:1")
+        self.assertEqual(self.driftlab("no-such-command").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
