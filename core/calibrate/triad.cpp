@@ -72,7 +72,7 @@ double student_95(double dof) {
   if (dof < 5.5) {
     return kExact[static_cast<std::size_t>(std::max(1.0, std::round(dof))) - 1];
   }
-  constexpr double z = 1.959963984540054;
+  const double z = 1.959963984540054;  // 97.5 % normal quantile
   const double g1 = (z * z * z + z) / 4.0;
   const double g2 = (5.0 * std::pow(z, 5) + 16.0 * z * z * z + 3.0 * z) / 96.0;
   const double g3 = (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * z * z * z - 15.0 * z) / 384.0;

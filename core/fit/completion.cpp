@@ -77,9 +77,11 @@ class Chain {
         h[r] -= scaled * own;
       }
     }
+    // NOLINTBEGIN(misc-const-correctness): assigned where the series is quantized
     Vector<N> link{};
     double last = 0.0;
     double last_shift = 0.0;
+    // NOLINTEND(misc-const-correctness)
     if constexpr (Quantized) {
       last = p[N - 1][N - 1];
       for (int r = 0; r < N; ++r) {

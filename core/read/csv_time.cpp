@@ -41,6 +41,10 @@ double TimeFromRate::at(std::uint64_t index, const double* row) {
   if (std::isnan(count)) {
     return missing_sample(Missing::Empty, index + 1);
   }
+  constexpr double kLargest = 0x1p53;  // beyond it a double does not count by one
+  if (std::abs(count) > kLargest) {
+    return missing_sample(Missing::OutOfRange, index + 1);
+  }
   constexpr double kWrap = 65536.0;
   const bool started = !std::isnan(first_);
   first_ = started ? first_ : count;

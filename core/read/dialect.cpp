@@ -2,6 +2,7 @@
 
 #include "core/read/text_shape.hpp"
 #include "core/signal/number.hpp"
+#include "core/signal/recording.hpp"
 #include "core/signal/unit.hpp"
 
 #include <algorithm>
@@ -277,7 +278,7 @@ std::optional<double> stated_rate(std::string_view line) {
     const std::string_view digits = rest.substr(0, rest.find_first_not_of("0123456789.e+"));
     const std::string_view unit = trim(rest.substr(digits.size()));
     const auto rate = parse_double(digits);
-    if (rate && *rate > 0.0 && *rate < 1e7 && (unit.empty() || unit.starts_with("hz"))) {
+    if (rate && is_sampling_rate(*rate) && (unit.empty() || unit.starts_with("hz"))) {
       return rate;
     }
   }

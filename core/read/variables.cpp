@@ -1,6 +1,7 @@
 #include "core/read/variables.hpp"
 
 #include "core/signal/infer_role.hpp"
+#include "core/signal/recording.hpp"
 
 #include <algorithm>
 #include <array>
@@ -106,7 +107,7 @@ Status deliver_variables(std::vector<Variable> variables, const DecodeLimits& li
       continue;
     }
     const double value = rows_of(variable) == 1 && variable.columns.size() == 1 ? variable.columns[0][0] : 0.0;
-    if (value > 0.0 && std::isfinite(value) && is_rate_name(variable.name)) {
+    if (is_sampling_rate(value) && is_rate_name(variable.name)) {
       recorded.rate_hz = value;
       continue;
     }

@@ -35,6 +35,10 @@ struct Trim {
 };
 
 /// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0".
+/// Rates that a sensor can have: from a sample in twelve days to a gigahertz. Times and frequencies made of them stay
+/// finite.
+[[nodiscard]] constexpr bool is_sampling_rate(double rate_hz) { return rate_hz >= 1e-6 && rate_hz <= 1e9; }
+
 /// Empty `columns`: meaning is inferred from header names and units where they state it (core/signal/infer_role.hpp).
 struct RecordingSpec {
   std::string id;                 ///< the user's name for the recording; may be empty

@@ -27,8 +27,8 @@ std::string short_text(double value) {
 }
 
 Status check_settings(const RecordingSpec& spec) {
-  if (spec.rate_hz && !(*spec.rate_hz > 0.0 && std::isfinite(*spec.rate_hz))) {
-    return fail(ErrorCode::InvalidArgument, "The sampling rate must be a positive number of Hz.",
+  if (spec.rate_hz && !is_sampling_rate(*spec.rate_hz)) {
+    return fail(ErrorCode::InvalidArgument, "The sampling rate must be from 1e-6 to 1e9 Hz.",
                 {{"parameter", "rate_hz"}});
   }
   if (!(spec.trim.start_s >= 0.0 && std::isfinite(spec.trim.start_s))) {

@@ -125,8 +125,8 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
   spec.id = reader.text("id").value_or("");
   (void)reader.member("file");
   spec.rate_hz = reader.real("rate_hz");
-  if (spec.rate_hz && !(*spec.rate_hz > 0.0)) {
-    faults.add(reader.pointer("rate_hz"), ErrorCode::InvalidArgument, "The rate_hz must be greater than 0.");
+  if (spec.rate_hz && !is_sampling_rate(*spec.rate_hz)) {
+    faults.add(reader.pointer("rate_hz"), ErrorCode::InvalidArgument, "The rate_hz must be from 1e-6 to 1e9.");
   }
   if (const Json* const columns = reader.member("columns")) {
     if (!columns->is_object()) {

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 namespace driftlab {
 namespace {
@@ -60,6 +61,15 @@ TEST(Mat5, ReadsMatricesOfEitherDirectionAndTheRate) {
     EXPECT_EQ(outcome.decoded.rows, 20U);
     EXPECT_EQ(column(outcome, 1)[2], ramp(60)[7]);
     EXPECT_DOUBLE_EQ(column(outcome, 4)[19], 0.38);
+  }
+}
+
+TEST(Mat5, TakesNoRateThatTimeWouldNotStayFiniteWith) {
+  for (const double rate : {0.0, -50.0, 3e-310, 1e300, std::numeric_limits<double>::infinity()}) {
+    const Outcome outcome = decode_bytes(mat_file({mat_matrix("w", 20, 1, ramp(20)), mat_matrix("fs", 1, 1, {rate})}));
+    ASSERT_FALSE(outcome.error) << outcome.message;
+    EXPECT_THAT(outcome.decoded.names, ElementsAre("w")) << rate;
+    EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'fs' (1 x 1)")));
   }
 }
 

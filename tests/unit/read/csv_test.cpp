@@ -221,6 +221,15 @@ TEST(Csv, MakesTheTimeThatAStatedRateGives) {
   EXPECT_THAT(decode_bytes("# Sample rate: 50 Hz\nt,gx\n0,1\n0.02,2\n").decoded.names, ElementsAre("t", "gx"));
 }
 
+TEST(Csv, TakesACounterBeyondCountingAsMissingTime) {
+  const Outcome outcome = decode_bytes("// Sample rate: 0.5Hz\nCounter\tAcc_X\n-1e308\t2\n1e308\t4\n7\t6\n8\t8\n");
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  const std::vector<double> time = column(outcome, 2);
+  EXPECT_EQ(why_missing(time[0]).why, Missing::OutOfRange);
+  EXPECT_EQ(why_missing(time[1]).why, Missing::OutOfRange);
+  EXPECT_EQ(time[3], 2.0);
+}
+
 TEST(Csv, GivesTheSameForFastAndCarefulRows) {
   // The same numbers, once plain and once quoted so that every row takes the careful path.
   std::string plain = "gx,gy\n";
