@@ -1,6 +1,7 @@
 #include "core/calibrate/multi_position.hpp"
 
 #include "core/process/dense.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +156,7 @@ Result<MultiPositionCalibration> calibrate_multi_position(std::span<const Triple
   }
   const Solution found = solve(*scaled);
   const double dof = static_cast<double>(readings.size()) - static_cast<double>(kNumbers);
-  const double half = student_95(dof) * std::sqrt(found.square / dof);
+  const double half = student_quantile(0.975, dof) * std::sqrt(found.square / dof);
   MultiPositionCalibration result;
   result.positions = readings.size();
   result.iterations = found.iterations;

@@ -65,18 +65,4 @@ Triple TriadLaw::correct(const Triple& reading) const {
 
 double length(const Triple& vector) { return std::hypot(vector[0], vector[1], vector[2]); }
 
-double student_95(double dof) {
-  // Cornish-Fisher expansion about the normal quantile (Abramowitz and Stegun 26.7.5), exact values where it is not
-  // sharp.
-  constexpr std::array kExact{12.706, 4.303, 3.182, 2.776, 2.571};
-  if (dof < 5.5) {
-    return kExact[static_cast<std::size_t>(std::max(1.0, std::round(dof))) - 1];
-  }
-  const double z = 1.959963984540054;  // 97.5 % normal quantile
-  const double g1 = (z * z * z + z) / 4.0;
-  const double g2 = (5.0 * std::pow(z, 5) + 16.0 * z * z * z + 3.0 * z) / 96.0;
-  const double g3 = (3.0 * std::pow(z, 7) + 19.0 * std::pow(z, 5) + 17.0 * z * z * z - 15.0 * z) / 384.0;
-  return z + g1 / dof + g2 / (dof * dof) + g3 / (dof * dof * dof);
-}
-
 }  // namespace driftlab

@@ -45,7 +45,4 @@ struct TriadLaw {
 /// sqrt(x^2 + y^2 + z^2).
 [[nodiscard]] double length(const Triple& vector);
 
-/// A quantile of Student's t: P(|t| <= q) = 95 % with `dof` >= 1 degrees of freedom. Relative error below 0.2 %.
-[[nodiscard]] double student_95(double dof);
-
 }  // namespace driftlab

@@ -1,6 +1,6 @@
 #include "core/fit/fit_report.hpp"
 
-#include <boost/math/distributions/chi_squared.hpp>
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +86,7 @@ std::optional<JTest> j_test(const Candidate& candidate) {
   }
   const double dof = over - kLongScales;
   const double statistic = candidate.log_fit->minimum();
-  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), statistic));
+  const double p = chi_squared_tail(statistic, dof);
   return JTest{statistic, dof, p};
 }
 

@@ -2,9 +2,7 @@
 
 #include "core/fit/levenberg_marquardt.hpp"
 #include "core/process/dense.hpp"
-
-#include <boost/math/special_functions/digamma.hpp>
-#include <boost/math/special_functions/trigamma.hpp>
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -59,9 +57,9 @@ LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd
   std::vector<std::array<double, kTerms>> terms;
   for (Eigen::Index j = 0; j < count; ++j) {
     const double half_edf = fitted(used_[j]) * fitted(used_[j]) / covariance(used_[j], used_[j]);  // eta/2 = nu^2/Var
-    y_(j) = std::log(moments.nu(used_[j])) - (boost::math::digamma(half_edf) - std::log(half_edf));
+    y_(j) = std::log(moments.nu(used_[j])) - (digamma(half_edf) - std::log(half_edf));
     terms.push_back(log_terms(half_edf));
-    relative(j, j) = boost::math::trigamma(half_edf);
+    relative(j, j) = trigamma(half_edf);
     for (Eigen::Index i = 0; i < j; ++i) {
       const double correlation =
           covariance(used_[i], used_[j]) / std::sqrt(covariance(used_[i], used_[i]) * covariance(used_[j], used_[j]));

@@ -1,8 +1,7 @@
 #include "core/fit/replicates.hpp"
 
+#include "core/process/distributions.hpp"
 #include "core/variance/variance_intervals.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -232,7 +231,7 @@ std::optional<Agreement> Replicates::agreement(const Candidate& joint) const {
   Agreement agreement;
   agreement.dof = static_cast<double>((count() - 1) * joint.log_fit->coordinates().size());
   agreement.statistic = std::max(0.0, joint.log_fit->minimum() - separate);
-  agreement.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(agreement.dof), agreement.statistic));
+  agreement.p = chi_squared_tail(agreement.statistic, agreement.dof);
   return agreement;
 }
 

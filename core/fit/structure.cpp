@@ -1,9 +1,8 @@
 #include "core/fit/structure.hpp"
 
+#include "core/process/distributions.hpp"
 #include "core/process/model.hpp"
 #include "core/process/registry.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <array>
@@ -149,8 +148,7 @@ StructureChoice choose_structure(const std::vector<std::string>& names,
     choice.dof += score.dof;
   }
   if (choice.dof >= 1.0) {
-    choice.p = boost::math::cdf(
-        boost::math::complement(boost::math::chi_squared(choice.dof), std::max(0.0, choice.statistic)));
+    choice.p = chi_squared_tail(choice.statistic, choice.dof);
   }
   if (scores.size() > 1) {
     choice.verdict = choice.excess > kStrong ? StructureVerdict::Changes

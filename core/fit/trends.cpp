@@ -1,11 +1,7 @@
 #include "core/fit/trends.hpp"
 
 #include "core/process/dense.hpp"
-
-#include <Eigen/LU>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -106,16 +102,14 @@ void test_monotone(const Series& series, Trend& trend) {
   if (trend.few) {
     const Regression fit = regress(design, series.y, series.variance);
     trend.monotone_statistic = fit.coefficients(1) / std::sqrt(fit.covariance(1, 1));
-    trend.monotone_p =
-        2.0 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::fabs(trend.monotone_statistic)));
+    trend.monotone_p = 2.0 * normal_tail(std::fabs(trend.monotone_statistic));
   } else {
     const double tau2 = paule_mandel(design, series);
     const Regression fit = regress(design, series.y, series.variance.array() + tau2);
     const auto dof = static_cast<double>(series.size() - 2);
     const double scale = std::max(1.0, fit.chi_square / dof);
     trend.monotone_statistic = fit.coefficients(1) / std::sqrt(scale * fit.covariance(1, 1));
-    trend.monotone_p = 2.0 * boost::math::cdf(boost::math::complement(boost::math::students_t(dof),
-                                                                      std::fabs(trend.monotone_statistic)));
+    trend.monotone_p = 2.0 * student_tail(std::fabs(trend.monotone_statistic), dof);
   }
   if (trend.monotone_p < kSize) {
     trend.direction = trend.monotone_statistic > 0.0 ? 1 : -1;
@@ -160,10 +154,10 @@ ShapeFit fit_shape(const Series& series, const Eigen::VectorXd& share, const Eig
   fit.chi_square = distance(fit.ln_low, fit.ln_high);
   for (int round = 0; round < 50; ++round) {
     const Curve curve = curve_of(share, fit.ln_low, fit.ln_high);
-    Eigen::Matrix2d normal = curve.gradient.transpose() * weight.asDiagonal() * curve.gradient;
+    Eigen::MatrixXd normal = curve.gradient.transpose() * weight.asDiagonal() * curve.gradient;
     normal.diagonal().array() += 1e-9 * normal.trace();
-    const Eigen::Vector2d step =
-        normal.inverse() * (curve.gradient.transpose() * weight.cwiseProduct(series.y - curve.ln_f));
+    const Eigen::VectorXd right = curve.gradient.transpose() * weight.cwiseProduct(series.y - curve.ln_f);
+    const Eigen::VectorXd step = solve_symmetric(normal, right);
     double length = 1.0;
     double next = distance(fit.ln_low + step(0), fit.ln_high + step(1));
     while (!(next <= fit.chi_square) && length > 1e-4) {
@@ -293,7 +287,7 @@ FittedRelation fit_relation(const Series& series, Relation kind, double scale, b
   const double tau2 = n > shape_parameters ? best_tau2 * n / (n - shape_parameters) : best_tau2;
   relation.spread = std::sqrt(tau2);
   if (with_spread) {
-    relation.quantile = boost::math::quantile(boost::math::students_t(n - shape_parameters), 0.975);
+    relation.quantile = student_quantile(0.975, n - shape_parameters);
   }
   store_covariance(series, tau2, relation);
   return relation;
@@ -334,7 +328,7 @@ Result<Trend> fit_trend(std::vector<TrendPoint> points) {
   const Series series = series_of(trend.points);
   const auto n = static_cast<double>(series.size());
   trend.equal_statistic = regress(Eigen::MatrixXd::Ones(series.size(), 1), series.y, series.variance).chi_square;
-  trend.equal_p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(n - 1.0), trend.equal_statistic));
+  trend.equal_p = chi_squared_tail(trend.equal_statistic, n - 1.0);
   test_monotone(series, trend);
   const bool with_spread = series.size() >= 4;
   for (const Relation kind : {Relation::Constant, Relation::Linear, Relation::Power}) {

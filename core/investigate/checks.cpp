@@ -1,7 +1,7 @@
 #include "core/investigate/checks.hpp"
 
-#include "core/investigate/chi_square.hpp"
 #include "core/investigate/investigate.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@ Check chi_square_check(std::string id, const ChannelGroup::Member& member, doubl
   check.recording = member.recording->id;
   check.channel = member.channel->column;
   check.observed = x;
-  check.q025 = chi_square_quantile(-1.96, dof);
-  check.median = chi_square_quantile(0.0, dof);
-  check.q975 = chi_square_quantile(1.96, dof);
-  check.p = std::clamp(chi_square_tail(x, dof), 0.0, 1.0);
+  check.q025 = chi_squared_quantile(0.025, dof);
+  check.median = chi_squared_quantile(0.5, dof);
+  check.q975 = chi_squared_quantile(0.975, dof);
+  check.p = chi_squared_tail(x, dof);
   return check;
 }
 
@@ -204,9 +204,9 @@ Check cause_check(const Evidence& evidence, const ChannelGroup& group) {
   check.channel = group.column;
   check.observed = evidence.gain;
   const double dof = std::max(1.0, evidence.freedom);
-  check.q025 = chi_square_quantile(-1.96, dof);
-  check.median = chi_square_quantile(0.0, dof);
-  check.q975 = chi_square_quantile(1.96, dof);
+  check.q025 = chi_squared_quantile(0.025, dof);
+  check.median = chi_squared_quantile(0.5, dof);
+  check.q975 = chi_squared_quantile(0.975, dof);
   check.p_adjusted = std::clamp(0.05 * std::exp(-0.5 * (evidence.score - kThreshold)), 0.0, 1.0);
   check.p = check.p_adjusted;
   check.failed = evidence.score > kThreshold;

@@ -2,10 +2,10 @@
 /// The battery of checks: what a right baseline would show, and what the recordings show.
 ///
 /// General checks per recording, on block innovations (whiteness, Ljung and Box 1978) and on innovations at full rate
-/// (variance over sixteen segments, spectrum in sixteen bands, wavelet variance per scale, kurtosis): chi-square or normal
-/// under the model. And one check per cause: its likelihood ratio, whose probability under the
-/// model follows from the score (p = 0.05 exp(-(score - threshold)/2) over the whole study). Probabilities are adjusted
-/// over all checks of a study by Holm (1979); the chance that any fails without reason is at most 5 %.
+/// (variance over sixteen segments, spectrum in sixteen bands, wavelet variance per scale, kurtosis): chi-square or
+/// normal under the model. And one check per cause: its likelihood ratio, whose probability under the model follows
+/// from the score (p = 0.05 exp(-(score - threshold)/2) over the whole study). Probabilities are adjusted over all
+/// checks of a study by Holm (1979); the chance that any fails without reason is at most 5 %.
 #include "core/investigate/group_search.hpp"
 
 #include <string>

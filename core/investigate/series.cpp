@@ -1,6 +1,6 @@
 #include "core/investigate/series.hpp"
 
-#include "core/investigate/chi_square.hpp"
+#include "core/process/distributions.hpp"
 #include "core/process/registry.hpp"
 
 #include <array>
@@ -39,10 +39,10 @@ double model_variance(const SlowModel& model, double half, double dt_s) {
 
 void add_band(const SlowModel& model, double half, double dt_s, double count, Band& band) {
   const double variance = model_variance(model, half, dt_s);
-  const auto at = [&](double z) { return std::sqrt(variance * chi_square_quantile(z, count) / count); };
-  band.low.push_back(at(-1.96));
-  band.median.push_back(at(0.0));
-  band.high.push_back(at(1.96));
+  const auto at = [&](double p) { return std::sqrt(variance * chi_squared_quantile(p, count) / count); };
+  band.low.push_back(at(0.025));
+  band.median.push_back(at(0.5));
+  band.high.push_back(at(0.975));
 }
 
 /// Root mean square of the Haar coefficients of half length `half`, end to end.

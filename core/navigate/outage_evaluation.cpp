@@ -1,6 +1,7 @@
 #include "core/navigate/outage_evaluation.hpp"
 
 #include "core/navigate/outage_runs.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -32,7 +33,7 @@ Estimate mean_of(const std::vector<double>& values) {
     for (const double value : values) {
       squares += (value - estimate.value) * (value - estimate.value);
     }
-    const double half = student_quantile95(n - 1.0) * std::sqrt(squares / (n - 1.0) / n);
+    const double half = student_quantile(0.975, n - 1.0) * std::sqrt(squares / (n - 1.0) / n);
     estimate.ci95 = {estimate.value - half, estimate.value + half};
   }
   return estimate;
@@ -200,14 +201,6 @@ double OutageScore::nees() const {
   const double determinant = var_north * var_east - cov_north_east * cov_north_east;
   return (var_east * north_m * north_m - 2.0 * cov_north_east * north_m * east_m + var_north * east_m * east_m) /
          determinant;
-}
-
-double student_quantile95(double dof) {
-  constexpr double kZ = 1.959963984540054;
-  constexpr double kZ3 = kZ * kZ * kZ;
-  constexpr double kZ5 = kZ3 * kZ * kZ;
-  return kZ + (kZ3 + kZ) / (4.0 * dof) + (5.0 * kZ5 + 16.0 * kZ3 + 3.0 * kZ) / (96.0 * dof * dof) +
-         (3.0 * kZ5 * kZ * kZ + 19.0 * kZ5 + 17.0 * kZ3 - 15.0 * kZ) / (384.0 * dof * dof * dof);
 }
 
 std::optional<PairedDifference> OutageEvaluation::difference(std::string_view filter, std::string_view against) const {

@@ -104,7 +104,4 @@ struct OutageEvaluation {
                                                         const OutageOptions& options = {},
                                                         const RunControl& control = {});
 
-/// 95 % quantile of |t| with `dof` degrees of freedom, by the expansion of Cornish and Fisher to 1/dof^2 (0.1 % at 10).
-[[nodiscard]] double student_quantile95(double dof);
-
 }  // namespace driftlab

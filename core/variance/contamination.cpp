@@ -1,8 +1,7 @@
 #include "core/variance/contamination.hpp"
 
 #include "core/process/dense.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +102,7 @@ ContaminationTest test_contamination(std::span<const double> samples, double uni
   test.dof = static_cast<double>(count);
   test.statistic = std::max(0.0, d.dot(solve_symmetric(covariance, d)));
   const double capped = std::min(test.statistic, 1e6);
-  test.p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(test.dof), capped));
+  test.p = chi_squared_tail(capped, test.dof);
   if (!test.undefined_scales.empty()) {
     test.p = 0.0;
   }

@@ -1,10 +1,9 @@
 #include "core/variance/lattice.hpp"
 
+#include "core/process/distributions.hpp"
 #include "core/process/random.hpp"
 #include "core/variance/prefix_sums.hpp"
 #include "core/variance/robust_variance.hpp"
-
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <array>
@@ -59,7 +58,6 @@ ProbitLine probit_line(std::span<const int> values) {
     double weight;
   };
   std::vector<Point> points;
-  const boost::math::normal normal;
   double below = 0.0;
   for (int k = -kReach; k < kReach; ++k) {
     const int at = k + kReach;
@@ -68,8 +66,8 @@ ProbitLine probit_line(std::span<const int> values) {
       continue;
     }
     const double share = below / total;
-    const double probit = boost::math::quantile(normal, share);
-    const double density = boost::math::pdf(normal, probit);
+    const double probit = normal_quantile(share);
+    const double density = normal_density(probit);
     points.push_back({middle + k + 0.5, probit, total * density * density / (share * (1.0 - share))});
   }
   ProbitLine line;

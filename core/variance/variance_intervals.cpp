@@ -1,10 +1,9 @@
 #include "core/variance/variance_intervals.hpp"
 
+#include "core/process/distributions.hpp"
 #include "core/process/registry.hpp"
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/nonnegative_least_squares.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <cmath>
 
@@ -115,10 +114,8 @@ Interval chi_square_interval(double variance, double edf) {
     return {variance / quantile(kNormal975), variance / quantile(-kNormal975)};
   }
   // Below half a degree of freedom the quantiles underflow; the upper limit is then as good as open.
-  const boost::math::chi_squared distribution(std::max(edf, 0.5));
-  const double low = boost::math::quantile(distribution, 0.025);
-  const double high = boost::math::quantile(distribution, 0.975);
-  return {variance * distribution.degrees_of_freedom() / high, variance * distribution.degrees_of_freedom() / low};
+  const double dof = std::max(edf, 0.5);
+  return {variance * dof / chi_squared_quantile(0.975, dof), variance * dof / chi_squared_quantile(0.025, dof)};
 }
 
 VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan, double excess) {

@@ -1,10 +1,9 @@
 #include "schema/json/parameter_table.hpp"
 
+#include "core/process/distributions.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/table_cells.hpp"
-
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -188,7 +187,7 @@ Json agreement_of(const Scatter& scatter) {
   if (scatter.dof == 0) {
     return nullptr;
   }
-  const double p = boost::math::cdf(boost::math::complement(boost::math::chi_squared(scatter.dof), scatter.statistic));
+  const double p = chi_squared_tail(scatter.statistic, scatter.dof);
   return Json{{"model", nullptr},
               {"statistic", number(scatter.statistic)},
               {"dof", scatter.dof},

@@ -163,12 +163,5 @@ TEST(TriadMean, GivesTheMeanAndItsUncertainty) {
   EXPECT_FALSE(triad_mean({channels[0], channels[1], std::span<const double>(channels[2]).first(10)}));
 }
 
-TEST(StudentQuantile, EqualsTheTables) {
-  for (const auto& [dof, quantile] : {std::pair{1.0, 12.706}, std::pair{5.0, 2.571}, std::pair{6.0, 2.447},
-                                      std::pair{10.0, 2.228}, std::pair{30.0, 2.042}, std::pair{1000.0, 1.962}}) {
-    EXPECT_NEAR(student_95(dof), quantile, 0.002 * quantile) << dof;
-  }
-}
-
 }  // namespace
 }  // namespace driftlab

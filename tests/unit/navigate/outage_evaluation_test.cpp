@@ -122,12 +122,6 @@ TEST(OutageEvaluation, ScoresAreEllipsesAndDistances) {
   EXPECT_DOUBLE_EQ(score.nees(), 2.0);
 }
 
-TEST(OutageEvaluation, StudentQuantilesAreThoseOfTables) {
-  EXPECT_NEAR(student_quantile95(10.0), 2.228, 0.002);
-  EXPECT_NEAR(student_quantile95(19.0), 2.093, 0.001);
-  EXPECT_NEAR(student_quantile95(399.0), 1.966, 0.001);
-}
-
 TEST(PaperScenario, HasTheStatedFiltersAndVariants) {
   for (const std::string& name : scenario_names()) {
     const OutageScenario scenario = *paper_scenario(name);
