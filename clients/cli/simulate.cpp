@@ -1,18 +1,16 @@
 #include "clients/cli/cli.hpp"
 #include "clients/cli/scenario_input.hpp"
+#include "clients/cli/simulate_model.hpp"
 #include "clients/cli/table_file.hpp"
 #include "core/navigate/outage_runs.hpp"
 #include "core/process/published_models.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/unit.hpp"
-#include "schema/json/error_model.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <fstream>
 #include <memory>
 #include <numbers>
-#include <sstream>
 
 namespace driftlab::cli {
 namespace {
@@ -23,7 +21,7 @@ struct Flags {
   std::string preset = "iphone5s-z";
   std::string condition = "static";
   std::string model;
-  std::string quantity = "angular_rate";
+  std::string channel;
   double rate_hz = 100.0;
   double duration_s = 900.0;
   std::uint64_t seed = 1;
@@ -46,42 +44,20 @@ double reference(const Condition& condition, double t_s) {
   }
 }
 
-/// The processes of a file: a list, or an object that has them (a model, a fit).
-Result<Model> read_model(const std::string& path, Dimension dimension) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    return fail(ErrorCode::NotFound, "There is no file '" + path + "'.");
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
-  auto document = parse_json(text.str());
-  if (!document) {
-    return fail(document.error());
-  }
-  const bool wrapped = document->is_object() && document->contains("processes");
-  Faults faults;
-  Model model =
-      model_from_json(wrapped ? (*document)["processes"] : *document, dimension, wrapped ? "/processes" : "", faults);
-  if (!faults.none()) {
-    return fail(faults.error());
-  }
-  return model;
-}
-
 std::string provenance(const Flags& flags) {
   std::string text = "Simulated by driftlab " DRIFTLAB_VERSION ", ";
   if (!flags.scenario.empty()) {
     text.append("scenario ").append(flags.scenario).append(", run ").append(std::to_string(flags.run));
     return text.append(", seed ").append(std::to_string(flags.seed));
   }
-  if (flags.model.empty()) {
-    text.append("preset ").append(flags.preset);
-  } else {
-    text.append("model ").append(flags.model);
-  }
-  text.append(", condition ").append(flags.condition).append(", seed ").append(std::to_string(flags.seed));
+  text.append("preset ")
+      .append(flags.preset)
+      .append(", condition ")
+      .append(flags.condition)
+      .append(", seed ")
+      .append(std::to_string(flags.seed));
   text.append(", ").append(to_text(flags.rate_hz)).append(" Hz");
-  return flags.model.empty() ? text.append("; see core/process/published_models.hpp") : text;
+  return text.append("; see core/process/published_models.hpp");
 }
 
 /// One axis at one condition.
@@ -90,9 +66,7 @@ Exit simulate_axis_file(const Flags& flags) {
   if (!condition) {
     return complain(condition.error());
   }
-  const bool gyro = flags.quantity == "angular_rate";
-  auto model = flags.model.empty() ? published_model(flags.preset, *condition)
-                                   : read_model(flags.model, gyro ? Dimension::AngularRate : Dimension::SpecificForce);
+  auto model = published_model(flags.preset, *condition);
   if (!model) {
     return complain(model.error());
   }
@@ -100,14 +74,13 @@ Exit simulate_axis_file(const Flags& flags) {
   Random random(flags.seed);
   TableFile table;
   table.comment = provenance(flags);
-  table.columns = {gyro ? "gz [deg/s]" : "fz [m/s^2]"};
+  table.columns = {"gz [deg/s]"};
   table.decimals = {6};
   table.rows = static_cast<std::size_t>(flags.duration_s * flags.rate_hz);
   const std::vector<double> error = simulate(*model, random, dt_s, table.rows);
-  const Unit unit = *parse_unit(gyro ? "deg/s" : "m/s^2");
+  const Unit unit = *parse_unit("deg/s");
   table.cell = [&](std::size_t row, std::size_t) {
-    const double truth = gyro ? reference(*condition, static_cast<double>(row) * dt_s) : 0.0;
-    return unit.from_si(truth + error[row]);
+    return unit.from_si(reference(*condition, static_cast<double>(row) * dt_s) + error[row]);
   };
   const Status written = write_table(flags.out, table);
   return written ? Exit::Success : complain(written.error());
@@ -199,6 +172,17 @@ Exit simulate_drive(const Flags& flags) {
   return written ? Exit::Success : complain(written.error());
 }
 
+Exit run(const Flags& flags) {
+  if (!flags.scenario.empty()) {
+    return simulate_drive(flags);
+  }
+  if (!flags.model.empty()) {
+    return simulate_model(
+        {flags.model, flags.channel, flags.condition, flags.rate_hz, flags.duration_s, flags.seed, flags.out});
+  }
+  return simulate_axis_file(flags);
+}
+
 }  // namespace
 
 void add_simulate(CLI::App& app, Command& chosen) {
@@ -207,10 +191,9 @@ void add_simulate(CLI::App& app, Command& chosen) {
   const auto flags = std::make_shared<Flags>();
   command->add_option("--preset", flags->preset, "Published model: iphone5s-z (Radi et al. 2017, Table 4)")
       ->capture_default_str();
-  command->add_option("--model", flags->model, "JSON file with processes, in place of a preset");
-  command->add_option("--quantity", flags->quantity, "What a model file describes")
-      ->check(CLI::IsMember({"angular_rate", "specific_force"}))
-      ->capture_default_str();
+  command->add_option("--model", flags->model,
+                      "JSON file in place of a preset: a model with its effects, an investigation's report, a fit");
+  command->add_option("--channel", flags->channel, "Column of the model (its first)");
   command->add_option("--condition", flags->condition, "Dynamic condition of the source's table")
       ->capture_default_str();
   command->add_option("--rate-hz", flags->rate_hz, "Sampling rate")->check(CLI::Range(0.1, 1e5))->capture_default_str();
@@ -222,9 +205,7 @@ void add_simulate(CLI::App& app, Command& chosen) {
   command->add_option("--run", flags->run, "Which Monte Carlo run of the scenario")->capture_default_str();
   command->add_option("--gnss", flags->gnss, "File for the scenario's fixes");
   command->add_option("--truth", flags->truth, "File for the scenario's true trajectory");
-  command->callback([flags, &chosen] {
-    chosen = [flags] { return flags->scenario.empty() ? simulate_axis_file(*flags) : simulate_drive(*flags); };
-  });
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }
 
 }  // namespace driftlab::cli

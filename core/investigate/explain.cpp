@@ -76,6 +76,35 @@ std::string next_measurement(const Finding& finding) {
   return finding.evidence.ambiguous ? std::string(finding.evidence.cause->separates) : std::string();
 }
 
+namespace {
+
+void append_outages(const OutageGain& outages, bool anything_found, std::string& page) {
+  const auto metres = [](const Estimate& error) {
+    return short_text(error.value, 3) + " m [" + short_text(error.ci95.low, 3) + ", " + short_text(error.ci95.high, 3) +
+           "]";
+  };
+  page.append(
+      "\n## What it means in navigation\n\nMean horizontal position error at the end of two simulated outages of 10 "
+      "s: ");
+  page.append(metres(outages.baseline_m)).append(" as the baseline predicts it");
+  if (anything_found) {
+    page.append("; ")
+        .append(metres(outages.extended_m))
+        .append(" as the extended model does, for a filter that believes the baseline; ");
+    page.append(metres(outages.adopted_m)).append(" for one that believes the extended model");
+  }
+  page.append(".");
+  if (!outages.left_out.empty()) {
+    page.append(" Not in this simulation: ").append(list_of(outages.left_out)).append(".");
+  }
+  if (!outages.left_out_of_filters.empty()) {
+    page.append(" In the data and in no filter: ").append(list_of(outages.left_out_of_filters)).append(".");
+  }
+  page.append("\n");
+}
+
+}  // namespace
+
 std::string markdown(const Report& report) {
   std::string page = "# Investigation of ";
   page.append(report.study).append("\n\n");
@@ -98,6 +127,9 @@ std::string markdown(const Report& report) {
       page.append(" To separate them, measure: ").append(finding.next_measurement).append(".");
     }
     page.append("\n");
+  }
+  if (report.outages) {
+    append_outages(*report.outages, !report.findings.empty(), page);
   }
   page.append("\n## What remains\n\n");
   if (report.unexplained.empty()) {

@@ -4,6 +4,7 @@
 #include "core/investigate/explain.hpp"
 #include "core/investigate/given_model.hpp"
 #include "core/investigate/group_search.hpp"
+#include "core/investigate/outage_gain.hpp"
 #include "core/investigate/series.hpp"
 
 #include <algorithm>
@@ -206,6 +207,16 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     finding.gain.misfit_before = report.misfit_after + finding.gain.log_score_per_sample;
     finding.explanation = explain(finding, groups[finding.evidence.group]);
     finding.next_measurement = next_measurement(finding);
+  }
+  if (options.predict_outages) {
+    RunControl last;
+    last.stop = control.stop;
+    last.progress = [&](std::string_view, double fraction) { control.report("outages", 0.97 + 0.03 * fraction); };
+    auto outages = outage_gain(report, groups, options.threads, last);
+    if (!outages) {
+      return fail(outages.error());
+    }
+    report.outages = *std::move(outages);
   }
   return report;
 }

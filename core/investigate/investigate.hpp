@@ -26,7 +26,8 @@ inline constexpr double kThreshold = 10.0;
 inline constexpr double kMargin = 6.0;
 
 struct InvestigateOptions {
-  unsigned threads = 2;  ///< results do not depend on it
+  unsigned threads = 2;         ///< results do not depend on it
+  bool predict_outages = true;  ///< half a second more
 };
 
 /// Errors: Cancelled; TooFewSamples where the study holds no recording. A channel that cannot be examined is no error:

@@ -82,6 +82,15 @@ struct NotExamined {
   std::string needs;
 };
 
+/// Mean horizontal position error at the end of simulated outages [m] (core/investigate/outage_gain.hpp).
+struct OutageGain {
+  Estimate baseline_m;  ///< as the baseline predicts it
+  Estimate extended_m;  ///< as the extended model predicts it for a filter that still believes the baseline
+  Estimate adopted_m;   ///< as the extended model predicts it for a filter that believes the extended model
+  std::vector<std::string> left_out;             ///< findings that a navigation simulation cannot hold
+  std::vector<std::string> left_out_of_filters;  ///< processes that are in the data and no filter can hold
+};
+
 struct Report {
   std::string study;
   bool automatic = true;
@@ -93,6 +102,8 @@ struct Report {
   double misfit_before = 0.0;
   double misfit_after = 0.0;
   std::vector<Finding> findings;  ///< strongest first
+  std::optional<OutageGain>
+      outages;  ///< nothing where no gyroscope or accelerometer axis was examined, or not asked for
   std::vector<Unexplained> unexplained;
   std::vector<NotExamined> not_examined;
   std::vector<std::string> notes;

@@ -61,6 +61,23 @@ Json series_json(const investigate::FindingSeries& series) {
                 {"effect", numbers(series.effect, level)}}}};
 }
 
+/// Predicted mean horizontal errors; `measured` needs a reference trajectory, which a study of causes has none of.
+Json outages_json(const std::optional<investigate::OutageGain>& outages) {
+  Json document{{"baseline", nullptr}, {"extended", nullptr}, {"measured", nullptr}};
+  if (!outages) {
+    return document;
+  }
+  document["baseline"] = number(outages->baseline_m.value);
+  document["extended"] = number(outages->extended_m.value);
+  document["adopted"] = number(outages->adopted_m.value);
+  document["ci95"] = {{"baseline", interval(outages->baseline_m.ci95)},
+                      {"extended", interval(outages->extended_m.ci95)},
+                      {"adopted", interval(outages->adopted_m.ci95)}};
+  document["left_out"] = outages->left_out;
+  document["left_out_of_filters"] = outages->left_out_of_filters;
+  return document;
+}
+
 Json finding_json(const Finding& finding) {
   Json alternatives = Json::array();
   for (const Evidence& rival : finding.evidence.rivals) {
@@ -115,7 +132,7 @@ Json to_json(const Report& report) {
                 {"misfit_after", number(report.misfit_after)},
                 {"checks_failed_before", report.failed_before},
                 {"checks_failed_after", report.failed_after},
-                {"outage_error_m", {{"baseline", nullptr}, {"extended", nullptr}, {"measured", nullptr}}}}},
+                {"outage_error_m", outages_json(report.outages)}}},
               {"unexplained", std::move(unexplained)},
               {"not_examined", std::move(not_examined)},
               {"notes", report.notes}};

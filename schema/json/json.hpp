@@ -13,6 +13,9 @@
 #include <string_view>
 #include <vector>
 
+/// Compiled once, in json.cpp.
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace driftlab {
 
 using Json = nlohmann::ordered_json;

@@ -94,7 +94,30 @@ class CommandLine(DaemonTest):
             {"id": "rest", "file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}},
             {"id": "again", "file": "rest.csv", "rate_hz": 100, "condition": {"kind": "static"}}]}
         (self.folder / "study.json").write_text(json.dumps(study))
-        self.assertTrue(self.said("investigate", "study.json").startswith("#"))
+        page = self.said("investigate", "study.json")
+        self.assertTrue(page.startswith("#"))
+        self.assertIn("position error", page)
+        self.said("investigate", "study.json", "--out", "report.json", "--markdown", "report.md")
+        self.assertEqual((self.folder / "report.md").read_text(), page)
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertGreater(report["gain"]["outage_error_m"]["baseline"], 0)
+
+    def test_a_model_with_effects_is_simulated_as_it_says(self) -> None:
+        model = {"processes": [{"process": "white_noise", "params": {"N": {"value": 0.01, "unit": "deg/sqrt(s)"}}}],
+                 "effects": [{"cause": "missing_samples", "params": {"fraction": {"value": 0.1, "unit": "1"}}},
+                             {"cause": "output_resolution", "params": {"step": {"value": 0.5, "unit": "deg/s"}}},
+                             {"cause": "temperature_bias", "params": {"coefficient": {"value": 1, "unit": "deg/s/degC"}}}]}
+        (self.folder / "model.json").write_text(json.dumps({"extended_model": model}))
+        made = self.driftlab("simulate", "--model", "model.json", "--duration-s", "100", "--out", "effects.csv")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("temperature_bias", made.stderr, "an effect that cannot act is named")
+        rows = [row.split(",") for row in (self.folder / "effects.csv").read_text().splitlines() if row[0].isdigit()]
+        self.assertTrue(8700 < len(rows) < 9300, len(rows))
+        self.assertTrue(all(abs(float(value) / 0.5 - round(float(value) / 0.5)) < 1e-6 for _, value in rows))
+        model["channels"] = {"gz": {"processes": model["processes"]}}
+        (self.folder / "model.json").write_text(json.dumps(model))
+        self.assertIn("'gq'", self.refused(2, "simulate", "--model", "model.json", "--channel", "gq", "--out", "none.csv"))
+        self.assertFalse((self.folder / "none.csv").exists())
 
     def test_what_cannot_be_is_one_sentence_and_an_exit_code(self) -> None:
         self.assertIn("absent.csv", self.refused(2, "characterise", "absent.csv"))

@@ -3,8 +3,9 @@
 
 Usage: tidy.py BUILD [SOURCE...] [--jobs N] [--all]    BUILD holds compile_commands.json of the preset `tidy`.
 
-What clang-tidy sees of a source is its preprocessed text, its flags and the .clang-tidy files above it. Their hash is kept in
-BUILD/tidy-clean when the source was clean, so that a second run costs one preprocessing each. --all forgets those hashes.
+What clang-tidy says of a source depends on its text and that of what it includes, on its flags, on the .clang-tidy files above it
+and on the installed packages. Their hash is kept in BUILD/tidy-clean when the source was clean, so that a second run costs nothing
+for it. --all forgets those hashes.
 
 Nearly all of clang-tidy's time goes into the system headers of a source, so sources of the same flags are put together into one
 text, a unit, and pay for them once. Sources that do not compile together (equal names in their unnamed namespaces) part ways.
@@ -14,6 +15,7 @@ Exit: 0 clean, 1 something to mend (the diagnostics are printed).
 import argparse
 import bisect
 import concurrent.futures
+import functools
 import hashlib
 import itertools
 import json
@@ -46,16 +48,29 @@ def settings_above(source):
             return
 
 
-def fingerprint(source, entry, version):
-    """Hash of everything clang-tidy's verdict depends on; None where the source does not even preprocess."""
-    command = shlex.split(entry["command"])
-    output = command.index("-o")
-    del command[output:output + 2]
-    command[command.index("-c")] = "-E"
-    text = subprocess.run(command, cwd=entry["directory"], capture_output=True, check=False)
-    if text.returncode:
-        return None
-    digest = hashlib.sha256(version + shlex.join(command).encode() + text.stdout)
+@functools.cache
+def included(path, build):
+    """Files of the project that a file includes, directly."""
+    found = []
+    for name in re.findall(r'^\s*#\s*include "([^"]+)"', path.read_text(errors="replace"), flags=re.M):
+        for folder in (ROOT, build / "generated", path.parent):
+            if (folder / name).is_file():
+                found.append(folder / name)
+                break
+    return found
+
+
+def fingerprint(source, entry, build, version):
+    """Hash of everything clang-tidy's verdict depends on: the source, what it includes, its flags, settings, installed packages."""
+    seen, todo = set(), [source]
+    while todo:
+        path = todo.pop()
+        if path not in seen:
+            seen.add(path)
+            todo += included(path, build)
+    digest = hashlib.sha256(version + " ".join(flags_of(entry)).encode())
+    for path in sorted(seen):
+        digest.update(path.read_bytes())
     for settings in settings_above(source):
         digest.update(settings)
     return digest.hexdigest()
@@ -143,7 +158,8 @@ def main():
     if options.all:
         for stamp in stamps.iterdir():
             stamp.unlink()
-    version = subprocess.run([TIDY, "--version"], capture_output=True, check=True).stdout
+    version = b"".join(subprocess.run(command, capture_output=True, check=True).stdout
+                       for command in ([TIDY, "--version"], ["dpkg-query", "-W"]))
     only = {source.resolve() for source in options.sources}
     chosen = sorted((e for e in entries(build) if not only or e[0] in only), key=lambda e: e[0])
 
@@ -152,10 +168,10 @@ def main():
 
     groups, marks = {}, {}
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        found = pool.map(lambda e: fingerprint(*e, version), chosen)
-        for (source, entry), mark in zip(chosen, found):
+        for source, entry in chosen:
+            mark = fingerprint(source, entry, build, version)
             stamp = stamp_of(source)
-            if not (mark and stamp.exists() and stamp.read_text() == mark):
+            if not (stamp.exists() and stamp.read_text() == mark):
                 marks[source] = mark
                 groups.setdefault((tuple(flags_of(entry)), tuple(settings_above(source))), []).append(source)
 
@@ -186,8 +202,7 @@ def main():
                 print(diagnostics, flush=True)
             else:
                 for source in sources:
-                    if marks[source]:
-                        stamp_of(source).write_text(marks[source])
+                    stamp_of(source).write_text(marks[source])
             if sys.stderr.isatty():
                 print(f"\r{len(marks) - len(pending)}/{len(marks)}", end="", file=sys.stderr, flush=True)
     print(f"clang-tidy: {len(chosen)} sources, {len(marks)} looked at, {faulty} units with diagnostics")
