@@ -45,6 +45,12 @@ mkdir -p "$logs"
 jobs=$(nproc)
 export DRIFTLAB_SHARED=${DRIFTLAB_SHARED:-$repository/../shared}
 
+real_input=
+if [ ! -d "$DRIFTLAB_SHARED/data" ]; then
+  real_input="SKIPPED: the tests on real recordings, for there is no $DRIFTLAB_SHARED/data; set DRIFTLAB_SHARED"
+  printf '%s\n' "$real_input"
+fi
+
 summary=()
 failed=no
 # step NAME COMMAND...: runs it, remembers how it ended and how long it took; a failure does not keep the rest from running.
@@ -133,4 +139,5 @@ fi
 
 printf '\n'
 printf '%s\n' "${summary[@]}"
+[ -z "$real_input" ] || printf '%s\n' "$real_input"
 [ "$failed" = no ]

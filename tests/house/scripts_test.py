@@ -73,6 +73,14 @@ class Scripts(unittest.TestCase):
         self.assertIn("-DDRIFTLAB_FUZZ_SECONDS=5", "\n".join(self.calls("cmake")))
         self.assertIn("--label-exclude long", self.calls("ctest")[0])
 
+    def test_run_says_in_one_line_that_there_are_no_recordings(self) -> None:
+        missing = self.root / "elsewhere"
+        said = [line for line in self.run_script("tests/run.sh", DRIFTLAB_SHARED=str(missing)).stdout.split("\n") if line.startswith("SKIPPED")]
+        self.assertEqual(len(set(said)), 1, said)
+        self.assertIn(f"{missing}/data", said[0])
+        (missing / "data").mkdir(parents=True)
+        self.assertNotIn("SKIPPED", self.run_script("tests/run.sh", DRIFTLAB_SHARED=str(missing)).stdout)
+
     def test_a_failing_suite_is_a_failing_run(self) -> None:
         ran = self.run_script("tests/run.sh", FAIL_TEST="1")
         self.assertEqual(ran.returncode, 1)
