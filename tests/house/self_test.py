@@ -11,6 +11,7 @@ import documents
 import floors
 import leaks
 import licence
+import strict
 
 
 class Planted(unittest.TestCase):
@@ -112,6 +113,24 @@ class Leaks(Planted):
     def test_a_copy_of_a_shared_file_is_refused_whatever_its_name(self) -> None:
         self.plant("tests/data/mine.json", '{"rate_hz": 100}')
         self.refused(leaks.check(self.root), "tests/data/mine.json", "copy of a shared file")
+
+
+class Strict(Planted):
+    GOOD = "target_compile_options(driftlab_options INTERFACE\n  -Wall -Wextra -Wshadow\n  -Werror)\n"
+
+    def test_warnings_that_are_errors_are_clean(self) -> None:
+        self.plant("CMakeLists.txt", self.GOOD + "# -Wno-error would be wrong\nadd_compile_options(-Wno-restrict)\n")
+        self.assertEqual(strict.check(self.root), [])
+
+    def test_what_makes_them_warnings_again_is_refused(self) -> None:
+        for flag in strict.WANTED:
+            self.plant("CMakeLists.txt", self.GOOD.replace(flag, ""))
+            self.refused(strict.check(self.root), "CMakeLists.txt", flag)
+        self.plant("CMakeLists.txt", "# -Werror\n" + self.GOOD.replace("-Werror", "-Werror=shadow"))
+        self.refused(strict.check(self.root), "CMakeLists.txt", "-Werror")
+        self.plant("CMakeLists.txt", self.GOOD)
+        self.plant("core/CMakeLists.txt", "add_compile_options(-Wno-error)\n")
+        self.refused(strict.check(self.root), "core/CMakeLists.txt:1:")
 
 
 class Licence(Planted):
