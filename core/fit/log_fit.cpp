@@ -183,7 +183,7 @@ double LogFit::minimise(Eigen::VectorXd& at, std::optional<std::size_t> fixed) c
     }
   };
   Eigen::VectorXd values = at(free);
-  levenberg_marquardt(residual, static_cast<Eigen::Index>(scales()),
+  levenberg_marquardt(residual, scales(),
                       {.max_iterations = 80,
                        .gradient_tolerance = 1e-9,
                        .parameter_tolerance = 1e-9,

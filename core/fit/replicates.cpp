@@ -173,7 +173,7 @@ Replicates::Replicates(Replicates&&) noexcept = default;
 Replicates& Replicates::operator=(Replicates&&) noexcept = default;
 Replicates::~Replicates() = default;
 
-Result<Replicates> Replicates::stack(std::vector<WaveletRecord> records) {
+Result<Replicates> Replicates::stack(const std::vector<WaveletRecord>& records) {
   if (records.empty()) {
     return fail(ErrorCode::InvalidArgument, "A joint fit needs at least one recording.");
   }

@@ -55,7 +55,7 @@ class Replicates {
  public:
   /// Errors: InvalidArgument (no record; records of different shape than they say), TooFewSamples (fewer than two
   /// positive variances in a record).
-  [[nodiscard]] static Result<Replicates> stack(std::vector<WaveletRecord> records);
+  [[nodiscard]] static Result<Replicates> stack(const std::vector<WaveletRecord>& records);
 
   Replicates(Replicates&&) noexcept;
   Replicates& operator=(Replicates&&) noexcept;

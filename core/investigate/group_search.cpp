@@ -343,7 +343,7 @@ class GroupSearch {
       FullRateOptions options;
       options.given = given_.has_value();
       options.whiten_further = !given_;
-      SlowModel base = outcome_.after.model;
+      const SlowModel base = outcome_.after.model;
       outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
     }
     model.given = given_.has_value();
@@ -417,7 +417,7 @@ class GroupSearch {
     FullRateOptions options;
     options.given = false;  // the level behind the filter is the autoregression's
     options.lattice_step = lattice_step_;
-    SlowModel model = data.model;
+    const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
     data.band_limited = true;
     data.flat = false;

@@ -96,7 +96,7 @@ void hold_out(const FullRate& data, Evidence& found) {
     const bool halves = cause.log_gain != nullptr;
     const FullRate train = halves ? half_of(data, fold) : fold_of(data, fold);
     const FullRate test = halves ? half_of(data, 1 - fold) : fold_of(data, 1 - fold);
-    std::vector<Evidence> again = cause.examine(train);
+    const std::vector<Evidence> again = cause.examine(train);
     const Evidence* const trained = same_scope(again, found);
     if (trained == nullptr) {
       continue;  // not seen in this fold: nothing would have been added, nothing gained

@@ -15,6 +15,7 @@ namespace driftlab {
 
 inline constexpr int kNavigationStates = 9;
 inline constexpr int kMaxSensorStates = 64;
+inline constexpr std::size_t kSensorRoom = kMaxSensorStates;  ///< the same as a size
 
 /// The parts of a step that are not in the axis models. Rows r, v, phi of F:
 ///   r' = r + T v - [V2 x] phi,  v' = (I - 2 [w_ie x] T) v + G T r - [V x] phi,  phi' = (I - [w_ie x] T) phi.
@@ -27,9 +28,9 @@ struct NavigationTransition {
 
 /// Work space of one step, laid out for vector units: rows of `stride` doubles, the unused ones 0.
 struct SensorTransition {
-  alignas(32) std::array<double, 9 * kMaxSensorStates> gain{};         ///< B
-  alignas(32) std::array<double, 9 * kMaxSensorStates> cross_noise{};  ///< covariance of navigation with sensor noise
-  alignas(32) std::array<double, kMaxSensorStates> phi{};              ///< diagonal of D
+  alignas(32) std::array<double, 9 * kSensorRoom> gain{};         ///< B
+  alignas(32) std::array<double, 9 * kSensorRoom> cross_noise{};  ///< covariance of navigation with sensor noise
+  alignas(32) std::array<double, kSensorRoom> phi{};              ///< diagonal of D
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
 };
 
@@ -71,13 +72,15 @@ class ErrorCovariance {
   void update(const ScalarMeasurement& measurement, State& state);
 
  private:
-  [[nodiscard]] std::size_t at(int i, int j) const { return static_cast<std::size_t>(i * stride_ + j); }
+  [[nodiscard]] std::size_t at(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j);
+  }
 
   int sensor_states_ = 0;
   int stride_ = 12;
   Navigation nn_ = Navigation::Zero();
-  alignas(32) std::array<double, 9 * kMaxSensorStates> ns_{};
-  alignas(32) std::array<double, kMaxSensorStates * kMaxSensorStates> ss_{};
+  alignas(32) std::array<double, 9 * kSensorRoom> ns_{};
+  alignas(32) std::array<double, kSensorRoom * kSensorRoom> ss_{};
 };
 
 }  // namespace driftlab

@@ -197,11 +197,12 @@ def main():
         while pending:
             sources, diagnostics = results.get()
             pending.difference_update(sources)
+            named = {pathlib.Path(path) for path in re.findall(r"^(/[^:]+):\d+:\d+: (?:error|warning):", diagnostics, flags=re.M)}
             if diagnostics:
                 faulty += 1
                 print(diagnostics, flush=True)
-            else:
-                for source in sources:
+            if not diagnostics or named and named <= set(sources):  # a fault in a header is every source's
+                for source in set(sources) - named:
                     stamp_of(source).write_text(marks[source])
             if sys.stderr.isatty():
                 print(f"\r{len(marks) - len(pending)}/{len(marks)}", end="", file=sys.stderr, flush=True)
