@@ -64,6 +64,11 @@ constexpr std::array kUnitPhrases{
 constexpr std::array<std::string_view, 9> kPlainWords{"raw", "imu", "imu1",       "sens",        "sensor",
                                                       "all", "cal", "calibrated", "uncalibrated"};
 
+/// What may stand in brackets without being a unit: raw numbers, and clocks behind a time.
+constexpr std::array<std::string_view, 20> kNoUnits{
+    "raw",  "lsb",   "lsbs", "count", "counts", "adc",      "digit",         "digits", "bit",  "bits",
+    "code", "codes", "tick", "ticks", "none",   "unitless", "dimensionless", "utc",    "unix", "gps"};
+
 constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
 
 std::string_view trim(std::string_view text) {
@@ -205,7 +210,25 @@ std::string with_short_unit(std::string_view name) {
   return text;
 }
 
+bool states_no_unit(std::string_view bracket) {
+  return bracket == "-" || std::find(kNoUnits.begin(), kNoUnits.end(), squash(bracket)) != kNoUnits.end();
+}
+
 }  // namespace
+
+Status check_bracketed_unit(std::string_view written) {
+  const std::string text = with_short_unit(without_plain_words(written));
+  std::string_view name = text;
+  const std::string_view bracket = take_bracket(name);
+  if (bracket.empty() || states_no_unit(bracket) || !infer_bare(name, std::nullopt)) {
+    return {};
+  }
+  if (auto unit = parse_unit(bracket); !unit) {
+    return fail(ErrorCode::UnknownUnit, "Column '" + std::string(written) + "': " + unit.error().message,
+                {{"column", std::string(written)}, {"unit", std::string(bracket)}});
+  }
+  return {};
+}
 
 ColumnRole infer_role(std::string_view written) {
   const std::string text = with_short_unit(without_plain_words(written));

@@ -19,4 +19,10 @@ namespace driftlab {
 /// stays unknown. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
 [[nodiscard]] ColumnRole infer_role(std::string_view name);
 
+/// Refuses a name that says what the column measures, but in brackets a unit that is not known: to analyse
+/// `gz [furlong]` in unit 1 would be a wrong answer. Words that state raw numbers are no units (`gz (LSB)`,
+/// `acc_x [counts]`, `time (UTC)`), and a name that tells no role may say anything in brackets. Error: UnknownUnit with
+/// fields `column` and `unit`.
+[[nodiscard]] Status check_bracketed_unit(std::string_view name);
+
 }  // namespace driftlab

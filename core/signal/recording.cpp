@@ -104,6 +104,9 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
   std::vector<std::optional<ColumnRole>> roles;
   if (spec.columns.empty()) {
     for (const std::string& name : names) {
+      if (auto status = check_bracketed_unit(name); !status) {
+        return fail(status.error());
+      }
       ColumnRole role = infer_role(name);
       if (auto status = check_role(name, role); !status) {
         return fail(status.error());

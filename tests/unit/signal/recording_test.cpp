@@ -97,6 +97,24 @@ TEST(InferRole, UnderstandsNamesPeopleUse) {
   }
 }
 
+TEST(AssignRoles, RefusesAnUnknownUnitInTheNameOfASensor) {
+  for (const char* const name : {"gz [furlong]", "Accelerometer x (ft/s^2)", "time (fortnights)", "temp (F)"}) {
+    const auto roles = assign_roles({}, {"gx", name});
+    ASSERT_FALSE(roles) << name;
+    EXPECT_EQ(roles.error().code, ErrorCode::UnknownUnit) << name;
+    EXPECT_EQ(roles.error().fields[0], (ErrorField{"column", name}));
+    EXPECT_EQ(roles.error().message.find("Column '" + std::string(name) + "': The unit '"), 0U) << name;
+  }
+  // Raw numbers, clocks, and columns that are no sensor's: nothing is claimed about a unit.
+  for (const char* const name : {"gz (LSB)", "gz [counts]", "gz (raw)", "gz [-]", "gz []", "time (UTC)",
+                                 "Barometer (hPa)", "pressure [furlong]", "X (furlong)"}) {
+    EXPECT_TRUE(assign_roles({}, {"gx", name})) << name;
+  }
+  RecordingSpec stated;
+  stated.columns = {{"gz [furlong]", {Quantity::AngularRate, "z", unit("deg/s")}}};
+  EXPECT_TRUE(assign_roles(stated, {"gz [furlong]"})) << "what the user states rules";
+}
+
 TEST(AssignRoles, TakesStatedColumnsAndLeavesTheRest) {
   RecordingSpec spec;
   spec.columns = {{"b", {Quantity::AngularRate, "z", unit("deg/s")}}};
