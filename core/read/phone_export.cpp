@@ -228,7 +228,8 @@ Status decode_zip(ByteSource& source, const DecodeLimits& limits, ColumnSink& si
 
 bool is_sensor_file(const std::string& path) { return find_sensor(stem(path)) != nullptr; }
 
-Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits& limits, ColumnSink& sink) {
+Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits& limits, ColumnSink& sink,
+                            const std::string& container) {
   std::vector<Sensor> sensors;
   std::string left_out;
   std::vector<std::string_view> taken;
@@ -250,8 +251,8 @@ Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits&
     if (tables.size() != 1) {
       return fail(tables.empty() ? ErrorCode::NoSamples : ErrorCode::UnsupportedFormat,
                   tables.empty()
-                      ? "The archive holds no table of samples."
-                      : "The archive holds " + std::to_string(tables.size()) +
+                      ? "The " + container + " holds no table of samples."
+                      : "The " + container + " holds " + std::to_string(tables.size()) +
                             " tables and none is that of a phone's gyroscope or accelerometer; send them one by one.");
     }
     MemoryTable& only = tables.front();
@@ -281,7 +282,7 @@ Status decode_folder(const std::filesystem::path& folder, const DecodeLimits& li
     }
   }
   if (error) {
-    return fail(ErrorCode::Io, "The folder '" + folder.filename().string() + "' cannot be read.");
+    return fail(ErrorCode::Io, "The directory '" + folder.filename().string() + "' cannot be read.");
   }
   std::sort(paths.begin(), paths.end());
   std::vector<MemoryTable> tables;
@@ -296,7 +297,7 @@ Status decode_folder(const std::filesystem::path& folder, const DecodeLimits& li
       return status;
     }
   }
-  return deliver_phone_export(std::move(tables), limits, sink);
+  return deliver_phone_export(std::move(tables), limits, sink, "directory");
 }
 
 namespace formats {

@@ -26,8 +26,9 @@ namespace driftlab {
 
 /// The tables as one recording. A single table that is no sensor's is delivered as it is.
 /// Errors: NoSamples, UnsupportedFormat (several tables and none is a sensor's), those of the sink.
-[[nodiscard]] Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits& limits,
-                                          ColumnSink& sink);
+/// `container`: what held them, for the sentence that says so.
+[[nodiscard]] Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits& limits, ColumnSink& sink,
+                                          const std::string& container = "archive");
 
 /// The files of a folder, decoded as those of an archive are. Errors: those of the files; NotFound, Io.
 [[nodiscard]] Status decode_folder(const std::filesystem::path& folder, const DecodeLimits& limits, ColumnSink& sink,

@@ -216,6 +216,19 @@ TEST(PhoneExport, ReadsAFolderAsItReadsAnArchive) {
   EXPECT_EQ(decoded->rows, 50U);
 }
 
+TEST(PhoneExport, CallsADirectoryWithoutSensorsADirectory) {
+  const testing::TemporaryDirectory directory;
+  std::filesystem::create_directory(directory / "campaign");
+  const auto said = [&] {
+    const auto decoded = decode_file(directory / "campaign", directory / "out");
+    return decoded ? std::string("decoded") : decoded.error().message;
+  };
+  EXPECT_EQ(said(), "The directory holds no table of samples.");
+  testing::write_file(directory / "campaign/a.csv", "x\n1\n");
+  testing::write_file(directory / "campaign/b.csv", "x\n1\n");
+  EXPECT_THAT(said(), HasSubstr("The directory holds 2 tables"));
+}
+
 TEST(Zip, NamesWhatItCannotRead) {
   EXPECT_THAT(decode_bytes(zip({{"a.csv", "x\n1\n"}, {"b.csv", "x\n1\n"}})).message, HasSubstr("holds 2 tables"));
   EXPECT_EQ(decode_bytes(zip({{"only.csv", "t,gx\n0,1\n1,2\n"}})).decoded.rows, 2U);
