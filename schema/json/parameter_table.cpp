@@ -37,6 +37,7 @@ std::string common_best_model(const std::vector<TableSource>& sources) {
 struct Row {
   Condition condition;
   std::string text;
+  std::string channel_unit;
   std::vector<std::string> recordings;
   std::vector<Cells> replicates;
   std::map<std::string, Cell> cells;
@@ -81,6 +82,7 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
       Row made;
       made.condition = parse_condition(source.condition).value_or(Condition{});
       made.text = source.condition;
+      made.channel_unit = source.channel.value("unit", "");
       rows.push_back(std::move(made));
       row = rows.end() - 1;
     }
@@ -90,7 +92,7 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
     if (method == TableMethod::Av) {
       row->replicates.push_back(allan_cells(source.channel));
     } else if (const Json* const fit = find_fit(source.channel, model)) {
-      row->replicates.push_back(model_cells(*fit));
+      row->replicates.push_back(model_cells(*fit, row->channel_unit));
       row->robust = row->robust || fit->value("robust", false);
       note_warnings(*row, *fit);
     }
@@ -99,6 +101,15 @@ std::vector<Row> group_rows(const std::vector<TableSource>& sources, TableMethod
   std::sort(rows.begin(), rows.end(),
             [](const Row& a, const Row& b) { return comes_before(a.condition, b.condition); });
   return rows;
+}
+
+bool is_identified(const std::vector<Row>& rows, const std::string& key) {
+  return std::any_of(rows.begin(), rows.end(), [&](const Row& row) {
+    return std::any_of(row.replicates.begin(), row.replicates.end(), [&](const Cells& cells) {
+      return std::any_of(cells.begin(), cells.end(),
+                         [&](const auto& cell) { return cell.first == key && cell.second.value.has_value(); });
+    });
+  });
 }
 
 /// Column keys in order, each with its unit: those of any row; Q and R of the Allan method only where identified.
@@ -118,8 +129,8 @@ std::vector<std::pair<std::string, std::string>> columns_of(const std::vector<Ro
     }
   }
   if (method == TableMethod::Av) {
-    std::erase_if(columns, [](const auto& column) {
-      return (column.first == "Q" || column.first == "R") && column.second.empty();
+    std::erase_if(columns, [&](const auto& column) {
+      return (column.first == "Q" || column.first == "R") && !is_identified(rows, column.first);
     });
   }
   return columns;
@@ -172,7 +183,7 @@ void take_joint_fit(Row& row, const Json* pooled, const std::string& model) {
   if (fit == nullptr) {
     return;
   }
-  row.replicates = {model_cells(*fit)};
+  row.replicates = {model_cells(*fit, row.channel_unit)};
   row.robust = fit->value("robust", false);
   row.warnings.clear();
   note_warnings(row, *fit);

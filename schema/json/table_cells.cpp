@@ -1,9 +1,14 @@
 #include "schema/json/table_cells.hpp"
 
+#include "core/process/registry.hpp"
+#include "core/signal/unit.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -12,11 +17,35 @@ std::optional<double> optional_number(const Json& value) {
   return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
 }
 
-Cell cell_of(const Json& parameter, const Json* reasons, const std::string& name) {
+/// The unit of a parameter of a channel in `channel_unit`; empty where that unit is not known.
+std::string declared_unit(const std::string& channel_unit, int channel_power, int second_power_halves) {
+  const auto unit = parse_unit(channel_unit);
+  if (!unit) {
+    return "";
+  }
+  return lab_unit(channel_power == 0 ? Dimension::One : unit->dimension, second_power_halves).symbol;
+}
+
+std::string declared_unit(const std::string& channel_unit, const std::string& process, const std::string& parameter) {
+  const ProcessKind* const kind = find_process(process);
+  if (kind == nullptr) {
+    return "";
+  }
+  for (const ParameterSpec& spec : kind->parameters) {
+    if (spec.name == parameter) {
+      return declared_unit(channel_unit, spec.channel_power, spec.second_power_halves);
+    }
+  }
+  return "";
+}
+
+/// `unit`: where no value says it.
+Cell cell_of(const Json& parameter, const Json* reasons, const std::string& name, std::string unit) {
   Cell cell;
+  cell.unit = std::move(unit);
   if (parameter.is_object()) {
     cell.value = optional_number(parameter.value("value", Json()));
-    cell.unit = parameter.value("unit", "");
+    cell.unit = parameter.value("unit", cell.unit);
     cell.low = optional_number(parameter["ci95"][0]);
     cell.high = optional_number(parameter["ci95"][1]);
   } else if (reasons != nullptr && reasons->contains(name)) {
@@ -31,9 +60,12 @@ Cells allan_cells(const Json& channel) {
   Cells cells;
   const Json& parameters = channel.at("allan_parameters");
   const auto reasons = parameters.find("reasons");
-  for (const char* const name : {"N", "B", "K", "Q", "R"}) {
-    cells.emplace_back(
-        name, cell_of(parameters.value(name, Json()), reasons == parameters.end() ? nullptr : &*reasons, name));
+  const std::string unit = channel.value("unit", "");
+  constexpr std::array<std::pair<const char*, int>, 5> kSecondPowerHalves{
+      std::pair{"N", 1}, std::pair{"B", 0}, std::pair{"K", -1}, std::pair{"Q", 2}, std::pair{"R", -2}};
+  for (const auto& [name, halves] : kSecondPowerHalves) {
+    cells.emplace_back(name, cell_of(parameters.value(name, Json()), reasons == parameters.end() ? nullptr : &*reasons,
+                                     name, declared_unit(unit, 1, halves)));
   }
   return cells;
 }
@@ -47,7 +79,7 @@ const Json* find_fit(const Json& channel, const std::string& model) {
   return nullptr;
 }
 
-Cells model_cells(const Json& fit) {
+Cells model_cells(const Json& fit, const std::string& channel_unit) {
   Cells cells;
   std::map<std::string, int> seen;
   for (const Json& process : fit.at("processes")) {
@@ -58,7 +90,8 @@ Cells model_cells(const Json& fit) {
     const std::string prefix = kind + (numbered ? "_" + std::to_string(index) : "") + ".";
     const auto reasons = process.find("reasons");
     for (const auto& [name, parameter] : process.at("params").items()) {
-      cells.emplace_back(prefix + name, cell_of(parameter, reasons == process.end() ? nullptr : &*reasons, name));
+      cells.emplace_back(prefix + name, cell_of(parameter, reasons == process.end() ? nullptr : &*reasons, name,
+                                                declared_unit(channel_unit, kind, name)));
     }
   }
   return cells;

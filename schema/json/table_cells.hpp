@@ -20,11 +20,13 @@ struct Cell {
 
 using Cells = std::vector<std::pair<std::string, Cell>>;  ///< key -> cell, in document order
 
-/// N B K Q R of a channel document.
+/// N B K Q R of a channel document. A cell without a value has the unit that the parameter would have in this channel.
 [[nodiscard]] Cells allan_cells(const Json& channel);
 
-/// `white_noise.N`, `gauss_markov_1.sigma`, ...: kinds that may repeat always carry a number.
-[[nodiscard]] Cells model_cells(const Json& fit);
+/// `white_noise.N`, `gauss_markov_1.sigma`, ...: kinds that may repeat always carry a number. `channel_unit`: symbol of
+/// the unit of the channel that was fitted; with the declaration of the process it gives the unit of a cell without a
+/// value, which is empty where either is not known.
+[[nodiscard]] Cells model_cells(const Json& fit, const std::string& channel_unit);
 
 /// The fit of that model in a document with `fits`, or nullptr.
 [[nodiscard]] const Json* find_fit(const Json& document, const std::string& model);

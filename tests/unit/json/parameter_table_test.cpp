@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 namespace driftlab {
 namespace {
@@ -20,7 +21,8 @@ Json channel(const Json& n, double wic_wn, double wic_gm, const Json& beta = nul
   Json markov{{"process", "gauss_markov"},
               {"params", {{"sigma", nullptr}, {"beta", beta}}},
               {"reasons", {{"sigma", "No sigma."}, {"beta", "No beta."}}}};
-  return {{"allan_parameters",
+  return {{"unit", "deg/s"},
+          {"allan_parameters",
            {{"N", n},
             {"B", nullptr},
             {"K", nullptr},
@@ -119,7 +121,23 @@ TEST(ParameterTable, GivesTheReasonForWhatIsNotIdentified) {
   EXPECT_EQ(row["values"]["gauss_markov_1.sigma"], nullptr);
   EXPECT_EQ(row["values"]["gauss_markov_1.beta"]["ci95"], Json::array({0.5, nullptr}));
   EXPECT_FALSE(row["reasons"].contains("gauss_markov_1.beta"));
-  EXPECT_EQ(found["columns"][0]["unit"], nullptr);
+}
+
+TEST(ParameterTable, GivesTheUnitOfAColumnThatNoRowIdentifies) {
+  const auto units = [](TableMethod method) {
+    const Json found = table(request(method, method == TableMethod::Gmwm ? "WN+GM" : ""),
+                             {{"rec_a", "static", channel(nullptr, 1, 2)}});
+    std::map<std::string, std::string> of_key;
+    for (const Json& column : found["columns"]) {
+      of_key[column["key"].get<std::string>()] = column["unit"].get<std::string>();
+    }
+    return of_key;
+  };
+  using Units = std::map<std::string, std::string>;
+  EXPECT_EQ(units(TableMethod::Av), (Units{{"N", "deg/sqrt(h)"}, {"B", "deg/h"}, {"K", "deg/h/sqrt(h)"}}));
+  EXPECT_EQ(
+      units(TableMethod::Gmwm),
+      (Units{{"white_noise.N", "deg/sqrt(h)"}, {"gauss_markov_1.sigma", "deg/h"}, {"gauss_markov_1.beta", "1/s"}}));
 }
 
 TEST(ParameterTable, LeavesOutQuantizationAndRampWhereNobodyHasThem) {
@@ -145,10 +163,10 @@ TEST(TableCsv, QuotesWhatNeedsItAndLeavesUnknownCellsEmpty) {
   Json found = table(request(TableMethod::Av), {{"rec_a", "static", channel(cell(0.1, nullptr, 0.3), 1, 2)},
                                                 {"rec_b", "static", channel(nullptr, 1, 2)}});
   found["rows"][0]["label"] = "9 deg/s, \"about\" z";
-  EXPECT_EQ(
-      table_to_csv(found),
-      "condition,recordings,N [deg/sqrt(h)],N low [deg/sqrt(h)],N high [deg/sqrt(h)],B,B low,B high,K,K low,K high\r\n"
-      "\"9 deg/s, \"\"about\"\" z\",rec_a rec_b,0.1,,0.3,,,,,,\r\n");
+  EXPECT_EQ(table_to_csv(found),
+            "condition,recordings,N [deg/sqrt(h)],N low [deg/sqrt(h)],N high [deg/sqrt(h)],B [deg/h],B low [deg/h],"
+            "B high [deg/h],K [deg/h/sqrt(h)],K low [deg/h/sqrt(h)],K high [deg/h/sqrt(h)]\r\n"
+            "\"9 deg/s, \"\"about\"\" z\",rec_a rec_b,0.1,,0.3,,,,,,\r\n");
 }
 
 TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
@@ -159,12 +177,12 @@ TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
   EXPECT_EQ(table_to_text(found),
             "phone-07, gyroscope z, Allan variance (value [95 % interval]; … not identifiable; ↑ ↓ changed against the "
             "first row)\n\n"
-            "condition         N                       B  K\n"
-            "                  deg/sqrt(h)\n"
-            "----------------  ----------------------  -  -\n"
-            "static            1.000 [0.9500, 1.050]   …  …\n"
-            "9 deg/s about z   1235 [1200, …]          …  …\n"
-            "40 deg/s about z  2.000 [1.900, 2.100] ↑  …  …\n");
+            "condition         N                       B      K\n"
+            "                  deg/sqrt(h)             deg/h  deg/h/sqrt(h)\n"
+            "----------------  ----------------------  -----  -------------\n"
+            "static            1.000 [0.9500, 1.050]   …      …\n"
+            "9 deg/s about z   1235 [1200, …]          …      …\n"
+            "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
 }
 
 }  // namespace
