@@ -33,6 +33,27 @@ Json document_of(const std::string& text) {
   return document ? std::move(*document) : Json();
 }
 
+/// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
+Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
+  std::string present;
+  for (const std::string_view axis : {"x", "y", "z"}) {
+    auto rows = store.latest_channel_results(device.id, driftlab::name_of(wanted.quantity), axis);
+    if (!rows) {
+      return fail(rows.error());
+    }
+    if (!rows->empty()) {
+      present.append(present.empty() ? "" : ", ").append(axis);
+    }
+  }
+  if (present.empty()) {
+    return {};
+  }
+  return fail(ErrorCode::InvalidArgument,
+              "Name the axis; the " + std::string(sensor_of(wanted.quantity)) + " of device '" + device.name +
+                  "' has results about " + present + ".",
+              {{"parameter", "axis"}});
+}
+
 }  // namespace
 
 Result<Json> stored_table(Store& store, const StoredTableRequest& request) {
@@ -48,6 +69,11 @@ Result<Json> stored_table(Store& store, const StoredTableRequest& request) {
   auto rows = store.latest_channel_results(device->id, quantity, wanted->axis);
   if (!rows) {
     return fail(rows.error());
+  }
+  if (rows->empty() && wanted->axis.empty()) {
+    if (auto named = check_axis_named(store, *device, *wanted); !named) {
+      return fail(named.error());
+    }
   }
   auto pooled = store.pooled_result(device->id, quantity, wanted->axis);
   if (!pooled) {

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import csv
 import io
+import json
+import sqlite3
 import threading
 import time
 import unittest
@@ -54,6 +56,33 @@ class Life(JobTest):
         self.assertEqual((best["rank"], best["model"], best["wic"]), (0, channel["fits"][0]["model"], channel["fits"][0]["wic"]))
         self.assertEqual(self.daemon.get(f"/v1/fits/{best['id']}").json, best)
         self.problem(404, "not_found", self.daemon.get("/v1/fits/fit_nobody"))
+
+    def test_characterise_stores_its_models_with_units_settings_seed_and_version(self) -> None:
+        recording = self.recording(7, samples_=2048)
+        job = self.daemon.finished(self.expect(202, self.daemon.characterise(recording, seed=17)).json["id"])
+        self.assertEqual(job["state"], "succeeded", job)
+        listed = self.daemon.items(f"/v1/fits?job={job['id']}")
+        self.assertLessEqual({"WN", "WN+GM", "WN+GM+RW"}, {fit["model"] for fit in listed})
+        units = {("white_noise", "N"): "deg/sqrt(h)", ("gauss_markov", "sigma"): "deg/h", ("gauss_markov", "beta"): "1/s",
+                 ("random_walk", "K"): "deg/h/sqrt(h)"}
+        seen = set()
+        for fit in listed:
+            for process in fit["processes"]:
+                for name, value in process["params"].items():
+                    place = (process["process"], name)
+                    if value is not None and place in units:
+                        self.assertEqual(value["unit"], units[place], fit["model"])
+                        seen.add(place)
+        self.assertIn(("white_noise", "N"), seen)
+        database = sqlite3.connect(f"file:{self.daemon.data / 'driftlab.db'}?mode=ro", uri=True)
+        self.addCleanup(database.close)
+        [(stored, document)] = database.execute("SELECT settings_json, document_json FROM channel_results WHERE job_id = ?", (job["id"],)).fetchall()
+        settings, channel = json.loads(stored), json.loads(document)
+        self.assertEqual(settings["seed"], 17)
+        self.assertGreaterEqual(settings["algorithm_version"], 1)
+        self.assertLessEqual({"WN", "WN+GM", "WN+GM+RW"}, set(settings["models"]))
+        self.assertTrue(settings["driftlab_version"])
+        self.assertEqual((channel["unit"], channel["allan_parameters"]["N"]["unit"]), ("deg/s", "deg/sqrt(h)"))
 
     def test_same_request_is_the_same_job(self) -> None:
         recording = self.recording(2)
@@ -138,6 +167,17 @@ class Events(JobTest):
         for position in (0, len(seen) // 2, len(seen) - 2):
             self.assertEqual(list(events(self.daemon, job, last=seen[position].id)), seen[position + 1:])
         self.assertEqual(list(events(self.daemon, job, last=seen[-1].id)), [])
+
+    def test_a_stream_says_what_it_is_and_when_to_come_back(self) -> None:
+        job = self.expect(202, self.daemon.characterise(self.recording(14), models=["WN"])).json["id"]
+        raw = self.daemon.exchange(f"GET /v1/jobs/{job}/events HTTP/1.1\r\nHost: 127.0.0.1:{self.daemon.port}\r\n\r\n".encode())
+        head, _, body = raw.partition(b"\r\n\r\n")
+        status, *lines = head.decode("latin-1").split("\r\n")
+        self.assertEqual(status, "HTTP/1.1 200 OK")
+        fields = {name.lower(): value.strip() for name, _, value in (line.partition(":") for line in lines)}
+        wanted = {"content-type": "text/event-stream", "cache-control": "no-cache", "x-accel-buffering": "no"}
+        self.assertEqual({name: fields.get(name) for name in wanted}, wanted)
+        self.assertTrue(body.startswith(b"retry: 3000\n\n"), body[:80])
 
     def test_stream_faults(self) -> None:
         self.problem(404, "not_found", self.daemon.get("/v1/jobs/job_nobody/events"))
@@ -263,12 +303,17 @@ class Tables(JobTest):
             self.assertEqual(answer.headers["vary"], "Accept")
             header, *rows = list(csv.reader(io.StringIO(answer.text, newline="")))
             self.assertEqual(len(rows), len(table["rows"]))
+            # White noise alone identifies neither B nor K; the columns say in what unit they would be all the same.
+            wanted_units = {"av": {"N": "deg/sqrt(h)", "B": "deg/h", "K": "deg/h/sqrt(h)"},
+                            "gmwm": {"white_noise.N": "deg/sqrt(h)"}}[method]
+            units = {column["key"]: column["unit"] for column in table["columns"]}
+            self.assertLessEqual(wanted_units.items(), units.items())
+            self.assertTrue(all(units.values()), units)
             for row, line in zip(table["rows"], rows):
                 self.assertEqual(line[0], row["label"])
                 self.assertEqual(line[1].split(), row["recordings"])
                 for i, column in enumerate(table["columns"]):
-                    unit = f" [{column['unit']}]" if column["unit"] else ""
-                    self.assertEqual(header[2 + 3 * i:5 + 3 * i], [column["key"] + part + unit for part in ("", " low", " high")])
+                    self.assertEqual(header[2 + 3 * i:5 + 3 * i], [f"{column['key']}{part} [{column['unit']}]" for part in ("", " low", " high")])
                     cell = row["values"][column["key"]]
                     wanted = ["", "", ""] if cell is None else [cell["value"], *cell["ci95"]]
                     self.assertEqual([float(x) if x else "" for x in line[2 + 3 * i:5 + 3 * i]], ["" if w is None else w for w in wanted])
@@ -301,6 +346,8 @@ class Tables(JobTest):
         for extra, parameter in (("&method=ml", "method"), ("&model=WN%2BXX", "model")):
             self.problem(400, "invalid_argument", self.daemon.get(self.target + extra), parameter=parameter)
         base = self.target.partition("&sensor")[0]
+        unnamed = self.problem(400, "invalid_argument", self.daemon.get(f"{base}&sensor=gyroscope"), parameter="axis")
+        self.assertIn("about z", str(unnamed["detail"]))
         self.problem(400, "invalid_argument", self.daemon.get(f"{base}&axis=w"), parameter="axis")
         self.assertEqual(self.daemon.get(f"{base}&sensor=barometer&axis=z").json["where"]["parameter"], "sensor")
         self.problem(404, "not_found", self.daemon.get(f"{base}&sensor=accelerometer&axis=z"))
