@@ -1,4 +1,5 @@
 #include "server/api/api.hpp"
+#include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 
 namespace driftlab::server {
@@ -41,9 +42,11 @@ Result<Response> create_device(ApiContext& context, const Request& request) {
   device.name = reader.required_text("name");
   const DeviceChange members = read_change(reader, faults);
   reader.reject_unknown();
-  if (device.name.size() > 200 || device.name.starts_with("dev_")) {
-    faults.add("/name", ErrorCode::InvalidArgument,
-               "A device name has at most 200 bytes and does not begin with dev_.");
+  if (device.name.starts_with("dev_")) {
+    faults.add("/name", ErrorCode::InvalidArgument, "A device name does not begin with dev_.");
+  } else if (std::string fault = fault_of_device_name(device.name);
+             !fault.empty() && (!device.name.empty() || faults.none())) {  // a name that is missing is a fault already
+    faults.add("/name", ErrorCode::InvalidArgument, std::move(fault));
   }
   if (!faults.none()) {
     return fail(faults.error());

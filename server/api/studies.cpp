@@ -1,5 +1,6 @@
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
+#include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 #include "server/store/digest.hpp"
 
@@ -77,7 +78,11 @@ Result<Response> create_study(ApiContext& context, const Request& request) {
   if (!named) {
     return fail(ErrorCode::InvalidArgument, "Name the device of the study: device.id.", {{"pointer", "/device/id"}});
   }
-  auto device = context.store.device((*device_member)["id"].get<std::string>());
+  const auto device_name = (*device_member)["id"].get<std::string>();
+  if (std::string fault = fault_of_device_name(device_name); !fault.empty()) {
+    return fail(ErrorCode::InvalidArgument, std::move(fault), {{"pointer", "/device/id"}});
+  }
+  auto device = context.store.device(device_name);
   if (!device) {
     return fail(device.error());
   }

@@ -4,6 +4,7 @@
 #include "core/read/open_recording.hpp"
 #include "core/signal/text.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/upload_metadata.hpp"
 #include "server/http/guard.hpp"
@@ -128,7 +129,7 @@ class RecordingUpload final : public UploadSession {
       return fail(metadata.error());
     }
     metadata_ = std::move(*metadata);
-    return {};
+    return resolve_device_name(context_.store, metadata_.device);
   }
 
   Result<Response> record_once(const std::string& key) {
@@ -280,6 +281,9 @@ Result<std::unique_ptr<UploadSession>> begin_upload(ApiContext& context, const R
       return fail(read.error());
     }
     metadata = std::move(*read);
+    if (auto resolved = resolve_device_name(context.store, metadata.device); !resolved) {
+      return fail(resolved.error());
+    }
   }
   if (const auto space = context.blobs.space(); space && space->free_bytes < kLeastFreeBytes) {
     return fail(ErrorCode::DiskFull, "Less than 64 MiB are free where the daemon keeps its data.");

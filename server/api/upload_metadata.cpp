@@ -2,6 +2,7 @@
 
 #include "core/signal/number.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "server/api/device_name.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -66,8 +67,8 @@ Status check_device_name(const std::string& name) {
     return fail(ErrorCode::InvalidArgument, "Name the device that made the recording: ?device=…",
                 {{"parameter", "device"}});
   }
-  if (name.size() > 200) {
-    return fail(ErrorCode::InvalidArgument, "A device name has at most 200 bytes.", {{"parameter", "device"}});
+  if (std::string fault = fault_of_device_name(name); !fault.empty()) {
+    return fail(ErrorCode::InvalidArgument, std::move(fault), {{"parameter", "device"}});
   }
   return {};
 }

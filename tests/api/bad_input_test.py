@@ -80,6 +80,8 @@ class Refused(DaemonTest):
     def test_unknown_words_in_the_metadata(self) -> None:
         csv = samples.gyro_csv()
         self.refused(csv, 400, "unknown_unit", where={"parameter": "columns", "column": "gz"}, says="furlong", columns="gz=angular_rate:z:furlong")
+        in_the_header = b"gz [furlong]\n" + csv.partition(b"\n")[2]
+        self.refused(in_the_header, 400, "unknown_unit", where={"column": "gz [furlong]"}, says="furlong")
         self.refused(csv, 400, "unknown_quantity", where={"parameter": "columns", "column": "gz"}, says="spin", columns="gz=spin:z:deg/s")
         self.refused(csv, 400, "unit_mismatch", where={"column": "gz"}, columns="gz=angular_rate:z:m/s^2")
         self.refused(csv, 400, "unknown_condition", where={"parameter": "condition"}, says="asleep", condition="asleep")
@@ -94,6 +96,24 @@ class Refused(DaemonTest):
             [name] = list(query)[-1:]
             self.refused(csv, 400, "invalid_argument", where={"parameter": name}, **query)
         self.refused(csv, 422, "too_few_samples", trim_start_s=100)
+
+    def test_names_that_no_device_may_have(self) -> None:
+        csv = samples.gyro_csv()
+        ghost = "dev_" + "0" * 26  # as an id, but there is no such device
+        for name in ("a\0b", "a\nb", "\x1b[31m", "\x7f", "\x85", ghost):
+            with self.subTest(name=name):
+                self.refused(csv, 400, "invalid_argument", where={"parameter": "device"}, device=name)
+                for device in (name, {"id": name}):
+                    metadata = {"device": device, "rate_hz": 100, "condition": {"kind": "static"}}
+                    self.problem(400, "invalid_argument", self.daemon.upload_parts(("metadata", json.dumps(metadata).encode()), ("file", csv)), parameter="device")
+                self.problem(400, "invalid_argument", self.daemon.post("/v1/devices", {"name": name}))
+                study = self.daemon.post("/v1/studies", {"device": {"id": name}, "recordings": [{"recording": "rec_" + "0" * 26}]})
+                self.assertEqual(study.status, 404 if name == ghost else 400, study.describe())
+        # Bytes that are no UTF-8 can stand in a query alone: JSON has none.
+        for bytes_ in ("%FF", "%C3", "%ED%A0%80", "a%C3b"):
+            answer = self.daemon.post(f"/v1/recordings?device={bytes_}&condition=static&rate_hz=100", csv, {"Content-Type": "application/octet-stream"})
+            self.problem(400, "invalid_argument", answer, parameter="device")
+        self.problem(400, "parse_error", self.daemon.post("/v1/devices", b'{"name": "\xff"}', {"Content-Type": "application/json"}))
 
     def test_faults_of_a_metadata_part_are_all_reported(self) -> None:
         metadata = {"device": "never-seen", "rate_hz": -1, "condition": {"kind": "asleep"}, "colour": 1,

@@ -103,7 +103,7 @@ class Requests(DaemonTest):
 
     def test_devices(self) -> None:
         schema = {"$ref": "#/components/schemas/NewDevice"}
-        for body in ({"name": "a"}, {"name": ""}, {}, {"name": "dev_x"}, {"name": "n" * 201}, {"name": "b", "labels": {"x": "y"}}, {"name": "c", "labels": {"x": 1}},
+        for body in ({"name": "a"}, {"name": ""}, {}, {"name": "dev_x"}, {"name": "a\0"}, {"name": "a\n"}, {"name": "\u0085"}, {"name": "\u00e9 \u4e16"}, {"name": "n" * 201}, {"name": "b", "labels": {"x": "y"}}, {"name": "c", "labels": {"x": 1}},
                      {"name": "d", "labels": []}, {"name": "e", "model": None}, {"name": "f", "modell": "g"}, {"name": "h", "imu": "i", "serial": "j"}, []):
             self.agree(schema, body, self.daemon.post("/v1/devices", body))
 

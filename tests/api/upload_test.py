@@ -93,6 +93,15 @@ class Metadata(DaemonTest):
                                                   target="/v1/recordings?device=phone-09"))
         self.assertEqual(len(self.daemon.items("/v1/recordings?device=phone-09")), 1)
 
+    def test_device_may_be_named_by_its_id(self) -> None:
+        device = self.expect(201, self.daemon.post("/v1/devices", {"name": "known by its id"})).json["id"]
+        rate = dict(rate_hz=100, columns=samples.GYRO_Z)
+        first = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=21), device=device, **rate)).json
+        metadata = as_json({**METADATA, "device": {"id": device}})
+        second = self.expect(201, self.daemon.upload_parts(("metadata", metadata), ("file", samples.gyro_csv(seed=22)))).json
+        self.assertEqual((first["device"], second["device"]), (device, device))
+        self.assertFalse([d for d in self.daemon.items("/v1/devices") if d["name"].startswith("dev_")])
+
     def test_trims_and_own_name_are_kept(self) -> None:
         answer = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=16), rate_hz=100, columns=samples.GYRO_Z, id="run-1",
                                                      trim_start_s=1, trim_end_s=0.5))
