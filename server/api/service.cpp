@@ -89,9 +89,11 @@ void add_service_routes(Router& router, ApiContext& context) {
   router.add({"GET", "/", "frontPage", {}, Handler([](const Request&) -> Result<Response> {
                 return text_response("text/html; charset=utf-8", front_page());
               })});
-  router.add({"GET", "/healthz", "health", {}, Handler([](const Request&) -> Result<Response> {
-                return json_response(200, Json{{"status", "alive"}, {"version", DRIFTLAB_VERSION}});
-              })});
+  Route health{"GET", "/healthz", "health", {}, Handler([](const Request&) -> Result<Response> {
+                 return json_response(200, Json{{"status", "alive"}, {"version", DRIFTLAB_VERSION}});
+               })};
+  health.instant = true;
+  router.add(std::move(health));
   router.add({"GET", "/readyz", "readiness", {}, Handler([&](const Request&) { return ready(context); })});
   router.add({"GET", "/openapi.json", "contract", {}, Handler([](const Request&) -> Result<Response> {
                 return text_response("application/json", contract_file("openapi.json"));

@@ -235,7 +235,12 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
     request.body.append(reinterpret_cast<const char*>(chunk_.data()), *count);
   }
   auto work = [this, &route, &request] { return shared_.hooks.dispatch(route, request); };
-  auto outcome = co_await shared_.handlers.run(work);
+  std::optional<Response> outcome;
+  if (route.instant) {
+    outcome = work();
+  } else {
+    outcome = co_await shared_.handlers.run(work);
+  }
   Response response =
       outcome ? std::move(*outcome) : problem_response(HttpFault::Busy, "Too many requests are waiting.");
   // Only reading is repeated while it waits: a POST asked again could queue a second job.

@@ -53,6 +53,9 @@ struct Route {
   std::string_view operation_id;        ///< as in openapi.yaml
   std::vector<std::string_view> query;  ///< parameters it takes; any other is refused
   std::variant<Handler, UploadHandler, EventHandler> handler;
+  /// A plain handler that never blocks and is answered on the I/O thread, so that it answers while every pool thread is
+  /// busy.
+  bool instant = false;
 };
 
 /// The refusal of a query parameter that the route does not take, or that is given twice; nothing if all is well.

@@ -1,0 +1,51 @@
+#include "server/settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace driftlab::server {
+namespace {
+
+TEST(Settings, ListenOnThisMachineAlone) {
+  const auto address = listen_address(Settings{});
+  ASSERT_TRUE(address) << address.error().message;
+  EXPECT_EQ(address->address, "127.0.0.1");
+  EXPECT_EQ(address->port, 8477);
+}
+
+TEST(Settings, RefuseAnotherAddressUnlessInsecure) {
+  for (const char* const listen : {"0.0.0.0:8477", "192.168.1.4:80", "[::]:8477", "[2001:db8::1]:1"}) {
+    Settings settings;
+    settings.listen = listen;
+    const auto refused = listen_address(settings);
+    ASSERT_FALSE(refused) << listen;
+    EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(refused.error().fields[0], (ErrorField{"parameter", "listen"}));
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("--insecure"));
+    settings.insecure = true;
+    EXPECT_TRUE(listen_address(settings)) << listen;
+  }
+}
+
+TEST(Settings, TakeLoopbackInEitherFamily) {
+  for (const auto& [listen, address] : {std::pair{"127.0.0.2:1", "127.0.0.2"}, std::pair{"[::1]:8477", "::1"}}) {
+    Settings settings;
+    settings.listen = listen;
+    const auto taken = listen_address(settings);
+    ASSERT_TRUE(taken) << listen;
+    EXPECT_EQ(taken->address, address);
+  }
+}
+
+TEST(Settings, RefuseWhatIsNoAddressAndPort) {
+  for (const char* const listen :
+       {"", "8477", "localhost:8477", "127.0.0.1", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:65536", "127.0.0.1:80 "}) {
+    Settings settings;
+    settings.listen = listen;
+    settings.insecure = true;
+    EXPECT_FALSE(listen_address(settings)) << listen;
+  }
+}
+
+}  // namespace
+}  // namespace driftlab::server
