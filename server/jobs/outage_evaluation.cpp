@@ -4,6 +4,7 @@
 #include "schema/json/outage_evaluation.hpp"
 #include "schema/json/outage_scenario.hpp"
 #include "schema/json/table_schedule.hpp"
+#include "server/jobs/stored_sensor.hpp"
 #include "server/jobs/stored_table.hpp"
 
 #include <algorithm>
@@ -66,9 +67,13 @@ Status resolve_table(Json& node, const std::string& pointer, JobContext& context
 }
 
 /// Puts what is stored in the place of its names, so that the request says all by itself.
-Status resolve_stored(Json& node, const std::string& pointer, JobContext& context, Faults& faults, int depth = 0) {
+Status resolve_stored(Json& node, const std::string& pointer, JobContext& context, StoredSensors& sensors,
+                      Faults& faults, int depth = 0) {
   if (!node.is_structured() || depth > kMaxJsonDepth) {
     return {};
+  }
+  if (node.is_object() && node.contains("simulation_model")) {
+    return resolve_simulation_model(node, pointer, context.store, sensors, faults);
   }
   if (node.is_object() && node.contains("fit") && node["fit"].is_string()) {
     return resolve_fit(node, pointer, context, faults);
@@ -79,11 +84,25 @@ Status resolve_stored(Json& node, const std::string& pointer, JobContext& contex
   for (const auto& [name, child] : node.items()) {  // of an array the names are the indices
     std::string where = pointer;
     where.append("/").append(name);
-    if (auto status = resolve_stored(child, where, context, faults, depth + 1); !status) {
+    if (auto status = resolve_stored(child, where, context, sensors, faults, depth + 1); !status) {
       return status;
     }
   }
   return {};
+}
+
+/// Known biases of the truth's models as deterministic errors of the truth.
+void add_biases(Json& scenario, const StoredSensors& sensors, const std::string& pointer, Faults& faults) {
+  for (const auto& [errors, bias] : sensors.truth_bias.items()) {
+    Json& own = scenario["truth"][errors];
+    if (!own.is_null() && (!own.is_object() || own.contains("bias"))) {
+      std::string where = pointer;
+      where.append("/truth/").append(errors).append("/bias");
+      faults.add(std::move(where), ErrorCode::InvalidArgument, "The simulation model has a bias of its own.");
+      continue;
+    }
+    own["bias"] = bias;
+  }
 }
 
 /// Half of the processors: an evaluation is one job among others, and its result does not depend on this.
@@ -106,13 +125,15 @@ class OutageEvaluationKind final : public JobKind {
     reader.reject_unknown();
     const OutageOptions options = outage_options_from_json(*parameters, "/parameters", faults);
     Json resolved;
+    StoredSensors sensors;
     if (scenario == nullptr) {
       faults.add("/inputs/scenario", ErrorCode::InvalidArgument, "Name a scenario or give its document.");
     } else {
       resolved = *scenario;
-      if (auto status = resolve_stored(resolved, "/inputs/scenario", context, faults); !status) {
+      if (auto status = resolve_stored(resolved, "/inputs/scenario", context, sensors, faults); !status) {
         return fail(status.error());
       }
+      add_biases(resolved, sensors, "/inputs/scenario", faults);
     }
     if (faults.none()) {
       (void)scenario_or_name(resolved, "/inputs/scenario", faults);
@@ -120,8 +141,12 @@ class OutageEvaluationKind final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
+    Json complete{{"scenario", std::move(resolved)}};
+    if (!sensors.left_out.empty()) {
+      complete["left_out"] = std::move(sensors.left_out);
+    }
     return canonical_text(Json{{"kind", name()},
-                               {"inputs", {{"scenario", std::move(resolved)}}},
+                               {"inputs", std::move(complete)},
                                {"parameters", to_json(options)},
                                {"algorithm_version", kOutageAlgorithmVersion}});
   }
@@ -144,7 +169,11 @@ class OutageEvaluationKind final : public JobKind {
       return fail(evaluation.error());
     }
     JobResults results;
-    results.document_json = to_text(to_json(*evaluation, to_json(scenario)));
+    Json document = to_json(*evaluation, to_json(scenario));
+    if (const Json& inputs = (*request)["inputs"]; inputs.contains("left_out")) {
+      document["left_out"] = inputs["left_out"];
+    }
+    results.document_json = to_text(document);
     return results;
   }
 };
