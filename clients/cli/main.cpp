@@ -11,7 +11,10 @@ Exit complain(const Error& error, Exit exit) {
   std::string text = "driftlab: " + error.message;
   std::string where;
   for (const ErrorField& field : error.fields) {
-    // Pointers, paths and the names already in the sentence say nothing new to a person.
+    if (field.name.size() > 1 && field.name.starts_with('/') && where.empty()) {
+      where = "at " + field.name;  // the first of a document's faults is the one in the sentence
+    }
+    // Other pointers, paths and the names already in the sentence say nothing new to a person.
     if (!field.name.starts_with('/') && field.name != "path" && error.message.find(field.value) == std::string::npos) {
       where += (where.empty() ? "" : ", ") + field.name + " " + field.value;
     }

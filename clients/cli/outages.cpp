@@ -8,7 +8,9 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <thread>
 
@@ -98,6 +100,7 @@ void add_outages(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
   command->add_option("--seed", flags->seed, "Same seed, same result, for any number of threads")
+      ->check(CLI::Range(std::uint64_t{0}, static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())))
       ->capture_default_str();
   command
       ->add_option("--precision", flags->precision,

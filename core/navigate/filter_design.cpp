@@ -1,12 +1,13 @@
 #include "core/navigate/navigation_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 namespace driftlab {
 namespace {
 
-Status check(const FilterSettings& settings) {
+Status check_settings(const FilterSettings& settings) {
   const auto bad = [](const char* member) {
     return fail(ErrorCode::InvalidArgument, "The filter's " + std::string(member) + " is not a possible value.",
                 {{"parameter", member}});
@@ -36,8 +37,21 @@ Status check(const FilterSettings& settings) {
 
 }  // namespace
 
+Status FilterDesign::check(const FilterSettings& settings, double dt_s) {
+  FilterSettings first = settings;
+  first.covariance_samples = std::clamp(settings.covariance_samples, 0, 1);  // one step length stands for all
+  if (settings.covariance_samples > 100) {
+    first.covariance_samples = settings.covariance_samples;  // refused
+  }
+  for (AxisModel& axis : first.imu.axes) {
+    axis.processes = ModelSchedule::constant(axis.processes.model(0));
+  }
+  auto design = make(first, dt_s);
+  return design ? Status{} : fail(design.error());
+}
+
 Result<FilterDesign> FilterDesign::make(const FilterSettings& settings, double dt_s) {
-  if (auto status = check(settings); !status) {
+  if (auto status = check_settings(settings); !status) {
     return fail(status.error());
   }
   FilterDesign design;

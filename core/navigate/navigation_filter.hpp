@@ -58,6 +58,8 @@ struct FilterSettings {
 class FilterDesign {
  public:
   /// Errors: those of make_channel_dynamics; LimitExceeded (more than 64 sensor states); InvalidArgument (settings).
+  /// A schedule's first band speaks for all of them, which hold the same kinds of processes.
+  [[nodiscard]] static Status check(const FilterSettings& settings, double dt_s);
   [[nodiscard]] static Result<FilterDesign> make(const FilterSettings& settings, double dt_s);
 
   [[nodiscard]] const FilterSettings& settings() const { return settings_; }

@@ -60,7 +60,22 @@ Status check(const OutageScenario& scenario) {
   if (auto status = check(scenario.hardware); !status) {
     return status;
   }
-  return check_outages(scenario);
+  if (auto status = check_outages(scenario); !status) {
+    return status;
+  }
+  if (scenario.drive.duration_s * scenario.imu_rate_hz >= 1e7) {
+    return fail(ErrorCode::LimitExceeded, "The trajectory would have more than 10 million samples.",
+                {{"limit", "10000000"}});
+  }
+  if (auto motion = make_motion(scenario); !motion) {
+    return fail(motion.error());
+  }
+  for (const FilterCandidate& filter : scenario.filters) {
+    if (auto status = FilterDesign::check(filter.settings, 1.0 / scenario.imu_rate_hz); !status) {
+      return fail(Error(status.error()).with("filter", filter.name));
+    }
+  }
+  return {};
 }
 
 }  // namespace driftlab

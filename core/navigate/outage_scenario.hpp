@@ -39,7 +39,8 @@ struct OutageScenario {
 [[nodiscard]] Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario);
 
 /// Errors: InvalidArgument (no filter or two of one name, no outage, outages that overlap, begin before the first fix
-/// or end after the drive), and those of the parts.
+/// or end after the drive), LimitExceeded (more than 10 million samples), and those of the parts: of make_motion, with
+/// field "segment" where it is one's, and of FilterDesign::check, with field "filter".
 [[nodiscard]] Status check(const OutageScenario& scenario);
 
 }  // namespace driftlab

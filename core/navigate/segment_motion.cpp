@@ -118,8 +118,33 @@ Status check(const SegmentPlan& plan, std::size_t index) {
   if (changes && !(std::fabs(segment.acceleration_m_s2) > 0.0 && std::isfinite(segment.acceleration_m_s2))) {
     return bad(index, "needs an acceleration other than 0");
   }
+  if (!(segment.duration_s >= 0.0)) {
+    return bad(index, "has a duration below 0");
+  }
   if (!(segment.until_speed_m_s >= 0.0 && std::isfinite(segment.until_speed_m_s))) {
     return bad(index, "has a target speed below 0");
+  }
+  return {};
+}
+
+/// A change of speed that begins before the one before it has ended would leave its target and may drive backwards.
+Status check_speeds(const SegmentPlan& plan) {
+  double speed = plan.speed_m_s;
+  double free_from = 0.0;
+  for (std::size_t i = 0; i < plan.segments.size(); ++i) {
+    const Segment& segment = plan.segments[i];
+    if (segment.kind != SegmentKind::Accelerate && segment.kind != SegmentKind::Stop) {
+      continue;
+    }
+    const double target = segment.kind == SegmentKind::Stop ? 0.0 : segment.until_speed_m_s;
+    if (target == speed) {
+      continue;
+    }
+    if (segment.start_s < free_from - 1e-9) {
+      return bad(i, "changes the speed before the change before it has ended");
+    }
+    free_from = segment.start_s + std::fabs((target - speed) / segment.acceleration_m_s2) + plan.ramp_s;
+    speed = target;
   }
   return {};
 }
@@ -148,6 +173,9 @@ Result<std::unique_ptr<Motion>> make_segment_motion(const SegmentPlan& plan) {
     if (auto status = check(plan, i); !status) {
       return fail(status.error());
     }
+  }
+  if (auto status = check_speeds(plan); !status) {
+    return fail(status.error());
   }
   return std::make_unique<SegmentMotion>(plan);
 }

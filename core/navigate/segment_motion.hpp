@@ -4,7 +4,7 @@
 /// Every manoeuvre is a pulse of heading rate or of acceleration: it rises over `ramp_s` as a cubic smoothstep, holds,
 /// and falls again, so that rate and acceleration have continuous derivatives, and its integral is exactly value times
 /// duration: a turn of 9 deg/s for 10 s turns by 90 deg and is over 10 s + ramp after its start. Pulses add, so
-/// segments may overlap.
+/// turns may overlap; changes of speed, which have targets, may not.
 #include "core/navigate/motion.hpp"
 #include "core/signal/result.hpp"
 
@@ -45,7 +45,7 @@ struct SegmentPlan {
 };
 
 /// Errors: InvalidArgument naming the segment: starts not in order or outside the plan, a duration, ramp or
-/// acceleration that is not positive, a speed below 0.
+/// acceleration that is not positive, a speed below 0, a change of speed before the one before it has ended.
 [[nodiscard]] Result<std::unique_ptr<Motion>> make_segment_motion(const SegmentPlan& plan);
 
 }  // namespace driftlab

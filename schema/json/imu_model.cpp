@@ -121,6 +121,11 @@ AxisModel read_axis(const Json& document, std::size_t first, const std::string& 
   const Json* const by_rate = first == 0 ? reader.member("by_rate") : nullptr;
   const Json* const trend = first == 0 ? reader.member("trend") : nullptr;
   reader.reject_unknown();
+  const Json* const schedule = by_rate != nullptr ? by_rate : trend;
+  if (schedule != nullptr && (document.contains("processes") || (by_rate != nullptr && trend != nullptr))) {
+    faults.add(pointer + (by_rate != nullptr ? "/by_rate" : "/trend"), ErrorCode::InvalidArgument,
+               "An axis has one of `processes`, `by_rate` and `trend`.");
+  }
   if (by_rate != nullptr) {
     read_by_rate(*by_rate, pointer + "/by_rate", axis, faults);
   } else if (trend != nullptr) {

@@ -5,6 +5,7 @@
 #include "schema/json/recorded_trajectory.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +13,7 @@ namespace driftlab {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr const char* kPublishedCondition = "z by true |rate| through Table 5, x and y at experiment 0";
 
 Vector3 three(ObjectReader& reader, std::string_view name, const Vector3& otherwise, const std::string& pointer,
               Faults& faults) {
@@ -45,6 +47,12 @@ Segment read_segment(const Json& document, const std::string& pointer, Faults& f
   segment.acceleration_m_s2 = reader.real("m_s2").value_or(0.0);
   segment.until_speed_m_s = reader.real("until_speed_m_s").value_or(0.0);
   reader.reject_unknown();
+  if (!(segment.duration_s >= 0.0)) {
+    faults.add(pointer + "/duration_s", ErrorCode::InvalidArgument, "A duration is not negative.");
+  }
+  if (!(segment.until_speed_m_s >= 0.0)) {
+    faults.add(pointer + "/until_speed_m_s", ErrorCode::InvalidArgument, "A speed is not negative.");
+  }
   return segment;
 }
 
@@ -59,11 +67,17 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
     plan.start.longitude_rad = inner.real("longitude_deg").value_or(-114.13) * kDegree;
     plan.start.height_m = inner.real("height_m").value_or(1100.0);
     inner.reject_unknown();
+    if (!(plan.speed_m_s >= 0.0)) {
+      faults.add(pointer + "/start/speed_m_s", ErrorCode::InvalidArgument, "A speed is not negative.");
+    }
     if (!(std::fabs(plan.start.latitude_rad) < 1.57)) {
       faults.add(pointer + "/start/latitude_deg", ErrorCode::OutOfRange, "The latitude lies between the poles.");
     }
   }
   plan.ramp_s = reader.real("ramp_s").value_or(0.5);
+  if (!(plan.ramp_s > 0.0)) {
+    faults.add(pointer + "/ramp_s", ErrorCode::InvalidArgument, "Rates rise and fall over a time above 0.");
+  }
   const Json* const segments = reader.member("segments_by_start_time");
   const Json* const recorded = reader.member("recorded");
   if (recorded != nullptr) {
@@ -85,13 +99,27 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
   reader.reject_unknown();
 }
 
+constexpr std::size_t kMostOutages = 1000;
+
+void check_duration(double duration_s, const std::string& pointer, Faults& faults) {
+  if (!(duration_s > 0.0)) {
+    faults.add(pointer + "/duration_s", ErrorCode::InvalidArgument, "An outage lasts longer than 0 s.");
+  }
+}
+
 /// A list, or {"start": "turn onset", "duration_s": 10}: one over each turn.
 void read_outages(const Json& document, const std::string& pointer, OutageScenario& scenario, Faults& faults) {
   if (document.is_array()) {
-    for (std::size_t i = 0; i < document.size() && i < 1000; ++i) {
-      ObjectReader reader(document[i], pointer + "/" + std::to_string(i), faults);
+    if (document.size() > kMostOutages) {
+      faults.add(pointer, ErrorCode::InvalidArgument, "A scenario has at most 1000 outages.");
+      return;
+    }
+    for (std::size_t i = 0; i < document.size(); ++i) {
+      const std::string where = pointer + "/" + std::to_string(i);
+      ObjectReader reader(document[i], where, faults);
       scenario.outages.push_back({reader.real("start_s").value_or(-1.0), reader.real("duration_s").value_or(0.0)});
       reader.reject_unknown();
+      check_duration(scenario.outages.back().duration_s, where, faults);
     }
     return;
   }
@@ -100,6 +128,7 @@ void read_outages(const Json& document, const std::string& pointer, OutageScenar
   const double duration = reader.real("duration_s").value_or(0.0);
   (void)reader.text("error_scored");
   reader.reject_unknown();
+  check_duration(duration, pointer, faults);
   if (start != "turn onset") {
     faults.add(pointer + "/start", ErrorCode::InvalidArgument,
                "Outages start at `turn onset`, or are listed one by one.");
@@ -108,6 +137,17 @@ void read_outages(const Json& document, const std::string& pointer, OutageScenar
     if (segment.kind == SegmentKind::Turn) {
       scenario.outages.push_back({segment.start_s, duration});
     }
+  }
+  if (scenario.outages.size() > kMostOutages) {
+    faults.add(pointer, ErrorCode::InvalidArgument, "A scenario has at most 1000 outages.");
+  }
+}
+
+/// A member that documents state and that can only be true.
+void require_true(ObjectReader& reader, std::string_view name, const char* why, Faults& faults) {
+  const Json* const value = reader.member(name);
+  if (value != nullptr && !(value->is_boolean() && value->get<bool>())) {
+    faults.add(reader.pointer(name), ErrorCode::InvalidArgument, why);
   }
 }
 
@@ -119,7 +159,7 @@ void read_gnss(const Json& document, const std::string& pointer, GnssModel& gnss
   gnss.correlation_time_s = reader.real("correlation_time_s").value_or(0.0);
   gnss.latency_s = reader.real("latency_s").value_or(0.0);
   gnss.lever_arm_m = three(reader, "lever_arm_m", gnss.lever_arm_m, pointer, faults);
-  (void)reader.member("white");  // the white part is always there
+  require_true(reader, "white", "The white error of fixes is always there; its size is position_sd_m.", faults);
   reader.reject_unknown();
 }
 
@@ -137,7 +177,8 @@ Initial read_initial(const Json& document, const std::string& pointer, Faults& f
   u.tilt_sd_rad = reader.real("tilt_sd_deg").value_or(1.0) * kDegree;
   u.heading_sd_rad = reader.real("heading_sd_deg").value_or(3.0) * kDegree;
   initial.gyro_bias_sd_rad_s = reader.real("gyro_bias_sd_deg_s").value_or(0.05) * kDegree;
-  (void)reader.member("filters_without_gm_states_add_slow_gm_to_initial_bias_sd");  // they do
+  require_true(reader, "filters_without_gm_states_add_slow_gm_to_initial_bias_sd",
+               "The published filters without Gauss-Markov states always add them to their first bias.", faults);
   reader.reject_unknown();
   return initial;
 }
@@ -154,12 +195,16 @@ void read_truth(const Json& document, const std::string& pointer, OutageScenario
   if (gyro->is_object() && gyro->contains("model")) {
     ObjectReader named(*gyro, pointer + "/gyro", faults);
     const std::string model = named.required_text("model");
-    (void)named.text("condition");
+    const std::string condition = named.text("condition").value_or(kPublishedCondition);
     const double bias = named.real("constant_bias_sd_deg_s").value_or(0.0) * kDegree;
     named.reject_unknown();
     if (model != "Table 4, iPhone 5S, every axis") {
       faults.add(pointer + "/gyro/model", ErrorCode::InvalidArgument,
                  "The one model known by name is `Table 4, iPhone 5S, every axis`; others are given as processes.");
+    }
+    if (condition != kPublishedCondition) {
+      faults.add(pointer + "/gyro/condition", ErrorCode::InvalidArgument,
+                 "The published model has one condition: `" + std::string(kPublishedCondition) + "`.");
     }
     const auto axes = paper_true_gyroscope(bias, true);
     std::copy(axes.begin(), axes.end(), scenario.truth.axes.begin());
@@ -204,6 +249,45 @@ FilterCandidate read_filter(const Json& document, const std::string& pointer, co
       reader.integer("covariance_samples").value_or(filter.settings.covariance_samples), 0, 101));
   reader.reject_unknown();
   return filter;
+}
+
+/// Members of a scenario that an error of check() names.
+constexpr std::array kMembers{"filters", "outages", "imu_rate_hz", "duration_s", "initial"};
+
+/// Where in the document the fault lies that check() found.
+std::string place_of(const Error& error, const OutageScenario& scenario) {
+  std::string member;
+  for (const ErrorField& field : error.fields) {
+    if (field.name == "segment") {
+      return "/trajectory/segments_by_start_time/" + field.value;
+    }
+    if (field.name == "filter") {
+      const auto filter = std::find_if(scenario.filters.begin(), scenario.filters.end(),
+                                       [&](const FilterCandidate& f) { return f.name == field.value; });
+      return "/filters/" + std::to_string(filter - scenario.filters.begin());
+    }
+    if (field.name == "parameter" && std::find(kMembers.begin(), kMembers.end(), field.value) != kMembers.end()) {
+      member = "/" + field.value;
+    }
+  }
+  return member;
+}
+
+/// The receiver's velocities used or not.
+bool read_velocity_use(ObjectReader& reader, Faults& faults) {
+  const std::string use = reader.text("gnss_velocity").value_or("used");
+  if (use != "used" && use != "not used") {
+    faults.add(reader.pointer("gnss_velocity"), ErrorCode::InvalidArgument,
+               "GNSS velocity is `used` or `not used` by the filters.");
+  }
+  return use == "used";
+}
+
+std::optional<NonHolonomic> read_constraint(const Json& document, const std::string& pointer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  const NonHolonomic constraint{reader.real("rate_hz").value_or(10.0), reader.real("sd_m_s").value_or(0.2)};
+  reader.reject_unknown();
+  return constraint;
 }
 
 Json trajectory_to_json(const OutageScenario& scenario) {
@@ -260,14 +344,14 @@ OutageScenario scenario_from_json(const Json& document, const std::string& point
   part("initial", false, [&](const Json& d, const std::string& p) { initial = read_initial(d, p, faults); });
   scenario.initial = initial.uncertainty;
   part("truth", true, [&](const Json& d, const std::string& p) { read_truth(d, p, scenario, faults); });
-  const bool use_velocity = reader.text("gnss_velocity").value_or("used") == "used";
+  const bool use_velocity = read_velocity_use(reader, faults);
   std::optional<NonHolonomic> constraint;
-  part("non_holonomic", false, [&](const Json& d, const std::string& p) {
-    ObjectReader inner(d, p, faults);
-    constraint = NonHolonomic{inner.real("rate_hz").value_or(10.0), inner.real("sd_m_s").value_or(0.2)};
-    inner.reject_unknown();
-  });
+  part("non_holonomic", false,
+       [&](const Json& d, const std::string& p) { constraint = read_constraint(d, p, faults); });
   part("filters", true, [&](const Json& list, const std::string& p) {
+    if (!list.is_array()) {
+      faults.add(p, ErrorCode::InvalidArgument, "The filters are a list.");
+    }
     for (std::size_t i = 0; list.is_array() && i < list.size() && i < 33; ++i) {
       FilterCandidate filter =
           read_filter(list[i], p + "/" + std::to_string(i), scenario, initial.gyro_bias_sd_rad_s, faults);
@@ -280,7 +364,7 @@ OutageScenario scenario_from_json(const Json& document, const std::string& point
   reader.reject_unknown();
   if (faults.none()) {
     if (auto status = check(scenario); !status) {
-      faults.add(pointer, status.error());
+      faults.add(pointer + place_of(status.error(), scenario), status.error());
     }
   }
   return scenario;

@@ -6,6 +6,7 @@ import unittest
 from typing import Any
 
 import samples
+from daemon import events
 from suite import DaemonTest
 
 SCENARIO: dict[str, Any] = {
@@ -106,8 +107,55 @@ class OutageEvaluations(DaemonTest):
             self.assertIn(answer.status, (400, 404), answer.describe())
             self.assertEqual([e["pointer"] for e in answer.json["errors"]], [pointer], answer.describe())
 
-    def test_a_long_evaluation_is_cancelled(self) -> None:
+    def test_a_stored_simulation_model_is_truth_and_filter(self) -> None:
+        def level(value: float, unit: str) -> dict[str, Any]:
+            return {"value": value, "unit": unit}
+
+        def white(value: float) -> dict[str, Any]:
+            return {"process": "white_noise", "params": {"N": level(value, "deg/sqrt(h)")}}
+        model = self.expect(201, self.daemon.post("/v1/models", {
+            "name": "by channel", "processes": [white(1.5)],
+            "channels": {"gx": {"processes": [white(1.5)]}, "gy": {"processes": [white(2.5)]}, "gz": {"processes": [white(3.5)]}},
+            "deterministic": {"gz": {"bias": level(0.7, "deg/s"), "drift": level(0.001, "deg/s/s")}},
+            "effects": [{"cause": "bias_step", "channels": ["gz"], "params": {"step": level(1, "deg/s")}},
+                        {"cause": "scale_factor_error", "channels": ["gw"], "params": {"S": level(250, "ppm")}}]})).json["id"]
+        scenario = copy.deepcopy(SCENARIO)
+        scenario["truth"]["gyro"] = {"simulation_model": model, "constant_bias_sd_deg_s": 0.05}
+        flat = {"processes": [white(1)], "constant_bias_sd_deg_s": 0.05}
+        scenario["filters"] = [{"name": "matched"},
+                               {"name": "one channel", "gyro": {"x": flat, "y": flat, "z": {"simulation_model": model, "channel": "gz"}}}]
+        result = self.evaluated(scenario=scenario, runs=2)["evaluation"]
+        truth = result["scenario"]["truth"]
+        for axis, expected in (("x", 1.5), ("y", 2.5), ("z", 3.5)):
+            processes = truth["gyro"][axis]["processes"]
+            self.assertAlmostEqual(processes[0]["params"]["N"]["value"], expected, places=9)
+            self.assertEqual([p["process"] for p in processes], ["white_noise"] + (["linear_drift"] if axis == "z" else []))
+            self.assertAlmostEqual(truth["gyro"][axis]["constant_bias_sd_deg_s"], 0.05, places=9)
+        for found, expected in zip(truth["gyro_errors"]["bias"], (0, 0, 0.7)):
+            self.assertAlmostEqual(found, expected, places=9)
+        believed = result["scenario"]["filters"][1]["gyro"]
+        self.assertAlmostEqual(believed["z"]["processes"][0]["params"]["N"]["value"], 3.5, places=9)
+        self.assertAlmostEqual(believed["x"]["processes"][0]["params"]["N"]["value"], 1, places=9)
+        self.assertEqual(result["left_out"], [
+            {"where": "/truth/gyro", "simulation_model": model, "what": ["bias_step"]},
+            {"where": "/filters/1/gyro/z", "simulation_model": model, "what": ["bias_step", "bias"]}])
+
+        for sensor, status, pointer in (({"simulation_model": "mod_nobody"}, 404, "/scenario/truth/gyro/simulation_model"),
+                                        ({"simulation_model": model, "channel": "gq"}, 404, "/scenario/truth/gyro/channel"),
+                                        ({"simulation_model": model, "colour": 1}, 400, "/scenario/truth/gyro/colour")):
+            answer = self.expect(status, self.daemon.post("/v1/outage-evaluations", {
+                "scenario": {**scenario, "truth": {**scenario["truth"], "gyro": sensor}}}))
+            self.assertEqual([e["pointer"] for e in answer.json["errors"]], [pointer], answer.describe())
+        twice = {**scenario["truth"], "gyro_errors": {"bias": 1}}
+        answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": {**scenario, "truth": twice}}))
+        self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro_errors/bias"])
+
+    def test_a_running_evaluation_is_cancelled(self) -> None:
         job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100000})).json["id"]
+        for event in events(self.daemon, job):
+            if event.type == "progress" and event.data["progress"] > 0:
+                break
+        self.assertEqual(self.expect(200, self.daemon.get(f"/v1/jobs/{job}")).json["state"], "running")
         self.expect(202, self.daemon.post(f"/v1/jobs/{job}/cancel"))
         self.assertEqual(self.daemon.finished(job)["state"], "cancelled")
         self.assertIsNone(self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{job}")).json["evaluation"])
@@ -125,8 +173,16 @@ class OutageEvaluations(DaemonTest):
             ({"scenario": SCENARIO, "relative_precision": 2}, {"/relative_precision"}),
             ({"scenario": SCENARIO, "colour": 1}, {"/colour"}),
             ({"scenario": changed(colour=1)}, {"/scenario/colour"}),
-            ({"scenario": changed(outages=[])}, {"/scenario"}),
-            ({"scenario": changed(filters=[{"name": "a"}, {"name": "a"}])}, {"/scenario"}),
+            ({"scenario": changed(outages=[])}, {"/scenario/outages"}),
+            ({"scenario": changed(filters=[{"name": "a"}, {"name": "a"}])}, {"/scenario/filters"}),
+            ({"scenario": changed(gnss_velocity="unused")}, {"/scenario/gnss_velocity"}),
+            ({"scenario": changed(gnss={"white": False})}, {"/scenario/gnss/white"}),
+            ({"scenario": changed(filters=[{"name": "a", "covariance_samples": 101}])}, {"/scenario/filters/0"}),
+            ({"scenario": changed(trajectory={"segments_by_start_time": [{"t_s": 30, "kind": "turn", "rate_deg_s": 9}]})},
+             {"/scenario/trajectory/segments_by_start_time/0"}),
+            ({"scenario": changed(trajectory={"segments_by_start_time": [{"t_s": 1, "kind": "accelerate", "m_s2": 1, "until_speed_m_s": 20},
+                                                                         {"t_s": 3, "kind": "stop", "m_s2": 10}]})},
+             {"/scenario/trajectory/segments_by_start_time/1"}),
             ({"scenario": bad_unit}, {"/scenario/truth/gyro/processes/0/params/N/unit"}),
         ]
         for body, pointers in cases:

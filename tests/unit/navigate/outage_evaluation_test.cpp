@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 namespace driftlab {
 namespace {
@@ -137,6 +139,87 @@ TEST(PaperScenario, HasTheStatedFiltersAndVariants) {
   EXPECT_EQ(paper_scenario("nowhere").error().code, ErrorCode::NotFound);
 }
 
+TEST(PaperScenario, HoldsTheNumbersOfThePaper) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  constexpr double kPerRootHour = kDegree / 60.0;
+  const OutageScenario scenario = *paper_scenario("paper");
+  const auto z_of = [&](std::size_t filter) { return scenario.filters[filter].settings.imu.axes[2]; };
+  // Tables 1 and 2: N of the iPhone at rest, 9, 18 and 36 deg/s; Table 5: bands of |z| to 5, 15, 25 deg/s.
+  EXPECT_NEAR(z_of(0).processes.model(0)[0].parameters[0], 1.0978 * kPerRootHour, 1e-12);
+  EXPECT_EQ(z_of(0).processes.size(), 1U);
+  const ModelSchedule dynamic = z_of(1).processes;
+  ASSERT_EQ(dynamic.size(), 4U);
+  constexpr std::array kN{1.0978, 1.1788, 1.702, 2.4233};
+  constexpr std::array kBounds{5.0, 15.0, 25.0};
+  for (std::size_t band = 0; band < 4; ++band) {
+    EXPECT_NEAR(dynamic.model(band)[0].parameters[0], kN[band] * kPerRootHour, 1e-12);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(dynamic.bounds_rad_s()[i], kBounds[i] * kDegree, 1e-12);
+    EXPECT_NEAR(z_of(2).processes.bounds_rad_s()[i], kBounds[i] * kDegree, 1e-12);
+    EXPECT_NEAR(scenario.truth.axes[2].processes.bounds_rad_s()[i], kBounds[i] * kDegree, 1e-12);
+  }
+  // Table 4, experiment 0: N = 1.034, beta1 = 1.7101, sigma1^2 = 7.049, beta2 = 9.7259e-3, sigma2^2 = 1.0601 in
+  // (deg/sqrt(h))^2, read as sigma[deg/s] = sqrt(value)/60; experiment 3 likewise.
+  const Model rest = scenario.truth.axes[2].processes.model(0);
+  const double sigma1 = std::sqrt(7.049) * kPerRootHour;
+  const double sigma2 = std::sqrt(1.0601) * kPerRootHour;
+  EXPECT_NEAR(rest[0].parameters[0], 1.034 * kPerRootHour, 1e-12);
+  EXPECT_NEAR(rest[1].parameters[0], sigma1, 1e-12);
+  EXPECT_NEAR(rest[1].parameters[1], 1.7101, 1e-12);
+  EXPECT_NEAR(rest[2].parameters[0], sigma2, 1e-12);
+  EXPECT_NEAR(rest[2].parameters[1], 9.7259e-3, 1e-12);
+  const Model fast = z_of(2).processes.model(3);
+  EXPECT_NEAR(fast[0].parameters[0], 1.7224 * kPerRootHour, 1e-12);
+  EXPECT_NEAR(fast[1].parameters[0], std::sqrt(18.4464) * kPerRootHour, 1e-12);
+  EXPECT_NEAR(fast[2].parameters[1], 1.4675e-2, 1e-12);
+  // The controls: q = sigma2 sqrt(2 beta2) [deg/s/sqrt(s)], N_eq = sqrt(N^2 + 2 sigma1^2/beta1).
+  const double q = std::sqrt(1.0601) / 60.0 * std::sqrt(2.0 * 9.7259e-3) * kDegree;
+  EXPECT_NEAR(q / kDegree, 2.3933e-3, 1e-6);
+  EXPECT_NEAR(z_of(4).processes.model(0)[1].parameters[0], q, 1e-12);
+  EXPECT_NEAR(z_of(4).processes.model(0)[0].parameters[0], 1.0978 * kPerRootHour, 1e-12);
+  const double n_eq = std::sqrt(1.034 * 1.034 + 2.0 * 7.049 / 1.7101);
+  EXPECT_NEAR(n_eq, 3.0517, 1e-4);
+  EXPECT_NEAR(z_of(5).processes.model(0)[0].parameters[0], n_eq * kPerRootHour, 1e-12);
+  EXPECT_NEAR(z_of(5).processes.model(0)[1].parameters[0], q, 1e-12);
+}
+
+TEST(OutageEvaluation, AMatchedFilterKnowsItsEllipsesAndItsAngles) {
+  // The truth's filter through one turn. Heading and tilt of the errors against what draws of them start from: a drive
+  // without a turn leaves the heading at the 3 deg it began with, and fixes of velocity while turning improve it.
+  OutageScenario scenario = first_turn();
+  scenario.imu_rate_hz = 20.0;
+  scenario.filters = {scenario.filters[2]};
+  scenario.filters[0].settings.covariance_samples = 2;
+  OutageOptions options;
+  options.runs = 200;
+  const FilterEvaluation filter = evaluate_outages(scenario, options)->filters[0];
+  // Binomial, 200 runs: four standard deviations.
+  EXPECT_NEAR(filter.coverage50, 0.50, 4.0 * std::sqrt(0.25 / 200.0));
+  EXPECT_NEAR(filter.coverage95, 0.95, 4.0 * std::sqrt(0.95 * 0.05 / 200.0));
+  EXPECT_EQ(filter.coverage50, filter.outages[0].coverage50) << "of one outage the whole is the part";
+  // The root mean squares are those of the scores of single runs.
+  const OutageExperiment experiment = *OutageExperiment::make(scenario);
+  double heading = 0.0;
+  double tilt = 0.0;
+  double inside = 0.0;
+  for (std::uint64_t run = 0; run < 200; ++run) {
+    const OutageScore score = experiment.run(options.seed, run, nullptr)[0][0];
+    heading += score.heading_rad * score.heading_rad / 200.0;
+    tilt += score.tilt_rad * score.tilt_rad / 200.0;
+    inside += score.nees() <= -2.0 * std::log(1.0 - 0.5) ? 1.0 / 200.0 : 0.0;  // chi-square of 2 degrees of freedom
+  }
+  EXPECT_NEAR(filter.heading_rms_rad, std::sqrt(heading), 1e-12);
+  EXPECT_NEAR(filter.tilt_rms_rad, std::sqrt(tilt), 1e-12);
+  EXPECT_NEAR(filter.coverage50, inside, 1e-12);
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  EXPECT_LT(filter.heading_rms_rad, 10.0 * kDegree);
+  EXPECT_GT(filter.heading_rms_rad, 0.1 * kDegree);
+  // 10 mg of bias that tilt and accelerometer share: 0.57 deg, less what the turn tells apart.
+  EXPECT_LT(filter.tilt_rms_rad, 1.0 * kDegree);
+  EXPECT_GT(filter.tilt_rms_rad, 0.1 * kDegree);
+}
+
 TEST(OutageScenario, RefusesWhatCannotBeEvaluated) {
   OutageScenario scenario = first_turn();
   scenario.outages = {{90.0, 20.0}};
@@ -147,6 +230,18 @@ TEST(OutageScenario, RefusesWhatCannotBeEvaluated) {
   scenario = first_turn();
   scenario.outages.clear();
   EXPECT_EQ(check(scenario).error().code, ErrorCode::InvalidArgument);
+  // What the parts would refuse later is found at once.
+  scenario = first_turn();
+  scenario.drive.segments[1].duration_s = 0.0;
+  EXPECT_EQ(check(scenario).error().fields.front().name, "segment");
+  scenario = first_turn();
+  scenario.filters[1].settings.imu.axes[0].processes =
+      ModelSchedule::constant({*make_process("flicker_noise", {1e-4}), *make_process("flicker_noise", {1e-4})});
+  EXPECT_EQ(check(scenario).error().fields.back().value, scenario.filters[1].name);
+  scenario = first_turn();
+  scenario.drive.duration_s = 2000.0;
+  scenario.imu_rate_hz = 10000.0;
+  EXPECT_EQ(check(scenario).error().code, ErrorCode::LimitExceeded);
 }
 
 }  // namespace

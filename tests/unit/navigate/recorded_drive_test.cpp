@@ -170,6 +170,10 @@ TEST(RecordedDrive, CarOnAMotorwayWithAPhonesSensors) {
   // A consumer unit carries ten seconds of motorway to a few metres; the receiver itself is 2 to 4 m off this
   // reference.
   EXPECT_LT(figures.worst, 15.0);
+  EXPECT_LT(figures.filter, 0.5 * figures.straight);
+  // Two outages of one drive, two dimensions each: the mean of their NEES is below 5.6 in 95 % of drives where the
+  // filter is right (chi-square of 4 degrees of freedom at 97.5 %, halved).
+  EXPECT_LT(figures.nees, 5.6);
 }
 
 /// Heading of the rover's published pose (unix seconds and nanoseconds, then position and quaternion in east, north,

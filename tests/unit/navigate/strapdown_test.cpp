@@ -206,5 +206,31 @@ TEST(SegmentMotion, StopsAndSpeaksOfImpossiblePlans) {
   EXPECT_EQ(make_segment_motion(plan).error().code, ErrorCode::InvalidArgument);
 }
 
+TEST(SegmentMotion, ChangesOfSpeedFollowEachOther) {
+  // To 20 m/s at 1 m/s^2, over after 20.5 s. A stop at 10 m/s^2 from second 3 on would drive backwards: 20 m/s taken
+  // from 5.
+  SegmentPlan plan;
+  plan.duration_s = 60.0;
+  plan.segments = {{.kind = SegmentKind::Accelerate, .start_s = 0.0, .acceleration_m_s2 = 1.0, .until_speed_m_s = 20.0},
+                   {.kind = SegmentKind::Stop, .start_s = 3.0, .acceleration_m_s2 = 10.0}};
+  const auto refused = make_segment_motion(plan);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fields.front().value, "1");
+  plan.segments[1].start_s = 20.4;
+  EXPECT_FALSE(make_segment_motion(plan));
+  plan.segments[1].start_s = 20.5;
+  const auto motion = make_segment_motion(plan);
+  ASSERT_TRUE(motion) << motion.error().message;
+  for (double t = 0.0; t < 60.0; t += 0.1) {
+    const double speed = (*motion)->at(t).velocity_ned_m_s.x();
+    EXPECT_GE(speed, -1e-12) << t;
+    EXPECT_LE(speed, 20.0 + 1e-12) << t;
+  }
+  // One that changes nothing is in nobody's way.
+  plan.segments[1] = {
+      .kind = SegmentKind::Accelerate, .start_s = 3.0, .acceleration_m_s2 = 1.0, .until_speed_m_s = 20.0};
+  EXPECT_TRUE(make_segment_motion(plan));
+}
+
 }  // namespace
 }  // namespace driftlab
