@@ -104,19 +104,30 @@ Status write_imu(const Flags& flags, const Trajectory& truth, const ImuRun& run)
 
 Status write_gnss(const Flags& flags, const std::vector<GnssFix>& fixes) {
   TableFile table;
-  table.comment = provenance(flags) + "; fixes";
-  table.columns = {"t [s]",    "lat [deg]", "lon [deg]", "height [m]", "vn [m/s]",
-                   "ve [m/s]", "vd [m/s]",  "sn [m]",    "se [m]",     "sd [m]"};
-  table.decimals = {6, 10, 10, 4, 5, 5, 5, 3, 3, 3};
+  table.comment = provenance(flags) + "; fixes; t is when one arrives, validity the moment it describes";
+  table.columns = {"t [s]",    "validity [s]", "lat [deg]", "lon [deg]", "height [m]", "vn [m/s]",  "ve [m/s]",
+                   "vd [m/s]", "sn [m]",       "se [m]",    "sd [m]",    "svn [m/s]",  "sve [m/s]", "svd [m/s]"};
+  table.decimals = {6, 6, 10, 10, 4, 5, 5, 5, 3, 3, 3, 4, 4, 4};
   table.rows = fixes.size();
   table.cell = [&](std::size_t row, std::size_t column) {
     const GnssFix& fix = fixes[row];
     const Geodetic place = to_geodetic(fix.position_ecef_m);
     const Vector3 v =
         ned_axes(place.latitude_rad, place.longitude_rad).transpose() * fix.velocity_ecef_m_s.value_or(Vector3::Zero());
-    const double cells[] = {
-        fix.arrival_s, place.latitude_rad / kDegree, place.longitude_rad / kDegree, place.height_m,       v.x(), v.y(),
-        v.z(),         fix.position_sd_m.x(),        fix.position_sd_m.y(),         fix.position_sd_m.z()};
+    const double cells[] = {fix.arrival_s,
+                            fix.validity_s,
+                            place.latitude_rad / kDegree,
+                            place.longitude_rad / kDegree,
+                            place.height_m,
+                            v.x(),
+                            v.y(),
+                            v.z(),
+                            fix.position_sd_m.x(),
+                            fix.position_sd_m.y(),
+                            fix.position_sd_m.z(),
+                            fix.velocity_sd_m_s.x(),
+                            fix.velocity_sd_m_s.y(),
+                            fix.velocity_sd_m_s.z()};
     return cells[column];
   };
   return write_table(flags.gnss, table);
