@@ -129,7 +129,7 @@ def compatible(sources, flags, folder):
             if check.returncode == 0:
                 break
             apart = unit.at_fault(check.stderr) - {members[0]} or set(members[1:])
-            rest = [source for source in members if source in apart] + rest
+            rest += [source for source in members if source in apart]
             members = [source for source in members if source not in apart]
         yield unit
 
@@ -180,6 +180,9 @@ def main():
                 yield unit.sources, look_at(unit, list(flags))
 
         # A slice of a group is one task, so that the tasks are of a size and the jobs end together.
+        # Shuffled, for sources of one folder name things alike.
+        for sources in groups.values():
+            sources.sort(key=lambda source: hashlib.sha256(source.name.encode()).digest())
         slices = [(flags, sources[i:i + SLICE]) for (flags, _), sources in groups.items() for i in range(0, len(sources), SLICE)]
         slices.sort(key=lambda s: -len(s[1]))
         results = queue.Queue()
