@@ -16,7 +16,7 @@ std::optional<std::size_t> imu_channel(const ColumnRole& role) {
     return std::nullopt;
   }
   if (role.quantity == Quantity::AngularRate) {
-    return *axis;
+    return axis;
   }
   return role.quantity == Quantity::SpecificForce ? std::optional(3 + *axis) : std::nullopt;
 }

@@ -13,11 +13,18 @@ using Columns = std::function<std::span<const double>(std::size_t)>;
 
 std::optional<std::size_t> find_role(const Roles& roles, Quantity quantity, std::string_view axis) {
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    if (roles[i] && roles[i]->quantity == quantity && (axis.empty() || roles[i]->axis == axis)) {
+    const auto& role = roles[i];
+    if (role && role->quantity == quantity && (axis.empty() || role->axis == axis)) {
       return i;
     }
   }
   return std::nullopt;
+}
+
+/// The stated unit of a column, else `otherwise`.
+Unit unit_of(const Roles& roles, std::size_t column, const Unit& otherwise = {}) {
+  const auto& role = roles[column];
+  return role && role->unit ? *role->unit : otherwise;
 }
 
 /// Rows put on the grid; places between rows are interpolated.
@@ -58,10 +65,10 @@ void set_rotation(StudyRecording& recording, const Roles& roles, const Columns& 
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string axis(1, static_cast<char>('x' + k));
     if (const auto index = find_role(roles, Quantity::ReferenceAngularRate, axis)) {
-      recording.rate[k] = on_grid(column(*index), roles[*index]->unit.value_or(Unit{}), grid);
+      recording.rate[k] = on_grid(column(*index), unit_of(roles, *index), grid);
       from_column = true;
     } else if (const auto turn = find_role(roles, Quantity::ReferenceAngle, axis)) {
-      recording.rate[k] = derivative(on_grid(column(*turn), roles[*turn]->unit.value_or(Unit{}), grid), grid.dt_s);
+      recording.rate[k] = derivative(on_grid(column(*turn), unit_of(roles, *turn), grid), grid.dt_s);
       from_column = true;
     }
   }
@@ -127,7 +134,7 @@ void set_error(StudyRecording& recording, Channel& channel, const Roles& roles, 
     channel.reference = recording.rate[*axis];
   } else if (channel.role.quantity == Quantity::SpecificForce) {
     if (const auto index = find_role(roles, Quantity::ReferenceSpecificForce, channel.role.axis)) {
-      channel.reference = on_grid(column(*index), roles[*index]->unit.value_or(Unit{}), grid);
+      channel.reference = on_grid(column(*index), unit_of(roles, *index), grid);
     } else if (condition.kind == ConditionKind::SixPosition && condition.up && condition.axis == channel.role.axis) {
       channel.reference.assign(recording.length, *condition.up ? kStandardGravity : -kStandardGravity);
       channel.input_only = true;  // until settle_channels knows whether a gyro is there
@@ -150,7 +157,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Role
                 "The recording has " + std::to_string(rows) + " samples; an investigation needs at least 16.");
   }
   if (const auto index = find_role(roles, Quantity::Time, "")) {
-    const Unit unit = roles[*index]->unit.value_or(*parse_unit("s"));
+    const Unit unit = unit_of(roles, *index, Unit{"s", Dimension::Time});
     const std::span<const double> values = column(*index);
     std::vector<double> stamps(values.size());
     std::transform(values.begin(), values.end(), stamps.begin(),
@@ -218,7 +225,7 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   }
   set_rotation(recording, *roles, column, *grid);
   if (const auto index = find_role(*roles, Quantity::Temperature, "")) {
-    recording.temperature = on_grid(column(*index), (*roles)[*index]->unit.value_or(Unit{}), *grid);
+    recording.temperature = on_grid(column(*index), unit_of(*roles, *index), *grid);
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& role = (*roles)[i];

@@ -2,6 +2,7 @@
 
 #include "core/investigate/golden_section.hpp"
 #include "core/investigate/profile.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ double gaussian(const InnovationHistogram& h, double variance) {
 double student(const InnovationHistogram& h, double inverse_nu, double variance) {
   const double nu = 1.0 / inverse_nu;
   const double s2 = variance * (nu - 2.0);
-  const double constant = std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(std::numbers::pi * s2);
+  const double constant = log_gamma(0.5 * (nu + 1.0)) - log_gamma(0.5 * nu) - 0.5 * std::log(std::numbers::pi * s2);
   double sum = 0.0;
   for (std::size_t j = 0; j < h.centre.size(); ++j) {
     if (h.count[j] > 0.0) {

@@ -11,6 +11,8 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 /// nine navigation states lie one behind the other, S numbers each.
 template <int S>
 struct Kernel {
+  static constexpr std::ptrdiff_t kRow = S;
+
   /// out = x + a y.
   static void combine(double* __restrict out, const double* __restrict x, double a, const double* __restrict y) {
     for (int j = 0; j < S; ++j) {
@@ -32,35 +34,35 @@ struct Kernel {
     const Vector3& p = f.position;
     const double* const r0 = x;
     const double* const r1 = x + S;
-    const double* const r2 = x + 2 * S;
-    const double* const v0 = x + 3 * S;
-    const double* const v1 = x + 4 * S;
-    const double* const v2 = x + 5 * S;
-    const double* const a0 = x + 6 * S;
-    const double* const a1 = x + 7 * S;
-    const double* const a2 = x + 8 * S;
+    const double* const r2 = x + 2 * kRow;
+    const double* const v0 = x + 3 * kRow;
+    const double* const v1 = x + 4 * kRow;
+    const double* const v2 = x + 5 * kRow;
+    const double* const a0 = x + 6 * kRow;
+    const double* const a1 = x + 7 * kRow;
+    const double* const a2 = x + 8 * kRow;
     combine(out, r0, t, v0);
     add(out, p.z(), a1, -p.y(), a2);
     combine(out + S, r1, t, v1);
     add(out + S, -p.z(), a0, p.x(), a2);
-    combine(out + 2 * S, r2, t, v2);
-    add(out + 2 * S, p.y(), a0, -p.x(), a1);
+    combine(out + 2 * kRow, r2, t, v2);
+    add(out + 2 * kRow, p.y(), a0, -p.x(), a1);
     const Matrix3& g = f.gravity_step;
-    combine(out + 3 * S, v0, 2.0 * turn, v1);
-    add(out + 3 * S, v.z(), a1, -v.y(), a2);
-    combine(out + 4 * S, v1, -2.0 * turn, v0);
-    add(out + 4 * S, -v.z(), a0, v.x(), a2);
-    combine(out + 5 * S, v2, g(2, 2), r2);
-    add(out + 5 * S, v.y(), a0, -v.x(), a1);
-    add(out + 5 * S, g(2, 0), r0, g(2, 1), r1);
+    combine(out + 3 * kRow, v0, 2.0 * turn, v1);
+    add(out + 3 * kRow, v.z(), a1, -v.y(), a2);
+    combine(out + 4 * kRow, v1, -2.0 * turn, v0);
+    add(out + 4 * kRow, -v.z(), a0, v.x(), a2);
+    combine(out + 5 * kRow, v2, g(2, 2), r2);
+    add(out + 5 * kRow, v.y(), a0, -v.x(), a1);
+    add(out + 5 * kRow, g(2, 0), r0, g(2, 1), r1);
     for (int i = 0; i < 2; ++i) {
-      add(out + (3 + i) * S, g(i, 0), r0, g(i, 1), r1);
-      add(out + (3 + i) * S, g(i, 2), r2, 0.0, r2);
+      add(out + (3 + i) * kRow, g(i, 0), r0, g(i, 1), r1);
+      add(out + (3 + i) * kRow, g(i, 2), r2, 0.0, r2);
     }
-    combine(out + 6 * S, a0, turn, a1);
-    combine(out + 7 * S, a1, -turn, a0);
+    combine(out + 6 * kRow, a0, turn, a1);
+    combine(out + 7 * kRow, a1, -turn, a0);
     for (int j = 0; j < S; ++j) {
-      out[8 * S + j] = a2[j];
+      out[8 * kRow + j] = a2[j];
     }
   }
 
@@ -81,9 +83,9 @@ struct Kernel {
 
   static void propagate(const NavigationTransition& f, const double* __restrict gain, const double* __restrict phi,
                         Matrix9& nn, double* __restrict ns, double* __restrict ss) {
-    alignas(32) double through[9 * S];  // F P_ns
+    alignas(32) double through[9 * kRow];  // F P_ns
     apply_navigation(f, ns, through);
-    alignas(32) double half[9 * S];  // F P_ns + B P_ss / 2
+    alignas(32) double half[9 * kRow];  // F P_ns + B P_ss / 2
     for (int i = 0; i < 9; ++i) {
       alignas(32) double fed[S] = {};  // row of B P_ss
       for (int k = 0; k < S; ++k) {
@@ -235,7 +237,7 @@ void ErrorCovariance::mix(int first, const Eigen::Ref<const Eigen::MatrixXd>& bl
 
 void ErrorCovariance::add_noise(const SensorTransition& sensors) {
   nn_ += sensors.noise;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(9 * stride_); ++i) {
+  for (std::size_t i = 0; i < 9 * static_cast<std::size_t>(stride_); ++i) {
     ns_[i] += sensors.cross_noise[i];
   }
 }

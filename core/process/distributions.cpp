@@ -4,6 +4,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
 
 namespace driftlab {
@@ -35,6 +36,7 @@ double student_tail(double t, double dof) { return boost::math::cdf(boost::math:
 double student_quantile(double p, double dof) { return boost::math::quantile(Student(dof), p); }
 
 double digamma(double x) { return boost::math::digamma(x, Quiet()); }
+double log_gamma(double x) { return boost::math::lgamma(x, Quiet()); }
 double trigamma(double x) { return boost::math::trigamma(x, Quiet()); }
 
 }  // namespace driftlab

@@ -26,5 +26,7 @@ namespace driftlab {
 /// Mean and variance of ln X for X gamma with shape x > 0 and scale 1: digamma and trigamma of x.
 [[nodiscard]] double digamma(double x);
 [[nodiscard]] double trigamma(double x);
+/// ln Gamma(x) for x > 0; unlike std::lgamma without a global sign, so that threads may share it.
+[[nodiscard]] double log_gamma(double x);
 
 }  // namespace driftlab

@@ -174,7 +174,8 @@ void read_deterministic(const Json& document, const std::string& pointer, Baseli
       if (!terms.is_object() || !terms.contains(name)) {
         continue;
       }
-      const std::string here = pointer + "/" + column + "/" + name;
+      std::string here = pointer;
+      here.append("/").append(column).append("/").append(name);
       const Measured measured = read_measured(terms[name], here, faults);
       auto unit = parse_parameter_unit(measured.unit);
       if (!unit) {
@@ -308,7 +309,8 @@ Baseline simulation_model_from_json(const Json& document, const std::string& poi
   model.processes = read_processes(*processes, pointer + "/processes", model.quantity, faults);
   if (channels != nullptr && channels->is_object()) {
     for (const auto& [column, own] : channels->items()) {
-      const std::string here = pointer + "/channels/" + column + "/processes";
+      std::string here = pointer;
+      here.append("/channels/").append(column).append("/processes");
       Quantity quantity = model.quantity;
       model.by_channel[column] = read_processes(own.value("processes", Json()), here, quantity, faults);
     }

@@ -103,8 +103,8 @@ Status pool_axis(const Axis& axis, const Json& document, JobContext& context, co
   if (const Json* const own = pooled_of(document, sensor)) {
     previous.push_back(*own);
   }
-  if (*older) {
-    if (auto parsed = parse_json((*older)->document_json)) {
+  if (const auto& stored = *older) {
+    if (auto parsed = parse_json(stored->document_json)) {
       previous.push_back(std::move(*parsed));
     }
   }

@@ -156,7 +156,7 @@ class Pages(DaemonTest):
         self.assertEqual(recordings, self.daemon.items("/v1/recordings"))
 
     def test_link_leads_to_the_next_page_whatever_stands_in_the_query(self) -> None:
-        name = "a&b=c#d>é\r\nX-Evil: 1"
+        name = "a&b=c#d>é\"%0D%0AX-Evil: 1"
         self.expect(201, self.daemon.post("/v1/devices", {"name": name}))
         for i in range(3):
             self.expect(201, self.daemon.upload(samples.gyro_csv(16, seed=20 + i), device=name, rate_hz=100))

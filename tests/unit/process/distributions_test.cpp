@@ -22,6 +22,7 @@ TEST(Distributions, EqualTheTables) {
   }
   EXPECT_NEAR(digamma(1.0), -0.5772156649015329, 1e-15);
   EXPECT_NEAR(trigamma(1.0), 1.6449340668482264, 1e-15);
+  EXPECT_NEAR(log_gamma(0.5), 0.5723649429247001, 1e-15);
 }
 
 TEST(Distributions, TailsUndoQuantiles) {
