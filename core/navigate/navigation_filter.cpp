@@ -60,8 +60,8 @@ NavigationFilter::NavigationFilter(const FilterDesign& design, const NavigationS
       }
     }
   }
-  if (design.settings().non_holonomic) {
-    const double samples = 1.0 / (design.settings().non_holonomic->rate_hz * design.dt_s());
+  if (const auto& constraint = design.settings().non_holonomic) {
+    const double samples = 1.0 / (constraint->rate_hz * design.dt_s());
     constraint_samples_ = std::max(1, static_cast<int>(std::lround(samples)));
   }
 }
@@ -140,7 +140,7 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
     } else {
       effect.second = -turned_twice_.col(k) * (2.0 / (t * t));
     }
-    const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_ - 1)];
+    const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_) - 1];
     for (int i = 0; i < active_[c]->states; ++i) {
       const auto column = static_cast<std::size_t>(design_->first_state(c) + i);
       const auto gain = effect.column(step.gain(0, i), step.gain(1, i), step.gain(2, i));
@@ -177,7 +177,7 @@ void NavigationFilter::close_step() {
   prepare(navigation, sensors);
   covariance_.propagate(navigation, sensors);
   for (std::size_t c = 0; c < kImuChannels; ++c) {
-    const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_ - 1)];
+    const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_) - 1];
     const int first = design_->first_state(c);
     if (!active_[c]->diagonal) {
       covariance_.mix(first, Eigen::MatrixXd(step.phi));
@@ -254,7 +254,8 @@ void NavigationFilter::update(const GnssFix& fix) {
 
 void NavigationFilter::constrain() {
   const Vector3 velocity = strapdown_.state().velocity_ecef_m_s;
-  const double sd = design_->settings().non_holonomic ? design_->settings().non_holonomic->sd_m_s : 1.0;
+  const auto& constraint = design_->settings().non_holonomic;
+  const double sd = constraint ? constraint->sd_m_s : 1.0;
   ErrorCovariance::State correction = ErrorCovariance::State::Zero();
   for (Eigen::Index k = 1; k < 3; ++k) {  // right and down
     const Vector3 axis = strapdown_.attitude().col(k);
@@ -293,7 +294,7 @@ Eigen::MatrixXd NavigationFilter::pending_transition() const {
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const Eigen::Index first = 9 + design_->first_state(c);
     const Eigen::Index count = active_[c]->states;
-    whole.block(first, first, count, count) = active_[c]->steps[static_cast<std::size_t>(pending_ - 1)].phi;
+    whole.block(first, first, count, count) = active_[c]->steps[static_cast<std::size_t>(pending_) - 1].phi;
   }
   return whole;
 }

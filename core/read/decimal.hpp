@@ -26,7 +26,7 @@ inline constexpr std::array<double, 23> kExactPowers{1e0,  1e1,  1e2,  1e3,  1e4
 template <char Point>
 [[nodiscard]] double from_text(const char* first, const char* last, bool large) {
   double value = 0.0;
-  std::string copy;
+  std::string copy;  // NOLINT(misc-const-correctness): assigned for another point
   if constexpr (Point != '.') {
     copy.assign(first, last);
     std::replace(copy.begin(), copy.end(), Point, '.');

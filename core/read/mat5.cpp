@@ -146,7 +146,7 @@ Status Mat5Decoder::take_compressed(std::uint32_t size) {
                 "An array of the MATLAB file is damaged: its compressed data end early.");
   }
   const std::string_view bytes = plain;
-  if (word(bytes) != mat5::kMatrix) {
+  if (word(bytes) != mat5::Matrix) {
     return {};
   }
   const std::size_t inside = word(bytes.substr(4));
@@ -157,7 +157,7 @@ Status Mat5Decoder::take_compressed(std::uint32_t size) {
 }
 
 Status Mat5Decoder::take_element(std::uint32_t type, std::uint32_t size) {
-  if (type == mat5::kCompressed) {
+  if (type == mat5::Compressed) {
     return take_compressed(size);
   }
   const std::uint64_t padded = (std::uint64_t{size} + 7) / 8 * 8;
@@ -166,10 +166,10 @@ Status Mat5Decoder::take_element(std::uint32_t type, std::uint32_t size) {
     if (body.size() + piece.size() > limits_.max_tables_bytes) {
       return fail(ErrorCode::LimitExceeded, "The MATLAB file holds more numbers than can be put together.");
     }
-    body.append(type == mat5::kMatrix ? piece : std::string_view());
+    body.append(type == mat5::Matrix ? piece : std::string_view());
     return {};
   });
-  if (!status || type != mat5::kMatrix) {
+  if (!status || type != mat5::Matrix) {
     return status;
   }
   return mat5::read_matrix(std::string_view(body).substr(0, size), swap_, budget_, contents);

@@ -75,19 +75,19 @@ class Elements {
 
 std::size_t bytes_of(std::uint32_t type) {
   switch (type) {
-    case kInt8:
-    case kUInt8:
+    case Int8:
+    case UInt8:
       return 1;
-    case kInt16:
-    case kUInt16:
+    case Int16:
+    case UInt16:
       return 2;
-    case kInt32:
-    case kUInt32:
-    case kSingle:
+    case Int32:
+    case UInt32:
+    case Single:
       return 4;
-    case kDouble:
-    case kInt64:
-    case kUInt64:
+    case Double:
+    case Int64:
+    case UInt64:
       return 8;
     default:
       return 0;
@@ -97,23 +97,23 @@ std::size_t bytes_of(std::uint32_t type) {
 double number_at(const Element& element, std::size_t index, bool swap) {
   const std::string_view data = element.data;
   switch (element.type) {
-    case kInt8:
+    case Int8:
       return load<std::int8_t>(data, index, swap);
-    case kUInt8:
+    case UInt8:
       return load<std::uint8_t>(data, index, swap);
-    case kInt16:
+    case Int16:
       return load<std::int16_t>(data, index * 2, swap);
-    case kUInt16:
+    case UInt16:
       return load<std::uint16_t>(data, index * 2, swap);
-    case kInt32:
+    case Int32:
       return load<std::int32_t>(data, index * 4, swap);
-    case kUInt32:
+    case UInt32:
       return load<std::uint32_t>(data, index * 4, swap);
-    case kSingle:
+    case Single:
       return load<float>(data, index * 4, swap);
-    case kInt64:
+    case Int64:
       return static_cast<double>(load<std::int64_t>(data, index * 8, swap));
-    case kUInt64:
+    case UInt64:
       return static_cast<double>(load<std::uint64_t>(data, index * 8, swap));
     default:
       return load<double>(data, index * 8, swap);
@@ -274,7 +274,7 @@ Status MatrixReader::read_struct(Elements& elements, const std::string& name, in
     if (!element) {
       return fail(element.error());
     }
-    if (element->type != kMatrix || element->data.empty()) {
+    if (element->type != Matrix || element->data.empty()) {
       continue;  // an empty field
     }
     const std::string full = name + "." + text::to_utf8(field.substr(0, field.find('\0')));

@@ -15,18 +15,18 @@ namespace driftlab::mat5 {
 
 /// Element types (table 1-1).
 enum Type : std::uint32_t {
-  kInt8 = 1,
-  kUInt8 = 2,
-  kInt16 = 3,
-  kUInt16 = 4,
-  kInt32 = 5,
-  kUInt32 = 6,
-  kSingle = 7,
-  kDouble = 9,
-  kInt64 = 12,
-  kUInt64 = 13,
-  kMatrix = 14,
-  kCompressed = 15,
+  Int8 = 1,
+  UInt8 = 2,
+  Int16 = 3,
+  UInt16 = 4,
+  Int32 = 5,
+  UInt32 = 6,
+  Single = 7,
+  Double = 9,
+  Int64 = 12,
+  UInt64 = 13,
+  Matrix = 14,
+  Compressed = 15,
 };
 
 /// What a matrix element holds, as far as it is numbers: itself, or the fields of a struct as `struct.field`.

@@ -124,8 +124,12 @@ std::optional<Sensor> read_sensor(MemoryTable& table, const SensorFile& file) {
   // Sensor Logger's Accelerometer is without gravity; its columns must not pass for specific forces.
   const bool linear = logger && file.stem == "accelerometer";
   for (const auto& [name, column] : axes) {
-    const std::string stated = name.size() > 1 ? name : name + " (" + unit + ")";
-    sensor.names.push_back((linear ? "Linear acceleration " : std::string(file.sensor) + " ") + stated);
+    std::string full(linear ? std::string_view("Linear acceleration") : file.sensor);
+    full.append(" ").append(name);
+    if (name.size() == 1) {
+      full.append(" (").append(unit).append(")");
+    }
+    sensor.names.push_back(std::move(full));
   }
   sensor.dt_s = mean_step(sensor.time_s);
   return sensor;

@@ -200,7 +200,8 @@ std::optional<double> seconds_of_date(std::string_view text) {
   if (!zone) {
     return std::nullopt;
   }
-  return static_cast<double>(86400 * days_to(year, month, day) + 3600 * hour + 60 * minute + second - *zone) + fraction;
+  const int within_day = 3600 * hour + 60 * minute + second;
+  return static_cast<double>(86400 * days_to(year, month, day) + within_day - *zone) + fraction;
 }
 
 std::string excerpt(std::string_view cell) {

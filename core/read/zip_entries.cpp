@@ -28,7 +28,7 @@ struct Feed {
         return -1;
       }
       const std::size_t count = std::min(view->size(), block.size() - filled);
-      std::copy_n(view->data(), count, block.data() + filled);
+      std::copy_n(view->begin(), count, block.data() + filled);
       source.consume(count);
       filled += count;
       ended = count == 0;

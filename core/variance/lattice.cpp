@@ -48,7 +48,8 @@ ProbitLine probit_line(std::span<const int> values) {
   double total = 0.0;
   for (const int value : values) {
     if (std::abs(value - middle) <= kReach) {
-      count[static_cast<std::size_t>(value - middle + kReach)] += 1.0;
+      const int at = value - middle + kReach;
+      count[static_cast<std::size_t>(at)] += 1.0;
       total += 1.0;
     }
   }

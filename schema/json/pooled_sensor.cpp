@@ -24,7 +24,7 @@ struct Group {
   std::vector<const TableSource*> sources;
   Unit unit;
   bool robust = false;
-  std::optional<Replicates> stack;
+  std::unique_ptr<Replicates> stack;
   std::map<std::string, Candidate> joint;  ///< by model; refers to `stack`
   std::map<std::string, Json> fits;        ///< by model, what is known without fitting again
   std::map<std::string, StructureScore> scores;
@@ -135,11 +135,11 @@ Status stack_group(Group& group) {
     const Unit unit = parse_unit(source->channel.value("unit", "1")).value_or(Unit{});
     records.push_back(record_of(source->channel, unit.factor));
   }
-  auto stack = Replicates::stack(std::move(records));
+  auto stack = Replicates::stack(records);
   if (!stack) {
     return fail(stack.error());
   }
-  group.stack.emplace(std::move(*stack));
+  group.stack = std::make_unique<Replicates>(*std::move(stack));
   return {};
 }
 

@@ -114,10 +114,11 @@ Cell averaged(const std::vector<Cell>& replicates) {
       continue;
     }
     any = &cell;
-    if (const auto half = log_half_width(cell); half && *half > 0.0) {
+    const auto& value = cell.value;
+    if (const auto half = log_half_width(cell); half && *half > 0.0 && value) {
       const double weight = 1.0 / (*half * *half);
       weight_sum += weight;
-      log_sum += weight * std::log(*cell.value);
+      log_sum += weight * std::log(*value);
       ++used;
     }
   }
@@ -139,10 +140,11 @@ Scatter scatter_of(const std::vector<Cell>& replicates) {
   double squares = 0.0;
   int used = 0;
   for (const Cell& cell : replicates) {
-    if (const auto half = log_half_width(cell); half && *half > 0.0) {
+    const auto& value = cell.value;
+    if (const auto half = log_half_width(cell); half && *half > 0.0 && value) {
       constexpr double kZ95 = 1.959963984540054;
       const double weight = kZ95 * kZ95 / (*half * *half);
-      const double y = std::log(*cell.value);
+      const double y = std::log(*value);
       weights += weight;
       logs += weight * y;
       squares += weight * y * y;

@@ -82,7 +82,7 @@ inline Row characterise_row(const Experiment& experiment, const std::string& mod
     row.contaminated += channel->contamination.verdict == "contaminated" ? 1 : 0;
     records.push_back(record_of(*channel));
   }
-  auto stack = Replicates::stack(std::move(records));
+  auto stack = Replicates::stack(records);
   Candidate joint = stack->fit(*parse_model(model));
   row.fit = stack->report(joint, IntervalMethod::Profile);
   row.agreement_p = stack->agreement(joint)->p;

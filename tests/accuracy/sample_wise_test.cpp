@@ -43,7 +43,7 @@ GappySamples spoil(std::vector<double> x, const Case& how, Random& random) {
   GappySamples result{std::move(x), {}};
   const std::size_t n = result.size();
   constexpr std::size_t kPatch = 50;
-  const auto patches = static_cast<std::size_t>(how.share * static_cast<double>(n) / kPatch + 0.5);
+  const auto patches = static_cast<std::size_t>(std::lround(how.share * static_cast<double>(n) / kPatch));
   if (how.kind == Spoil::GapsAtRandom || how.kind == Spoil::GapsInBursts) {
     result.missing.assign(n, 0);
   }

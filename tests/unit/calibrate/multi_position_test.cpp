@@ -95,10 +95,11 @@ TEST(StillIntervals, AreFoundBetweenMotions) {
   std::array<std::vector<double>, 3> channels;
   for (int i = 0; i < 4000; ++i) {
     const int phase = i % 400;
+    const int turn = i / 400;
     const double moving = phase >= 300 ? 3.0 * std::sin(0.2 * phase) : 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       channels[axis].push_back(normal(random) + moving +
-                               9.8 * std::sin(static_cast<double>(i / 400) + static_cast<double>(axis)));
+                               9.8 * std::sin(static_cast<double>(turn) + static_cast<double>(axis)));
     }
   }
   const auto found = find_still_intervals({channels[0], channels[1], channels[2]}, 100.0);
