@@ -318,6 +318,9 @@ class Judge {
 
  private:
   [[nodiscard]] double chance(double magnitude) const {
+    if (std::isnan(magnitude)) {
+      return 0.0;  // numbers near the end of what a double holds: nothing can be said of the sample
+    }
     if (magnitude >= kTableEnd) {
       return law_.mixture.posterior(magnitude);
     }
