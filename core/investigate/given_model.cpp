@@ -161,4 +161,28 @@ const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& gr
   return nullptr;
 }
 
+std::vector<GivenProcess> noise_processes(const ChannelModel& model) {
+  if (model.given) {
+    return model.given_processes;
+  }
+  std::vector<GivenProcess> list{{"white_noise", {std::sqrt(model.base.white)}}};
+  for (const SlowComponent& component : model.base.components) {
+    const double level = std::sqrt(component.level);
+    switch (component.kind) {
+      case SlowKind::GaussMarkov:
+        list.push_back({"gauss_markov", {level, component.beta}});
+        break;
+      case SlowKind::RandomWalk:
+        list.push_back({"random_walk", {level}});
+        break;
+      case SlowKind::Flicker:
+        list.push_back({"flicker_noise", {level}});
+        break;
+      case SlowKind::Offset:
+        break;
+    }
+  }
+  return list;
+}
+
 }  // namespace driftlab::investigate

@@ -7,6 +7,7 @@
 /// it: found again with parameters that agree with the model, it is no finding but a confirmation. The constant bias
 /// stays free: one number per channel, never a finding (spec/causes.md).
 #include "core/investigate/evidence.hpp"
+#include "core/investigate/report.hpp"
 #include "core/investigate/slow_model.hpp"
 #include "core/investigate/study.hpp"
 
@@ -37,5 +38,8 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
 /// interval. nullptr: the finding is news.
 [[nodiscard]] const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& group,
                                               const Evidence& evidence);
+
+/// The processes of a channel's noise: as they were given, or as they were fitted. Constant offsets are none of them.
+[[nodiscard]] std::vector<GivenProcess> noise_processes(const ChannelModel& model);
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,7 @@
 #include "core/investigate/outage_gain.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/given_model.hpp"
 #include "core/process/model.hpp"
 
 #include <algorithm>
@@ -31,36 +32,12 @@ bool add(Model& model, std::string_view name, std::vector<double> values) {
   return true;
 }
 
-void add_component(Model& model, const SlowComponent& component) {
-  const double level = std::sqrt(component.level);
-  switch (component.kind) {
-    case SlowKind::GaussMarkov:
-      add(model, "gauss_markov", {level, component.beta});
-      break;
-    case SlowKind::RandomWalk:
-      add(model, "random_walk", {level});
-      break;
-    case SlowKind::Flicker:
-      add(model, "flicker_noise", {level});
-      break;
-    case SlowKind::Offset:
-      break;  // a bias, not a process
-  }
-}
-
 Model base_model(const ChannelModel& channel) {
   Model model;
-  if (channel.given) {
-    for (const GivenProcess& process : channel.given_processes) {
-      add(model, process.process, process.parameters);
-    }
-    return model;
+  for (const GivenProcess& process : noise_processes(channel)) {
+    add(model, process.process, process.parameters);
   }
-  add(model, "white_noise", {std::sqrt(channel.base.white)});
-  for (const SlowComponent& component : channel.base.components) {
-    add_component(model, component);
-  }
-  if (channel.drift != 0.0) {
+  if (!channel.given && channel.drift != 0.0) {
     add(model, "linear_drift", {channel.drift});
   }
   return model;
@@ -68,7 +45,6 @@ Model base_model(const ChannelModel& channel) {
 
 /// One studied axis while findings are added to it.
 struct Axis {
-  const Report& report;
   std::size_t channel;  ///< of the unit
   Model model;
   double bias_sd;
@@ -134,7 +110,7 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
       continue;
     }
     const double bias_sd = scenario.truth.axes[*number].bias_sd;
-    Axis axis{report, *number, base_model(channel), bias_sd};
+    Axis axis{*number, base_model(channel), bias_sd};
     models.baseline.axes[*number] = AxisModel{ModelSchedule::constant(axis.model), bias_sd};
     for (const Finding& finding : report.findings) {
       if (acts_on(finding.evidence, static_cast<std::size_t>(group - groups.begin())) &&

@@ -1,6 +1,7 @@
 #include "schema/json/simulation_model.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/given_model.hpp"
 #include "core/process/registry.hpp"
 #include "schema/json/parameter_unit.hpp"
 
@@ -211,28 +212,6 @@ Json processes_json(const std::vector<GivenProcess>& processes, Dimension channe
   return list;
 }
 
-/// The fitted model of a channel as processes.
-std::vector<GivenProcess> fitted_processes(const ChannelModel& model) {
-  std::vector<GivenProcess> list{{"white_noise", {std::sqrt(model.base.white)}}};
-  for (const SlowComponent& component : model.base.components) {
-    const double level = std::sqrt(component.level);
-    switch (component.kind) {
-      case SlowKind::GaussMarkov:
-        list.push_back({"gauss_markov", {level, component.beta}});
-        break;
-      case SlowKind::RandomWalk:
-        list.push_back({"random_walk", {level}});
-        break;
-      case SlowKind::Flicker:
-        list.push_back({"flicker_noise", {level}});
-        break;
-      case SlowKind::Offset:
-        break;
-    }
-  }
-  return list;
-}
-
 /// The effects of a given baseline, in the units of their channels.
 Json given_effects_json(const Baseline& baseline, const Unit& channel) {
   Json list = Json::array();
@@ -357,7 +336,7 @@ Json baseline_json(const Report& report) {
   Json channels = Json::object();
   for (const ChannelModel& model : report.models) {
     const Dimension dimension = model.unit.dimension;
-    const Json processes = processes_json(model.given ? model.given_processes : fitted_processes(model), dimension);
+    const Json processes = processes_json(noise_processes(model), dimension);
     if (channels.empty()) {
       document["processes"] = processes;
     }
