@@ -4,18 +4,16 @@
 #include "clients/cli/table_file.hpp"
 #include "core/navigate/outage_runs.hpp"
 #include "core/process/published_models.hpp"
+#include "core/signal/angle.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/unit.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <memory>
-#include <numbers>
 
 namespace driftlab::cli {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Flags {
   std::string preset = "iphone5s-z";

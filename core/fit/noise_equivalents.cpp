@@ -7,7 +7,7 @@
 namespace driftlab {
 namespace {
 
-constexpr double kDegree = 180.0 / std::numbers::pi;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Symbols of the channel's own unit in the conventions below.
 struct Symbols {
@@ -21,7 +21,7 @@ struct Symbols {
 
 Symbols symbols_of(Dimension channel) {
   if (channel == Dimension::AngularRate) {
-    return {"rad/s/sqrt(Hz)", "deg/s/sqrt(Hz)", kDegree, "deg/s", kDegree, "rad/s^2/sqrt(Hz)"};
+    return {"rad/s/sqrt(Hz)", "deg/s/sqrt(Hz)", kDegrees, "deg/s", kDegrees, "rad/s^2/sqrt(Hz)"};
   }
   if (channel == Dimension::SpecificForce) {
     return {"m/s^2/sqrt(Hz)", "ug/sqrt(Hz)", 1e6 / kStandardGravity, "mg", 1e3 / kStandardGravity, "m/s^3/sqrt(Hz)"};

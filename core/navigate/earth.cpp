@@ -1,14 +1,13 @@
 #include "core/navigate/earth.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <GeographicLib/Geocentric.hpp>
 
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Zonal coefficients of the normal field from J2 (Heiskanen and Moritz 1967, eq. 2-92).
 constexpr double kJ2 = 1.082629821313e-3;

@@ -1,15 +1,14 @@
 #include "core/navigate/paper_scenario.hpp"
 
 #include "core/process/published_models.hpp"
+#include "core/signal/angle.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMilliG = 1e-3 * kStandardGravity;
 constexpr std::array kConditions{"static", "constant_rate:z:9:deg/s", "constant_rate:z:18:deg/s",
                                  "constant_rate:z:36:deg/s"};

@@ -1,13 +1,12 @@
 #include "core/process/published_models.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A row of Table 4; a beta of 0 means that the process is not there.
 struct Table4Row {

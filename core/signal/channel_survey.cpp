@@ -1,8 +1,9 @@
 #include "core/signal/channel_survey.hpp"
 
+#include "core/signal/number.hpp"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -32,12 +33,6 @@ class Pieces {
   std::span<const double> values_;
   const Passed& passed_;
 };
-
-std::string short_text(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
-  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
-}
 
 /// Distinct values up to kMostDistinct, in a table of open addresses.
 class DistinctValues {

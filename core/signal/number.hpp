@@ -26,4 +26,11 @@ namespace driftlab {
   return error == std::errc{} ? std::string(buffer, stop) : std::string("nan");
 }
 
+/// Six digits, for a sentence.
+[[nodiscard]] inline std::string short_text(double value) {
+  char buffer[32];
+  const auto [stop, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
+  return error == std::errc{} ? std::string(buffer, stop) : std::string("?");
+}
+
 }  // namespace driftlab

@@ -1,10 +1,10 @@
 #include "core/signal/time_column.hpp"
 
 #include "core/signal/missing.hpp"
+#include "core/signal/number.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 
@@ -17,12 +17,6 @@ constexpr std::size_t kRowsPerStepBack = 1000;
 /// Where counters start again, in their own ticks: 16 and 32 bits, and 32 bits of us or ms written in a unit 1000 times
 /// larger.
 constexpr std::array kWraps{4294967296.0, 65536.0, 4294967.296, 4294.967296};
-
-std::string short_text(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
-  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
-}
 
 double median_forward_step(std::span<const double> column) {
   std::vector<double> steps;

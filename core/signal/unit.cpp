@@ -1,14 +1,13 @@
 #include "core/signal/unit.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace driftlab {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Alias {
   std::string_view written;

@@ -1,11 +1,11 @@
 #include "core/signal/gap_sizes.hpp"
+#include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/stretch.hpp"
 #include "core/signal/time_column.hpp"
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -19,12 +19,6 @@ constexpr double kRateTolerance = 0.01;
 
 /// Within this the stamps confirm the stated rate and 1/rate_hz is the sample interval; decimal stamps round that much.
 constexpr double kRateConfirmed = 1e-6;
-
-std::string short_text(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6);
-  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
-}
 
 Status check_settings(const RecordingSpec& spec) {
   if (spec.rate_hz && !is_sampling_rate(*spec.rate_hz)) {

@@ -1,15 +1,14 @@
 #include "schema/json/imu_model.hpp"
 
+#include "core/signal/angle.hpp"
 #include "schema/json/error_model.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMilliG = 1e-3 * kStandardGravity;
 constexpr std::array kAxes{"x", "y", "z"};
 

@@ -1,15 +1,13 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "core/navigate/outage_claims.hpp"
+#include "core/signal/angle.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Axes of the ellipse that holds `fraction` of a normal distribution with these second moments.
 Json ellipse(const PlaneCovariance& p, double fraction) {

@@ -1,18 +1,17 @@
 #include "schema/json/outage_scenario.hpp"
 
 #include "core/navigate/paper_scenario.hpp"
+#include "core/signal/angle.hpp"
 #include "schema/json/imu_model.hpp"
 #include "schema/json/recorded_trajectory.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr const char* kPublishedCondition = "z by true |rate| through Table 5, x and y at experiment 0";
 
 Vector3 three(ObjectReader& reader, std::string_view name, const Vector3& otherwise, const std::string& pointer,

@@ -1,11 +1,11 @@
 #include "schema/json/parameter_unit.hpp"
 
+#include "core/signal/angle.hpp"
 #include "core/signal/unit.hpp"
 
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 namespace driftlab {
@@ -15,8 +15,6 @@ struct Base {
   std::string_view symbol;
   ParameterUnitValue value;
 };
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr std::array kBases{
     Base{"rad", {1.0, 2, 0, 0}},

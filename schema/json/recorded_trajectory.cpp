@@ -1,14 +1,14 @@
 #include "schema/json/recorded_trajectory.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSlow = 0.5;  ///< [m/s]: below it a velocity has no direction worth following
 constexpr std::size_t kMostPoses = 100000;
 constexpr std::array kAngles{"roll_deg", "pitch_deg", "heading_deg"};

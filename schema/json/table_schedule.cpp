@@ -2,6 +2,7 @@
 
 #include "core/navigate/trend_schedule.hpp"
 #include "core/process/registry.hpp"
+#include "core/signal/angle.hpp"
 #include "schema/json/error_model.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/trend_table.hpp"
@@ -9,13 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 namespace driftlab {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Where a column of the table goes: `gauss_markov_2.beta` is a parameter of the third process, say.
 struct Place {

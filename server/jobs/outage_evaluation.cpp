@@ -1,5 +1,6 @@
 #include "server/jobs/outage_evaluation.hpp"
 
+#include "core/signal/angle.hpp"
 #include "schema/json/imu_model.hpp"
 #include "schema/json/outage_evaluation.hpp"
 #include "schema/json/outage_scenario.hpp"
@@ -8,13 +9,10 @@
 #include "server/jobs/stored_table.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <thread>
 
 namespace driftlab::server {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Puts the processes of a stored fit in the place of its id.
 Status resolve_fit(Json& node, const std::string& pointer, JobContext& context, Faults& faults) {

@@ -1,10 +1,10 @@
 #include "server/jobs/stored_sensor.hpp"
 
+#include "core/signal/angle.hpp"
 #include "schema/json/parameter_unit.hpp"
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -12,7 +12,6 @@
 namespace driftlab::server {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::array kAxes{"x", "y", "z"};
 
 /// Where in a scenario a sensor stands.

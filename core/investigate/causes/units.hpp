@@ -1,12 +1,9 @@
 #pragma once
 /// The units in which causes report their parameters.
 #include "core/investigate/evidence.hpp"
-
-#include <numbers>
+#include "core/signal/angle.hpp"
 
 namespace driftlab::investigate::units {
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 inline LabUnit level(const Unit& u) { return level_unit(u); }
 inline LabUnit per_second(const Unit& u) { return level_unit(u, "/s"); }
