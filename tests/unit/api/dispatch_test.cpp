@@ -70,6 +70,12 @@ TEST(Dispatcher, TakesJsonBodiesOnly) {
   EXPECT_EQ(world.ask("POST", "/v1/devices", body).status, 200);
 }
 
+TEST(Liveness, IsAnsweredWithoutThePool) {
+  World world;
+  EXPECT_TRUE(world.router.match("GET", "/healthz").route->instant);
+  EXPECT_FALSE(world.router.match("GET", "/readyz").route->instant) << "it looks at the store";
+}
+
 TEST(Readiness, SaysWhyNot) {
   World world;
   EXPECT_EQ(world.ask("GET", "/readyz").status, 200);
