@@ -19,8 +19,8 @@ struct Tally {
 class Campaign : public testing::TestWithParam<std::size_t> {
  protected:
   static void SetUpTestSuite() {
-    section_ = std::make_unique<Section>("campaign");
-    section_->print(
+    section = std::make_unique<Section>("campaign");
+    section->print(
         "\n## A rate-table campaign: the parameter table\n\nTable 4 of Radi et al. (2017), iPhone, simulated: eight "
         "conditions, two recordings each, fitted jointly (WN+2GM; WN+GM under angular acceleration, as in the paper's "
         "table). Experiment 4: %.1f %% of the samples have an error of %.0f standard deviations of the white noise. "
@@ -31,16 +31,16 @@ class Campaign : public testing::TestWithParam<std::size_t> {
         100.0 * campaign::kOutlierShare, campaign::kOutlierSize);
   }
   static void TearDownTestSuite() {
-    const double pooled = 100.0 * static_cast<double>(cells_inside_) / static_cast<double>(cells_);
-    section_->print("\nAll cells together: %.2f %%.\n", pooled);
+    const double pooled = 100.0 * static_cast<double>(cells_inside) / static_cast<double>(cells);
+    section->print("\nAll cells together: %.2f %%.\n", pooled);
     EXPECT_GE(pooled, 93.0);
     EXPECT_LE(pooled, 97.0);
-    section_.reset();
+    section.reset();
   }
 
-  static inline std::unique_ptr<Section> section_;
-  static inline std::size_t cells_inside_ = 0;
-  static inline std::size_t cells_ = 0;
+  static inline std::unique_ptr<Section> section;
+  static inline std::size_t cells_inside = 0;
+  static inline std::size_t cells = 0;
 };
 
 }  // namespace
@@ -66,24 +66,24 @@ TEST_P(Campaign, TableHoldsTheTruth) {
     }
   }
   const double percent = 100.0 / static_cast<double>(runs);
-  section_->print("| %s | %zu |", experiment.name.c_str(), runs);
+  section->print("| %s | %zu |", experiment.name.c_str(), runs);
   for (std::size_t k = 0; k < 5; ++k) {
     if (k >= tally.size()) {
-      section_->print(" |");
+      section->print(" |");
       continue;
     }
     const double coverage = percent * static_cast<double>(tally[k].inside);
-    section_->print(" %.1f", coverage);
+    section->print(" %.1f", coverage);
     if (tally[k].unidentified > 0) {
-      section_->print(" (%.0f)", percent * static_cast<double>(tally[k].unidentified));
+      section->print(" (%.0f)", percent * static_cast<double>(tally[k].unidentified));
     }
-    section_->print(" |");
-    cells_inside_ += tally[k].inside;
-    cells_ += runs;
+    section->print(" |");
+    cells_inside += tally[k].inside;
+    cells += runs;
     EXPECT_GE(coverage, 90.0) << experiment.name << " parameter " << k;
     EXPECT_LE(coverage, 99.0) << experiment.name << " parameter " << k;
   }
-  section_->print(" %.1f | %.1f |\n", percent * static_cast<double>(agree), 0.5 * percent * static_cast<double>(gross));
+  section->print(" %.1f | %.1f |\n", percent * static_cast<double>(agree), 0.5 * percent * static_cast<double>(gross));
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, Campaign, testing::Range(std::size_t{0}, std::size_t{8}));

@@ -20,8 +20,8 @@ namespace {
 using namespace investigate;
 
 std::size_t number_from(const char* name, std::size_t otherwise) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : static_cast<std::size_t>(std::atoi(text));
+  const char* const text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): tests run one thread
+  return text == nullptr ? otherwise : static_cast<std::size_t>(std::strtoul(text, nullptr, 10));
 }
 
 bool names(const Finding& finding, const std::string& cause) {
