@@ -176,16 +176,16 @@ def main():
             stamp = stamp_of(source)
             if not (stamp.exists() and stamp.read_text() == mark):
                 marks[source] = mark
-                groups.setdefault((tuple(flags_of(entry)), tuple(settings_above(source))), []).append(source)
+                groups.setdefault((tuple(flags_of(entry)), tuple(settings_above(source))), set()).add(source)
 
         def whole_group(number, flags, sources):
             for unit in compatible(sources, list(flags), build / "tidy-units" / str(number)):
                 yield unit.sources, look_at(unit, list(flags))
 
         # A slice of a group is one task, so that the tasks are of a size and the jobs end together.
-        # Shuffled, for sources of one folder name things alike.
-        for sources in groups.values():
-            sources.sort(key=lambda source: hashlib.sha256(source.name.encode()).digest())
+        # Shuffled, for sources of one folder name things alike. A set until then: one source may belong to two suites.
+        for key, sources in groups.items():
+            groups[key] = sorted(sources, key=lambda source: hashlib.sha256(source.name.encode()).digest())
         slices = [(flags, sources[i:i + SLICE]) for (flags, _), sources in groups.items() for i in range(0, len(sources), SLICE)]
         slices.sort(key=lambda s: -len(s[1]))
         results = queue.Queue()
