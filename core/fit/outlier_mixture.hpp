@@ -5,6 +5,7 @@
 /// Sizes 3, 6, 12, ... standard deviations, so that any scale mixture of Gaussians from 3 sd up is near; weights and
 /// core by EM on the histogram of the residuals (Dempster, Laird, Rubin 1977). A clean record gives weights near 0.
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,8 +20,13 @@ class ResidualHistogram {
   static constexpr double kFineEnd = 8.0;
 
   void clear() { counts_.fill(0); }
-  /// `magnitude` = |z|.
-  void add(double magnitude) { ++counts_[bin_of(magnitude)]; }
+  /// `magnitude` = |z|. What is no number is not counted: a sample near the end of what a double holds may be
+  /// infinitely far from the model, in infinite units.
+  void add(double magnitude) {
+    if (!std::isnan(magnitude)) {
+      ++counts_[bin_of(magnitude)];
+    }
+  }
   [[nodiscard]] static std::size_t bin_of(double magnitude);
   [[nodiscard]] static double centre(std::size_t bin);
   [[nodiscard]] static double lower_end(std::size_t bin);

@@ -142,7 +142,7 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
     }
     const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_) - 1];
     for (int i = 0; i < active_[c]->states; ++i) {
-      const auto column = static_cast<std::size_t>(design_->first_state(c) + i);
+      const auto column = static_cast<std::size_t>(design_->first_state(c)) + static_cast<std::size_t>(i);
       const auto gain = effect.column(step.gain(0, i), step.gain(1, i), step.gain(2, i));
       const auto noise = effect.column(step.cross_noise(0, i), step.cross_noise(1, i), step.cross_noise(2, i));
       for (std::size_t row = 0; row < 9; ++row) {
