@@ -64,7 +64,8 @@ void add_scales(const GroupOutcome& outcome, std::size_t r, FindingSeries& serie
   const std::vector<double>& before = outcome.before.residual[r];
   const double dt_s = outcome.after.dt_s;
   for (std::size_t half = 1; before.size() / (2 * half) >= 3; half *= 2) {
-    const auto count = static_cast<double>(before.size() / (2 * half));
+    const std::size_t pairs = before.size() / (2 * half);
+    const auto count = static_cast<double>(pairs);
     series.scale_s.push_back(2.0 * static_cast<double>(half) * dt_s);
     series.deviation_before.push_back(haar_deviation(before, half));
     series.deviation_after.push_back(haar_deviation(outcome.after.residual[r], half));

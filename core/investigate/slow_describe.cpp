@@ -24,11 +24,11 @@ Eigen::MatrixXd fold_gram(const BlockColumns& whitened, std::size_t fold) {
     for (std::size_t b = 0; b < blocks; ++b) {
       if (fold_of(b, blocks) == fold) {
         const Eigen::Map<const Eigen::VectorXd> row(rows.data() + b * whitened.width, w);
-        gram.selfadjointView<Eigen::Lower>().rankUpdate(row);
+        gram.noalias() += row * row.transpose();
       }
     }
   }
-  return gram.selfadjointView<Eigen::Lower>();
+  return gram;
 }
 
 /// Residual square of `test` at amplitudes fitted to `train`, over the first `width` columns.
@@ -184,13 +184,12 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
 void SlowSearch::place_step(Evidence& evidence) const {
   const std::size_t r = evidence.members.front();
   const StudyRecording& recording = *group_.members[r].recording;
-  std::vector<Regressor> others = accepted_;
   const auto position = regressor_of(evidence);
-  BlockSeries samples = average_blocks(group_, mask_, true);
+  const BlockSeries samples = average_blocks(group_, mask_, true);
   std::vector<std::vector<double>> rest = residuals(error_);
   const double amplitude = null_.amplitude[static_cast<Eigen::Index>(position.value_or(0))];
-  SlowModel model = null_.model;
-  SingleRecording single = take_recording(samples, model, r);
+  const SlowModel model = null_.model;
+  const SingleRecording single = take_recording(samples, model, r);
   BlockColumns columns = BlockColumns::zeros(single.series, 2);
   const auto start = static_cast<std::size_t>(std::max(0.0, std::ceil(evidence.shape / recording.dt_s - 1e-6)));
   for (std::size_t i = 0; i < rest[r].size(); ++i) {

@@ -257,8 +257,7 @@ Interval profile_amplitude(const BlockSeries& series, const BlockColumns& column
       }
       reduced.rows.push_back(std::move(out));
     }
-    SlowFit there = fit_slow(series, reduced, warm, short_fit);
-    return there.log_likelihood;
+    return fit_slow(series, reduced, warm, short_fit).log_likelihood;
   };
   const double infinity = std::numeric_limits<double>::infinity();
   return {profile_end(centre, -2.0 * sd, fit.log_likelihood, 3.8415, -infinity, at),

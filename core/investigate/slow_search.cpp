@@ -432,8 +432,8 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
 }
 
 Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
-  Regressor regressor{candidate.cause, candidate.members, candidate.shape,
-                      width_of(*candidate.cause, candidate.members)};
+  const Regressor regressor{candidate.cause, candidate.members, candidate.shape,
+                            width_of(*candidate.cause, candidate.members)};
   std::vector<Regressor> with = accepted_;
   with.push_back(regressor);
   Evidence evidence;

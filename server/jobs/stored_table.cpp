@@ -83,7 +83,8 @@ Result<Json> stored_table(Store& store, const StoredTableRequest& request) {
   for (const ChannelResult& row : *rows) {
     sources.push_back({row.recording_id, row.condition, document_of(row.document_json), row.id});
   }
-  const Json together = *pooled ? document_of((*pooled)->document_json) : Json();
+  const std::optional<PooledResult>& fitted_together = *pooled;
+  const Json together = fitted_together ? document_of(fitted_together->document_json) : Json();
   return build_parameter_table(*wanted, sources, together.is_object() ? &together : nullptr);
 }
 
