@@ -43,9 +43,9 @@ inline std::string zip(const std::vector<std::pair<std::string, std::string>>& f
     const auto crc = crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
     const std::string common = word(20, 2) + word(0, 2) + word(8, 2) + word(0, 4) + word(crc, 4) +
                                word(packed.size(), 4) + word(content.size(), 4) + word(path.size(), 2) + word(0, 2);
-    directory += "PK\x01\x02" + word(20, 2) + common + word(0, 2) + word(0, 2) + word(0, 2) + word(0, 4) +
-                 word(archive.size(), 4) + path;
-    archive += "PK\x03\x04" + common + path + packed;
+    directory.append("PK\x01\x02").append(word(20, 2)).append(common).append(std::string(10, '\0'));
+    directory.append(word(archive.size(), 4)).append(path);
+    archive.append("PK\x03\x04").append(common).append(path).append(packed);
   }
   const std::string end = "PK\x05\x06" + word(0, 4) + word(files.size(), 2) + word(files.size(), 2) +
                           word(directory.size(), 4) + word(archive.size(), 4) + word(0, 2);

@@ -245,7 +245,8 @@ TEST(Quality, ReadsBurstsAsEvenlySpacedSamples) {
   // A FIFO of four is read every 40 ms; its samples are stamped on arrival, 0.5 ms apart. Then a real gap of 2 s.
   std::vector<double> stamps(4000);
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    stamps[i] = 0.04 * static_cast<double>(i / 4) + 0.0005 * static_cast<double>(i % 4) + (i >= 3000 ? 2.0 : 0.0);
+    const std::size_t burst = i / 4;
+    stamps[i] = 0.04 * static_cast<double>(burst) + 0.0005 * static_cast<double>(i % 4) + (i >= 3000 ? 2.0 : 0.0);
   }
   const auto seen = view({stamps, noise(4000)}, {"time (s)", "gz"}, std::nullopt);
   ASSERT_TRUE(seen) << seen.error().message;
