@@ -14,7 +14,7 @@ Result<Json> scenario_document(const std::string& name_or_path) {
   if (std::find(names.begin(), names.end(), name_or_path) != names.end()) {
     return Json(name_or_path);
   }
-  std::ifstream file(name_or_path, std::ios::binary);
+  const std::ifstream file(name_or_path, std::ios::binary);
   if (!file) {
     return fail(ErrorCode::NotFound, "There is no scenario and no file '" + name_or_path +
                                          "'; scenarios are paper, paper-position-only, paper-nhc and paper-s-curves.");

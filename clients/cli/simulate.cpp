@@ -32,11 +32,12 @@ struct Flags {
 
 /// What the sensor would read besides its error: 0, the constant rate, or the ramp from rest [rad/s].
 double reference(const Condition& condition, double t_s) {
+  const double value = condition.value.value_or(0.0);
   switch (condition.kind) {
     case ConditionKind::ConstantRate:
-      return *condition.value;
+      return value;
     case ConditionKind::ConstantAngularAcceleration:
-      return *condition.value * t_s;
+      return value * t_s;
     default:
       return 0.0;
   }

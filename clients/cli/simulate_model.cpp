@@ -16,7 +16,7 @@ namespace {
 using investigate::Baseline;
 
 Result<Baseline> read_model(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  const std::ifstream file(path, std::ios::binary);
   if (!file) {
     return fail(ErrorCode::NotFound, "There is no file '" + path + "'.");
   }

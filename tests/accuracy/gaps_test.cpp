@@ -88,9 +88,10 @@ TEST(Accuracy, IntervalsHoldTheTruthThroughGaps) {
         contaminated += found->contamination.verdict == "contaminated" ? 1 : 0;
         held.resize(12);
         for (std::size_t j = 0; j < held.size(); ++j) {
+          const std::size_t half = found->haar.scale[j] / 2;
           double variance = 0.0;
           for (const Process& process : truth.model) {
-            variance += process.haar_variance(static_cast<double>(found->haar.scale[j] / 2), kDt);
+            variance += process.haar_variance(static_cast<double>(half), kDt);
           }
           held[j] += found->haar.ci95[j].contains(variance) ? 1 : 0;
         }
