@@ -21,7 +21,8 @@ Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
   if (!flags.rate_hz.empty()) {
     spec.rate_hz = parse_double(flags.rate_hz);
     if (!spec.rate_hz || !is_sampling_rate(*spec.rate_hz)) {
-      return fail(ErrorCode::InvalidArgument, "--rate-hz needs a number from 1e-6 to 1e9, not '" + flags.rate_hz + "'.");
+      return fail(ErrorCode::InvalidArgument,
+                  "--rate-hz needs a number from 1e-6 to 1e9, not '" + flags.rate_hz + "'.");
     }
   }
   if (!flags.columns.empty()) {
