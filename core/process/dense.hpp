@@ -2,8 +2,9 @@
 /// Dense linear algebra over matrices whose size is known at run time.
 ///
 /// Each function is one call of Eigen, compiled in dense.cpp alone: the templates behind a decomposition take longer to
-/// compile than the files that use it. Matrices of fixed size stay with Eigen where they are used; there they are cheap.
-/// Nothing throws, nothing is random; sizes that do not fit are the caller's error (an assertion in debug builds).
+/// compile than the files that use it. Matrices of fixed size stay with Eigen where they are used; there they are
+/// cheap. Nothing throws, nothing is random; sizes that do not fit are the caller's error (an assertion in debug
+/// builds).
 #include <Eigen/Core>
 
 #include <optional>

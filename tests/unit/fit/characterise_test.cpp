@@ -160,7 +160,7 @@ bool finite(const ChannelCharacterisation& result) {
 TEST(Characterise, StrangeSeriesNeverGiveNotANumber) {
   Random random(1);
   std::vector<std::vector<double>> series;
-  series.reserve(32);  // references to its elements are kept below
+  series.reserve(32);                            // references to its elements are kept below
   series.emplace_back(1000, 0.0).at(500) = 1.0;  // one impulse
   series.emplace_back(1000, 0.0).back() = 1e-9;
   auto& alternating = series.emplace_back(512);  // no variance at all above the first scale

@@ -163,8 +163,8 @@ TEST(BadInput, FreeMotionWithoutAReferenceIsNotExamined) {
   EXPECT_NE(need_of(*report, "scale_factor_error").find("a reference column"), std::string::npos);
 }
 
-/// A recorded IMU froze at 196.9 s for the rest of the file; one run was too few to be called stuck, and the frozen part
-/// was taken for noise.
+/// A recorded IMU froze at 196.9 s for the rest of the file; one run was too few to be called stuck, and the frozen
+/// part was taken for noise.
 TEST(BadInput, AFreezeIsOneStuckRunAndSpoilsNothingElse) {
   Columns columns{noise(6000, 8)};
   for (std::size_t i = 2000; i < 6000; ++i) {
