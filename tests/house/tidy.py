@@ -169,13 +169,16 @@ def main():
     def stamp_of(source):
         return stamps / str(source.relative_to(ROOT)).replace("/", "__")
 
+    def clean_marks(source):
+        """Hashes of the source when it was last clean: of two suites' flags, two."""
+        return stamp_of(source).read_text().split() if stamp_of(source).exists() else []
+
     groups, marks = {}, {}
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for source, entry in chosen:
             mark = fingerprint(source, entry, build, version)
-            stamp = stamp_of(source)
-            if not (stamp.exists() and stamp.read_text() == mark):
-                marks[source] = mark
+            if mark not in clean_marks(source):
+                marks[source, tuple(flags_of(entry))] = mark
                 groups.setdefault((tuple(flags_of(entry)), tuple(settings_above(source))), set()).add(source)
 
         def whole_group(number, flags, sources):
@@ -193,23 +196,23 @@ def main():
         def work(number, flags, sources):
             try:
                 for outcome in whole_group(number, flags, sources):
-                    results.put(outcome)
+                    results.put((flags, *outcome))
             except Exception as error:  # a slice that could not be looked at is not clean
-                results.put((sources, f"{sources[0]} and its neighbours: {error!r}\n"))
+                results.put((flags, sources, f"{sources[0]} and its neighbours: {error!r}\n"))
 
         for number, (flags, sources) in enumerate(slices):
             pool.submit(work, number, flags, sources)
         pending, faulty = set(marks), 0
         while pending:
-            sources, diagnostics = results.get()
-            pending.difference_update(sources)
+            flags, sources, diagnostics = results.get()
+            pending.difference_update((source, flags) for source in sources)
             named = {pathlib.Path(path) for path in re.findall(r"^(/[^:]+):\d+:\d+: (?:error|warning):", diagnostics, flags=re.M)}
             if diagnostics:
                 faulty += 1
                 print(diagnostics, flush=True)
             if not diagnostics or named and named <= set(sources):  # a fault in a header is every source's
                 for source in set(sources) - named:
-                    stamp_of(source).write_text(marks[source])
+                    stamp_of(source).write_text("\n".join([marks[source, flags], *clean_marks(source)[:1]]))
             if sys.stderr.isatty():
                 print(f"\r{len(marks) - len(pending)}/{len(marks)}", end="", file=sys.stderr, flush=True)
     print(f"clang-tidy: {len(chosen)} sources, {len(marks)} looked at, {faulty} units with diagnostics")
