@@ -5,7 +5,7 @@ usage: recording_cpu.py [--minutes M] [--repeats R]     (default 15 and 5; DRIFT
 
 Six axes at 100 Hz as CSV: white noise, a fast Gauss-Markov process and a random walk at the scale of a phone. The job has the
 default settings: Allan and wavelet variances, robust ones, the contamination test, nine models, every channel. Each repeat is another
-recording; the first warms up and is not counted. Prints the median and the spread.
+recording of another device, for replicates of one condition are fitted together as well, which costs about as much again; the first warms up and is not counted. Prints the median and the spread.
 """
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def main() -> int:
         for repeat in range(arguments.repeats + 1):
             content = recording(samples, repeat)
             before = cpu_s(daemon.process.pid)
-            uploaded = daemon.upload(content, device="bench", condition="static", rate_hz=RATE_HZ, columns=COLUMNS)
+            uploaded = daemon.upload(content, device=f"bench-{repeat}", condition="static", rate_hz=RATE_HZ, columns=COLUMNS)
             assert uploaded.status == 201, uploaded.describe()
             job = daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"recordings": [uploaded.json["id"]]}, "parameters": {}})
             finished = daemon.finished(job.json["id"])
