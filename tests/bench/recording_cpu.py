@@ -5,7 +5,8 @@ usage: recording_cpu.py [--minutes M] [--repeats R]     (default 15 and 5; DRIFT
 
 Six axes at 100 Hz as CSV: white noise, a fast Gauss-Markov process and a random walk at the scale of a phone. The job has the
 default settings: Allan and wavelet variances, robust ones, the contamination test, nine models, every channel. Each repeat is another
-recording of another device, for replicates of one condition are fitted together as well, which costs about as much again; the first warms up and is not counted. Prints the median and the spread.
+recording of another device, for replicates of one condition are fitted together as well, which costs about as much again; the
+first warms up and is not counted. Prints the median and the spread.
 """
 from __future__ import annotations
 
