@@ -188,7 +188,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
   const BlockSeries samples = average_blocks(group_, mask_, true);
   std::vector<std::vector<double>> rest = residuals(error_);
   const double amplitude = null_.amplitude[static_cast<Eigen::Index>(position.value_or(0))];
-  const SlowModel model = null_.model;
+  const SlowModel& model = null_.model;
   const SingleRecording single = take_recording(samples, model, r);
   BlockColumns columns = BlockColumns::zeros(single.series, 2);
   const auto start = static_cast<std::size_t>(std::max(0.0, std::ceil(evidence.shape / recording.dt_s - 1e-6)));
