@@ -1,11 +1,11 @@
 #include "core/signal/condition.hpp"
 
+#include "core/signal/angle.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/text.hpp"
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace driftlab {
@@ -18,7 +18,7 @@ constexpr std::array kKinds{
 /// deg/s^2 and rad/s^2 are units of a condition only, so they live here and not in the unit table.
 Result<double> angular_acceleration_factor(std::string_view unit) {
   if (unit == "deg/s^2") {
-    return std::numbers::pi / 180.0;
+    return kDegree;
   }
   if (unit == "rad/s^2") {
     return 1.0;
