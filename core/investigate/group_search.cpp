@@ -6,6 +6,7 @@
 #include "core/investigate/investigate.hpp"
 #include "core/investigate/lattice.hpp"
 #include "core/investigate/lines.hpp"
+#include "core/investigate/reference_quality.hpp"
 #include "core/investigate/slow_search.hpp"
 
 #include <algorithm>
@@ -158,6 +159,11 @@ class GroupSearch {
     if (samples < 500.0) {
       outcome_.why_not = "it has fewer than 500 samples";
       outcome_.needs = "500 samples or more";
+      return false;
+    }
+    outcome_.why_not = why_reference_misleads(group_);
+    if (!outcome_.why_not.empty()) {
+      outcome_.needs = "a reference of the same motion, on the same clock and axes";
       return false;
     }
     outcome_.usable = true;

@@ -14,6 +14,7 @@ namespace {
 constexpr double kGaussMarkovCost = 6.0;
 constexpr double kRandomWalkCost = 3.0;
 constexpr std::size_t kJointFits = 7;  ///< candidates that are fitted jointly with the base
+constexpr double kLargestPart = 0.3;   ///< of the reference rate (MeanEffect::part_of_rate)
 
 bool same_scope(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) { return a == b; }
 
@@ -431,6 +432,27 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
   }
 }
 
+double SlowSearch::share_of_rate(const std::vector<Regressor>& regressors, const SlowFit& fit) const {
+  const BlockColumns columns = columns_with(regressors);
+  const std::size_t last = columns.width - 1;
+  const double amplitude = std::fabs(fit.amplitude[static_cast<Eigen::Index>(last - 1)]);
+  double effect = 0.0;
+  for (const auto& rows : columns.rows) {
+    for (std::size_t b = 0; b * columns.width < rows.size(); ++b) {
+      effect = std::max(effect, amplitude * std::fabs(rows[b * columns.width + last]));
+    }
+  }
+  double rate = 0.0;
+  for (const auto& member : group_.members) {
+    for (const std::vector<double>& axis : member.recording->rate) {
+      for (const double w : axis) {
+        rate = std::max(rate, std::fabs(w));
+      }
+    }
+  }
+  return rate > 0.0 ? effect / rate : 0.0;
+}
+
 Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   const Regressor regressor{candidate.cause, candidate.members, candidate.shape,
                             width_of(*candidate.cause, candidate.members)};
@@ -473,8 +495,11 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   evidence.shape = best_shape;
   evidence.gain = best - null_score_;
   evidence.score = best - null_score_ - candidate.penalty;
+  with.back().shape = best_shape;
+  if (candidate.cause->mean->part_of_rate && share_of_rate(with, best_fit) > kLargestPart) {
+    evidence.score = std::min(evidence.score, 0.0);
+  }
   if (candidate.cause->mean->free_phase) {  // what free amplitudes gain over one amplitude is not the effect's
-    with.back().shape = best_shape;
     const BlockColumns columns = columns_with(with);
     const std::size_t own = columns.width - static_cast<std::size_t>(with.back().columns);
     const ScopedGram gram(whiten(series_, best_fit.model, columns).columns, own);

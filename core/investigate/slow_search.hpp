@@ -83,6 +83,8 @@ class SlowSearch {
   void screen(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
   void screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
   [[nodiscard]] Evidence fit_jointly(const Screened& candidate) const;
+  /// Largest value of the last regressor's effect over the largest reference rate.
+  [[nodiscard]] double share_of_rate(const std::vector<Regressor>& regressors, const SlowFit& fit) const;
   [[nodiscard]] std::vector<Evidence> examine_slow() const;
   [[nodiscard]] SlowFit fit_extra(SlowKind kind, const std::vector<std::size_t>& scope, const SlowModel& base,
                                   const BlockColumns& columns) const;

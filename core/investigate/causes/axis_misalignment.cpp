@@ -2,6 +2,7 @@
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/reference_quality.hpp"
 
 namespace driftlab::investigate {
 namespace {
@@ -26,13 +27,13 @@ std::vector<double> shapes(const ChannelGroup& group) {
   return others;
 }
 
-constexpr MeanEffect kEffect{.build = build, .shapes = shapes, .penalty = 1.0};
+constexpr MeanEffect kEffect{.build = build, .shapes = shapes, .penalty = 1.0, .part_of_rate = true};
 
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   if (group.role.quantity != Quantity::AngularRate || group.role.axis.empty() || shapes(group).empty()) {
     return "a gyroscope axis beside the axis of rotation";
   }
-  return "";
+  return reference_lacks(group);
 }
 
 }  // namespace

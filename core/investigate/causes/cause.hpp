@@ -45,6 +45,9 @@ struct MeanEffect {
   bool scope_moving = false;
   bool scope_single = false;
   bool change_point = false;  ///< a step at an unknown time: scanned by running sums, `build` takes t0
+  /// A small part of the reference rate: what comes to more than 0.3 of it is no error of a scale factor or a mounting
+  /// but of unit, axis or clock, and is left unexplained.
+  bool part_of_rate = false;
 };
 
 enum class Family {

@@ -1,5 +1,7 @@
 #include "core/investigate/causes/inputs.hpp"
 
+#include "core/investigate/reference_quality.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,16 +78,25 @@ std::vector<double> running_variance(const std::vector<double>& values, double w
   return variance;
 }
 
-std::string lacks_rotation(const Study& /*study*/, const ChannelGroup& group) {
-  const bool usable =
-      group.role.quantity == Quantity::AngularRate && !group.role.axis.empty() && turns_about(group, group.axis());
-  return usable ? "" : "rotation about the gyroscope's axis";
+namespace {
+
+bool turns_about_own_axis(const ChannelGroup& group) {
+  return group.role.quantity == Quantity::AngularRate && !group.role.axis.empty() && turns_about(group, group.axis());
 }
 
-std::string lacks_profile(const Study& study, const ChannelGroup& group) {
+}  // namespace
+
+std::string lacks_rotation(const Study& /*study*/, const ChannelGroup& group) {
+  return turns_about_own_axis(group) ? reference_lacks(group) : "rotation about the gyroscope's axis";
+}
+
+std::string lacks_profile(const Study& /*study*/, const ChannelGroup& group) {
+  if (stamps_are_loose(group)) {
+    return std::string(kTightStamps);
+  }
   for (const auto& member : group.members) {
     const ConditionKind kind = member.recording->condition.kind;
-    if ((kind == ConditionKind::Profile || kind == ConditionKind::Drive) && lacks_rotation(study, group).empty()) {
+    if ((kind == ConditionKind::Profile || kind == ConditionKind::Drive) && turns_about_own_axis(group)) {
       return "";
     }
   }

@@ -13,7 +13,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return follow_rate(recording, group, columns, [](double w) { return w; });
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
+constexpr MeanEffect kEffect{.build = build, .penalty = 1.0, .part_of_rate = true};
 
 }  // namespace
 

@@ -19,7 +19,8 @@ std::vector<double> shapes(const ChannelGroup& /*group*/) { return {2.0, 3.0}; }
 /// The two explain nearly the same; the cubic has to earn its place.
 double shape_penalty(double order) { return order > 2.5 ? 3.0 : 0.0; }
 
-constexpr MeanEffect kEffect{.build = build, .shapes = shapes, .penalty = 1.0, .shape_penalty = shape_penalty};
+constexpr MeanEffect kEffect{
+    .build = build, .shapes = shapes, .penalty = 1.0, .shape_penalty = shape_penalty, .part_of_rate = true};
 
 }  // namespace
 
