@@ -82,8 +82,8 @@ double white_at_full_rate(const FullRate& data) {
   return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
 }
 
-/// White level per recording relative to the model in the lower quarter of the band; 1 where it does not differ by four
-/// standard errors.
+/// White level per recording relative to the model in the lower quarter of the band; 1 where it does not differ by two
+/// standard errors. A level that is only slightly off would else pass for a fast Gauss-Markov process.
 std::vector<double> white_scale_of(const FullRate& data) {
   std::vector<double> scale(data.members(), 1.0);
   bool any = false;
@@ -97,7 +97,7 @@ std::vector<double> white_scale_of(const FullRate& data) {
         weight += s.weight[j];
       }
     }
-    if (weight > 50.0 && std::fabs(sum / weight - 1.0) > 4.0 / std::sqrt(weight)) {
+    if (weight > 50.0 && std::fabs(sum / weight - 1.0) > 2.0 / std::sqrt(weight)) {
       scale[r] = std::clamp(sum / weight, 0.05, 20.0);
       any = true;
     }
