@@ -106,6 +106,10 @@ Alike alike_with(const FullRate& data, const std::vector<std::size_t>& scope) {
   return alike;
 }
 
+/// Below this share of the white density a bin holds what the periodogram leaks from elsewhere: one number of each
+/// recording, its two ends, and no density.
+constexpr double kStopBand = 1e-4;
+
 /// Log likelihood with the level in the scope and a free common spectrum, which the recordings of the scope repeat up
 /// to the factor `repeat`.
 double common_likelihood(const FullRate& data, const std::vector<std::size_t>& scope, const Alike& alike,
@@ -116,6 +120,12 @@ double common_likelihood(const FullRate& data, const std::vector<std::size_t>& s
   std::vector<double> x(count);
   double sum = 0.0;
   for (std::size_t j = 0; j < data.spectrum[scope.front()].power.size(); ++j) {
+    const bool empty = std::all_of(alike.members.begin(), alike.members.end(), [&](std::size_t r) {
+      return data.spectrum[r].power[j] < kStopBand * data.model.white;
+    });
+    if (empty) {
+      continue;
+    }
     double sum_m = 0.0;
     for (std::size_t a = 0; a < count; ++a) {
       const Spectrum& s = data.spectrum[alike.members[a]];

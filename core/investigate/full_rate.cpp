@@ -51,16 +51,31 @@ std::vector<double> fit_autoregression(const std::vector<std::vector<double>>& s
   return a;
 }
 
+/// Samples that the autoregression cannot foresee as it does in the middle of a record: at its start and, where it
+/// foresees much (`strong`), after every sample that is missing.
+void leave_out_starts(std::vector<unsigned char>& used, bool strong) {
+  std::size_t since = 0;
+  for (unsigned char& u : used) {
+    since = u == 0 && strong ? 0 : since + 1;
+    u = since > kOrder ? u : 0;
+  }
+}
+
 void whiten_further(FullRate& data) {
   const std::vector<double> a = fit_autoregression(data.innovation, data.used);
   if (a.empty()) {
     return;
+  }
+  double squares = 0.0;
+  for (const double coefficient : a) {
+    squares += coefficient * coefficient;
   }
   double square = 0.0;
   double count = 0.0;
   for (std::size_t r = 0; r < data.innovation.size(); ++r) {
     std::vector<double>& x = data.innovation[r];
     std::vector<double> e(x.size());
+    leave_out_starts(data.used[r], squares > 0.1);
     for (std::size_t i = 0; i < x.size(); ++i) {
       double value = x[i];
       for (std::size_t k = 0; k < std::min(i, a.size()); ++k) {
@@ -114,6 +129,29 @@ bool spectra_fit(const FullRate& data) {
   return dof == 0.0 || (chi2 - dof) / std::sqrt(2.0 * dof) < 4.0;
 }
 
+/// Samples that are left out, on a straight line between their neighbours: a spectrum needs them all.
+std::vector<double> bridged(const std::vector<double>& values, const std::vector<unsigned char>& used) {
+  std::vector<double> whole = values;
+  for (std::size_t i = 0; i < whole.size();) {
+    if (used[i] != 0) {
+      ++i;
+      continue;
+    }
+    std::size_t end = i;
+    while (end < whole.size() && used[end] == 0) {
+      ++end;
+    }
+    const double right = end < whole.size() ? whole[end] : i > 0 ? whole[i - 1] : 0.0;
+    const double left = i > 0 ? whole[i - 1] : right;
+    const auto steps = static_cast<double>(end - i + 1);
+    for (std::size_t k = i; k < end; ++k) {
+      whole[k] = left + (right - left) * static_cast<double>(k - i + 1) / steps;
+    }
+    i = end;
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::vector<std::size_t> all_members(const ChannelGroup& group) {
@@ -151,6 +189,20 @@ std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bo
   return scopes;
 }
 
+void set_spectrum(FullRate& data, std::size_t r) {
+  Spectrum& s = data.spectrum[r];
+  s = estimate_spectrum(bridged(data.residual[r], data.used[r]), data.dt_s, 0.3);
+  std::vector<double>& slow = data.slow[r];
+  slow.clear();
+  for (std::size_t j = 0; j < s.power.size(); ++j) {
+    const double f = s.f_hz[j];
+    slow.push_back(slow_density(data.model, data.samples, r, f, data.dt_s, static_cast<double>(s.samples)) +
+                   data.quantization * quantization_shape(f, data.dt_s));
+    const double base = data.model.white + slow[j];
+    s.power[j] *= base / std::max(0.05 * base, base + data.raised[r]);
+  }
+}
+
 FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const SlowModel& model,
                            std::vector<std::vector<double>> residual,
                            const std::vector<std::vector<unsigned char>>& mask, const FullRateOptions& options) {
@@ -159,6 +211,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   data.group = &group;
   data.given = options.given;
   data.lattice_step = options.lattice_step;
+  data.quantization = options.quantization;
   data.dt_s = group.members.front().recording->dt_s;
   data.model = model;
   data.residual = std::move(residual);
@@ -186,17 +239,15 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   }
   data.white_share = std::clamp(model.white / data.dt_s / (sum_s / std::max(1.0, steady)), 0.05, 1.0);
   data.innovation_sd = std::sqrt(sum_s / std::max(1.0, steady));
+  data.raised.assign(data.members(), 0.0);
+  data.spectrum.resize(data.members());
+  data.slow.resize(data.members());
+  constexpr double kMostMissing = 0.005;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    const double missing = 1.0 - static_cast<double>(std::count(data.used[r].begin(), data.used[r].end(), 1)) /
-                                     static_cast<double>(data.used[r].size());
-    data.spectrum.push_back(missing < 0.005 ? estimate_spectrum(data.residual[r], data.dt_s, 0.3) : Spectrum{});
-    std::vector<double> slow;
-    for (const double f : data.spectrum.back().f_hz) {
-      slow.push_back(
-          slow_density(model, data.samples, r, f, data.dt_s, static_cast<double>(data.spectrum.back().samples)) +
-          options.quantization * quantization_shape(f, data.dt_s));
+    const auto present = std::count(data.used[r].begin(), data.used[r].end(), 1);
+    if (static_cast<double>(present) > (1.0 - kMostMissing) * static_cast<double>(data.used[r].size())) {
+      set_spectrum(data, r);
     }
-    data.slow.push_back(std::move(slow));
   }
   data.flat = spectra_fit(data);
   if (!data.flat && !data.given) {

@@ -21,6 +21,8 @@ struct FullRate {
   double white_share = 1.0;                      ///< of the innovations' variance that the white part drives
   double innovation_sd = 1.0;                    ///< of one innovation [SI]
   double lattice_step = 0.0;                     ///< step of the file's lattice [SI], 0: none seen
+  double quantization = 0.0;                     ///< Q^2 of a given baseline [SI^2 s^2]
+  std::vector<double> raised;                    ///< per member, white density that findings taken out have added
   SlowModel model;                               ///< of the samples
   BlockSeries samples;                           ///< blocks of one sample
   std::vector<std::vector<double>> residual;     ///< per member, over its analysed part
@@ -49,6 +51,10 @@ struct FullRateOptions {
                                          std::vector<std::vector<double>> residual,
                                          const std::vector<std::vector<unsigned char>>& mask,
                                          const FullRateOptions& options);
+
+/// Sets `spectrum` and `slow` of member r from its residual. Missing samples stand on a straight line between their
+/// neighbours; power is divided by what `raised` has added to the density.
+void set_spectrum(FullRate& data, std::size_t r);
 
 /// Recordings of a group by scope: which ones move; members where `select` holds.
 [[nodiscard]] std::vector<std::size_t> all_members(const ChannelGroup& group);

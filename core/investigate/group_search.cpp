@@ -397,14 +397,40 @@ class GroupSearch {
     }
   }
 
-  void take_out(FullRate& data, const Evidence& found) const {
+  /// Innovations are divided by the deviation found, spectra by the density it adds at the mean of its square: the next
+  /// cause is not credited with the same power. With a free level, that of a recording which alone has the effect is
+  /// free as well: a change says how much louder one part is than the other, not which of them is the usual one.
+  static void take_out(FullRate& data, const Evidence& found) {
     std::vector<double> sd;
     for (std::size_t r = 0; r < data.members(); ++r) {
       found.cause->deviation(data, found, r, sd);
+      const bool alone = found.members.size() == 1 && found.members.front() == r;
+      const double level = alone && !data.given ? level_left(data, r, sd) : 1.0;
+      double square = 0.0;
       for (std::size_t i = 0; i < sd.size(); ++i) {
-        data.innovation[r][i] /= sd[i];
+        data.innovation[r][i] /= sd[i] * level;
+        square += sd[i] * sd[i] * level * level;
+      }
+      const double excess = square / static_cast<double>(std::max<std::size_t>(1, sd.size())) - 1.0;
+      data.raised[r] += excess * data.innovation_sd * data.innovation_sd * data.dt_s;
+      if (!data.spectrum[r].power.empty()) {
+        set_spectrum(data, r);
       }
     }
+  }
+
+  /// Root mean square of a recording's innovations once `sd` is taken out; gross ones are cut at five.
+  static double level_left(const FullRate& data, std::size_t r, const std::vector<double>& sd) {
+    double square = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < sd.size(); ++i) {
+      if (data.used[r][i] != 0) {
+        const double e = data.innovation[r][i] / sd[i];
+        square += std::min(e * e, 25.0);
+        count += 1.0;
+      }
+    }
+    return count > 0.0 && square > 0.0 ? std::sqrt(square / count) : 1.0;
   }
 
   void take_band_limit(FullRate& data) {

@@ -34,12 +34,7 @@ FullRate half_of(const FullRate& data, std::size_t half) {
     cut(part.innovation[r]);
     cut(part.used[r]);
     if (!data.spectrum[r].power.empty()) {
-      part.spectrum[r] = estimate_spectrum(part.residual[r], data.dt_s, 0.3);
-      part.slow[r].clear();
-      for (const double f : part.spectrum[r].f_hz) {
-        part.slow[r].push_back(
-            slow_density(data.model, data.samples, r, f, data.dt_s, static_cast<double>(part.spectrum[r].samples)));
-      }
+      set_spectrum(part, r);
     }
   }
   return part;

@@ -95,12 +95,15 @@ std::vector<Evidence> examine(const FullRate& data) {
   for (int i = 0; i < 22; ++i) {
     width *= 0.6;
     for (const double x : {best - width, best + width}) {
-      const double l = x < high ? at(x) : -1e300;
+      const double l = x > low && x < high ? at(x) : -1e300;
       if (l > top) {
         top = l;
         best = x;
       }
     }
+  }
+  if (best < low + 0.01 * (high - low)) {  // no band below the corner is left to see it from
+    return {};
   }
   const Shape shape = fit_shape(data, [&](double f) { return butterworth_gain(f, std::exp(best), data.dt_s); });
   if (!data.given && shape.floor > kFilled * shape.density) {
