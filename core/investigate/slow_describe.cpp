@@ -265,7 +265,8 @@ void SlowSearch::hold_out_mean(Evidence& evidence) const {
   }
   order.push_back(mine);
   const BlockColumns columns = columns_with(order);
-  const Whitened whitened = whiten(series_, null_.model, columns);
+  const SlowModel noise = given_ ? null_.model : fit_slow(series_, columns, widest_base(columns), freedom()).model;
+  const Whitened whitened = whiten(series_, noise, columns);
   const Eigen::MatrixXd even = fold_gram(whitened.columns, 0);
   const Eigen::MatrixXd odd = fold_gram(whitened.columns, 1);
   const auto full = static_cast<Eigen::Index>(columns.width);
