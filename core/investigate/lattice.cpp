@@ -111,4 +111,21 @@ double noise_of_differences(const StudyRecording& recording, const Channel& chan
   return count > 0.0 ? std::sqrt(0.5 * square / count) : 0.0;
 }
 
+bool at_limit(double row, double limit) { return std::fabs(row) >= limit * (1.0 - 1e-9); }
+
+double clipped_at(const Channel& channel) {
+  constexpr std::ptrdiff_t kEnough = 8;
+  constexpr double kNear = 0.98;
+  double top = 0.0;
+  for (const double v : channel.rows) {
+    top = std::max(top, std::fabs(v));
+  }
+  const double si = std::fabs(channel.unit.to_si(top) - channel.unit.to_si(0.0));
+  const bool reached = std::any_of(channel.reference.begin(), channel.reference.end(),
+                                   [&](double w) { return std::fabs(w) > kNear * si; });
+  const auto count =
+      std::count_if(channel.rows.begin(), channel.rows.end(), [&](double v) { return at_limit(v, top); });
+  return reached && count >= kEnough ? top : 0.0;
+}
+
 }  // namespace driftlab::investigate

@@ -21,4 +21,9 @@ struct Lattice {
 /// robust deviations; 0 for a constant channel.
 [[nodiscard]] double noise_of_differences(const StudyRecording& recording, const Channel& channel);
 
+/// Modulus at which the output is clipped [file's unit]: at least eight values stand at the extreme while the reference
+/// comes near it; 0 where nothing is clipped.
+[[nodiscard]] double clipped_at(const Channel& channel);
+[[nodiscard]] bool at_limit(double row, double limit);
+
 }  // namespace driftlab::investigate

@@ -12,44 +12,20 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kEnough = 8;
-
-struct Extreme {
-  double value = 0.0;  ///< file unit, modulus
-  std::size_t count = 0;
-};
-
-Extreme extreme_of(const Channel& channel) {
-  double top = 0.0;
-  for (const double v : channel.rows) {
-    top = std::max(top, std::fabs(v));
-  }
-  Extreme extreme{top, 0};
-  for (const double v : channel.rows) {
-    extreme.count += std::fabs(v) >= top * (1.0 - 1e-9) ? 1 : 0;
-  }
-  return extreme;
-}
-
-/// The reference comes within 2 % of the value, or passes it.
-bool reference_reaches(const Channel& channel, double limit_si) {
-  return std::any_of(channel.reference.begin(), channel.reference.end(),
-                     [&](double w) { return std::fabs(w) > 0.98 * limit_si; });
-}
-
 std::vector<Evidence> file_fact(const ChannelGroup& group) {
   Evidence evidence;
   double limit = 0.0;
   double decimals = 0.0;
   for (std::size_t r = 0; r < group.members.size(); ++r) {
     const Channel& channel = *group.members[r].channel;
-    const Extreme extreme = extreme_of(channel);
-    const double si = std::fabs(channel.unit.to_si(extreme.value) - channel.unit.to_si(0.0));
-    if (extreme.count < kEnough || !reference_reaches(channel, si)) {
+    const double value = clipped_at(channel);
+    if (!(value > 0.0)) {
       continue;
     }
+    const double si = std::fabs(channel.unit.to_si(value) - channel.unit.to_si(0.0));
     evidence.members.push_back(r);
-    evidence.score += static_cast<double>(extreme.count);
+    evidence.score += static_cast<double>(
+        std::count_if(channel.rows.begin(), channel.rows.end(), [&](double v) { return at_limit(v, value); }));
     limit = std::max(limit, si);
     decimals = std::max(decimals, find_lattice(channel.rows).decimals * channel.unit.factor);
   }

@@ -74,8 +74,10 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   runs.samples = static_cast<double>(channel.rows.size());
   std::size_t repeats = 0;
   double equal_far = 0.0;
+  const double limit = clipped_at(channel);  // values at it repeat without being stuck
   for (std::size_t i = 1; i <= channel.rows.size(); ++i) {
-    if (i < channel.rows.size() && channel.rows[i] == channel.rows[i - 1]) {
+    const bool clipped = limit > 0.0 && i < channel.rows.size() && at_limit(channel.rows[i], limit);
+    if (i < channel.rows.size() && channel.rows[i] == channel.rows[i - 1] && !clipped) {
       ++repeats;
       continue;
     }
