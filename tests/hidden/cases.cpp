@@ -87,6 +87,38 @@ double oracle_deviation(const SimulatedStudy& clean, const Cause& cause, double 
   return 1.0 / std::sqrt(information);
 }
 
+/// Level of a slow process that an oracle sees at z: 2 E log(p1/p0) = z^2, which for Gaussian series is the sum of
+/// 2 (r - 1 - ln r) over the Fourier frequencies of all recordings, r the ratio of the densities with it and without.
+double oracle_level(const SimulatedStudy& clean, SlowKind kind, double beta, double z) {
+  const StudyRecording& recording = clean.study.recordings.front();
+  SlowModel base;
+  base.white = clean.base.n * clean.base.n;
+  base.components = clean.base.slow;
+  SlowModel unit;
+  unit.components.push_back({kind, 1.0, beta, {}});
+  const auto n = static_cast<double>(recording.count());
+  std::vector<double> ratio;  // of the added density at level 1 to the base
+  for (double k = 1.0; k < 0.5 * n; k += 1.0) {
+    const double f = k / n / recording.dt_s;
+    ratio.push_back(slow_density(unit, {}, 0, f, recording.dt_s, n) /
+                    (base.white + slow_density(base, {}, 0, f, recording.dt_s, n)));
+  }
+  const auto seen = [&](double level) {
+    double sum = 0.0;
+    for (const double r : ratio) {
+      sum += 2.0 * (level * r - std::log1p(level * r));
+    }
+    return sum * static_cast<double>(clean.study.recordings.size());
+  };
+  double low = -60.0;
+  double high = 10.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (seen(std::exp(middle)) < z * z ? low : high) = middle;
+  }
+  return std::exp(low);
+}
+
 double squares_of_driver(const SimulatedStudy& clean, bool acceleration, bool about_mean) {
   double sum = 0.0;
   double square = 0.0;
@@ -150,12 +182,11 @@ Case make_case(const std::string& name, double z, std::uint64_t seed) {
          (1.0 + z * std::sqrt(0.5 / (each * static_cast<double>(recordings - 1)) + (plan.given ? 0.0 : 0.5 / each)))};
   } else if (name == "gauss_markov") {
     const double beta = 0.2 + 0.3 * random.uniform();
-    const double root = 1.0 + std::sqrt(2.0 * z * z / (duration * static_cast<double>(recordings) * beta));
-    v = {std::sqrt(0.5 * beta * (root * root - 1.0)) * clean.base.n * (clean.base.slow.empty() ? 1.0 : 2.0), beta};
+    v = {std::sqrt(oracle_level(clean, SlowKind::GaussMarkov, beta, z)), beta};
   } else if (name == "random_walk") {
-    v = {3.0 * z * clean.base.n / duration};
+    v = {std::sqrt(oracle_level(clean, SlowKind::RandomWalk, 0.0, z))};
   } else if (name == "flicker_noise") {
-    v = {0.04 * z * clean.base.n};
+    v = {std::sqrt(oracle_level(clean, SlowKind::Flicker, 0.0, z))};
   } else if (name == "turn_on_bias") {
     v = {0.003 * z * kDegree};
   } else if (name == "quantization_noise") {

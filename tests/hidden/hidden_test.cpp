@@ -37,6 +37,10 @@ TEST_P(HiddenCause, IsNamedWhereItIsStrong) {
     said.append(" or ").append(rival.cause->name);
   }
   EXPECT_TRUE(named) << "said " << said;
+  for (std::size_t i = 1; i < report->findings.size(); ++i) {
+    ADD_FAILURE() << "and claims " << report->findings[i].evidence.cause->name
+                  << " as well: " << report->findings[i].explanation << " First: " << first.explanation;
+  }
   EXPECT_FALSE(first.because.empty());
   EXPECT_FALSE(first.channels.empty());
   for (const FoundParameter& parameter : first.evidence.parameters) {
