@@ -126,7 +126,7 @@ if [ "$long" = yes ]; then
   labels=()
   step "build long suites" build release long_suites
   export DRIFTLAB_ACCURACY_DIR=${DRIFTLAB_ACCURACY_DIR:-$repository/build/accuracy}
-  mkdir -p "$DRIFTLAB_ACCURACY_DIR"
+  mkdir -p "$DRIFTLAB_ACCURACY_DIR/hidden"
 fi
 if [ "${#trees[@]}" -gt 0 ]; then
   mkdir -p build/all
@@ -135,6 +135,7 @@ if [ "${#trees[@]}" -gt 0 ]; then
 fi
 if [ "$long" = yes ]; then
   step "accuracy page" python3 tests/accuracy/page.py "$DRIFTLAB_ACCURACY_DIR"
+  step "hidden effects page" python3 tests/accuracy/page.py "$DRIFTLAB_ACCURACY_DIR/hidden" tests/hidden/RESULTS.md
 fi
 
 printf '\n'

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Puts sections written by the long suites into tests/ACCURACY.md.
+"""Puts sections written by the long suites into a page, tests/ACCURACY.md unless another is named.
 
-Usage: page.py FOLDER
+Usage: page.py FOLDER [PAGE]
 
 Each FOLDER/<name>.md is one or more sections, a `## ` heading each. A section takes the place of the one with the same
 heading in the page; a new one goes to the end. Everything else on the page stays. Exit: 0 done, 1 no section found,
@@ -24,10 +24,11 @@ def heading(section: str) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    if len(arguments) != 1 or not pathlib.Path(arguments[0]).is_dir():
+    if len(arguments) not in (1, 2) or not pathlib.Path(arguments[0]).is_dir():
         print(__doc__, file=sys.stderr)
         return 2
-    preamble, *old = sections(PAGE.read_text(encoding="utf-8"))
+    target = pathlib.Path(arguments[1]) if len(arguments) == 2 else PAGE
+    preamble, *old = sections(target.read_text(encoding="utf-8"))
     page = {heading(section): section for section in old}
     fresh = []
     for path in sorted(pathlib.Path(arguments[0]).glob("*.md")):
@@ -38,7 +39,7 @@ def main(arguments: list[str]) -> int:
         print(f"page.py: no section in {arguments[0]}", file=sys.stderr)
         return 1
     body = [preamble.rstrip()] + [section.strip() for section in page.values()]
-    PAGE.write_text("\n\n".join(body) + "\n", encoding="utf-8")
+    target.write_text("\n\n".join(body) + "\n", encoding="utf-8")
     print("\n".join(fresh))
     return 0
 
