@@ -8,9 +8,12 @@
 #include "core/investigate/lines.hpp"
 #include "core/investigate/reference_quality.hpp"
 #include "core/investigate/slow_search.hpp"
+#include "core/investigate/tails.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace driftlab::investigate {
 namespace {
@@ -82,6 +85,20 @@ double white_at_full_rate(const FullRate& data) {
   return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
 }
 
+/// N^2 below half the corner of a band limit: the density that the filter keeps.
+double white_below(const FullRate& data, double corner_hz) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
+    const Spectrum& s = data.spectrum[r];
+    for (std::size_t j = 0; j < s.power.size() && s.f_hz[j] < 0.5 * corner_hz; ++j) {
+      sum += s.weight[j] * (s.power[j] - data.slow[r][j]) / butterworth_gain(s.f_hz[j], corner_hz, data.dt_s);
+      weight += s.weight[j];
+    }
+  }
+  return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
+}
+
 /// White level per recording relative to the model in the lower quarter of the band; 1 where it does not differ by two
 /// standard errors. A level that is only slightly off would else pass for a fast Gauss-Markov process.
 std::vector<double> white_scale_of(const FullRate& data) {
@@ -103,6 +120,28 @@ std::vector<double> white_scale_of(const FullRate& data) {
     }
   }
   return any ? scale : std::vector<double>{};
+}
+
+/// The strongest candidate beyond the threshold. Those seen at full rate are tried on samples they were not fitted to
+/// and go where they are worse than nothing there; slow ones are held out once the search has ended.
+std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates) {
+  for (;;) {
+    const auto best = std::max_element(candidates.begin(), candidates.end(),
+                                       [](const Evidence& a, const Evidence& b) { return a.score < b.score; });
+    if (best == candidates.end() || best->score < kThreshold) {
+      return std::nullopt;
+    }
+    if (best->cause->family != Family::Mean) {
+      hold_out(data, *best);
+      if (best->heldout && best->heldout_gain < 0.0) {
+        candidates.erase(best);
+        continue;
+      }
+    }
+    Evidence winner = *best;
+    set_rivals(winner, candidates);
+    return winner;
+  }
 }
 
 /// One group's state through the search.
@@ -276,18 +315,15 @@ class GroupSearch {
         for (Evidence& evidence : search.examine()) {
           candidates.push_back(std::move(evidence));
         }
-        best = strongest(candidates);
       }
       keep_best(outcome_.examined, candidates);
-      if (best == nullptr || best->score < kThreshold) {
+      std::optional<Evidence> winner = choose(data, candidates);
+      if (!winner) {
         break;
       }
-      Evidence winner = *best;
-      set_rivals(winner, candidates);
-      if (winner.cause == line_cause) {
-        hold_out(data, winner);
-        for (const std::size_t r : winner.members) {
-          const std::vector<double> line = fitted_line(data, r, winner.shape);
+      if (winner->cause == line_cause) {
+        for (const std::size_t r : winner->members) {
+          const std::vector<double> line = fitted_line(data, r, winner->shape);
           const std::size_t begin = group_.members[r].recording->begin;
           for (std::size_t i = 0; i < line.size(); ++i) {
             error_[r][begin + i] -= line[i];
@@ -295,10 +331,10 @@ class GroupSearch {
         }
         search.set_data(error_, mask_);
         search.fit_null();
-        outcome_.found.push_back(std::move(winner));
+        outcome_.found.push_back(*std::move(winner));
       } else {
-        search.accept(winner);
-        slow_found.push_back(std::move(winner));
+        search.accept(*winner);
+        slow_found.push_back(*std::move(winner));
       }
     }
     if (stopped()) {
@@ -363,13 +399,15 @@ class GroupSearch {
   void search_full_rate() {
     FullRate& data = outcome_.after;
     take_band_limit(data);
+    bool tails_known = false;
     for (int round = 0; round < 2; ++round) {
       std::vector<Evidence> candidates;
       for (const Cause& cause : cause_registry()) {
         const bool wanted =
             (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
+        const bool known = tails_known && cause.family == Family::Tails;
         const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
-        if (!wanted || cause.examine == nullptr || jittered || stopped()) {
+        if (!wanted || cause.examine == nullptr || known || jittered || stopped()) {
           continue;
         }
         for (Evidence& evidence : cause.examine(data)) {
@@ -380,32 +418,43 @@ class GroupSearch {
       if (round == 0) {
         keep_best(outcome_.examined, candidates);
       }
-      const Evidence* best = strongest(candidates);
-      if (best == nullptr || best->score < kThreshold) {
+      const std::optional<Evidence> winner = choose(data, candidates);
+      if (!winner) {
         break;
       }
-      Evidence winner = *best;
-      set_rivals(winner, candidates);
-      hold_out(data, winner);
-      const Cause& cause = *winner.cause;
-      outcome_.found.push_back(winner);
-      if (cause.deviation != nullptr) {
-        take_out(data, winner);
+      outcome_.found.push_back(*winner);
+      if (winner->cause->deviation != nullptr) {
+        take_out(data, *winner);
+      } else if (winner->cause->tail != nullptr) {
+        take_out_tails(data, *winner);
+        tails_known = true;
       } else {
+        whiten_quantization(data, *winner);
         break;
       }
     }
   }
 
+  /// Differenced noise that all recordings share is whitened with the model, so that the checks see what it leaves.
+  void whiten_quantization(FullRate& data, const Evidence& found) const {
+    if (found.cause->name != "quantization_noise" || found.members.size() != data.members()) {
+      return;
+    }
+    FullRateOptions options;
+    options.lattice_step = lattice_step_;
+    options.quantization = found.shape;
+    const SlowModel model = data.model;
+    data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+  }
+
   /// Innovations are divided by the deviation found, spectra by the density it adds at the mean of its square: the next
-  /// cause is not credited with the same power. With a free level, that of a recording which alone has the effect is
-  /// free as well: a change says how much louder one part is than the other, not which of them is the usual one.
+  /// cause is not credited with the same power.
   static void take_out(FullRate& data, const Evidence& found) {
     std::vector<double> sd;
     for (std::size_t r = 0; r < data.members(); ++r) {
       found.cause->deviation(data, found, r, sd);
-      const bool alone = found.members.size() == 1 && found.members.front() == r;
-      const double level = alone && !data.given ? level_left(data, r, sd) : 1.0;
+      const bool free = found.cause->within_recording && !data.given && found.members.front() == r;
+      const double level = free ? level_left(data, r, sd) : 1.0;
       double square = 0.0;
       for (std::size_t i = 0; i < sd.size(); ++i) {
         data.innovation[r][i] /= sd[i] * level;
@@ -419,22 +468,72 @@ class GroupSearch {
     }
   }
 
-  /// Root mean square of a recording's innovations once `sd` is taken out; gross ones are cut at five.
-  static double level_left(const FullRate& data, std::size_t r, const std::vector<double>& sd) {
-    double square = 0.0;
-    double count = 0.0;
-    for (std::size_t i = 0; i < sd.size(); ++i) {
-      if (data.used[r][i] != 0) {
-        const double e = data.innovation[r][i] / sd[i];
-        square += std::min(e * e, 25.0);
-        count += 1.0;
+  /// Innovations become normal scores; with a given level, the variance that the tails add is taken out of the spectra.
+  static void take_out_tails(FullRate& data, const Evidence& found) {
+    for (std::size_t r = 0; data.given && r < data.members(); ++r) {
+      double square = 0.0;
+      double count = 0.0;
+      for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+        square += data.used[r][i] != 0 ? data.innovation[r][i] * data.innovation[r][i] : 0.0;
+        count += data.used[r][i] != 0 ? 1.0 : 0.0;
+      }
+      data.raised[r] += (square / std::max(1.0, count) - 1.0) * data.innovation_sd * data.innovation_sd * data.dt_s;
+      if (!data.spectrum[r].power.empty()) {
+        set_spectrum(data, r);
       }
     }
-    return count > 0.0 && square > 0.0 ? std::sqrt(square / count) : 1.0;
+    to_normal_scores(data, found.cause->tail(data, found));
+  }
+
+  /// Root mean square of a recording's innovations once `sd` is taken out, against that of the others; gross ones are
+  /// cut at five.
+  static double level_left(const FullRate& data, std::size_t member, const std::vector<double>& sd) {
+    std::array<double, 2> square{};  // the others', the member's own
+    std::array<double, 2> count{};
+    for (std::size_t r = 0; r < data.members(); ++r) {
+      const std::size_t own = r == member ? 1 : 0;
+      for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+        if (data.used[r][i] != 0) {
+          const double e = data.innovation[r][i] / (own == 1 ? sd[i] : 1.0);
+          square.at(own) += std::min(e * e, 25.0);
+          count.at(own) += 1.0;
+        }
+      }
+    }
+    const bool known = count[0] > 0.0 && count[1] > 0.0 && square[0] > 0.0 && square[1] > 0.0;
+    return known ? std::sqrt(square[1] / count[1] / (square[0] / count[0])) : 1.0;
+  }
+
+  /// Means over a block of noise behind a low-pass are correlated with their neighbours, which an automatic baseline
+  /// describes by a Gauss-Markov process about as fast as the blocks. Where the spectra show a band limit without it,
+  /// it goes, and its density is white noise again.
+  void drop_fast_process(FullRate& data, const Cause& band_limit) {
+    constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
+    const auto fast = [](const SlowComponent& c) { return c.kind == SlowKind::GaussMarkov && c.beta > kFast; };
+    SlowModel plain = data.model;
+    for (const SlowComponent& component : plain.components) {
+      plain.white += fast(component) ? 2.0 * component.level / component.beta : 0.0;
+    }
+    if (given_ || std::erase_if(plain.components, fast) == 0) {
+      return;
+    }
+    FullRate without = data;
+    without.model = plain;
+    for (std::size_t r = 0; r < without.members(); ++r) {
+      if (!without.spectrum[r].power.empty()) {
+        set_spectrum(without, r);
+      }
+    }
+    const std::vector<Evidence> found = band_limit.examine(without);
+    if (!found.empty() && found[0].score > kThreshold) {
+      data = std::move(without);
+      outcome_.model.base = plain;
+    }
   }
 
   void take_band_limit(FullRate& data) {
     const Cause* const cause = find_cause("band_limited_noise");
+    drop_fast_process(data, *cause);
     std::vector<Evidence> found = cause->examine(data);
     if (found.empty()) {
       return;
@@ -446,12 +545,16 @@ class GroupSearch {
     }
     hold_out(data, found[0]);
     outcome_.found.push_back(found[0]);
+    if (!given_) {
+      outcome_.model.base.white = white_below(data, found[0].shape);
+    }
     FullRateOptions options;
     options.given = false;  // the level behind the filter is the autoregression's
     options.lattice_step = lattice_step_;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
     data.band_limited = true;
+    data.corner_hz = outcome_.found.back().shape;
     data.flat = false;
   }
 

@@ -6,7 +6,8 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kSegments = 8;
+/// Short ones, so that a change near the start of a recording is seen by both folds.
+constexpr std::size_t kSegments = 128;
 
 /// The data with only one fold's samples in use.
 FullRate fold_of(const FullRate& data, std::size_t fold) {
@@ -56,7 +57,12 @@ double gain_of_deviation(const FullRate& test, const Evidence& trained) {
   double divided = 0.0;
   double logs = 0.0;
   std::vector<double> sd;
+  // Levels of other recordings say nothing where they do not repeat.
+  const bool alone = trained.cause->within_recording && !test.given && test.repeatability > 1.0;
   for (std::size_t r = 0; r < test.members(); ++r) {
+    if (alone && r != trained.members.front()) {
+      continue;
+    }
     trained.cause->deviation(test, trained, r, sd);
     for (std::size_t i = 0; i < sd.size(); ++i) {
       if (test.used[r][i] != 0) {

@@ -197,4 +197,26 @@ double mixture_gain(const InnovationHistogram& h, double fraction, double magnit
   return mixture(h, fraction, magnitude, std::exp(v)) - gaussian_binned(h, own);
 }
 
+void to_normal_scores(FullRate& data, const std::function<double(double)>& tail) {
+  const auto score = [&](double e) { return normal_quantile(1.0 - std::clamp(tail(e), 1e-15, 0.5)); };
+  std::vector<double> table;  // a score is smooth: on a grid of kWidth lines between are off by less than 1e-3
+  for (double e = 0.0; e < kTop + 2.0 * kWidth; e += kWidth) {
+    table.push_back(score(e));
+  }
+  for (auto& series : data.innovation) {
+    for (double& e : series) {
+      const double modulus = std::fabs(e);
+      double value = 0.0;
+      if (modulus < kTop) {
+        const double place = modulus / kWidth;
+        const auto at = static_cast<std::size_t>(place);
+        value = table[at] + (place - static_cast<double>(at)) * (table[at + 1] - table[at]);
+      } else {
+        value = score(modulus);
+      }
+      e = std::copysign(value, e);
+    }
+  }
+}
+
 }  // namespace driftlab::investigate

@@ -2,6 +2,8 @@
 /// The distribution of the innovations: Gaussian, Student-t, or Gaussian with gross errors.
 #include "core/investigate/full_rate.hpp"
 
+#include <functional>
+
 namespace driftlab::investigate {
 
 /// Counts of |e| in bins of 0.05 up to 12; what lies beyond, one by one (cut at 1000).
@@ -34,5 +36,9 @@ struct MixtureFit {
 [[nodiscard]] double student_gain(const InnovationHistogram& histogram, double inverse_nu, bool scale_known);
 [[nodiscard]] double mixture_gain(const InnovationHistogram& histogram, double fraction, double magnitude,
                                   bool scale_known);
+
+/// Innovations become the normal quantiles of their places in a symmetric distribution, given by the chance beyond e >=
+/// 0 on one side: standard normal where that distribution is right.
+void to_normal_scores(FullRate& data, const std::function<double(double)>& tail);
 
 }  // namespace driftlab::investigate

@@ -173,7 +173,7 @@ Case make_case(const std::string& name, double z, std::uint64_t seed) {
     } else if (name == "scale_factor_nonlinearity" || name == "axis_misalignment") {
       shape = 2.0;
     }
-    v = {sign * z * oracle_deviation(clean, cause, shape, plan)};
+    v = {(cause.mean->free_phase ? 1.0 : sign) * z * oracle_deviation(clean, cause, shape, plan)};
     if (cause.mean->shapes != nullptr || cause.mean->change_point) {
       v.push_back(shape);
     }

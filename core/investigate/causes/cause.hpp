@@ -81,6 +81,12 @@ struct Cause {
   std::vector<Evidence> (*examine)(const FullRate& data) = nullptr;
   /// Standard deviation of each innovation of member r relative to no effect; what is found can so be taken out.
   void (*deviation)(const FullRate& data, const Evidence& found, std::size_t r, std::vector<double>& sd) = nullptr;
+  /// The deviation changes within one recording; with an automatic baseline that recording's own level is free, for the
+  /// change says how much louder one part is than the other and not which of them is the usual one.
+  bool within_recording = false;
+  /// Chance of an innovation beyond e >= 0 on one side, under the symmetric distribution found; normal scores by it
+  /// take the finding out.
+  std::function<double(double)> (*tail)(const FullRate& data, const Evidence& found) = nullptr;
   /// Log likelihood gained on `data` by the effect as found elsewhere, nothing refitted.
   double (*log_gain)(const FullRate& data, const Evidence& found) = nullptr;
   /// The same over several axes at once; members are those of the first.

@@ -6,6 +6,7 @@
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/tails.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,23 @@ double log_gain(const FullRate& data, const Evidence& found) {
   return student_gain(histogram_of(data), found.shape, data.given);
 }
 
+/// The scale by the median of |e|, which no tail moves.
+std::function<double(double)> tail(const FullRate& data, const Evidence& found) {
+  std::vector<double> modulus;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+      if (data.used[r][i] != 0) {
+        modulus.push_back(std::fabs(data.innovation[r][i]));
+      }
+    }
+  }
+  const auto middle = modulus.begin() + static_cast<std::ptrdiff_t>(modulus.size() / 2);
+  std::nth_element(modulus.begin(), middle, modulus.end());
+  const double nu = 1.0 / found.shape;
+  const double scale = *middle / student_quantile(0.75, nu);
+  return [nu, scale](double e) { return student_tail(e / scale, nu); };
+}
+
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
   double square = 0.0;
   for (const double v : draft.white) {
@@ -66,6 +84,7 @@ Cause heavy_tailed_noise() {
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
           .parameters = {{"nu", units::one}},
           .examine = examine,
+          .tail = tail,
           .log_gain = log_gain,
           .inject = inject_effect};
 }

@@ -153,6 +153,7 @@ Cause noise_level_change() {
           .parameters = {{"ratio", units::one}, {"t0_s", units::seconds}},
           .examine = examine,
           .deviation = deviation,
+          .within_recording = true,
           .inject = inject_effect};
 }
 

@@ -5,6 +5,7 @@
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/tails.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,15 @@ double log_gain(const FullRate& data, const Evidence& found) {
   return mixture_gain(histogram_of(data), found.parameters[0].estimate.value, found.shape, data.given);
 }
 
+std::function<double(double)> tail(const FullRate& /*data*/, const Evidence& found) {
+  const double fraction = found.parameters[0].estimate.value;
+  const double magnitude = found.shape;
+  return [fraction, magnitude](double e) {
+    return (1.0 - fraction) * normal_tail(e) +
+           0.5 * fraction * (normal_tail(e - magnitude) + normal_tail(e + magnitude));
+  };
+}
+
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
   for (double& v : draft.mean) {
     if (random.uniform() < values[0]) {
@@ -62,6 +72,7 @@ Cause outliers() {
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
           .parameters = {{"fraction", units::one}, {"magnitude", units::level}},
           .examine = examine,
+          .tail = tail,
           .log_gain = log_gain,
           .inject = inject_effect};
 }

@@ -38,7 +38,7 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   }
   step /= weight;
   const double sd = std::max(1.0 / std::sqrt(weight), 1e-7 * step);
-  evidence.score = coarseness < kStriking ? 11.0 : 1000.0 * coarseness;
+  evidence.score = coarseness < kStriking ? 12.0 : 1000.0 * coarseness;
   evidence.gain = evidence.score;
   evidence.shape = coarseness;
   evidence.parameters = {{"step", {step, {step - 2.0 * sd, step + 2.0 * sd}}, units::level(group.unit)}};
