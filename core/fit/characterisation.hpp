@@ -66,7 +66,7 @@ struct FittedProcess {
 };
 
 /// Over-identification test of a fit: statistic ~ chi-square(dof) where the model is right (Hansen 1982); dof is the
-/// number of scales less that of parameters, less 1.15 for what the longest scales scatter too little.
+/// number of scales less that of parameters, less up to 1.15 for what the longest scales scatter too little.
 struct JTest {
   double statistic = 0.0;
   double dof = 0.0;

@@ -57,6 +57,7 @@ LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd
   std::vector<std::array<double, kTerms>> terms;
   for (Eigen::Index j = 0; j < count; ++j) {
     const double half_edf = fitted(used_[j]) * fitted(used_[j]) / covariance(used_[j], used_[j]);  // eta/2 = nu^2/Var
+    longest_edf_ = 2.0 * half_edf;
     y_(j) = std::log(moments.nu(used_[j])) - (digamma(half_edf) - std::log(half_edf));
     terms.push_back(log_terms(half_edf));
     relative(j, j) = trigamma(half_edf);

@@ -34,6 +34,8 @@ class LogFit {
 
   [[nodiscard]] const std::vector<LogCoordinate>& coordinates() const { return coordinates_; }
   [[nodiscard]] Eigen::Index scales() const { return y_.size(); }
+  /// Degrees of freedom of the longest scale's variance under the fit.
+  [[nodiscard]] double longest_edf() const { return longest_edf_; }
   /// Where L is least, and L there.
   [[nodiscard]] const Eigen::VectorXd& best() const { return best_; }
   [[nodiscard]] double minimum() const { return minimum_; }
@@ -76,6 +78,7 @@ class LogFit {
   std::vector<LogCoordinate> coordinates_;
   Eigen::VectorXd best_;
   double minimum_ = 0.0;
+  double longest_edf_ = 0.0;
   int restarts_ = 0;
 };
 

@@ -67,7 +67,7 @@ TEST(Accuracy, ParameterIntervalsCoverTheTruth) {
       "sandwich preview (a miss where it gives none); in brackets how often [%%] the profile says \"not "
       "identifiable\". `J` is the share of J-tests below 0.05.\n\n| truth | N | repetitions | parameters | J |\n"
       "|---|---|---|---|---|\n");
-  for (const auto& [samples, full] : {std::pair<std::size_t, std::size_t>{9000, 1000}, {90000, 400}, {1000000, 100}}) {
+  for (const auto& [samples, full] : {std::pair<std::size_t, std::size_t>{9000, 4000}, {90000, 2000}, {1000000, 400}}) {
     const std::size_t runs = repetitions(full);
     const HaarVariance grid = haar_variance(std::vector<double>(samples, 0.0), 0.0);
     HaarCovariance plan(grid.half, samples, kDt);
