@@ -223,6 +223,10 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   if (auto status = set_window(recording, spec.trim); !status) {
     return fail(status.error());
   }
+  if (!spec.calibration.empty()) {
+    recording.notes.push_back("Its calibration '" + spec.calibration +
+                              "' is not applied: what is examined are the readings as the sensor gave them.");
+  }
   set_rotation(recording, *roles, column, *grid);
   if (const auto index = find_role(*roles, Quantity::Temperature, "")) {
     recording.temperature = on_grid(column(*index), unit_of(*roles, *index), *grid);

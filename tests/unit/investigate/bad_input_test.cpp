@@ -163,6 +163,20 @@ TEST(BadInput, FreeMotionWithoutAReferenceIsNotExamined) {
   EXPECT_NE(need_of(*report, "scale_factor_error").find("a reference column"), std::string::npos);
 }
 
+TEST(BadInput, ACalibrationThatIsNotAppliedIsSaid) {
+  const std::vector<double> values(600, 0.5);
+  RecordingSpec spec;
+  spec.id = "r";
+  spec.rate_hz = 20.0;
+  spec.calibration = "table-2026";
+  spec.columns["gz"] = gyro("z");
+  const auto recording =
+      make_study_recording(spec, {"gz"}, values.size(), [&](std::size_t) { return std::span<const double>(values); });
+  ASSERT_TRUE(recording);
+  ASSERT_EQ(recording->notes.size(), 1U);
+  EXPECT_NE(recording->notes[0].find("'table-2026' is not applied"), std::string::npos) << recording->notes[0];
+}
+
 /// A recorded IMU froze at 196.9 s for the rest of the file; one run was too few to be called stuck, and the frozen
 /// part was taken for noise.
 TEST(BadInput, AFreezeIsOneStuckRunAndSpoilsNothingElse) {
