@@ -1,5 +1,6 @@
 #include "core/investigate/group_search.hpp"
 
+#include "core/investigate/candidates.hpp"
 #include "core/investigate/fact_gain.hpp"
 #include "core/investigate/given_model.hpp"
 #include "core/investigate/hold_out.hpp"
@@ -8,10 +9,9 @@
 #include "core/investigate/lines.hpp"
 #include "core/investigate/reference_quality.hpp"
 #include "core/investigate/slow_search.hpp"
-#include "core/investigate/tails.hpp"
+#include "core/investigate/take_out.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -19,130 +19,6 @@ namespace driftlab::investigate {
 namespace {
 
 constexpr int kRounds = 4;
-
-bool is_rival(const Cause& cause, const Cause& other) {
-  const auto names = [](const Cause& a, const Cause& b) {
-    return std::find(a.rivals.begin(), a.rivals.end(), b.name) != a.rivals.end();
-  };
-  return &cause != &other && (names(cause, other) || names(other, cause));
-}
-
-/// Rivals whose score comes within the margin, best first.
-void set_rivals(Evidence& winner, const std::vector<Evidence>& candidates) {
-  winner.rivals.clear();
-  for (const Evidence& other : candidates) {
-    if (is_rival(*winner.cause, *other.cause) && other.score > winner.score - kMargin && other.score > 0.0) {
-      auto same = std::find_if(winner.rivals.begin(), winner.rivals.end(),
-                               [&](const Evidence& e) { return e.cause == other.cause; });
-      if (same == winner.rivals.end()) {
-        winner.rivals.push_back(other);
-      }
-    }
-  }
-  std::sort(winner.rivals.begin(), winner.rivals.end(),
-            [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
-  if (winner.rivals.size() > 5) {
-    winner.rivals.resize(5);
-  }
-  winner.ambiguous = !winner.rivals.empty();
-}
-
-const Evidence* strongest(const std::vector<Evidence>& candidates) {
-  const Evidence* best = nullptr;
-  for (const Evidence& candidate : candidates) {
-    if (best == nullptr || candidate.score > best->score) {
-      best = &candidate;
-    }
-  }
-  return best;
-}
-
-void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh) {
-  for (const Evidence& evidence : fresh) {
-    auto same =
-        std::find_if(examined.begin(), examined.end(), [&](const Evidence& e) { return e.cause == evidence.cause; });
-    if (same == examined.end()) {
-      examined.push_back(evidence);
-    } else if (evidence.score > same->score) {
-      *same = evidence;
-    }
-  }
-}
-
-/// N^2 at full rate: the mean of spectrum minus slow part over all recordings.
-double white_at_full_rate(const FullRate& data) {
-  double sum = 0.0;
-  double weight = 0.0;
-  for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
-    const Spectrum& s = data.spectrum[r];
-    for (std::size_t j = 0; j < s.power.size(); ++j) {
-      if (data.slow[r][j] < 0.3 * data.model.white) {
-        sum += s.weight[j] * (s.power[j] - data.slow[r][j]);
-        weight += s.weight[j];
-      }
-    }
-  }
-  return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
-}
-
-/// N^2 below half the corner of a band limit: the density that the filter keeps.
-double white_below(const FullRate& data, double corner_hz) {
-  double sum = 0.0;
-  double weight = 0.0;
-  for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
-    const Spectrum& s = data.spectrum[r];
-    for (std::size_t j = 0; j < s.power.size() && s.f_hz[j] < 0.5 * corner_hz; ++j) {
-      sum += s.weight[j] * (s.power[j] - data.slow[r][j]) / butterworth_gain(s.f_hz[j], corner_hz, data.dt_s);
-      weight += s.weight[j];
-    }
-  }
-  return weight > 0.0 && sum > 0.0 ? sum / weight : data.model.white;
-}
-
-/// White level per recording relative to the model in the lower quarter of the band; 1 where it does not differ by two
-/// standard errors. A level that is only slightly off would else pass for a fast Gauss-Markov process.
-std::vector<double> white_scale_of(const FullRate& data) {
-  std::vector<double> scale(data.members(), 1.0);
-  bool any = false;
-  for (std::size_t r = 0; r < data.members(); ++r) {
-    double sum = 0.0;
-    double weight = 0.0;
-    const Spectrum& s = data.spectrum[r];
-    for (std::size_t j = 0; j < s.power.size(); ++j) {
-      if (s.f_hz[j] < 0.125 / data.dt_s && data.slow[r][j] < 0.5 * data.model.white) {
-        sum += s.weight[j] * (s.power[j] - data.slow[r][j]) / data.model.white;
-        weight += s.weight[j];
-      }
-    }
-    if (weight > 50.0 && std::fabs(sum / weight - 1.0) > 2.0 / std::sqrt(weight)) {
-      scale[r] = std::clamp(sum / weight, 0.05, 20.0);
-      any = true;
-    }
-  }
-  return any ? scale : std::vector<double>{};
-}
-
-/// The strongest candidate beyond the threshold. Those seen at full rate are tried on samples they were not fitted to
-/// and go where they are worse than nothing there; slow ones are held out once the search has ended.
-std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates) {
-  for (;;) {
-    const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                       [](const Evidence& a, const Evidence& b) { return a.score < b.score; });
-    if (best == candidates.end() || best->score < kThreshold) {
-      return std::nullopt;
-    }
-    if (best->cause->family != Family::Mean) {
-      hold_out(data, *best);
-      if (best->heldout && best->heldout_gain < 0.0) {
-        candidates.erase(best);
-        continue;
-      }
-    }
-    Evidence winner = *best;
-    set_rivals(winner, candidates);
-    return winner;
-  }
-}
 
 /// One group's state through the search.
 class GroupSearch {
@@ -423,12 +299,9 @@ class GroupSearch {
         break;
       }
       outcome_.found.push_back(*winner);
-      if (winner->cause->deviation != nullptr) {
-        take_out(data, *winner);
-      } else if (winner->cause->tail != nullptr) {
-        take_out_tails(data, *winner);
-        tails_known = true;
-      } else {
+      take_out(data, *winner);
+      tails_known = tails_known || winner->cause->tail != nullptr;
+      if (winner->cause->deviation == nullptr && winner->cause->tail == nullptr) {
         whiten_quantization(data, *winner);
         break;
       }
@@ -445,63 +318,6 @@ class GroupSearch {
     options.quantization = found.shape;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
-  }
-
-  /// Innovations are divided by the deviation found, spectra by the density it adds at the mean of its square: the next
-  /// cause is not credited with the same power.
-  static void take_out(FullRate& data, const Evidence& found) {
-    std::vector<double> sd;
-    for (std::size_t r = 0; r < data.members(); ++r) {
-      found.cause->deviation(data, found, r, sd);
-      const bool free = found.cause->within_recording && !data.given && found.members.front() == r;
-      const double level = free ? level_left(data, r, sd) : 1.0;
-      double square = 0.0;
-      for (std::size_t i = 0; i < sd.size(); ++i) {
-        data.innovation[r][i] /= sd[i] * level;
-        square += sd[i] * sd[i] * level * level;
-      }
-      const double excess = square / static_cast<double>(std::max<std::size_t>(1, sd.size())) - 1.0;
-      data.raised[r] += excess * data.innovation_sd * data.innovation_sd * data.dt_s;
-      if (!data.spectrum[r].power.empty()) {
-        set_spectrum(data, r);
-      }
-    }
-  }
-
-  /// Innovations become normal scores; with a given level, the variance that the tails add is taken out of the spectra.
-  static void take_out_tails(FullRate& data, const Evidence& found) {
-    for (std::size_t r = 0; data.given && r < data.members(); ++r) {
-      double square = 0.0;
-      double count = 0.0;
-      for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
-        square += data.used[r][i] != 0 ? data.innovation[r][i] * data.innovation[r][i] : 0.0;
-        count += data.used[r][i] != 0 ? 1.0 : 0.0;
-      }
-      data.raised[r] += (square / std::max(1.0, count) - 1.0) * data.innovation_sd * data.innovation_sd * data.dt_s;
-      if (!data.spectrum[r].power.empty()) {
-        set_spectrum(data, r);
-      }
-    }
-    to_normal_scores(data, found.cause->tail(data, found));
-  }
-
-  /// Root mean square of a recording's innovations once `sd` is taken out, against that of the others; gross ones are
-  /// cut at five.
-  static double level_left(const FullRate& data, std::size_t member, const std::vector<double>& sd) {
-    std::array<double, 2> square{};  // the others', the member's own
-    std::array<double, 2> count{};
-    for (std::size_t r = 0; r < data.members(); ++r) {
-      const std::size_t own = r == member ? 1 : 0;
-      for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
-        if (data.used[r][i] != 0) {
-          const double e = data.innovation[r][i] / (own == 1 ? sd[i] : 1.0);
-          square.at(own) += std::min(e * e, 25.0);
-          count.at(own) += 1.0;
-        }
-      }
-    }
-    const bool known = count[0] > 0.0 && count[1] > 0.0 && square[0] > 0.0 && square[1] > 0.0;
-    return known ? std::sqrt(square[1] / count[1] / (square[0] / count[0])) : 1.0;
   }
 
   /// Means over a block of noise behind a low-pass are correlated with their neighbours, which an automatic baseline
