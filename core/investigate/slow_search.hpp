@@ -16,6 +16,10 @@
 
 namespace driftlab::investigate {
 
+/// What a process of the base costs, in twice the log likelihood.
+inline constexpr double kGaussMarkovCost = 6.0;
+inline constexpr double kRandomWalkCost = 3.0;
+
 /// A mean effect as regressors on the blocks.
 struct Regressor {
   const Cause* cause = nullptr;  ///< null: the constant bias
@@ -23,6 +27,11 @@ struct Regressor {
   double shape = 0.0;
   int columns = 1;
 };
+
+/// Regressor columns of an effect in a scope.
+[[nodiscard]] inline int width_of(const Cause& cause, const std::vector<std::size_t>& members) {
+  return cause.mean->columns * (cause.mean->free_phase ? static_cast<int>(members.size()) : 1);
+}
 
 /// What the search knows about one group between its rounds.
 class SlowSearch {
@@ -68,7 +77,15 @@ class SlowSearch {
   [[nodiscard]] double null_score() const { return null_score_; }
 
  private:
-  struct Screened;
+  /// A candidate of the screening: cause, scope, shape, and the base at which it did best.
+  struct Screened {
+    const Cause* cause = nullptr;
+    std::vector<std::size_t> members;
+    double shape = 0.0;
+    double penalty = 0.0;
+    double score = -1e300;  ///< penalised twice-log-likelihood at the screening base
+    SlowModel base;
+  };
   struct Templates {
     const Cause* cause = nullptr;
     double shape = 0.0;
