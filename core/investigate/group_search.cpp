@@ -283,7 +283,8 @@ class GroupSearch {
             (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
         const bool known = tails_known && cause.family == Family::Tails;
         const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
-        if (!wanted || cause.examine == nullptr || known || jittered || stopped()) {
+        const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
+        if (!wanted || cause.examine == nullptr || known || jittered || lacking || stopped()) {
           continue;
         }
         for (Evidence& evidence : cause.examine(data)) {

@@ -111,6 +111,8 @@ class SlowSearch {
   void describe_mean(Evidence& evidence) const;
   void describe_slow(Evidence& evidence) const;
   void hold_out_mean(Evidence& evidence) const;
+  [[nodiscard]] double gain_across_folds(const BlockColumns& columns, const SlowModel& noise, int mine) const;
+  [[nodiscard]] double overstated(const BlockColumns& columns, const SlowFit& noise, int mine, double gain) const;
   void hold_out_slow(Evidence& evidence) const;
   void place_step(Evidence& evidence) const;
   [[nodiscard]] SlowModel widest_base(const BlockColumns& columns) const;

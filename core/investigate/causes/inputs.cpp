@@ -137,10 +137,16 @@ std::string lacks_recordings(const Study& /*study*/, const ChannelGroup& group) 
 }
 
 std::string lacks_rates(const Study& /*study*/, const ChannelGroup& group) {
+  if (stamps_are_loose(group)) {
+    return std::string(kTightStamps);
+  }
   return turns_about(group, group.axis()) ? "" : "several rates or a profile";
 }
 
 std::string lacks_slopes(const Study& /*study*/, const ChannelGroup& group) {
+  if (stamps_are_loose(group)) {
+    return std::string(kTightStamps);
+  }
   for (const auto& member : group.members) {
     for (const double a : member.recording->acceleration[group.axis()]) {
       if (a != 0.0) {

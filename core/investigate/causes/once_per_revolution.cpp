@@ -3,6 +3,7 @@
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/reference_quality.hpp"
 
 #include <cmath>
 
@@ -25,6 +26,9 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
 constexpr MeanEffect kEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0};
 
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
+  if (stamps_are_loose(group)) {
+    return std::string(kTightStamps);
+  }
   for (const auto& member : group.members) {
     if (!member.recording->angle.empty()) {
       return "";

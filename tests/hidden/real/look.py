@@ -38,6 +38,17 @@ def delay(x: Array, reference: Array, rate: float, most: int = 10) -> float:
     return float(lags[k] + 0.5 * (c[k - 1] - c[k + 1]) / (c[k - 1] - 2.0 * c[k] + c[k + 1])) / rate
 
 
+def roughness(x: Array) -> float:
+    """Deviation of the sample-to-sample noise: second differences, cut at six robust deviations."""
+    d = np.diff(x, 2)
+    cut = 6.0 * float(np.median(np.abs(d))) / 0.6745
+    return float(np.sqrt(np.mean(np.clip(d, -cut, cut) ** 2) / 6.0))
+
+
+def change(what: str, t: Array, x: Array, t0: float) -> None:
+    print(f"    {what}: deviation before {t0} s {roughness(x[t < t0]):.4f}, after {roughness(x[t >= t0]):.4f}")
+
+
 def adis() -> None:
     bands = ((10, 15), (15, 20), (20, 25), (25, 30), (30, 40), (40, 50))
     print("ADIS16405: step, step over noise, density by band (Hz) relative to 2-10 Hz")
@@ -68,6 +79,10 @@ def turntable() -> None:
         for axis in range(3):
             last = int(np.flatnonzero(np.diff(base[:, axis + 1]))[-1]) + 1
             print(f"    base {'xyz'[axis]}: last change at {base[last, 0]:.2f} s of {base[-1, 0]:.2f} s")
+        awake = base[: int(np.flatnonzero(np.diff(base[:, 1]))[-1]) + 1]
+        times = {"turntable-roll_slow": (101.5, 81.6, 147.2), "turntable-yaw_medium": (1298.6, 1077.5, 269.4)}[study]
+        for axis, t0 in enumerate(times):
+            change(f"base {'xyz'[axis]}", awake[:, 0] - base[0, 0], awake[:, axis + 1], t0)
 
 
 def static() -> None:
@@ -93,6 +108,8 @@ def robot() -> None:
         table = load(study, "arm")
         for axis in range(3):
             x, reference = table[:, axis], table[:, axis + 3]
+            if study == "robot-mpu9150":
+                change(f"{study} {'xyz'[axis]}", np.arange(len(x)) / 95.33, x - reference, (3.75, 3.14, 4.02)[axis])
             print(f"  {study} {'xyz'[axis]}: correlation {np.corrcoef(x, reference)[0, 1]:.3f}, slope {np.polyfit(reference, x, 1)[0]:.3f}, largest {np.abs(x).max():.0f} deg/s")
 
 
