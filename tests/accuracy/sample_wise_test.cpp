@@ -233,12 +233,14 @@ TEST(Accuracy, LatticesAreCuredOrRefused) {
     if (high > 0.0) {
       section.print("| %.1f | %zu | %.3f-%.3f | %.3f-%.3f | %.0f |\n", sd, runs, raw_low, raw_high, low, high,
                     100.0 * refused / all);
-      EXPECT_NEAR(low, 1.0, sd < 0.45 ? 0.02 : 0.01) << sd;
-      EXPECT_NEAR(high, 1.0, sd < 0.45 ? 0.02 : 0.01) << sd;
+      if (sd >= kTooCoarseLattice) {
+        EXPECT_NEAR(low, 1.0, sd < 0.45 ? 0.02 : 0.01) << sd;
+        EXPECT_NEAR(high, 1.0, sd < 0.45 ? 0.02 : 0.01) << sd;
+      }
     } else {
       section.print("| %.1f | %zu | | | %.0f |\n", sd, runs, 100.0 * refused / all);
     }
-    EXPECT_EQ(refused > 0.5 * all, sd < kTooCoarseLattice) << sd;
+    EXPECT_TRUE(sd < kTooCoarseLattice ? refused > 0.95 * all : refused == 0.0) << sd;
   }
 }
 
