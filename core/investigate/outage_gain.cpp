@@ -1,11 +1,10 @@
 #include "core/investigate/outage_gain.hpp"
 
-#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/given_model.hpp"
 #include "core/process/model.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace driftlab::investigate {
 namespace {
@@ -22,74 +21,25 @@ std::optional<std::size_t> imu_channel(const ColumnRole& role) {
   return role.quantity == Quantity::SpecificForce ? std::optional(3 + *axis) : std::nullopt;
 }
 
-/// Adds a process whose values are within its bounds; a value of zero is no process.
-bool add(Model& model, std::string_view name, std::vector<double> values) {
-  auto process = make_process(name, std::move(values));
-  if (!process) {
-    return false;
-  }
-  model.push_back(*std::move(process));
-  return true;
-}
-
 Model base_model(const ChannelModel& channel) {
   Model model;
+  const auto add = [&](std::string_view name, std::vector<double> values) {  // a value of zero is no process
+    if (auto process = make_process(name, std::move(values))) {
+      model.push_back(*std::move(process));
+    }
+  };
   for (const GivenProcess& process : noise_processes(channel)) {
-    add(model, process.process, process.parameters);
+    add(process.process, process.parameters);
   }
   if (!channel.given && channel.drift != 0.0) {
-    add(model, "linear_drift", {channel.drift});
+    add("linear_drift", {channel.drift});
   }
   return model;
 }
 
-/// One studied axis while findings are added to it.
-struct Axis {
-  std::size_t channel;  ///< of the unit
-  Model model;
-  double bias_sd;
-};
-
 /// False where a navigation simulation cannot hold the finding.
-bool extend(const Evidence& found, Axis& axis, ImuHardware& hardware) {
-  const std::string_view name = found.cause->name;
-  std::vector<double> values;
-  for (const FoundParameter& parameter : found.parameters) {
-    values.push_back(parameter.estimate.value);
-  }
-  if (values.empty()) {
-    return false;
-  }
-  const std::size_t c = axis.channel;
-  if (name == "white_noise_level") {
-    std::erase_if(axis.model, [](const Process& process) { return process.kind->name == "white_noise"; });
-    return add(axis.model, "white_noise", {values[0]});
-  }
-  if (name == "gauss_markov" || name == "random_walk" || name == "flicker_noise" || name == "linear_drift" ||
-      name == "quantization_noise") {
-    return add(axis.model, name, values);
-  }
-  if (name == "periodic_disturbance") {
-    return add(axis.model, "sinusoid", values);
-  }
-  if (name == "turn_on_bias") {
-    axis.bias_sd = std::hypot(axis.bias_sd, values[0]);
-  } else if (name == "scale_factor_error") {
-    hardware.scale_factor[c] = values[0];
-  } else if (name == "axis_misalignment" && c < 3) {
-    const auto row = static_cast<Eigen::Index>(c);
-    const auto other = static_cast<Eigen::Index>(found.shape);
-    hardware.gyroscope_misalignment(row, other) = values[0];
-  } else if (name == "saturation") {
-    hardware.range[c] = values[0];
-  } else if (name == "output_resolution") {
-    hardware.quantization_step[c] = values[0];
-  } else if (name == "band_limited_noise") {
-    hardware.bandwidth_hz[c] = values[0];
-  } else {
-    return false;
-  }
-  return true;
+bool extend(const Evidence& found, UnitAxis& axis) {
+  return found.cause->in_unit != nullptr && !found.parameters.empty() && found.cause->in_unit(found, axis);
 }
 
 bool acts_on(const Evidence& found, std::size_t group) {
@@ -110,11 +60,11 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
       continue;
     }
     const double bias_sd = scenario.truth.axes[*number].bias_sd;
-    Axis axis{*number, base_model(channel), bias_sd};
+    UnitAxis axis{*number, base_model(channel), bias_sd, &models.extended.hardware};
     models.baseline.axes[*number] = AxisModel{ModelSchedule::constant(axis.model), bias_sd};
     for (const Finding& finding : report.findings) {
       if (acts_on(finding.evidence, static_cast<std::size_t>(group - groups.begin())) &&
-          !extend(finding.evidence, axis, models.extended.hardware)) {
+          !extend(finding.evidence, axis)) {
         models.left_out.push_back(std::string(finding.evidence.cause->name) + " of " + channel.channel);
       }
     }

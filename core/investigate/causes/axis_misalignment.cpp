@@ -1,6 +1,7 @@
 /// axis_misalignment: m w_other on an axis that should see none; the shape is the index of the other axis.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/reference_quality.hpp"
 
@@ -36,6 +37,17 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   return reference_lacks(group);
 }
 
+/// Of gyroscopes; the shape is the index of the other axis.
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  if (axis.channel > 2) {
+    return false;
+  }
+  const auto row = static_cast<Eigen::Index>(axis.channel);
+  axis.hardware->gyroscope_misalignment(row, static_cast<Eigen::Index>(found.shape)) =
+      found.parameters[0].estimate.value;
+  return true;
+}
+
 }  // namespace
 
 Cause axis_misalignment() {
@@ -47,7 +59,8 @@ Cause axis_misalignment() {
           .separates = "rates of both signs about the other axis",
           .parameters = {{"m", units::radians}},
           .mean = &kEffect,
-          .lacks = lacks};
+          .lacks = lacks,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

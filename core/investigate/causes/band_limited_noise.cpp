@@ -2,6 +2,7 @@
 /// E = N^2 |H|^2 + floor + slow: rounding and the leakage of the periodogram fill the stop band by a level that is
 /// fitted.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -158,6 +159,11 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   }
 }
 
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  axis.hardware->bandwidth_hz[axis.channel] = found.parameters[0].estimate.value;
+  return true;
+}
+
 }  // namespace
 
 Cause band_limited_noise() {
@@ -170,7 +176,8 @@ Cause band_limited_noise() {
           .parameters = {{"corner_hz", units::hertz}},
           .examine = examine,
           .log_gain = log_gain,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -28,6 +28,7 @@ namespace driftlab::investigate {
 
 struct FullRate;
 struct Draft;
+struct UnitAxis;
 
 /// A cause that adds `amplitude` times a template to the error.
 struct MeanEffect {
@@ -98,6 +99,9 @@ struct Cause {
   /// Puts the effect into a simulated recording (core/investigate/draft.hpp); `values` in the order of `parameters`,
   /// SI.
   void (*inject)(Draft& draft, std::span<const double> values, Random& random) = nullptr;
+  /// Makes what was found part of a simulated inertial unit (unit_axis.hpp); false where its values do not fit. Null: a
+  /// navigation simulation cannot hold the cause. At least one parameter has been found.
+  bool (*in_unit)(const Evidence& found, UnitAxis& axis) = nullptr;
 };
 
 /// Every cause once.

@@ -1,12 +1,15 @@
 /// flicker_noise: flicker noise.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 
 namespace driftlab::investigate {
 namespace {
 
 constexpr SlowKind kKind = SlowKind::Flicker;
+
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "flicker_noise", found); }
 
 }  // namespace
 
@@ -19,7 +22,8 @@ Cause flicker_noise() {
           .separates = "a longer recording: flicker keeps its floor over decades of averaging time",
           .parameters = {{"B", units::level}},
           .slow = &kKind,
-          .lacks = lacks_motion};
+          .lacks = lacks_motion,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -1,12 +1,15 @@
 /// gauss_markov: one more slow Gauss-Markov process.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 
 namespace driftlab::investigate {
 namespace {
 
 constexpr SlowKind kKind = SlowKind::GaussMarkov;
+
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "gauss_markov", found); }
 
 }  // namespace
 
@@ -19,7 +22,8 @@ Cause gauss_markov() {
           .separates = "a recording many correlation times long",
           .parameters = {{"sigma", units::level}, {"beta", units::per_hertz_rate}},
           .slow = &kKind,
-          .lacks = lacks_motion};
+          .lacks = lacks_motion,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

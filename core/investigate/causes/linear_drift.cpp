@@ -1,6 +1,7 @@
 /// linear_drift: the bias drifts, R t, t from the first sample of the file.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 
 namespace driftlab::investigate {
@@ -17,6 +18,8 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
 
 constexpr MeanEffect kEffect{.build = build, .penalty = 1.0, .scope_moving = true, .scope_single = true};
 
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "linear_drift", found); }
+
 }  // namespace
 
 Cause linear_drift() {
@@ -27,7 +30,8 @@ Cause linear_drift() {
           .needs = "any recording",
           .separates = "a recording several times as long: a drift goes on, a warm-up ends, a random walk turns back",
           .parameters = {{"R", units::per_second}},
-          .mean = &kEffect};
+          .mean = &kEffect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,6 @@
 /// output_resolution: the output is rounded to multiples of a step that is coarse enough to show against the noise.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/lattice.hpp"
@@ -54,6 +55,11 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   });
 }
 
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  axis.hardware->quantization_step[axis.channel] = found.parameters[0].estimate.value;
+  return true;
+}
+
 }  // namespace
 
 Cause output_resolution() {
@@ -65,7 +71,8 @@ Cause output_resolution() {
           .separates = "",
           .parameters = {{"step", units::level}},
           .file_fact = file_fact,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -2,6 +2,7 @@
 /// free in each. Found in the periodogram of the innovations, each ordinate against its neighbourhood
 /// (core/investigate/lines.hpp).
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -26,6 +27,8 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "sinusoid", found); }
+
 }  // namespace
 
 Cause periodic_disturbance() {
@@ -38,7 +41,8 @@ Cause periodic_disturbance() {
           .parameters = {{"amplitude", units::level}, {"frequency_hz", units::hertz}},
           .examine = examine,
           .log_gain = log_gain,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -4,6 +4,7 @@
 #include "core/investigate/added_density.hpp"
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -57,6 +58,8 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "quantization_noise", found); }
+
 }  // namespace
 
 Cause quantization_noise() {
@@ -70,7 +73,8 @@ Cause quantization_noise() {
           .lacks = lacks_contrast,
           .examine = examine,
           .log_gain = log_gain,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

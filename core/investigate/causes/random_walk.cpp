@@ -1,12 +1,15 @@
 /// random_walk: a random walk of the bias.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 
 namespace driftlab::investigate {
 namespace {
 
 constexpr SlowKind kKind = SlowKind::RandomWalk;
+
+bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "random_walk", found); }
 
 }  // namespace
 
@@ -19,7 +22,8 @@ Cause random_walk() {
           .separates = "a recording many times longer than the correlation time in question",
           .parameters = {{"K", units::per_root_second}},
           .slow = &kKind,
-          .lacks = lacks_motion};
+          .lacks = lacks_motion,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -2,6 +2,7 @@
 /// it.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/lattice.hpp"
@@ -62,6 +63,11 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   });
 }
 
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  axis.hardware->range[axis.channel] = found.parameters[0].estimate.value;
+  return true;
+}
+
 }  // namespace
 
 Cause saturation() {
@@ -75,7 +81,8 @@ Cause saturation() {
           .lacks = lacks_rates,
           .file_fact = file_fact,
           .spoils = spoils,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,7 @@
 /// scale_factor_error: S w, w the reference rate about the sensor's own axis.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 
 #include <cmath>
@@ -15,6 +16,11 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 
 constexpr MeanEffect kEffect{.build = build, .penalty = 1.0, .part_of_rate = true};
 
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  axis.hardware->scale_factor[axis.channel] = found.parameters[0].estimate.value;
+  return true;
+}
+
 }  // namespace
 
 Cause scale_factor_error() {
@@ -26,7 +32,8 @@ Cause scale_factor_error() {
           .separates = "rates of both signs and several magnitudes; the same rates on another turntable",
           .parameters = {{"S", units::ppm}},
           .mean = &kEffect,
-          .lacks = lacks_rotation};
+          .lacks = lacks_rotation,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

@@ -1,12 +1,20 @@
 /// turn_on_bias: a bias that differs from recording to recording.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
+
+#include <cmath>
 
 namespace driftlab::investigate {
 namespace {
 
 constexpr SlowKind kKind = SlowKind::Offset;
+
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  axis.bias_sd = std::hypot(axis.bias_sd, found.parameters[0].estimate.value);
+  return true;
+}
 
 }  // namespace
 
@@ -20,7 +28,8 @@ Cause turn_on_bias() {
           .separates = "the same condition several times, switched off in between",
           .parameters = {{"sigma", units::level}},
           .slow = &kKind,
-          .lacks = lacks_recordings};
+          .lacks = lacks_recordings,
+          .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate

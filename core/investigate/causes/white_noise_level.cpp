@@ -3,6 +3,7 @@
 /// white part.
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/draft.hpp"
 #include "core/investigate/full_rate.hpp"
@@ -51,6 +52,12 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+/// The level found stands in the place of the old one.
+bool in_unit(const Evidence& found, UnitAxis& axis) {
+  std::erase_if(axis.model, [](const Process& process) { return process.kind->name == "white_noise"; });
+  return add_process(axis, "white_noise", found);
+}
+
 }  // namespace
 
 Cause white_noise_level() {
@@ -65,7 +72,8 @@ Cause white_noise_level() {
       .lacks = lacks_contrast,
       .examine = examine,
       .deviation = deviation,
-      .inject = inject_effect};
+      .inject = inject_effect,
+      .in_unit = in_unit};
 }
 
 }  // namespace driftlab::investigate
