@@ -168,23 +168,13 @@ Result<Response> create_calibration(ApiContext& context, const Request& request)
 }
 
 Result<Response> list_calibrations(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
     return fail(device_id.error());
   }
-  auto rows = context.store.calibrations(*device_id, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const StoredCalibration& calibration : *rows) {
-    items.push_back(to_json(calibration));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.calibrations(*device_id, page); },
+      [](const StoredCalibration& calibration) { return to_json(calibration); });
 }
 
 Result<Response> get_calibration(ApiContext& context, const Request& request) {

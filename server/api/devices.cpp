@@ -74,19 +74,9 @@ Result<Response> create_device(ApiContext& context, const Request& request) {
 }
 
 Result<Response> list_devices(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
-  auto rows = context.store.devices({page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Device& device : *rows) {
-    items.push_back(to_json(device));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.devices(page); },
+      [](const Device& device) { return to_json(device); });
 }
 
 Result<Response> get_device(ApiContext& context, const Request& request) {

@@ -52,4 +52,23 @@ namespace driftlab::server {
 [[nodiscard]] Response list_response(const Request& request, const Page& page, std::vector<Json> items,
                                      const std::function<std::string(std::size_t)>& id_of);
 
+/// The page of stored rows that a request asks for. `fetch` reads rows after an id, as many as asked and one more;
+/// `item` makes the document of one. Rows have an `id`. Errors: those of page_of and of the store.
+template <class Fetch, class Item>
+[[nodiscard]] Result<Response> list_rows(const Request& request, const Fetch& fetch, const Item& item) {
+  const auto page = page_of(request);
+  if (!page) {
+    return fail(page.error());
+  }
+  const auto rows = fetch(Page{page->after, page->limit + 1});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<Json> items;
+  for (const auto& row : *rows) {
+    items.push_back(item(row));
+  }
+  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+}
+
 }  // namespace driftlab::server

@@ -17,10 +17,6 @@ Json summary(const Investigation& row) {
 }
 
 Result<Response> list_investigations(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   InvestigationFilter filter;
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
@@ -33,15 +29,9 @@ Result<Response> list_investigations(ApiContext& context, const Request& request
   if (const auto job = request.parameter("job")) {
     filter.job_id = *job;
   }
-  auto rows = context.store.investigations(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Investigation& row : *rows) {
-    items.push_back(summary(row));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.investigations(filter, page); },
+      [](const Investigation& row) { return summary(row); });
 }
 
 Result<Response> get_investigation(ApiContext& context, const Request& request) {

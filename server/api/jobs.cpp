@@ -67,10 +67,6 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
 }
 
 Result<Response> list_jobs(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   JobFilter filter;
   if (const auto kind = request.parameter("kind")) {
     filter.kind = *kind;
@@ -80,15 +76,9 @@ Result<Response> list_jobs(ApiContext& context, const Request& request) {
     return fail(state.error());
   }
   filter.state = *state;
-  auto rows = context.store.jobs(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Job& job : *rows) {
-    items.push_back(to_json(job));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.jobs(filter, page); },
+      [](const Job& job) { return to_json(job); });
 }
 
 Result<Response> get_job(ApiContext& context, const Request& request) {

@@ -26,10 +26,6 @@ Json to_json(const Model& model) {
 }
 
 Result<Response> list_models(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   ModelFilter filter;
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
@@ -39,15 +35,9 @@ Result<Response> list_models(ApiContext& context, const Request& request) {
   if (const auto parent = request.parameter("parent")) {
     filter.parent_id = *parent;
   }
-  auto rows = context.store.models(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Model& model : *rows) {
-    items.push_back(to_json(model));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.models(filter, page); },
+      [](const Model& model) { return to_json(model); });
 }
 
 Result<Response> get_model(ApiContext& context, const Request& request) {

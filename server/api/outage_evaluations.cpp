@@ -112,10 +112,6 @@ Result<Response> create(ApiContext& context, const Request& request) {
 }
 
 Result<Response> list(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   JobFilter filter;
   filter.kind = std::string(kOutageEvaluationKind);
   auto state = state_filter(request);
@@ -123,15 +119,9 @@ Result<Response> list(ApiContext& context, const Request& request) {
     return fail(state.error());
   }
   filter.state = *state;
-  auto rows = context.store.jobs(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Job& job : *rows) {
-    items.push_back(summary(job));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.jobs(filter, page); },
+      [](const Job& job) { return summary(job); });
 }
 
 Result<Response> get(ApiContext& context, const Request& request) {

@@ -21,10 +21,6 @@ Result<Response> recording_response(ApiContext& context, int status, const Recor
 }
 
 Result<Response> list_recordings(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   RecordingFilter filter;
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
@@ -38,15 +34,9 @@ Result<Response> list_recordings(ApiContext& context, const Request& request) {
     }
     filter.condition = driftlab::to_text(*condition);
   }
-  auto rows = context.store.recordings(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Recording& recording : *rows) {
-    items.push_back(to_json(recording, nullptr));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.recordings(filter, page); },
+      [](const Recording& recording) { return to_json(recording, nullptr); });
 }
 
 Result<Response> get_recording(ApiContext& context, const Request& request) {

@@ -115,23 +115,13 @@ Result<Response> create_study(ApiContext& context, const Request& request) {
 }
 
 Result<Response> list_studies(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
     return fail(device_id.error());
   }
-  auto rows = context.store.studies(*device_id, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Study& study : *rows) {
-    items.push_back(to_json(study));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.studies(*device_id, page); },
+      [](const Study& study) { return to_json(study); });
 }
 
 Result<Response> get_study(ApiContext& context, const Request& request) {
