@@ -122,12 +122,16 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
       "deg/s), two "
       "recordings of 15 min each, nine candidates: verdicts [%%], and how often the best common structure is rejected "
       "at 5 "
-      "%%.\n\n| truth | runs | one structure | changes | undecided | rejected |\n|---|---|---|---|---|---|\n");
+      "%%. Where drift and random walk never occur together the structure changes; a random walk that happens to look "
+      "like "
+      "a drift as well in one of the three conditions that have it shows both, and speaks for one structure.\n\n| "
+      "truth | "
+      "runs | one structure | changes | undecided | rejected |\n|---|---|---|---|---|---|\n");
   struct Case {
     std::string name;
     std::vector<Model> conditions;
     bool one;
-    bool sure;  ///< a change so large that it must be seen
+    bool sure;  ///< a change so large that it must mostly be seen
   };
   std::vector<Case> cases{{"WN+GM throughout", rate_models(false), true, true},
                           {"WN+2GM throughout", rate_models(true), true, true}};
@@ -153,8 +157,10 @@ TEST(Accuracy, StructureVerdictIsSeldomWrong) {
     section.print("| %s | %zu | %.0f | %.0f | %.0f | %.0f |\n", one.name.c_str(), runs,
                   percent * static_cast<double>(verdicts.one), percent * static_cast<double>(verdicts.changes),
                   percent * static_cast<double>(verdicts.undecided), percent * static_cast<double>(verdicts.rejected));
-    if (one.sure) {
-      EXPECT_LE(one.one ? verdicts.changes : verdicts.one, runs / 10 + 1) << one.name;
+    if (one.one) {
+      EXPECT_LE(verdicts.changes, runs / 10 + 1) << one.name;
+    } else if (one.sure) {
+      EXPECT_GE(verdicts.changes, runs / 2) << one.name;
     }
   }
 }
