@@ -259,14 +259,27 @@ Status check_options(const CharacteriseOptions& options) {
   return {};
 }
 
-Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel, const CharacteriseOptions& options,
-                                                     const RunControl& control) {
-  if (Status status = check_options(options); !status) {
-    return fail(std::move(status.error()));
+namespace {
+
+/// The longest run of rows between two gaps.
+std::span<const double> longest_between_gaps(const ChannelSamples& channel) {
+  std::size_t from = 0;
+  std::span<const double> longest;
+  const auto close = [&](std::size_t to) {
+    if (to - from > longest.size()) {
+      longest = channel.values.subspan(from, to - from);
+    }
+    from = to;
+  };
+  for (const Gap& gap : channel.gaps) {
+    close(gap.row);
   }
-  if (Status status = check_channel(channel); !status) {
-    return fail(std::move(status.error()));
-  }
+  close(channel.values.size());
+  return longest;
+}
+
+Result<ChannelCharacterisation> characterise_as_given(const ChannelSamples& channel, const CharacteriseOptions& options,
+                                                      const RunControl& control) {
   control.report("variance", 0.0);
   const Result<SampleSummary> summary = summarise(channel.values, control);
   if (!summary) {
@@ -304,6 +317,33 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   }
   control.report("done", 1.0);
   return result;
+}
+
+}  // namespace
+
+Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel, const CharacteriseOptions& options,
+                                                     const RunControl& control) {
+  if (Status status = check_options(options); !status) {
+    return fail(std::move(status.error()));
+  }
+  if (Status status = check_channel(channel); !status) {
+    return fail(std::move(status.error()));
+  }
+  Result<ChannelCharacterisation> result = characterise_as_given(channel, options, control);
+  const bool untold = !result && result.error().code == ErrorCode::TooFewSamples && !channel.gaps.empty();
+  const std::span<const double> rest = untold ? longest_between_gaps(channel) : std::span<const double>();
+  if (rest.size() < kFewestSamples) {
+    return result;
+  }
+  Result<ChannelCharacterisation> shorter =
+      characterise_as_given({.values = rest, .dt_s = channel.dt_s, .si_factor = channel.si_factor}, options, control);
+  if (shorter) {
+    shorter->warnings.push_back(
+        "The gaps leave too many equal samples to say what is missing in them: only the longest "
+        "stretch without a gap is analysed, " +
+        std::to_string(rest.size()) + " of " + std::to_string(channel.values.size()) + " samples.");
+  }
+  return shorter;
 }
 
 }  // namespace driftlab

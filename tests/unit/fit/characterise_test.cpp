@@ -272,6 +272,18 @@ TEST(Characterise, MissingSamplesAreNeitherBridgedNorCutAway) {
             ErrorCode::InvalidArgument);
 }
 
+/// A sensor that froze for most of a recording with gaps: what is missing cannot be completed, what is sound still
+/// counts.
+TEST(Characterise, AFrozenSensorWithGapsIsAnalysedBetweenThem) {
+  std::vector<double> rows = make(model_of({{"white_noise", {0.02}}}), 6000, 29);
+  std::fill(rows.begin() + 900, rows.end(), rows[899]);
+  const std::vector<Gap> gaps{{950, 2}, {5000, 1}};
+  const auto found = characterise_channel({.values = rows, .dt_s = kDt, .gaps = gaps}, {.models = {"WN"}});
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_FALSE(found->warnings.empty());
+  EXPECT_NE(found->warnings.back().find("4050 of 6000 samples"), std::string::npos) << found->warnings.back();
+}
+
 TEST(Characterise, OptionsAreCheckedWithoutData) {
   EXPECT_TRUE(check_options({}).has_value());
   EXPECT_FALSE(check_options({.models = {}}).has_value());
