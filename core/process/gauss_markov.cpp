@@ -27,7 +27,11 @@ double haar_bump(double y) {
     double sign = -1.0;
     double sum = 0.0;
     for (int k = 3; k < 24; ++k) {
-      sum += sign * (4.0 - two_power) * power;
+      const double term = sign * (4.0 - two_power) * power;
+      sum += term;
+      if (std::fabs(term) < 1e-18 * std::fabs(sum)) {  // nothing that follows moves the last bit
+        break;
+      }
       power *= y / (k + 1);
       two_power *= 2.0;
       sign = -sign;
@@ -41,34 +45,40 @@ double haar_bump(double y) {
 /// Above this x = beta dt the process is white noise to the last bit, and sinh would overflow before long.
 constexpr double kWhite = 40.0;
 
-double unit_haar_variance(double x, double m) {
+/// The variance at sigma = 1, and what it is made of.
+struct UnitHaar {
+  double variance = 0.0;
+  double s = 0.0;          ///< sinh(x/2)
+  double numerator = 0.0;  ///< 2 m (sinh x - x) + p(m x)
+};
+
+UnitHaar unit_haar(double x, double m) {
   if (x > kWhite) {
-    return 0.5 / m;
+    return {.variance = 0.5 / m};
   }
   const double s = std::sinh(0.5 * x);
-  return (2.0 * m * sinh_minus(x) + haar_bump(m * x)) / (8.0 * m * m * s * s);
+  const double numerator = 2.0 * m * sinh_minus(x) + haar_bump(m * x);
+  return {numerator / (8.0 * m * m * s * s), s, numerator};
 }
 
 }  // namespace
 
 double GaussMarkov::haar_variance(double m, double dt_s) const {
-  return sigma * sigma * unit_haar_variance(beta * dt_s, m);
+  return sigma * sigma * unit_haar(beta * dt_s, m).variance;
 }
 
 void GaussMarkov::haar_gradient(double m, double dt_s, std::span<double> out) const {
   const double x = beta * dt_s;
-  const double unit = unit_haar_variance(x, m);
-  out[0] = 2.0 * sigma * unit;
+  const UnitHaar unit = unit_haar(x, m);
+  out[0] = 2.0 * sigma * unit.variance;
   if (x > kWhite) {
     out[1] = 0.0;
     return;
   }
   // d ln(numerator)/dx - d ln(denominator)/dx; p'(y) = 2 (1 - e^-y)^2.
-  const double s = std::sinh(0.5 * x);
   const double t = std::expm1(-m * x);
-  const double numerator = 2.0 * m * sinh_minus(x) + haar_bump(m * x);
-  const double slope = (4.0 * m * s * s + 2.0 * m * t * t) / numerator - 1.0 / std::tanh(0.5 * x);
-  out[1] = sigma * sigma * unit * slope * dt_s;
+  const double slope = (4.0 * m * unit.s * unit.s + 2.0 * m * t * t) / unit.numerator - 1.0 / std::tanh(0.5 * x);
+  out[1] = sigma * sigma * unit.variance * slope * dt_s;
 }
 
 std::optional<double> GaussMarkov::spectral_density(double f_hz, double dt_s) const {
