@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -37,9 +38,13 @@ bool names(const Finding& finding, const std::string& cause) {
                                                    [&](const Evidence& rival) { return rival.cause->name == cause; });
 }
 
-/// Its size is fixed in `make_case` and no oracle's: a fact of the file, or two things at once.
+/// Whether `make_case` sizes the effect by an oracle's likelihood: not facts of the file, and not where only the
+/// leading term is known (tails, quantization) or where a few low frequencies carry everything (a random walk, a bias).
 bool has_oracle(const Cause& cause) {
-  return cause.family != Family::File && cause.name != "band_limited_noise" && cause.name != "turn_on_bias";
+  constexpr std::array kSizedOtherwise{"band_limited_noise", "turn_on_bias",       "outliers",
+                                       "heavy_tailed_noise", "quantization_noise", "random_walk"};
+  return cause.family != Family::File &&
+         std::find(kSizedOtherwise.begin(), kSizedOtherwise.end(), cause.name) == kSizedOtherwise.end();
 }
 
 struct Cell {
