@@ -42,6 +42,19 @@ bool extend(const Evidence& found, UnitAxis& axis) {
   return found.cause->in_unit != nullptr && !found.parameters.empty() && found.cause->in_unit(found, axis);
 }
 
+/// What was found of the axis, as properties of the unit.
+void set_properties(const UnitAxis& axis, ImuHardware& hardware) {
+  const std::size_t c = axis.channel;
+  hardware.scale_factor[c] = axis.scale_factor.value_or(hardware.scale_factor[c]);
+  hardware.range[c] = axis.range.value_or(hardware.range[c]);
+  hardware.quantization_step[c] = axis.quantization_step.value_or(hardware.quantization_step[c]);
+  hardware.bandwidth_hz[c] = axis.bandwidth_hz.value_or(hardware.bandwidth_hz[c]);
+  for (std::size_t other = 0; c < 3 && other < axis.misalignment.size(); ++other) {
+    double& element = hardware.gyroscope_misalignment(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(other));
+    element = axis.misalignment.at(other).value_or(element);
+  }
+}
+
 bool acts_on(const Evidence& found, std::size_t group) {
   return found.group == group ||
          std::find(found.also_groups.begin(), found.also_groups.end(), group) != found.also_groups.end();
@@ -60,7 +73,7 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
       continue;
     }
     const double bias_sd = scenario.truth.axes[*number].bias_sd;
-    UnitAxis axis{*number, base_model(channel), bias_sd, &models.extended.hardware};
+    UnitAxis axis{.channel = *number, .model = base_model(channel), .bias_sd = bias_sd};
     models.baseline.axes[*number] = AxisModel{ModelSchedule::constant(axis.model), bias_sd};
     for (const Finding& finding : report.findings) {
       if (acts_on(finding.evidence, static_cast<std::size_t>(group - groups.begin())) &&
@@ -68,6 +81,7 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
         models.left_out.push_back(std::string(finding.evidence.cause->name) + " of " + channel.channel);
       }
     }
+    set_properties(axis, models.extended.hardware);
     models.extended.axes[*number] = AxisModel{ModelSchedule::constant(std::move(axis.model)), axis.bias_sd};
   }
   return models;

@@ -42,9 +42,7 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   if (axis.channel > 2) {
     return false;
   }
-  const auto row = static_cast<Eigen::Index>(axis.channel);
-  axis.hardware->gyroscope_misalignment(row, static_cast<Eigen::Index>(found.shape)) =
-      found.parameters[0].estimate.value;
+  axis.misalignment.at(static_cast<std::size_t>(found.shape)) = found.parameters[0].estimate.value;
   return true;
 }
 

@@ -160,7 +160,7 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
 }
 
 bool in_unit(const Evidence& found, UnitAxis& axis) {
-  axis.hardware->bandwidth_hz[axis.channel] = found.parameters[0].estimate.value;
+  axis.bandwidth_hz = found.parameters[0].estimate.value;
   return true;
 }
 

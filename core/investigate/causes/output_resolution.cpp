@@ -56,7 +56,7 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
 }
 
 bool in_unit(const Evidence& found, UnitAxis& axis) {
-  axis.hardware->quantization_step[axis.channel] = found.parameters[0].estimate.value;
+  axis.quantization_step = found.parameters[0].estimate.value;
   return true;
 }
 

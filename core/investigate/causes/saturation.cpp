@@ -64,7 +64,7 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
 }
 
 bool in_unit(const Evidence& found, UnitAxis& axis) {
-  axis.hardware->range[axis.channel] = found.parameters[0].estimate.value;
+  axis.range = found.parameters[0].estimate.value;
   return true;
 }
 

@@ -17,7 +17,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 constexpr MeanEffect kEffect{.build = build, .penalty = 1.0, .part_of_rate = true};
 
 bool in_unit(const Evidence& found, UnitAxis& axis) {
-  axis.hardware->scale_factor[axis.channel] = found.parameters[0].estimate.value;
+  axis.scale_factor = found.parameters[0].estimate.value;
   return true;
 }
 

@@ -1,20 +1,25 @@
 #pragma once
 /// What a finding means to a simulated inertial unit: the last part of a cause's declaration (Cause::in_unit).
 #include "core/investigate/causes/cause.hpp"
-#include "core/navigate/imu_simulator.hpp"
 #include "core/process/model.hpp"
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 namespace driftlab::investigate {
 
-/// One studied axis of the unit while findings are added to it.
+/// One studied axis of the unit while findings are added to it. Properties that nothing was found of are empty.
 struct UnitAxis {
-  std::size_t channel = 0;  ///< in the order of ImuSample
+  std::size_t channel = 0;  ///< x, y, z of the gyroscopes, then of the accelerometers
   Model model;              ///< its noise
   double bias_sd = 0.0;     ///< of its constant bias [SI]
-  ImuHardware* hardware = nullptr;
+  std::optional<double> scale_factor = {};
+  std::optional<double> range = {};                        ///< the output is clipped at +- this [SI]
+  std::optional<double> quantization_step = {};            ///< of the output [SI]
+  std::optional<double> bandwidth_hz = {};                 ///< corner of its low-pass
+  std::array<std::optional<double>, 3> misalignment = {};  ///< part of the rate about x, y, z
 };
 
 /// Adds a process with the values found, in the cause's order. False where they are outside its bounds.
