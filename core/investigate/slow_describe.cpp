@@ -4,6 +4,8 @@
 #include "core/investigate/slow_search.hpp"
 #include "core/process/dense.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 
