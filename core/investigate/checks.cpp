@@ -171,7 +171,7 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
     checks.push_back(chi_square_check(stem + "whiteness", member, whiteness_statistic(e, data.dt_s), 10.0));
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
-      const double share = data.band_limited ? std::min(1.0, data.corner_hz * data.dt_s) : 1.0;
+      const double share = data.band_limited() ? std::min(1.0, data.corner_hz * data.dt_s) : 1.0;
       checks.push_back(chi_square_check(stem + "spectrum", member, band_statistic(e, share), 15.0));
     }
     wavelet_checks(member, e, data.used[r], data.dt_s, data.given ? 1.0 : all.mean_square, checks);

@@ -34,10 +34,11 @@ struct FullRate {
   /// Recordings of a real sensor repeat their noise level to about 0.6 %, not to 1/sqrt(2 n): where no model describes
   /// the spectra, gains of contrasts between recordings are divided by 1 + 2 n 0.006^2. 1 elsewhere.
   double repeatability = 1.0;
-  double corner_hz = 0.0;     ///< of a band limit that has been found
-  bool band_limited = false;  ///< a band limit has been found: the colour at the top of the band is no news
+  double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
+  /// A band limit has been found: the colour at the top of the band is no news.
+  [[nodiscard]] bool band_limited() const { return corner_hz > 0.0; }
 };
 
 struct FullRateOptions {

@@ -370,7 +370,6 @@ class GroupSearch {
     options.lattice_step = lattice_step_;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
-    data.band_limited = true;
     data.corner_hz = outcome_.found.back().shape;
     data.flat = false;
   }
