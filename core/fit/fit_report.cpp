@@ -75,9 +75,8 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
 }
 
 /// The longest two scales scatter less than the chi-squares they are taken for where they have few degrees of freedom:
-/// the distance falls short of its own by 1.1-1.3 on average in models of noise (4,000 simulations each at N = 9,000
-/// and 90,000), and by nothing where a drift rules those scales and makes their variance regular. Without this the test
-/// rejects 2.4 % of true models at 5 %; with it, see the column J in tests/ACCURACY.md.
+/// the distance falls short of its own by about 1.15 on average in models of noise, and by nothing where a drift rules
+/// those scales and makes their variance regular. The size of the test so corrected: column J of tests/ACCURACY.md.
 double shortfall(double longest_edf) {
   constexpr double kShort = 1.15;
   return kShort * std::clamp((6.0 - longest_edf) / 4.0, 0.0, 1.0);
