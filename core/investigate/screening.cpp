@@ -8,25 +8,12 @@
 #include <cmath>
 
 namespace driftlab::investigate {
-namespace {
-
-constexpr std::size_t kPlaces = 24;
-constexpr std::size_t kMargin = 5;  ///< blocks at either end where a step is not sought
-
-Eigen::MatrixXd gram_of(const std::vector<double>& rows, std::size_t width) {
-  const auto w = static_cast<Eigen::Index>(width);
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> m(
-      rows.data(), static_cast<Eigen::Index>(rows.size()) / w, w);
-  return m.transpose() * m;
-}
-
-}  // namespace
 
 ScopedGram::ScopedGram(const BlockColumns& whitened, std::size_t fixed) : fixed_(static_cast<Eigen::Index>(fixed)) {
   const auto width = static_cast<Eigen::Index>(whitened.width);
   all_ = Eigen::MatrixXd::Zero(width, width);
-  for (const auto& rows : whitened.rows) {
-    gram_.push_back(gram_of(rows, whitened.width));
+  for (std::size_t r = 0; r < whitened.rows.size(); ++r) {
+    gram_.push_back(gram_of(whitened, r));
     all_ += gram_.back();
   }
 }
@@ -137,118 +124,6 @@ double ScopedGram::gain_of_member(std::size_t r, const std::vector<std::size_t>&
     }
   }
   return 0.0;
-}
-
-SingleRecording take_recording(const BlockSeries& series, const SlowModel& model, std::size_t r) {
-  SingleRecording single;
-  single.series.dt_s = series.dt_s;
-  single.series.block = series.block;
-  single.series.recordings = {series.recordings[r]};
-  single.series.recordings[0].pattern = 0;
-  single.model.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]);
-  for (const SlowComponent& component : model.components) {
-    if (component.acts_in(r)) {
-      single.model.components.push_back(component);
-      single.model.components.back().in.clear();
-    }
-  }
-  return single;
-}
-
-StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns)
-    : series_(series), model_(model) {
-  const Whitened whitened = whiten(series, model, columns);
-  const auto p = static_cast<Eigen::Index>(columns.width) - 1;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(p + 1, p + 1);
-  for (const auto& rows : whitened.columns.rows) {
-    gram += gram_of(rows, columns.width);
-  }
-  Eigen::MatrixXd b = gram.bottomRightCorner(p, p);
-  b.diagonal() *= 1.0 + 1e-12;
-  for (Eigen::Index k = 0; k < p; ++k) {
-    b(k, k) = b(k, k) > 0.0 ? b(k, k) : 1.0;  // a regressor without input
-  }
-  inverse_ = inverse(b);
-  const Eigen::VectorXd amplitude = inverse_ * gram.col(0).tail(p);
-  for (std::size_t r = 0; r < series.recordings.size(); ++r) {
-    const auto& rows = whitened.columns.rows[r];
-    const std::size_t blocks = rows.size() / columns.width;
-    std::vector<std::vector<double>> sums;
-    for (std::size_t c = 0; c < columns.width; ++c) {
-      std::vector<double> z(blocks);
-      for (std::size_t i = 0; i < blocks; ++i) {
-        z[i] = rows[i * columns.width + c];
-        if (c == 0) {
-          for (Eigen::Index k = 0; k < p; ++k) {
-            z[i] -= amplitude[k] * rows[i * columns.width + static_cast<std::size_t>(k) + 1];
-          }
-        }
-      }
-      std::vector<double> back = whiten_transposed(series, model, r, z);
-      for (std::size_t i = blocks - 1; i-- > 0;) {
-        back[i] += back[i + 1];
-      }
-      sums.push_back(std::move(back));
-    }
-    tail_sum_.push_back(std::move(sums));
-  }
-}
-
-std::vector<double> StepScan::gains(std::size_t r) const {
-  const std::size_t blocks = series_.recordings[r].mean.size();
-  std::vector<double> result(blocks, 0.0);
-  if (blocks < 4 * kMargin) {
-    return result;
-  }
-  const SingleRecording single = take_recording(series_, model_, r);
-  BlockColumns steps = BlockColumns::zeros(single.series, kPlaces);
-  std::vector<double> place(kPlaces);
-  for (std::size_t k = 0; k < kPlaces; ++k) {
-    const double share = static_cast<double>(k) / (kPlaces - 1.0);
-    // Denser towards both ends, where the norm changes fastest.
-    place[k] = std::round((0.5 - 0.5 * std::cos(share * 3.14159265358979)) * static_cast<double>(blocks - 1));
-    for (auto i = static_cast<std::size_t>(place[k]); i < blocks; ++i) {
-      steps.rows[0][i * kPlaces + k] = 1.0;
-    }
-  }
-  const Whitened whitened = whiten(single.series, single.model, steps);
-  std::vector<double> norm(kPlaces, 0.0);
-  for (std::size_t i = 0; i < blocks; ++i) {
-    for (std::size_t k = 0; k < kPlaces; ++k) {
-      const double z = whitened.columns.rows[0][i * kPlaces + k];
-      norm[k] += z * z;
-    }
-  }
-  const auto p = inverse_.rows();
-  Eigen::VectorXd cross(p);
-  std::size_t k = 0;
-  for (std::size_t i = kMargin; i + kMargin < blocks; ++i) {
-    while (k + 2 < kPlaces && static_cast<double>(i) > place[k + 1]) {
-      ++k;
-    }
-    const double width = std::max(1.0, place[k + 1] - place[k]);
-    const double own = norm[k] + (norm[k + 1] - norm[k]) * (static_cast<double>(i) - place[k]) / width;
-    for (Eigen::Index c = 0; c < p; ++c) {
-      cross[c] = tail_sum_[r][static_cast<std::size_t>(c) + 1][i];
-    }
-    const double d = own - cross.dot(inverse_ * cross);
-    if (d > 1e-6 * own && d > 0.0) {
-      const double n = tail_sum_[r][0][i];
-      result[i] = n * n / d;
-    }
-  }
-  return result;
-}
-
-StepScan::Best StepScan::best_in(std::size_t r) const {
-  const std::vector<double> gain = gains(r);
-  Best best;
-  for (std::size_t i = 0; i < gain.size(); ++i) {
-    if (gain[i] > best.gain) {
-      best = {i, gain[i]};
-    }
-  }
-  return best;
 }
 
 }  // namespace driftlab::investigate

@@ -36,34 +36,6 @@ class ScopedGram {
   Eigen::MatrixXd all_;
 };
 
-/// Steps at every block of a recording. W'z gives all inner products by running sums; the norm of a whitened step
-/// varies smoothly and is computed at 24 places.
-class StepScan {
- public:
-  /// `columns`: data, then regressors. O(blocks) per recording and regressor.
-  StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns);
-  struct Best {
-    std::size_t block = 0;
-    double gain = 0.0;
-  };
-  [[nodiscard]] Best best_in(std::size_t r) const;
-  /// Gain of a step at each block of recording r (0 near the ends).
-  [[nodiscard]] std::vector<double> gains(std::size_t r) const;
-
- private:
-  const BlockSeries& series_;
-  const SlowModel& model_;
-  Eigen::MatrixXd inverse_;                                 ///< (B'B)^-1
-  std::vector<std::vector<std::vector<double>>> tail_sum_;  ///< recording, column (0: residual), block
-};
-
-/// The series and the model of one recording alone.
-struct SingleRecording {
-  BlockSeries series;
-  SlowModel model;
-};
-[[nodiscard]] SingleRecording take_recording(const BlockSeries& series, const SlowModel& model, std::size_t r);
-
 /// Keeps the better of two candidates for one cause and scope.
 template <class Candidate>
 void offer(std::vector<Candidate>& best, Candidate candidate) {

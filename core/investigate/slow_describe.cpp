@@ -1,7 +1,7 @@
 /// Parameters, intervals and held-out gains of what the slow search has accepted.
 #include "core/investigate/full_rate.hpp"
-#include "core/investigate/screening.hpp"
 #include "core/investigate/slow_search.hpp"
+#include "core/investigate/step_scan.hpp"
 #include "core/process/dense.hpp"
 
 #include <Eigen/Cholesky>
@@ -199,7 +199,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
     columns.rows[0][2 * i + 1] = 1e-9;  // the bias is known from all recordings
   }
   const StepScan scan(single.series, single.model, columns);
-  std::vector<double> gain = scan.gains(0);
+  std::vector<double> gain = scan.steps_in(0).gain;
   // Only the neighbourhood of the block found: elsewhere another step would have been accepted.
   const double reach = 40.0 / recording.dt_s;
   double top = 0.0;

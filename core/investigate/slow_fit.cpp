@@ -127,10 +127,8 @@ Derivatives differentiate(const BlockSeries& series, const BlockColumns& residua
 LeastSquares solve_whitened(const BlockColumns& whitened) {
   const auto width = static_cast<Eigen::Index>(whitened.width);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
-  for (const auto& rows : whitened.rows) {
-    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> m(
-        rows.data(), static_cast<Eigen::Index>(rows.size()) / width, width);
-    gram.noalias() += m.transpose() * m;
+  for (std::size_t r = 0; r < whitened.rows.size(); ++r) {
+    gram += gram_of(whitened, r);
   }
   LeastSquares result;
   const Eigen::Index p = width - 1;

@@ -125,6 +125,14 @@ BlockColumns BlockColumns::zeros(const BlockSeries& series, std::size_t width) {
   return columns;
 }
 
+Eigen::MatrixXd gram_of(const BlockColumns& columns, std::size_t r) {
+  const auto width = static_cast<Eigen::Index>(columns.width);
+  const std::vector<double>& rows = columns.rows[r];
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> m(
+      rows.data(), static_cast<Eigen::Index>(rows.size()) / width, width);
+  return m.transpose() * m;
+}
+
 BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r) {
   BlockStates states;
   states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / series.block_s();

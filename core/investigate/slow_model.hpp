@@ -10,6 +10,8 @@
 /// L = 1. Flicker noise is six Gauss-Markov processes with correlation times spaced evenly in the logarithm.
 #include "core/investigate/block_series.hpp"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -47,6 +49,9 @@ struct BlockColumns {
   /// `width` zero columns shaped like the series.
   [[nodiscard]] static BlockColumns zeros(const BlockSeries& series, std::size_t width);
 };
+
+/// Inner products of the columns over recording r (width x width).
+[[nodiscard]] Eigen::MatrixXd gram_of(const BlockColumns& columns, std::size_t r);
 
 /// Innovations divided by their standard deviations, and what goes with them.
 struct Whitened {

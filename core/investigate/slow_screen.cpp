@@ -3,6 +3,7 @@
 #include "core/investigate/parallel.hpp"
 #include "core/investigate/screening.hpp"
 #include "core/investigate/slow_search.hpp"
+#include "core/investigate/step_scan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,11 +101,16 @@ void SlowSearch::screen_steps(const SlowModel& base, double base_score, std::vec
   const StepScan scan(series_, base, columns_with(accepted_));
   for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
     const StepScan::Best step = scan.best_in(r);
-    const double penalty = cause->mean->penalty + choice_penalty(static_cast<double>(series_.recordings.size()));
+    const double penalty = step_penalty(step.search_cost);
     const BlockRecording& blocks = series_.recordings[r];
     const double t0 = blocks.start_s + static_cast<double>(step.block) * series_.block_s();
     offer(best, Screened{cause, {r}, t0, penalty, base_score + step.gain - penalty, base});
   }
+}
+
+double SlowSearch::step_penalty(double search_cost) const {
+  const MeanEffect& effect = *find_cause("bias_step")->mean;
+  return effect.penalty + choice_penalty(static_cast<double>(series_.recordings.size())) + search_cost;
 }
 
 void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) const {
@@ -203,7 +209,12 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   }
   evidence.shape = best_shape;
   evidence.gain = best - null_score_;
-  evidence.score = best - null_score_ - candidate.penalty;
+  double penalty = candidate.penalty;
+  if (candidate.cause->mean->change_point) {
+    const StepScan scan(series_, best_fit.model, columns_with(accepted_));
+    penalty = step_penalty(scan.best_in(candidate.members.front()).search_cost);
+  }
+  evidence.score = evidence.gain - penalty;
   with.back().shape = best_shape;
   if (candidate.cause->mean->part_of_rate && share_of_rate(with, best_fit) > kLargestPart) {
     evidence.score = std::min(evidence.score, 0.0);

@@ -3,7 +3,6 @@
 #include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/parallel.hpp"
-#include "core/investigate/screening.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,8 +15,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
   return true;
 }
 
-constexpr MeanEffect kEffect{
-    .build = build, .penalty = 7.0, .scope_all = false, .scope_single = true, .change_point = true};
+constexpr MeanEffect kEffect{.build = build, .scope_all = false, .scope_single = true, .change_point = true};
 
 }  // namespace
 
