@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace driftlab::investigate {
 namespace {
@@ -41,13 +42,18 @@ FullRate half_of(const FullRate& data, std::size_t half) {
   return part;
 }
 
-const Evidence* same_scope(const std::vector<Evidence>& found, const Evidence& like) {
-  for (const Evidence& evidence : found) {
-    if (evidence.members == like.members) {
-      return &evidence;
+/// What a part of the data shows of a finding; nothing where it is not seen there.
+std::optional<Evidence> train_on(const FullRate& part, const Evidence& found) {
+  const Cause& cause = *found.cause;
+  std::vector<Evidence> all = cause.find_again != nullptr ? std::vector{cause.find_again(part, found)}  //
+                                                          : cause.examine(part);
+  for (Evidence& evidence : all) {
+    if (evidence.members == found.members) {
+      evidence.cause = &cause;
+      return std::move(evidence);
     }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 /// Gaussian log likelihood gained by the deviations a modulation implies; scales are those of the fold where free.
@@ -97,17 +103,14 @@ void hold_out(const FullRate& data, Evidence& found) {
     const bool halves = cause.log_gain != nullptr;
     const FullRate train = halves ? half_of(data, fold) : fold_of(data, fold);
     const FullRate test = halves ? half_of(data, 1 - fold) : fold_of(data, 1 - fold);
-    const std::vector<Evidence> again = cause.examine(train);
-    const Evidence* const trained = same_scope(again, found);
-    if (trained == nullptr) {
-      continue;  // not seen in this fold: nothing would have been added, nothing gained
+    const std::optional<Evidence> trained = train_on(train, found);
+    if (!trained) {
+      continue;  // nothing would have been added, nothing gained
     }
-    Evidence named = *trained;
-    named.cause = &cause;
     if (halves) {
-      gain += cause.log_gain(test, named);
+      gain += cause.log_gain(test, *trained);
     } else if (cause.deviation != nullptr) {
-      gain += gain_of_deviation(test, named);
+      gain += gain_of_deviation(test, *trained);
     } else {
       done = false;
     }

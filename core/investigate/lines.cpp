@@ -221,7 +221,7 @@ Evidence describe(const FullRate& data, const LineSpectra& spectra, const std::v
     information += modulus * modulus / p.variance * length * length / 12.0;
   }
   mean /= weight;
-  const double amplitude = mean - 0.5 * bias / weight / mean;
+  const double amplitude = std::max(0.0, mean - 0.5 * bias / weight / mean);
   const double sd = std::sqrt(1.0 / weight);
   const double sd_f = 1.0 / (2.0 * kPi * std::sqrt(std::max(information, 1e-12)));
   Evidence evidence;
@@ -312,6 +312,24 @@ std::vector<Evidence> find_lines(const FullRate& data) {
     found.push_back(std::move(evidence));
   }
   return found;
+}
+
+Evidence line_near(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz, double within_hz) {
+  const LineSpectra spectra = line_spectra(data);
+  double total = 0.0;
+  for (const std::size_t r : scope) {
+    total += spectra.samples[r];
+  }
+  const auto from = static_cast<std::size_t>(std::max(1.0, std::ceil((f_hz - within_hz) / spectra.df_hz)));
+  const auto to = static_cast<std::size_t>((f_hz + within_hz) / spectra.df_hz);
+  Peak peak{0.0, 0.0, from};
+  for (std::size_t i = from; i <= to && i + 2 < spectra.bins; ++i) {
+    const double s2 = combined(spectra, scope, i, total);
+    if (s2 > peak.s2) {
+      peak = {0.0, s2, i};
+    }
+  }
+  return describe(data, spectra, scope, peak, total);
 }
 
 double line_gain(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz, double amplitude) {

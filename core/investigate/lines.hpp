@@ -16,6 +16,10 @@ namespace driftlab::investigate {
 /// Parameters: amplitude [SI], frequency [Hz]. One transform per recording.
 [[nodiscard]] std::vector<Evidence> find_lines(const FullRate& data);
 
+/// The strongest line of a scope within `within_hz` of a frequency, however weak, as `find_lines` describes it.
+[[nodiscard]] Evidence line_near(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz,
+                                 double within_hz);
+
 /// The sinusoid of frequency f that fits a recording best by generalised least squares: its values, to be subtracted.
 [[nodiscard]] std::vector<double> fitted_line(const FullRate& data, std::size_t r, double f_hz);
 

@@ -45,7 +45,7 @@ struct MeanEffect {
   bool scope_all = true;
   bool scope_moving = false;
   bool scope_single = false;
-  bool change_point = false;  ///< a step at an unknown time: scanned by running sums, `build` takes t0
+  bool change_point = false;  ///< a step at an unknown time, paid for as step_scan.hpp says; `build` takes t0
   /// A small part of the reference rate: what comes to more than 0.3 of it is no error of a scale factor or a mounting
   /// but of unit, axis or clock, and is left unexplained.
   bool part_of_rate = false;
@@ -88,6 +88,8 @@ struct Cause {
   /// Chance of an innovation beyond e >= 0 on one side, under the symmetric distribution found; normal scores by it
   /// take the finding out.
   std::function<double(double)> (*tail)(const FullRate& data, const Evidence& found) = nullptr;
+  /// The found effect once more in a part of the data, where `examine` would have to find it among all there could be.
+  Evidence (*find_again)(const FullRate& part, const Evidence& found) = nullptr;
   /// Log likelihood gained on `data` by the effect as found elsewhere, nothing refitted.
   double (*log_gain)(const FullRate& data, const Evidence& found) = nullptr;
   /// The same over several axes at once; members are those of the first.

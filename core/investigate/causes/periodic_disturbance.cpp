@@ -8,6 +8,7 @@
 #include "core/investigate/full_rate.hpp"
 #include "core/investigate/lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,16 @@ namespace driftlab::investigate {
 namespace {
 
 std::vector<Evidence> examine(const FullRate& data) { return find_lines(data); }
+
+/// A line that is clear in the whole may be too weak in a part to be found among all frequencies: it is sought where
+/// it was found, within what the part resolves.
+Evidence find_again(const FullRate& data, const Evidence& found) {
+  double longest_s = 0.0;
+  for (const std::size_t r : found.members) {
+    longest_s = std::max(longest_s, static_cast<double>(data.residual[r].size()) * data.dt_s);
+  }
+  return line_near(data, found.members, found.shape, 1.0 / longest_s);
+}
 
 double log_gain(const FullRate& data, const Evidence& found) {
   return line_gain(data, found.members, found.shape, found.parameters[0].estimate.value);
@@ -40,6 +51,7 @@ Cause periodic_disturbance() {
           .separates = "the same recording with the suspected source switched off",
           .parameters = {{"amplitude", units::level}, {"frequency_hz", units::hertz}},
           .examine = examine,
+          .find_again = find_again,
           .log_gain = log_gain,
           .inject = inject_effect,
           .in_unit = in_unit};
