@@ -89,8 +89,13 @@ ContaminationTest test_contamination(std::span<const double> samples, double uni
     d(b) = std::log(robust.variance[j].value_or(curve.variance[j]) / curve.variance[j]);
     for (Eigen::Index a = 0; a <= b; ++a) {
       const std::size_t i = used[static_cast<std::size_t>(a)];
-      const auto sums = plan.correlation_sums(i, j, classical.mixture);
+      auto sums = plan.correlation_sums(i, j, classical.mixture);
       double sum = 0.0;
+      if (i == j && robust.stride[j] > 1) {
+        const double all = sums[0];
+        sums = plan.thinned_sums(j, robust.stride[j], classical.mixture);
+        sum = std::max(0.0, sums[0] - all) * robust.biweight[j].hermite[0] * robust.biweight[j].hermite[0];
+      }
       for (std::size_t k = 1; k < sums.size(); ++k) {
         sum += robust.biweight[i].hermite[k] * robust.biweight[j].hermite[k] * sums[k];
       }

@@ -161,6 +161,8 @@ HaarCovariance::HaarCovariance(std::span<const std::size_t> half, std::size_t sa
       dt_s_(dt_s),
       rules_(std::make_unique<Rules>()) {
   pairs_.resize(half_.size() * (half_.size() + 1) / 2);
+  thinned_.resize(half_.size());
+  stride_.resize(half_.size());
 }
 
 HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
@@ -182,8 +184,7 @@ HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
   return plan;
 }
 
-HaarCovariance::Pair& HaarCovariance::fill(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
-  Pair& plan = pair(i, j);
+void HaarCovariance::fill(Pair& plan, std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
   const std::size_t size = plan.lag.size();
   scratch_.assign(size, 0.0);
   for (const Process& process : model) {
@@ -204,11 +205,11 @@ HaarCovariance::Pair& HaarCovariance::fill(std::size_t i, std::size_t j, const M
       scratch_[k] += level * unit[k];
     }
   }
-  return plan;
 }
 
 double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
-  const Pair& plan = fill(i, j, model, remember_shapes);
+  Pair& plan = pair(i, j);
+  fill(plan, i, j, model, remember_shapes);
   double mean_i = 0.0;
   double mean_j = 0.0;
   for (const Process& process : model) {
@@ -226,8 +227,8 @@ double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, b
   return 2.0 * squares + 4.0 * mean_i * mean_j * sum + rounding;
 }
 
-std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums(std::size_t i, std::size_t j,
-                                                                                 const Model& model) {
+std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::sums_of(const Pair& plan, std::size_t i, std::size_t j,
+                                                                        const Model& model) const {
   std::array<double, kEvenPowers> sums{};
   const auto variance = [&](double half) {
     double sum = 0.0;
@@ -242,7 +243,6 @@ std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums
   if (!(scale > 0.0)) {
     return sums;
   }
-  const Pair& plan = fill(i, j, model, true);
   for (std::size_t k = 0; k < plan.lag.size(); ++k) {
     const double rho = scratch_[k] / scale;
     double power = plan.weight[k];
@@ -252,6 +252,30 @@ std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums
     }
   }
   return sums;
+}
+
+std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums(std::size_t i, std::size_t j,
+                                                                                 const Model& model) {
+  Pair& plan = pair(i, j);
+  fill(plan, i, j, model, true);
+  return sums_of(plan, i, j, model);
+}
+
+std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::thinned_sums(std::size_t j, std::size_t stride,
+                                                                             const Model& model) {
+  Pair& plan = thinned_[j];
+  if (stride_[j] != stride) {
+    plan = {};
+    stride_[j] = stride;
+    const double count = samples_ - 2.0 * half_[j] + 1.0;
+    const auto step = static_cast<double>(stride);
+    for (double lag = 0.0; lag <= 4.0 * half_[j] && lag < count; lag += step) {
+      plan.lag.push_back(lag);
+      plan.weight.push_back((lag == 0.0 ? 1.0 : 2.0) * step * (count - lag) / (count * count));
+    }
+  }
+  fill(plan, j, j, model, true);
+  return sums_of(plan, j, j, model);
 }
 
 Eigen::MatrixXd HaarCovariance::matrix(const Model& model) {

@@ -47,6 +47,9 @@ class HaarCovariance {
   /// even function of the coefficients is made of. rho is the correlation of the coefficients under the model.
   static constexpr std::size_t kEvenPowers = 8;
   [[nodiscard]] std::array<double, kEvenPowers> correlation_sums(std::size_t i, std::size_t j, const Model& model);
+  /// S_k of scale j where only every `stride`-th coefficient is used: rho^k is summed at those lags alone, up to 4 m
+  /// (its corner at lag 0 is so seen the coarser, the higher k).
+  [[nodiscard]] std::array<double, kEvenPowers> thinned_sums(std::size_t j, std::size_t stride, const Model& model);
 
   [[nodiscard]] double dt_s() const { return dt_s_; }
   [[nodiscard]] std::span<const double> half() const { return half_; }
@@ -62,7 +65,10 @@ class HaarCovariance {
   };
   Pair& pair(std::size_t i, std::size_t j);
   /// Leaves gamma_ij at the plan's lags in scratch_.
-  Pair& fill(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
+  void fill(Pair& plan, std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
+  /// What scratch_ holds, as correlations, in sums of even powers.
+  [[nodiscard]] std::array<double, kEvenPowers> sums_of(const Pair& plan, std::size_t i, std::size_t j,
+                                                        const Model& model) const;
   double entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
 
   std::vector<double> half_;
@@ -70,6 +76,8 @@ class HaarCovariance {
   double dt_s_;
   std::unique_ptr<Rules> rules_;
   std::vector<Pair> pairs_;
+  std::vector<Pair> thinned_;  ///< by scale, of the stride asked for last
+  std::vector<std::size_t> stride_;
   std::vector<double> scratch_;
 };
 

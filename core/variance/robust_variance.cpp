@@ -206,6 +206,7 @@ RobustVariance robust_variance(std::span<const double> samples, double pivot, co
     }
     const double efficiency = choice.efficiency;
     result.biweight.push_back(biweight);
+    result.stride.push_back(stride);
     result.efficiency.push_back(efficiency);
     result.edf.push_back(classical.edf[j] * efficiency);
     result.variance.push_back(root);

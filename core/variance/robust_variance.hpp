@@ -27,7 +27,8 @@ struct RobustVariance {
   std::vector<double> edf;                      ///< classical edf times efficiency
   std::vector<Interval> ci95;                   ///< {0, 0} where undefined
   std::vector<Biweight> biweight;
-  RobustShape shape;  ///< what was corrected for
+  std::vector<std::size_t> stride;  ///< every so many-th coefficient was used
+  RobustShape shape;                ///< what was corrected for
 };
 
 /// `samples`, `pivot`: as for haar_variance(). A refused shape leaves every scale undefined. O(N) time per scale up to
