@@ -53,21 +53,42 @@ Result<JobResults> Attempt::work() {
   }
 }
 
-void Attempt::report(std::string_view stage, double fraction) {
+bool Attempt::too_early() const {
   const auto now = std::chrono::steady_clock::now();
-  const bool same_stage = reported_ && stage == stage_;
-  if (lost_ || (same_stage && now - reported_at_ < std::chrono::microseconds(options_.progress_micros))) {
+  return reported_at_ && now - *reported_at_ < std::chrono::microseconds(options_.progress_micros);
+}
+
+void Attempt::report(std::string_view stage, double fraction) {
+  const std::lock_guard<std::mutex> guard(progress_mutex_);
+  Progress progress{std::string(stage), fraction};
+  if (too_early()) {
+    thinned_ = std::move(progress);
     return;
   }
-  stage_ = stage;
-  reported_at_ = now;
-  const Result<LeaseStatus> written = context_.store.report_progress(lease_, stage, fraction);
+  const bool first = !reported_at_;
+  tell(progress);
+  if (first) {
+    crash_point("job.working");
+  }
+}
+
+void Attempt::catch_up() {
+  const std::lock_guard<std::mutex> guard(progress_mutex_);
+  if (thinned_ && !too_early()) {
+    tell(Progress(*thinned_));
+  }
+}
+
+void Attempt::tell(const Progress& progress) {
+  thinned_.reset();
+  if (lost_) {
+    return;
+  }
+  reported_at_ = std::chrono::steady_clock::now();
+  const Result<LeaseStatus> written = context_.store.report_progress(lease_, progress.stage, progress.fraction);
   announce(written);
   if (written) {
     learn(*written);
-  }
-  if (!std::exchange(reported_, true)) {
-    crash_point("job.working");
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// One attempt at one job: from the claim to the row that says how it ended.
 ///
-/// `run` belongs to a worker thread; `renew`, `ask_to_stop` and `hand_back` may be called meanwhile by others. Whatever
+/// `run` belongs to a worker thread; the other functions may be called meanwhile by others. Whatever
 /// they race for, the store decides: every write carries the attempt's number, and one that comes too late changes
 /// nothing.
 #include "server/jobs/job_kind.hpp"
@@ -10,6 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -24,6 +26,8 @@ class Attempt {
 
   /// Runs the job and writes how it ended.
   void run();
+  /// Writes progress that was thinned out, where its time has come.
+  void catch_up();
   /// Renews the lease; learns of a lost lease or a cancel request and then stops the work.
   void renew();
   /// The daemon is stopping: the work is to end, and the job goes back to the queue.
@@ -33,7 +37,14 @@ class Attempt {
 
  private:
   [[nodiscard]] Result<JobResults> work();
+  struct Progress {
+    std::string stage;
+    double fraction = 0.0;
+  };
   void report(std::string_view stage, double fraction);
+  /// `progress_mutex_` is held.
+  [[nodiscard]] bool too_early() const;
+  void tell(const Progress& progress);
   void learn(const LeaseStatus& status);
   void finish(const JobResults& results);
   void fail(const Error& error);
@@ -50,9 +61,9 @@ class Attempt {
   std::atomic<bool> cancel_requested_{false};
   std::atomic<bool> stopping_{false};
   bool out_of_memory_ = false;
-  bool reported_ = false;
-  std::string stage_;
-  std::chrono::steady_clock::time_point reported_at_;
+  std::mutex progress_mutex_;        ///< also orders the writes of the worker and of the heartbeat
+  std::optional<Progress> thinned_;  ///< the last report that was not written
+  std::optional<std::chrono::steady_clock::time_point> reported_at_;
 };
 
 /// The document kept for a failed attempt when the daemon gives no better one.

@@ -99,6 +99,7 @@ bool WorkerPool::Implementation::run_next() {
     running.push_back(attempt);
     too_late = stopping;
   }
+  woken.notify_all();
   if (too_late) {
     attempt->ask_to_stop();
   }
@@ -112,15 +113,27 @@ bool WorkerPool::Implementation::run_next() {
 }
 
 void WorkerPool::Implementation::beat() {
+  const std::chrono::microseconds renewing(options.renew_micros);
+  const std::chrono::microseconds telling(options.progress_micros > 0 ? options.progress_micros : options.renew_micros);
+  auto renew_at = std::chrono::steady_clock::now() + renewing;
   std::unique_lock<std::mutex> guard(mutex);
   std::uint64_t seen = wakes;
   while (beating) {
-    woken.wait_for(guard, std::chrono::microseconds(options.renew_micros),
-                   [this, &seen] { return !beating || wakes != seen; });
+    const bool idle = running.empty();
+    const auto until = std::min(renew_at, std::chrono::steady_clock::now() + (idle ? renewing : telling));
+    woken.wait_until(guard, until, [&] { return !beating || wakes != seen || running.empty() != idle; });
+    const auto now = std::chrono::steady_clock::now();
+    const bool renew = wakes != seen || now >= renew_at;
     seen = wakes;
+    if (renew) {
+      renew_at = now + renewing;
+    }
     guard.unlock();
     for (const auto& attempt : attempts()) {
-      attempt->renew();
+      attempt->catch_up();
+      if (renew) {
+        attempt->renew();
+      }
     }
     guard.lock();
   }

@@ -21,7 +21,8 @@ struct WorkerOptions {
   std::int64_t idle_micros = 1'000'000;
   /// How long `stop` waits for running jobs before it hands them back.
   std::int64_t grace_micros = 20'000'000;
-  /// Progress within one stage is written at most once in this time; the first report of a stage always is.
+  /// Progress is written at most once in this time (a commit each: a job of many short stages would wait for little
+  /// else); what comes sooner is written when the time is over, by the heartbeat where the job says nothing more.
   std::int64_t progress_micros = 100'000;
   /// Runs the maintenance (server/jobs/maintenance.hpp) beside the workers.
   bool maintain = true;

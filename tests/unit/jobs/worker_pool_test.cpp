@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <new>
 #include <thread>
 
@@ -301,7 +302,7 @@ int progress_events(ToyWorld& world, const std::string& id) {
   return count;
 }
 
-TEST(WorkerPool, ProgressIsThinnedOutWithinAStageAndToldAtEveryNewOne) {
+TEST(WorkerPool, ProgressIsThinnedOutAcrossStages) {
   ToyWorld world([](const RunControl& control) -> Result<JobResults> {
     for (int i = 0; i < 300; ++i) {
       control.report("stage " + std::to_string(i / 100), i / 300.0);
@@ -314,7 +315,26 @@ TEST(WorkerPool, ProgressIsThinnedOutWithinAStageAndToldAtEveryNewOne) {
   const auto pool = world.pool(options);
   pool->start();
   world.wait_for_state(id, JobState::Succeeded);
-  EXPECT_EQ(progress_events(world, id), 3);
+  EXPECT_EQ(progress_events(world, id), 1);
+}
+
+TEST(WorkerPool, AThinnedOutStageIsToldLaterWhereTheJobSaysNothingMore) {
+  std::promise<void> told;
+  ToyWorld world([&](const RunControl& control) -> Result<JobResults> {
+    control.report("first", 0.0);
+    control.report("long and silent", 0.5);
+    told.get_future().wait();
+    return document();
+  });
+  WorkerOptions options = ToyWorld::quiet();
+  options.progress_micros = 50'000;
+  const std::string id = world.add_toy();
+  const auto pool = world.pool(options);
+  pool->start();
+  const Job job = world.wait_for(id, [](const Job& j) { return j.stage == "long and silent"; });
+  EXPECT_EQ(job.state, JobState::Running);
+  told.set_value();
+  world.wait_for_state(id, JobState::Succeeded);
 }
 
 TEST(WorkerPool, EveryReportIsToldWhereNothingIsThinnedOut) {
