@@ -164,8 +164,13 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
   all.leftCols(fixed) = search.fixed();
   for (std::size_t s = 0; s < shapes; ++s) {
     all.col(static_cast<Eigen::Index>(search.slots()[s].process)).setZero();
+    const Eigen::Index first = fixed + static_cast<Eigen::Index>(s) * points;
+    if (s > 0 && structure.kinds[search.slots()[s].process] == structure.kinds[search.slots()[s - 1].process]) {
+      all.middleCols(first, points) = all.middleCols(first - points, points);
+      continue;
+    }
     for (int g = 0; g < points; ++g) {
-      all.col(fixed + static_cast<Eigen::Index>(s) * points + g) = search.column(search.slots()[s].process, at(s, g));
+      all.col(first + g) = search.column(search.slots()[s].process, at(s, g));
     }
   }
   const GramProblem problem(all, search.target());

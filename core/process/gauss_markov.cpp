@@ -8,35 +8,50 @@
 namespace driftlab {
 namespace {
 
+/// (sinh x - x) / x^3 of s = x^2 <= 1.
+double sinh_rest(double s) {
+  double sum = 1.0;
+  for (const double factor : {1.0 / 210.0, 1.0 / 156.0, 1.0 / 110.0, 1.0 / 72.0, 1.0 / 42.0, 1.0 / 20.0}) {
+    sum = 1.0 + s * factor * sum;
+  }
+  return sum * (1.0 / 6.0);
+}
+
 /// sinh x - x without cancellation.
 double sinh_minus(double x) {
   if (std::fabs(x) < 0.5) {
     const double s = x * x;
-    return x * s / 6.0 *
-           (1.0 +
-            s / 20.0 * (1.0 + s / 42.0 * (1.0 + s / 72.0 * (1.0 + s / 110.0 * (1.0 + s / 156.0 * (1.0 + s / 210.0))))));
+    return x * s * sinh_rest(s);
   }
   return std::sinh(x) - x;
 }
 
-/// p(y) = 2y - 3 + 4 e^-y - e^-2y, y >= 0, without cancellation. Series: sum_{k>=3} (-1)^k (4 - 2^k) y^k / k!.
+/// sinh x, by the series where it is short.
+double sinh_of(double x) { return std::fabs(x) < 0.5 ? x + sinh_minus(x) : std::sinh(x); }
+
+/// (-1)^k (4 - 2^k) / k!, k = 3, 4, ...
+constexpr std::array<double, 18> kBump = [] {
+  std::array<double, 18> terms{};
+  double factorial = 2.0;
+  double two_power = 4.0;
+  double sign = 1.0;
+  for (std::size_t k = 3; k < terms.size() + 3; ++k) {
+    factorial *= static_cast<double>(k);
+    two_power *= 2.0;
+    sign = -sign;
+    terms[k - 3] = sign * (4.0 - two_power) / factorial;
+  }
+  return terms;
+}();
+
+/// p(y) = 2y - 3 + 4 e^-y - e^-2y, y >= 0, without cancellation: for small y the series, exact at eighteen terms.
 double haar_bump(double y) {
   if (y < 0.5) {
-    double power = y * y * y / 6.0;  // y^k / k!
-    double two_power = 8.0;
-    double sign = -1.0;
     double sum = 0.0;
-    for (int k = 3; k < 24; ++k) {
-      const double term = sign * (4.0 - two_power) * power;
-      sum += term;
-      if (std::fabs(term) < 1e-18 * std::fabs(sum)) {  // nothing that follows moves the last bit
-        break;
-      }
-      power *= y / (k + 1);
-      two_power *= 2.0;
-      sign = -sign;
+    for (std::size_t k = kBump.size(); k-- > 0;) {
+      sum = sum * y + kBump[k];
     }
-    return sum;
+    return sum * y * y * y;
   }
   const double t = std::expm1(-y);
   return 2.0 * (y + t) - t * t;
@@ -56,7 +71,7 @@ UnitHaar unit_haar(double x, double m) {
   if (x > kWhite) {
     return {.variance = 0.5 / m};
   }
-  const double s = std::sinh(0.5 * x);
+  const double s = sinh_of(0.5 * x);
   const double numerator = 2.0 * m * sinh_minus(x) + haar_bump(m * x);
   return {numerator / (8.0 * m * m * s * s), s, numerator};
 }
@@ -77,7 +92,8 @@ void GaussMarkov::haar_gradient(double m, double dt_s, std::span<double> out) co
   }
   // d ln(numerator)/dx - d ln(denominator)/dx; p'(y) = 2 (1 - e^-y)^2.
   const double t = std::expm1(-m * x);
-  const double slope = (4.0 * m * unit.s * unit.s + 2.0 * m * t * t) / unit.numerator - 1.0 / std::tanh(0.5 * x);
+  const double slope =
+      (4.0 * m * unit.s * unit.s + 2.0 * m * t * t) / unit.numerator - std::sqrt(1.0 + unit.s * unit.s) / unit.s;
   out[1] = sigma * sigma * unit.variance * slope * dt_s;
 }
 
@@ -142,6 +158,18 @@ struct NinePoints {
   NinePoints(double mi, double mj) : offset{0.0, mi, -mi, mj, -mj, mi + mj, mi - mj, mj - mi, -mi - mj} {}
 };
 
+/// exp(-x o_k) and exp(x o_k) of the nine points.
+struct NinePowers {
+  std::array<double, NinePoints::kPoints> down, up;
+
+  NinePowers(double x, double mi, double mj) {
+    const double i = std::exp(x * mi);
+    const double j = std::exp(x * mj);
+    up = {1.0, i, 1.0 / i, j, 1.0 / j, i * j, i / j, j / i, 1.0 / (i * j)};
+    down = {1.0, up[2], up[1], up[4], up[3], up[8], up[7], up[6], up[5]};
+  }
+};
+
 /// sum_k w_k [exp(-x |h + o_k|) + |h + o_k| sinh x] over the lags between two kinks, where no h + o_k changes its sign:
 /// fall e^-xh + rise e^xh + level + slope h.
 struct Stretch {
@@ -151,18 +179,32 @@ struct Stretch {
   double slope = 0.0;
 
   Stretch() = default;
-  Stretch(const NinePoints& points, double x, double h) {
-    const double sinh_x = std::sinh(x);
+  Stretch(const NinePoints& points, const NinePowers& powers, double sinh_x, double h) {
     for (std::size_t k = 0; k < NinePoints::kPoints; ++k) {
       const double weight = NinePoints::kWeight[k];
       const bool ahead = h + points.offset[k] >= 0.0;
-      (ahead ? fall : rise) += weight * std::exp((ahead ? -x : x) * points.offset[k]);
+      if (ahead) {
+        fall += weight * powers.down[k];
+      } else {
+        rise += weight * powers.up[k];
+      }
       const double signed_weight = (ahead ? weight : -weight) * sinh_x;
       level += signed_weight * points.offset[k];
       slope += signed_weight;
     }
   }
 };
+
+/// The same term by term, where powers of the points would overflow.
+double plain_sum(const NinePoints& points, double x, double sinh_x, double h) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < NinePoints::kPoints; ++k) {
+    const double distance = std::fabs(h + points.offset[k]);
+    const double fallen = x * distance;  // beyond 60 the exponential is lost beside the rest's rounding
+    sum += NinePoints::kWeight[k] * ((fallen < 60.0 ? std::exp(-fallen) : 0.0) + distance * sinh_x);
+  }
+  return sum;
+}
 
 /// sum_k w_k [(sinh x - x) |h + o_k| - (sinh x |h + o_k| - x |h + o_k|)] for x (h + mi + mj) <= 1, where seven terms of
 /// the series of sinh are exact.
@@ -172,10 +214,7 @@ double odd_part(const NinePoints& points, double x, double h, double rest) {
     const double distance = std::fabs(h + points.offset[k]);
     const double y = x * distance;
     const double s = y * y;
-    const double series =
-        1.0 +
-        s / 20.0 * (1.0 + s / 42.0 * (1.0 + s / 72.0 * (1.0 + s / 110.0 * (1.0 + s / 156.0 * (1.0 + s / 210.0)))));
-    sum += NinePoints::kWeight[k] * (distance * rest - y * s / 6.0 * series);
+    sum += NinePoints::kWeight[k] * (distance * rest - y * s * sinh_rest(s));
   }
   return sum;
 }
@@ -185,17 +224,18 @@ double odd_part(const NinePoints& points, double x, double h, double rest) {
 void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                                  std::span<double> out) const {
   const double x = beta * dt_s;
-  const double s = std::sinh(0.5 * x);
+  const double s = sinh_of(0.5 * x);
   const double scale = factor * sigma * sigma / (16.0 * s * s * mi * mj);
   const double a = std::expm1(-x * mi);
   const double b = std::expm1(-x * mj);
   const double far = -scale * a * a * b * b;
+  const bool bounded = x <= kWhite && x * (mi + mj) < 300.0;  // no power overflows
   const NinePoints points(mi, mj);
+  const NinePowers powers(bounded ? x : 0.0, mi, mj);
+  const double sinh_x = 2.0 * s * std::sqrt(1.0 + s * s);
   const double rest = sinh_minus(x);
-  const double even_a = 2.0 * std::sinh(0.5 * x * mi);
-  const double even_b = 2.0 * std::sinh(0.5 * x * mj);
-  const double even = even_a * even_a * even_b * even_b;
-  const bool bounded = x * (mi + mj) < 300.0;  // no power overflows
+  // (2 sinh(x mi/2) 2 sinh(x mj/2))^2, of which expm1 holds half each.
+  const double even = a * a * b * b * powers.up[5];
   int known = -1;
   Stretch stretch;
   for (std::size_t i = 0; i < lags.size(); ++i) {
@@ -207,8 +247,12 @@ void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<co
       }
       continue;
     }
-    if (x > kWhite || !bounded) {
+    if (x > kWhite) {
       out[i] += factor * haar_cross(mi, mj, h, dt_s);
+      continue;
+    }
+    if (!bounded) {  // and so far from single samples that the series below is not needed
+      out[i] -= scale * plain_sum(points, x, sinh_x, h);
       continue;
     }
     const double decay = std::exp(-x * h);
@@ -219,7 +263,7 @@ void GaussMarkov::add_haar_cross(double mi, double mj, double dt_s, std::span<co
     }
     const int here = (h >= mi ? 1 : 0) + (h >= mj ? 1 : 0) + (h >= std::fabs(mj - mi) ? 1 : 0);
     if (here != known) {
-      stretch = Stretch(points, x, h);
+      stretch = Stretch(points, powers, sinh_x, h);
       known = here;
     }
     out[i] -= scale * (stretch.fall * decay + stretch.rise / decay + stretch.level + stretch.slope * h);

@@ -1,5 +1,6 @@
 #include "core/variance/biweight.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -29,8 +30,15 @@ const std::vector<Biweight>& table() {
 Biweight Biweight::with(double c) {
   Biweight biweight;
   biweight.c = c;
-  // Simpson's rule with 2,000 panels on [0, c], both signs: chi and its first three derivatives vanish at c.
-  constexpr int kPoints = 2001;
+  // Simpson's rule with 600 panels on [0, c], both signs: chi and its first two derivatives vanish at c.
+  constexpr int kPoints = 601;
+  static const std::array<double, 2 * HaarCovariance::kEvenPowers + 1> root = [] {
+    std::array<double, 2 * HaarCovariance::kEvenPowers + 1> roots{};
+    for (std::size_t k = 0; k < roots.size(); ++k) {
+      roots[k] = std::sqrt(static_cast<double>(k));
+    }
+    return roots;
+  }();
   const double step = c / (kPoints - 1);
   for (int i = 0; i < kPoints; ++i) {
     const double r = step * i;
@@ -42,8 +50,7 @@ Biweight Biweight::with(double c) {
     double before = 1.0;  // h_0
     double now = r;       // h_1
     for (std::size_t k = 2; k <= 2 * biweight.hermite.size(); ++k) {
-      const auto order = static_cast<double>(k);
-      const double next = (r * now - std::sqrt(order - 1.0) * before) / std::sqrt(order);
+      const double next = (r * now - root[k - 1] * before) / root[k];
       before = now;
       now = next;
       if (k % 2 == 0) {
