@@ -142,13 +142,15 @@ std::vector<Evidence> SlowSearch::examine() {
             [](const Screened& a, const Screened& b) { return a.score > b.score; });
   // The most promising; of each cause at most two scopes; nothing hopeless.
   std::vector<Screened> chosen;
-  for (const Screened& candidate : candidates) {
-    const bool already = std::any_of(accepted_.begin(), accepted_.end(), [&](const Regressor& r) {
+  std::erase_if(candidates, [&](const Screened& candidate) {
+    return std::any_of(accepted_.begin(), accepted_.end(), [&](const Regressor& r) {
       return r.cause == candidate.cause && r.members == candidate.members;
     });
+  });
+  for (const Screened& candidate : candidates) {
     const auto of_cause =
         std::count_if(chosen.begin(), chosen.end(), [&](const Screened& c) { return c.cause == candidate.cause; });
-    if (already || of_cause >= 2 || chosen.size() >= kJointFits || candidate.score < null_score_ - 12.0) {
+    if (of_cause >= 2 || chosen.size() >= kJointFits || candidate.score < null_score_ - 12.0) {
       continue;
     }
     chosen.push_back(candidate);
