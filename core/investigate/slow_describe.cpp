@@ -12,9 +12,11 @@
 namespace driftlab::investigate {
 namespace {
 
-/// Segments that take turns in being held out: eight of them, so that each fold sees early and late.
+/// Segments that take turns in being held out: short ones, so that each fold sees what passes within a minute.
+constexpr std::size_t kSegments = 64;
+
 std::size_t fold_of(std::size_t block, std::size_t blocks) {
-  return (block * 8 / std::max<std::size_t>(1, blocks)) % 2;
+  return (block * kSegments / std::max<std::size_t>(1, blocks)) % 2;
 }
 
 /// Gram matrices of whitened columns over one fold.
