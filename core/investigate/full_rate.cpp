@@ -172,18 +172,20 @@ std::vector<std::size_t> moving_members(const ChannelGroup& group) {
 
 std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bool given) {
   std::vector<std::vector<std::size_t>> scopes;
-  if (given || group.members.size() == 1) {
-    if (given) {
-      scopes.push_back(all_members(group));
-    }
+  if (given) {
+    scopes.push_back(all_members(group));
   }
+  const std::size_t members = group.members.size();
   const auto moving = moving_members(group);
-  if (!moving.empty() && moving.size() < group.members.size() && moving.size() > 1) {
+  if (moving.size() > 1 && moving.size() < members) {
     scopes.push_back(moving);
   }
-  if (group.members.size() > 1) {
-    for (std::size_t r = 0; r < group.members.size(); ++r) {
-      scopes.push_back({r});
+  if (members > 1) {
+    const bool one_rests = !given && moving.size() + 1 == members;
+    for (std::size_t r = 0; r < members; ++r) {
+      if (!one_rests || !group.members[r].recording->is_static()) {
+        scopes.push_back({r});
+      }
     }
   }
   return scopes;

@@ -63,7 +63,8 @@ void set_spectrum(FullRate& data, std::size_t r);
 [[nodiscard]] std::vector<std::size_t> moving_members(const ChannelGroup& group);
 
 /// The scopes in which an effect on the noise may act: all recordings (a given baseline only), the moving ones, each
-/// single one.
+/// single one. An automatic baseline is that of the recordings at rest: where one alone rests, it is not that one that
+/// differs from all the others.
 [[nodiscard]] std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bool given);
 
 }  // namespace driftlab::investigate
