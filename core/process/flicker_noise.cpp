@@ -130,8 +130,9 @@ double unit_haar_variance(double m) {
   return (cubic + (linear + remainder_integral(m)) / (m * m)) / kPi;
 }
 
-/// The values for m = 1 .. 63 cost a numerical integral each; they are made once.
+/// The values for m = 1 .. 63, which cost a numerical integral each, and for the octaves beyond are made once.
 double cached_unit_haar_variance(double m) {
+  constexpr int kFirst = 6;
   static const std::array<double, 64> shared_table = [] {
     std::array<double, 64> table{};
     for (int i = 1; i < 64; ++i) {
@@ -139,7 +140,20 @@ double cached_unit_haar_variance(double m) {
     }
     return table;
   }();
-  return m < 64.0 ? shared_table[static_cast<std::size_t>(m)] : unit_haar_variance(m);
+  static const std::array<double, 36> shared_octaves = [] {
+    std::array<double, 36> octaves{};
+    for (std::size_t k = 0; k < octaves.size(); ++k) {
+      octaves[k] = unit_haar_variance(std::ldexp(1.0, kFirst + static_cast<int>(k)));
+    }
+    return octaves;
+  }();
+  if (m < 64.0) {
+    return shared_table[static_cast<std::size_t>(m)];
+  }
+  int exponent = 0;
+  const bool octave = std::frexp(m, &exponent) == 0.5;
+  const auto place = static_cast<std::size_t>(exponent - 1 - kFirst);
+  return octave && place < shared_octaves.size() ? shared_octaves[place] : unit_haar_variance(m);
 }
 
 /// K with second difference -V/2 for B = 1: K(h) = -(1/pi) sum_{k<h} (h - k) Cin(pi k). Summed below kExact; above, by
