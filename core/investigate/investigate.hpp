@@ -22,7 +22,7 @@
 
 namespace driftlab::investigate {
 
-inline constexpr double kThreshold = 9.5;
+inline constexpr double kThreshold = 10.0;
 inline constexpr double kMargin = 6.0;
 
 struct InvestigateOptions {
