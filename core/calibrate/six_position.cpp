@@ -155,7 +155,7 @@ Result<TriadCalibration> calibrate_six_positions(std::span<const KnownPosition> 
   result.chi_square_per_dof = dof > 0.0 ? chi_square / dof : 0.0;
   const bool scattered = dof > 0.0 && result.chi_square_per_dof > 1.0;
   const double widen = scattered ? result.chi_square_per_dof : 1.0;
-  const double quantile = scattered ? student_quantile(0.975, dof) : 1.959963984540054;
+  const double quantile = scattered ? student_quantile(0.975, dof) : kNormal975;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Line& line = lines[axis];
     const auto own = static_cast<Eigen::Index>(axis);

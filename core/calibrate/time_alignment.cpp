@@ -1,5 +1,7 @@
 #include "core/calibrate/time_alignment.hpp"
 
+#include "core/process/distributions.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -182,7 +184,7 @@ Result<TimeAlignment> align_reference(std::span<const double> measured, std::spa
   const Pass last = pass(measured, reference, coarse, theta, true);
   const Eigen::Matrix3d inverse = last.normal.inverse();
   const Eigen::Matrix3d covariance = inverse * long_run(last.scores) * inverse;
-  const double half = 1.959963984540054 * std::sqrt(std::max(covariance(2, 2), 0.0)) * dt_s;
+  const double half = kNormal975 * std::sqrt(std::max(covariance(2, 2), 0.0)) * dt_s;
   result.samples = coarse.last - coarse.first;
   result.delay_s = {theta[2] * dt_s, {theta[2] * dt_s - half, theta[2] * dt_s + half}};
   result.offset = theta[0];

@@ -12,7 +12,6 @@
 namespace driftlab {
 namespace {
 
-constexpr double kZ95 = 1.959963984540054;
 constexpr double kSize = 0.05;
 constexpr double kLeastExponent = 0.1;
 constexpr double kMostExponent = 10.0;
@@ -37,7 +36,7 @@ Series series_of(const std::vector<TrendPoint>& points) {
     const TrendPoint& point = points[static_cast<std::size_t>(i)];
     series.at(i) = point.at / points.back().at;
     series.y(i) = std::log(point.estimate.value);
-    const double sd = std::log(point.estimate.ci95.high / point.estimate.ci95.low) / (2.0 * kZ95);
+    const double sd = std::log(point.estimate.ci95.high / point.estimate.ci95.low) / (2.0 * kNormal975);
     series.variance(i) = sd * sd;
   }
   return series;

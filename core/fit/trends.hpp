@@ -17,6 +17,7 @@
 ///   first test.
 ///
 /// Measured size, power and coverage: tests/ACCURACY.md.
+#include "core/process/distributions.hpp"
 #include "core/signal/estimate.hpp"
 #include "core/signal/result.hpp"
 
@@ -49,7 +50,7 @@ struct FittedRelation {
   double aicc = 0.0;
   /// Covariance of (ln low, ln high, ln exponent), row by row; entries of absent parameters are 0.
   double covariance[3][3] = {};
-  double quantile = 1.959963984540054;  ///< of the 95 % interval: Student's t where the spread was estimated
+  double quantile = kNormal975;  ///< of the 95 % interval: Student's t where the spread was estimated
 
   [[nodiscard]] double operator()(double at) const;
 };

@@ -61,19 +61,18 @@ void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fre
 
 std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates) {
   for (;;) {
-    const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                       [](const Evidence& a, const Evidence& b) { return a.score < b.score; });
-    if (best == candidates.end() || best->score < kThreshold) {
+    const Evidence* const best = strongest(candidates);
+    if (best == nullptr || best->score < kThreshold) {
       return std::nullopt;
     }
-    if (best->cause->family != Family::Mean) {
-      hold_out(data, *best);
-      if (best->heldout && best->heldout_gain < 0.0) {
-        candidates.erase(best);
+    Evidence winner = *best;
+    if (winner.cause->family != Family::Mean) {
+      hold_out(data, winner);
+      if (winner.heldout && winner.heldout_gain < 0.0) {
+        candidates.erase(candidates.begin() + (best - candidates.data()));
         continue;
       }
     }
-    Evidence winner = *best;
     set_rivals(winner, candidates);
     return winner;
   }

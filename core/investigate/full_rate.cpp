@@ -205,6 +205,12 @@ void set_spectrum(FullRate& data, std::size_t r) {
   }
 }
 
+void renew_spectrum(FullRate& data, std::size_t r) {
+  if (!data.spectrum[r].power.empty()) {
+    set_spectrum(data, r);
+  }
+}
+
 FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const SlowModel& model,
                            std::vector<std::vector<double>> residual,
                            const std::vector<std::vector<unsigned char>>& mask, const FullRateOptions& options) {

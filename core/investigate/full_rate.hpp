@@ -57,6 +57,8 @@ struct FullRateOptions {
 /// Sets `spectrum` and `slow` of member r from its residual. Missing samples stand on a straight line between their
 /// neighbours; power is divided by what `raised` has added to the density.
 void set_spectrum(FullRate& data, std::size_t r);
+/// The same for a member that has a spectrum already.
+void renew_spectrum(FullRate& data, std::size_t r);
 
 /// Recordings of a group by scope: which ones move; members where `select` holds.
 [[nodiscard]] std::vector<std::size_t> all_members(const ChannelGroup& group);

@@ -337,9 +337,7 @@ class GroupSearch {
     FullRate without = data;
     without.model = plain;
     for (std::size_t r = 0; r < without.members(); ++r) {
-      if (!without.spectrum[r].power.empty()) {
-        set_spectrum(without, r);
-      }
+      renew_spectrum(without, r);
     }
     const std::vector<Evidence> found = band_limit.examine(without);
     if (!found.empty() && found[0].score > kThreshold) {

@@ -35,9 +35,7 @@ FullRate half_of(const FullRate& data, std::size_t half) {
     cut(part.residual[r]);
     cut(part.innovation[r]);
     cut(part.used[r]);
-    if (!data.spectrum[r].power.empty()) {
-      set_spectrum(part, r);
-    }
+    renew_spectrum(part, r);
   }
   return part;
 }

@@ -1,6 +1,7 @@
 #include "core/investigate/slow_fit.hpp"
 
 #include "core/process/dense.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -228,7 +229,7 @@ Interval profile_amplitude(const BlockSeries& series, const BlockColumns& column
   const double sd =
       std::sqrt(fit.amplitude_covariance(static_cast<Eigen::Index>(column - 1), static_cast<Eigen::Index>(column - 1)));
   if (free_parameters(fit.model, freedom).empty()) {
-    return {centre - 1.959964 * sd, centre + 1.959964 * sd};
+    return {centre - kNormal975 * sd, centre + kNormal975 * sd};
   }
   SlowModel warm = fit.model;
   SlowFreedom short_fit = freedom;

@@ -97,19 +97,22 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
 }
 
 void SlowSearch::screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const {
-  const Cause* const cause = find_cause("bias_step");
   const StepScan scan(series_, base, columns_with(accepted_));
-  for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
-    const StepScan::Best step = scan.best_in(r);
-    const double penalty = step_penalty(step.search_cost);
-    const BlockRecording& blocks = series_.recordings[r];
-    const double t0 = blocks.start_s + static_cast<double>(step.block) * series_.block_s();
-    offer(best, Screened{cause, {r}, t0, penalty, base_score + step.gain - penalty, base});
+  for (const Cause& cause : cause_registry()) {
+    if (cause.mean == nullptr || !cause.mean->change_point) {
+      continue;
+    }
+    for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
+      const StepScan::Best step = scan.best_in(r);
+      const double penalty = step_penalty(*cause.mean, step.search_cost);
+      const BlockRecording& blocks = series_.recordings[r];
+      const double t0 = blocks.start_s + static_cast<double>(step.block) * series_.block_s();
+      offer(best, Screened{&cause, {r}, t0, penalty, base_score + step.gain - penalty, base});
+    }
   }
 }
 
-double SlowSearch::step_penalty(double search_cost) const {
-  const MeanEffect& effect = *find_cause("bias_step")->mean;
+double SlowSearch::step_penalty(const MeanEffect& effect, double search_cost) const {
   return effect.penalty + choice_penalty(static_cast<double>(series_.recordings.size())) + search_cost;
 }
 
@@ -212,7 +215,7 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   double penalty = candidate.penalty;
   if (candidate.cause->mean->change_point) {
     const StepScan scan(series_, best_fit.model, columns_with(accepted_));
-    penalty = step_penalty(scan.best_in(candidate.members.front()).search_cost);
+    penalty = step_penalty(*candidate.cause->mean, scan.best_in(candidate.members.front()).search_cost);
   }
   evidence.score = evidence.gain - penalty;
   with.back().shape = best_shape;

@@ -100,7 +100,7 @@ class SlowSearch {
   void screen(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
   void screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
   /// What a step costs where the choice of its time costs `search_cost`.
-  [[nodiscard]] double step_penalty(double search_cost) const;
+  [[nodiscard]] double step_penalty(const MeanEffect& effect, double search_cost) const;
   [[nodiscard]] Evidence fit_jointly(const Screened& candidate) const;
   /// Largest value of the last regressor's effect over the largest reference rate.
   [[nodiscard]] double share_of_rate(const std::vector<Regressor>& regressors, const SlowFit& fit) const;

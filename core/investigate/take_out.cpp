@@ -31,9 +31,7 @@ double level_left(const FullRate& data, std::size_t member, const std::vector<do
 /// Adds to member r a white density of `excess` times the innovations' variance that the spectrum is rid of.
 void raise_density(FullRate& data, std::size_t r, double excess) {
   data.raised[r] += excess * data.innovation_sd * data.innovation_sd * data.dt_s;
-  if (!data.spectrum[r].power.empty()) {
-    set_spectrum(data, r);
-  }
+  renew_spectrum(data, r);
 }
 
 void take_out_deviation(FullRate& data, const Evidence& found) {

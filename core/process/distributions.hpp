@@ -8,6 +8,8 @@ namespace driftlab {
 
 /// P(X > x) for standard normal X.
 [[nodiscard]] double normal_tail(double x);
+/// The x with P(X <= x) = 0.975 for standard normal X.
+inline constexpr double kNormal975 = 1.959963984540054;
 /// The x with P(X <= x) = p for standard normal X; 0 < p < 1.
 [[nodiscard]] double normal_quantile(double p);
 /// Density of the standard normal distribution.

@@ -98,7 +98,6 @@ void widen_by_kurtosis(VarianceIntervals& intervals, const HaarVariance& curve, 
 
 constexpr double kDriftEvidence = 20.0;
 constexpr double kManyDegrees = 1e4;
-constexpr double kNormal975 = 1.959963984540054;
 
 }  // namespace
 

@@ -10,10 +10,6 @@ std::optional<std::string> text_parameter(const Request& request, std::string_vi
 }
 
 Result<Response> list_fits(ApiContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) {
-    return fail(page.error());
-  }
   FitFilter filter;
   auto device_id = device_filter(context.store, request);
   if (!device_id) {
@@ -31,15 +27,9 @@ Result<Response> list_fits(ApiContext& context, const Request& request) {
     }
     filter.best_only = *best == "true";
   }
-  auto rows = context.store.fits(filter, {page->after, page->limit + 1});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  std::vector<Json> items;
-  for (const Fit& fit : *rows) {
-    items.push_back(to_json(fit));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
+  return list_rows(
+      request, [&](const Page& page) { return context.store.fits(filter, page); },
+      [](const Fit& fit) { return to_json(fit); });
 }
 
 Result<Response> get_fit(ApiContext& context, const Request& request) {
