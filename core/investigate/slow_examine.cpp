@@ -52,6 +52,16 @@ SlowFit SlowSearch::fit_extra(SlowKind kind, const std::vector<std::size_t>& sco
   return fit_slow(series_, columns, best, freedom());
 }
 
+bool SlowSearch::has_extra(const Cause& cause, const std::vector<std::size_t>& scope) const {
+  for (std::size_t i = 0; i < extra_.size(); ++i) {
+    const bool same = std::all_of(scope.begin(), scope.end(), [&](std::size_t r) { return extra_[i].acts_in(r); });
+    if (extra_cause_[i] == &cause && same) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<Evidence> SlowSearch::examine_slow() const {
   const BlockColumns columns = columns_with(accepted_);
   struct Job {
@@ -81,6 +91,9 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
       }
     }
     for (const auto& scope : scopes) {
+      if (has_extra(cause, scope)) {
+        continue;  // more of the same is a level, which the fit of the null has found
+      }
       jobs.push_back({&cause, scope, scopes.size(), null_.model});
       if (!given_ && extra_.empty()) {
         for (const SlowFit& order : orders_) {

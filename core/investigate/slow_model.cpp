@@ -1,7 +1,6 @@
 #include "core/investigate/slow_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -9,7 +8,6 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kMaxStates = 16;
 constexpr int kFlickerStates = 6;
 
 /// Kalman gains over the blocks of one pattern; the last entry holds for all blocks after it where `steady`.
@@ -57,23 +55,25 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
   const std::size_t m = states.phi.size();
   Gains gains;
   gains.states = m;
-  std::array<std::array<double, kMaxStates>, kMaxStates> p{};
+  std::vector<double> covariance(m * m, 0.0);
+  const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance[i * m + j]; };
   for (std::size_t i = 0; i < m; ++i) {
-    p[i][i] = states.p0[i];
+    p(i, i) = states.p0[i];
   }
+  std::vector<double> k(m);
   const std::size_t count = blocks.filled.size();
   gains.gain.reserve(std::min<std::size_t>(count, 1024) * m);
   std::size_t same = 0;
   const bool uniform =
       std::all_of(blocks.filled.begin(), blocks.filled.end(), [&](double f) { return f == blocks.filled[0]; });
   for (std::size_t b = 0; b < count; ++b) {
-    std::array<double, kMaxStates> k{};
+    std::fill(k.begin(), k.end(), 0.0);
     double s = 0.0;
     const double filled = blocks.filled[b];
     if (filled > 0.0) {
       for (std::size_t i = 0; i < m; ++i) {
         for (std::size_t j = 0; j < m; ++j) {
-          k[i] += p[i][j];
+          k[i] += p(i, j);
         }
         s += k[i];
       }
@@ -81,7 +81,7 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
       s += std::max(states.white / filled + states.remainder, 1e-6 * states.white);
       for (std::size_t i = 0; i < m; ++i) {
         for (std::size_t j = 0; j < m; ++j) {
-          p[i][j] -= k[i] * k[j] / s;
+          p(i, j) -= k[i] * k[j] / s;
         }
       }
     }
@@ -97,9 +97,9 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
     gains.inv_sd.push_back(s > 0.0 ? 1.0 / std::sqrt(s) : 0.0);
     for (std::size_t i = 0; i < m; ++i) {
       for (std::size_t j = 0; j < m; ++j) {
-        p[i][j] *= states.phi[i] * states.phi[j];
+        p(i, j) *= states.phi[i] * states.phi[j];
       }
-      p[i][i] += states.q[i];
+      p(i, i) += states.q[i];
     }
     same = b > 0 && change < 1e-9 ? same + 1 : 0;
     if (uniform && same > 8) {

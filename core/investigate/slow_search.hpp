@@ -105,6 +105,8 @@ class SlowSearch {
   /// Largest value of the last regressor's effect over the largest reference rate.
   [[nodiscard]] double share_of_rate(const std::vector<Regressor>& regressors, const SlowFit& fit) const;
   [[nodiscard]] std::vector<Evidence> examine_slow() const;
+  /// Whether a process of the cause is in the null already, throughout the scope.
+  [[nodiscard]] bool has_extra(const Cause& cause, const std::vector<std::size_t>& scope) const;
   [[nodiscard]] SlowFit fit_extra(SlowKind kind, const std::vector<std::size_t>& scope, const SlowModel& base,
                                   const BlockColumns& columns) const;
   [[nodiscard]] double cost(const SlowModel& model) const;

@@ -130,7 +130,7 @@ TEST(Accuracy, ContaminationTestHoldsItsSizeAndFindsGrossErrors) {
     HaarCovariance plan(grid.half, samples, kDt);
     const bool small = samples < 10000;
     for (const Truth& truth : truths()) {
-      const std::size_t runs = repetitions(small ? 1000 : 300);
+      const std::size_t runs = repetitions(1000);
       const Tally tally = run_many(spoiled(truth.model, samples, 0.0, 0.0), samples, runs, plan);
       const double percent = 100.0 / static_cast<double>(runs);
       section.print("| %s | %zu | none | %zu | %.1f | %.1f | %.1f | %.1f |\n", truth.name, samples, runs,

@@ -138,5 +138,22 @@ TEST(SlowFit, RecoversAGaussMarkovProcessAndADriftWithinTheirIntervals) {
   EXPECT_TRUE(profile_parameter(series, columns, fit, {0, true}, {}).contains(0.1));
 }
 
+TEST(SlowModel, AsManyProcessesAsABaselineNamesAreWhitened) {
+  // Twenty equal Gauss-Markov processes are one of their common level.
+  SlowModel many;
+  SlowModel one;
+  many.white = one.white = 0.02;
+  one.components = {{SlowKind::GaussMarkov, 2.0, 0.3, {}}};
+  many.components.assign(20, {SlowKind::GaussMarkov, 0.1, 0.3, {}});
+  BlockSeries series = series_of(1, 200, 4, 0.05);
+  BlockColumns columns = BlockColumns::zeros(series, 1);
+  Random random(3);
+  for (double& v : columns.rows[0]) {
+    v = random.normal();
+  }
+  EXPECT_NEAR(evaluate_slow(series, columns, many).log_likelihood, evaluate_slow(series, columns, one).log_likelihood,
+              1e-6);
+}
+
 }  // namespace
 }  // namespace driftlab::investigate
