@@ -49,6 +49,14 @@ def change(what: str, t: Array, x: Array, t0: float) -> None:
     print(f"    {what}: deviation before {t0} s {roughness(x[t < t0]):.4f}, after {roughness(x[t >= t0]):.4f}")
 
 
+def line(x: Array, rate: float, f_hz: float) -> float:
+    """Largest ordinate of the periodogram at f over the mean of those around it."""
+    power = np.abs(np.fft.rfft(x - x.mean())) ** 2
+    k = round(f_hz * len(x) / rate)
+    around = np.concatenate([power[k - 400:k - 20], power[k + 20:k + 400]])
+    return float(power[k - 3:k + 4].max() / around.mean())
+
+
 def adis() -> None:
     bands = ((10, 15), (15, 20), (20, 25), (25, 30), (30, 40), (40, 50))
     print("ADIS16405: step, step over noise, density by band (Hz) relative to 2-10 Hz")
@@ -64,6 +72,9 @@ def adis() -> None:
     x = load("adis-imu1", "at-0s")
     print("  imu1 x at 0 s, means of 20 s:", np.round(x[:12000, 0].reshape(-1, 2000).mean(axis=1), 3), "standard error of each", round(float(x[:, 0].std()) / 2000 ** 0.5, 4))
     print("  imu1 y at 0 s, deviation by 4 s:", np.round(x[:4000, 1].reshape(-1, 400).std(axis=1), 3), "of the rest", round(float(x[4000:, 1].std()), 3))
+    z = load("adis-imu2", "at-3000s")[:, 2]
+    length = len(z) // 12
+    print("  imu2 z at 3000 s, means of twelfths:", np.round(z[:12 * length].reshape(12, length).mean(axis=1), 4), "standard error of each", round(float(z.std()) / length ** 0.5, 4))
 
 
 def turntable() -> None:
@@ -83,6 +94,9 @@ def turntable() -> None:
         times = {"turntable-roll_slow": (101.5, 81.6, 147.2), "turntable-yaw_medium": (1298.6, 1077.5, 269.4)}[study]
         for axis, t0 in enumerate(times):
             change(f"base {'xyz'[axis]}", awake[:, 0] - base[0, 0], awake[:, axis + 1], t0)
+        since = awake[:, 0] - base[0, 0]
+        means = [awake[(since >= low) & (since < low + 10.0), 1].mean() for low in (0.0, 10.0, 20.0, 30.0, 40.0, 50.0)]
+        print("    base x, means of the first tens of seconds:", np.round(means, 4))
 
 
 def static() -> None:
@@ -140,7 +154,7 @@ def broad() -> None:
             x, reference = np.degrees(table[:, axis]), table[:, axis + 3]
             e = x - reference
             robust = 1.4826 * float(np.median(np.abs(e - np.median(e))))
-            print(f"  {study} {'xyz'[axis]}: late by {delay(x, reference, 285.714):.4f} s, slope {np.dot(x, reference) / np.dot(reference, reference):.4f}, beyond 5 robust deviations {np.mean(np.abs(e - np.median(e)) > 5.0 * robust):.3f}")
+            print(f"  {study} {'xyz'[axis]}: late by {delay(x, reference, 285.714):.4f} s, slope {np.dot(x, reference) / np.dot(reference, reference):.4f}, beyond 5 robust deviations {np.mean(np.abs(e - np.median(e)) > 5.0 * robust):.3f}; at 99.97 Hz {line(x, 285.714, 99.97):.0f} of its neighbours, reference {line(reference, 285.714, 99.97):.0f}")
 
 
 if __name__ == "__main__":
