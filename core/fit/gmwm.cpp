@@ -312,7 +312,7 @@ GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& struc
     const auto residual = [&](const Eigen::VectorXd& at, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
       projected_residual(search, last, at, residuals, jacobian);
     };
-    LeastSquaresLimits limits{.max_iterations = 60, .gradient_tolerance = 1e-13, .parameter_tolerance = 1e-10};
+    LeastSquaresLimits limits{.max_iterations = 60, .gradient_tolerance = 1e-13, .parameter_tolerance = 1e-8};
     for (Candidate candidate : scan(search, structure)) {
       // A minimum that three times what its slope promises would not lower below the best is none worth finding.
       if (candidate.objective - 3.0 * promised_fall(residual, candidate.log_shapes) > best.objective) {

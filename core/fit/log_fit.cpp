@@ -310,7 +310,8 @@ Interval LogFit::profile(std::size_t k, double rise) {
       const double b = std::sqrt(outside_value);
       const double fraction = std::clamp((root - a) / std::max(b - a, 1e-12), 0.1, 0.9);
       const double middle = inside + fraction * (outside - inside);
-      const double value = constrained(k, middle, warm) - minimum_;
+      warm(index) = middle;  // between two known points: the nearer of them is start enough
+      const double value = minimise(warm, k) - minimum_;
       if (value > rise) {
         outside = middle;
         outside_value = value;
