@@ -5,8 +5,8 @@
 /// are correlated by rho(t), and how fast it forgets depends on the noise: within 1/beta of a Gauss-Markov process that
 /// rises above the white noise, never in white noise alone. The largest of many is beyond u with probability
 ///   P ~ 2 u phi(u) sum over t of (1 - rho) nu(sqrt(2 u^2 (1 - rho))),
-/// nu the overshoot between grid points (Siegmund and Yakir, The Statistics of Gene Mapping, 2007, equation 5.3 and its
-/// approximation of nu). A single look at a gain g = v^2 has P ~ 2 phi(v) / v: equal chances make the search worth
+/// nu the correction for a grid (Siegmund and Yakir, The Statistics of Gene Mapping, 2007, with their closed
+/// approximation of it). A single look at a gain g = v^2 has P ~ 2 phi(v) / v: equal chances make the search worth
 ///   u^2 - v^2 ~ 2 ln(u v sum (1 - rho) nu),
 /// for five minutes in blocks of 1/5 s: 5 for white noise, 8 to 10 with Gauss-Markov processes or a random walk
 /// (tests/unit/investigate/step_scan_test.cpp measures the chances).
