@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostDistinct = 256;
 constexpr std::size_t kShortestFrozen = 200;
 constexpr std::size_t kFrozenToOthers = 20;
-constexpr std::size_t kSamplesForSteps = 16384;
+constexpr std::size_t kSamplesForSteps = 4096;
 constexpr std::array kSentinels{-9999.0, 9999.0, -99999.0, 99999.0, -999.0};
 constexpr double kGarbage = 1e6;
 
