@@ -60,7 +60,7 @@ void hold_out_fact(const ChannelGroup& group, const std::vector<std::vector<unsi
   if (name != "output_resolution") {
     for (std::size_t half = 0; half < 2; ++half) {
       const double never = 1.0 / places[1 - half];
-      const double rate = std::max(never, events[half] / places[half]);
+      const double rate = std::clamp(events[half] / places[half], never, 1.0 - never);
       gain +=
           bernoulli(events[1 - half], places[1 - half], rate) - bernoulli(events[1 - half], places[1 - half], never);
     }

@@ -23,11 +23,21 @@ FullRate fold_of(const FullRate& data, std::size_t fold) {
   return part;
 }
 
-/// Half of every recording, with its own spectra.
+/// Where half of the samples in use have passed.
+std::ptrdiff_t middle_of(const std::vector<unsigned char>& used) {
+  const auto count = std::count_if(used.begin(), used.end(), [](unsigned char u) { return u != 0; });
+  auto at = used.begin();
+  for (std::ptrdiff_t passed = 0; at != used.end() && passed < count / 2; ++at) {
+    passed += *at != 0 ? 1 : 0;
+  }
+  return at - used.begin();
+}
+
+/// Half of the samples in use of every recording, with its own spectra.
 FullRate half_of(const FullRate& data, std::size_t half) {
   FullRate part = data;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    const auto middle = static_cast<std::ptrdiff_t>(data.residual[r].size() / 2);
+    const std::ptrdiff_t middle = middle_of(data.used[r]);
     const auto cut = [&](auto& v) {
       v = half == 0 ? std::decay_t<decltype(v)>(v.begin(), v.begin() + middle)
                     : std::decay_t<decltype(v)>(v.begin() + middle, v.end());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace driftlab::investigate {
@@ -147,6 +148,10 @@ WhitenedLine measure(const FullRate& data, std::size_t r, double f_hz, double le
     yc += y * line.cosine[i];
   }
   const double det = ss * cc - sc * sc;
+  if (!(det > 0.0)) {  // no sample in use, as in the half of a recording that froze: nothing is known of a line
+    line.phasor = {0.0, 0.0, std::numeric_limits<double>::infinity()};
+    return line;
+  }
   line.phasor = {(ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det, level / (0.5 * (ss + cc)) / data.dt_s};
   return line;
 }
@@ -168,7 +173,10 @@ double density_near(const FullRate& data, std::size_t r, double f_hz) {
   for (const double p : around) {
     sum += p / static_cast<double>(around.size());
   }
-  return sum;
+  // Samples out of use hold no noise.
+  const auto end = data.used[r].begin() + static_cast<std::ptrdiff_t>(n);
+  const auto used = std::count_if(data.used[r].begin(), end, [](unsigned char u) { return u != 0; });
+  return used > 0 ? sum * static_cast<double>(n) / static_cast<double>(used) : sum;
 }
 
 Evidence describe(const FullRate& data, const LineSpectra& spectra, const std::vector<std::size_t>& scope,
