@@ -4,7 +4,7 @@
 #include "clients/cli/input.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/workspace.hpp"
-#include "core/investigate/explain.hpp"
+#include "core/investigate/report/explain.hpp"
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
 #include "schema/json/investigation.hpp"

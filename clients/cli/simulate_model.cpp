@@ -1,7 +1,7 @@
 #include "clients/cli/simulate_model.hpp"
 
 #include "clients/cli/table_file.hpp"
-#include "core/investigate/simulate_channel.hpp"
+#include "core/investigate/search/simulate_channel.hpp"
 #include "core/signal/number.hpp"
 #include "schema/json/simulation_model.hpp"
 

@@ -1,11 +1,13 @@
 #include "core/investigate/investigate.hpp"
 
-#include "core/investigate/checks.hpp"
-#include "core/investigate/explain.hpp"
-#include "core/investigate/given_model.hpp"
-#include "core/investigate/group_search.hpp"
-#include "core/investigate/outage_gain.hpp"
-#include "core/investigate/series.hpp"
+#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/report/checks.hpp"
+#include "core/investigate/report/explain.hpp"
+#include "core/investigate/report/outage_gain.hpp"
+#include "core/investigate/report/series.hpp"
+#include "core/investigate/search/given_model.hpp"
+#include "core/investigate/search/group_search.hpp"
+#include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
 #include <cmath>

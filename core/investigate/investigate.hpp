@@ -11,19 +11,13 @@
 ///   3. On what is left at full rate: band limit, level and modulation of the noise, its distribution, its correlation
 ///      between axes.
 ///   4. Backward check: what no longer pays when everything else is in goes out again.
-/// A cause is reported where its score exceeds kThreshold. The choice among scopes, shapes and times is paid for in
-/// each score, so that one threshold stands for all: it was set so that at most 5 % of simulated studies without any
-/// effect have a finding (tests/hidden/RESULTS.md). It is `identified` where no declared rival comes within kMargin of
-/// its score, else `ambiguous`.
-#include "core/investigate/report.hpp"
-#include "core/investigate/study.hpp"
+/// What decides that a cause is reported, and how surely, stands in search/thresholds.hpp.
+#include "core/investigate/report/report.hpp"
+#include "core/investigate/study/study.hpp"
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
 namespace driftlab::investigate {
-
-inline constexpr double kThreshold = 10.0;
-inline constexpr double kMargin = 6.0;
 
 struct InvestigateOptions {
   unsigned threads = 2;         ///< results do not depend on it

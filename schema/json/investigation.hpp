@@ -1,6 +1,6 @@
 #pragma once
 /// The report of an investigation as a document (spec/causes.md).
-#include "core/investigate/report.hpp"
+#include "core/investigate/report/report.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab {

@@ -1,7 +1,7 @@
 #include "schema/json/simulation_model.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/given_model.hpp"
+#include "core/investigate/search/given_model.hpp"
 #include "core/process/registry.hpp"
 #include "schema/json/parameter_unit.hpp"
 

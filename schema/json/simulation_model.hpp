@@ -7,8 +7,8 @@
 ///    "effects": [{"cause", "channels", "recordings", "params"}]}           what processes cannot hold
 ///
 /// The same members make the `baseline` of a study, where `channels` may be a list of columns that narrows it.
-#include "core/investigate/report.hpp"
-#include "core/investigate/study.hpp"
+#include "core/investigate/report/report.hpp"
+#include "core/investigate/study/study.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab {

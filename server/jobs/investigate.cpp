@@ -1,8 +1,8 @@
 #include "server/jobs/investigate.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/explain.hpp"
 #include "core/investigate/investigate.hpp"
+#include "core/investigate/report/explain.hpp"
 #include "core/read/column_file.hpp"
 #include "schema/json/investigation.hpp"
 #include "schema/json/simulation_model.hpp"

@@ -1,6 +1,6 @@
 /// Sizes of effects: what an oracle that knows base and template would see at about z standard deviations.
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/slow_fit.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/slow/slow_fit.hpp"
 #include "tests/hidden/simulated_study.hpp"
 
 #include <algorithm>

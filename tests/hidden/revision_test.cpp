@@ -1,7 +1,7 @@
 /// An extended model, written down and read again, is a baseline that says all there is to say about its study; and a
 /// recording simulated from it shows the effect again.
 #include "core/investigate/investigate.hpp"
-#include "core/investigate/simulate_channel.hpp"
+#include "core/investigate/search/simulate_channel.hpp"
 #include "schema/json/simulation_model.hpp"
 #include "tests/hidden/simulated_study.hpp"
 

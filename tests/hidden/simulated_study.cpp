@@ -1,6 +1,6 @@
 #include "tests/hidden/simulated_study.hpp"
 
-#include "core/investigate/slow_fit.hpp"
+#include "core/investigate/slow/slow_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 /// Studies out of driftlab's own simulator: known base model, known (or no) effect, files in memory.
-#include "core/investigate/draft.hpp"
-#include "core/investigate/study.hpp"
+#include "core/investigate/causes/draft.hpp"
+#include "core/investigate/study/study.hpp"
 
 #include <cstdint>
 #include <deque>

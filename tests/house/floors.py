@@ -13,8 +13,10 @@ import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
-ANALYSIS = [*CORE, "core/calibrate", "core/navigate", "core/investigate", "core/investigate/causes"]
-DOCUMENTS = [*ANALYSIS, "core/read", "schema/json", "schema"]
+INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "causes", "search", "report")]  # lowest first
+ANALYSIS = [*CORE, "core/campaign", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
+USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
+DOCUMENTS = [*USE_CASES, "schema/json", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -22,11 +24,14 @@ FLOORS: dict[str, list[str]] = {
     "core/process": CORE[:1],
     "core/variance": CORE[:2],
     "core/fit": CORE[:3],
+    "core/campaign": CORE,
     "core/calibrate": CORE,
     "core/navigate": CORE,
-    "core/investigate": [*CORE, "core/calibrate", "core/navigate", "core/investigate/causes"],
-    "core/investigate/causes": [*CORE, "core/investigate"],  # each cause is one file; the search walks their registry
-    "schema/json": [*ANALYSIS, "core/read"],
+    **{room: [*CORE, *INVESTIGATE[:floor]] for floor, room in enumerate(INVESTIGATE)},
+    "core/investigate/report": [*CORE, "core/navigate", *INVESTIGATE[:-1]],  # what a finding costs in navigation
+    "core/investigate": [*CORE, "core/campaign", "core/calibrate", "core/navigate", *INVESTIGATE],
+    "core/analysis": [*ANALYSIS, "core/read"],  # one file per use case: what the command line and the jobs ask for
+    "schema/json": USE_CASES,
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
     "server/observe": ["core/signal", "server/store", "schema/json"],

@@ -1,8 +1,8 @@
 /// acceleration_dependent_noise: white noise that grows with the reference acceleration (driven_noise.hpp).
 #include "core/investigate/causes/causes.hpp"
 #include "core/investigate/causes/driven_noise.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

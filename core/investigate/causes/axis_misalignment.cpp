@@ -1,9 +1,9 @@
 /// axis_misalignment: m w_other on an axis that should see none; the shape is the index of the other axis.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/reference_quality.hpp"
+#include "core/investigate/study/inputs.hpp"
+#include "core/investigate/study/reference_quality.hpp"
 
 namespace driftlab::investigate {
 namespace {

@@ -2,12 +2,12 @@
 /// E = N^2 |H|^2 + floor + slow: rounding and the leakage of the periodogram fill the stop band by a level that is
 /// fitted.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/profile.hpp"
-#include "core/investigate/whittle.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/fullrate/whittle.hpp"
+#include "core/investigate/slow/profile.hpp"
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 /// bias_step: the mean jumps by `step` at t0, t0 from the first sample of the file, in one recording.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

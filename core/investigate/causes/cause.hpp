@@ -10,9 +10,9 @@
 /// All evidence is one currency: `score` = twice the gain in log likelihood over the best model without the cause,
 /// minus what its freedom is worth (1 per amplitude, more where a shape or time was searched, 2 ln of the scopes
 /// tried).
-#include "core/investigate/evidence.hpp"
-#include "core/investigate/slow_model.hpp"
-#include "core/investigate/study.hpp"
+#include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/slow/slow_model.hpp"
+#include "core/investigate/study/study.hpp"
 
 #include <functional>
 #include <span>
@@ -98,8 +98,8 @@ struct Cause {
   /// Marks the grid places of member r that the found fact has spoilt; nothing after it uses them.
   void (*spoils)(const ChannelGroup& group, const Evidence& found, std::size_t r,
                  std::vector<unsigned char>& mask) = nullptr;
-  /// Puts the effect into a simulated recording (core/investigate/draft.hpp); `values` in the order of `parameters`,
-  /// SI.
+  /// Puts the effect into a simulated recording (core/investigate/causes/draft.hpp); `values` in the order of
+  /// `parameters`, SI.
   void (*inject)(Draft& draft, std::span<const double> values, Random& random) = nullptr;
   /// Makes what was found part of a simulated inertial unit (unit_axis.hpp); false where its values do not fit. Null: a
   /// navigation simulation cannot hold the cause. At least one parameter has been found.

@@ -2,10 +2,10 @@
 /// The pooled correlation r of the innovations has variance 1/(pairs samples) under independence; the white parts' is
 /// r / rho.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "core/investigate/causes/driven_noise.hpp"
 
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/modulation.hpp"
+#include "core/investigate/causes/draft.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/fullrate/modulation.hpp"
 
 #include <algorithm>
 #include <cmath>

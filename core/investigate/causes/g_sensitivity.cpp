@@ -1,7 +1,7 @@
 /// g_sensitivity: G f on a gyro channel, f the specific force along the same axis.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

@@ -1,8 +1,8 @@
 /// gauss_markov: one more slow Gauss-Markov process.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

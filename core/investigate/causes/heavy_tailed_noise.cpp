@@ -2,10 +2,10 @@
 /// The innovations' nu_e follows by maximum likelihood; kurtosis passes to the white part as the square of its share of
 /// the variance: 6/(nu - 4) = 6/(nu_e - 4) / rho^2.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/tails.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/fullrate/tails.hpp"
 #include "core/process/distributions.hpp"
 
 #include <algorithm>

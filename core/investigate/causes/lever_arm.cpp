@@ -1,7 +1,7 @@
 /// lever_arm: rotation about z at distance r: -r w^2 on x (radial), r dw/dt on y (tangential).
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

@@ -1,8 +1,8 @@
 /// missing_samples: samples are absent and the time column jumps. Counted on the grid that fits the stamps.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 /// noise_level_change: the whole zero-mean error of one recording times `ratio` from t0 on.
 /// Every sample is tried as t0 by running sums of the squared innovations.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 /// once_per_revolution: A sin(theta + phi), theta the integral of the rate from the first sample of the file; phi is
 /// free in each recording, for the turntable starts anywhere.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/reference_quality.hpp"
+#include "core/investigate/study/inputs.hpp"
+#include "core/investigate/study/reference_quality.hpp"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 /// outliers: a fraction of the samples has a gross error of +-magnitude added, its sign at random.
 /// Innovations are a mixture (1 - p) N(0, c) + p/2 [N(m, c) + N(-m, c)].
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/tails.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/fullrate/tails.hpp"
 #include "core/process/distributions.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 /// output_resolution: the output is rounded to multiples of a step that is coarse enough to show against the noise.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/lattice.hpp"
+#include "core/investigate/study/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>

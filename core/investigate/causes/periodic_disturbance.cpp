@@ -1,12 +1,12 @@
 /// periodic_disturbance: A sin(2 pi f0 t + phi), amplitude and frequency the same in all recordings of the scope, phase
 /// free in each. Found in the periodogram of the innovations, each ordinate against its neighbourhood
-/// (core/investigate/lines.hpp).
+/// (core/investigate/causes/lines.hpp).
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
+#include "core/investigate/causes/lines.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/lines.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
 
 #include <algorithm>
 #include <cmath>

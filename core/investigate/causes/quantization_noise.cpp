@@ -1,13 +1,13 @@
 /// quantization_noise: differenced uniform noise, density Q^2 |1 - exp(-i w)|^2 / dt, in all recordings or in some.
 /// Fitted to the spectra beside white and slow noise; where these do not describe the recordings, against a spectrum
 /// free in every bin that the recordings outside the scope share.
-#include "core/investigate/added_density.hpp"
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
+#include "core/investigate/fullrate/added_density.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

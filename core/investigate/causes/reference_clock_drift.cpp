@@ -1,7 +1,7 @@
 /// reference_clock_drift: measured follows w(t (1 + eps)), to first order eps t w'(t).
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

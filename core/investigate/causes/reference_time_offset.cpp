@@ -1,7 +1,7 @@
 /// reference_time_offset: measured follows w(t - delta), to first order -delta w'(t).
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

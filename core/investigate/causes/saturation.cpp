@@ -1,11 +1,11 @@
 /// saturation: the output is clipped at +-limit: at least eight values at one extreme while the reference comes near
 /// it.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/lattice.hpp"
+#include "core/investigate/study/inputs.hpp"
+#include "core/investigate/study/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 /// scale_factor_asymmetry: S abs(w), w the reference rate about the sensor's own axis.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 /// scale_factor_error: S w, w the reference rate about the sensor's own axis.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

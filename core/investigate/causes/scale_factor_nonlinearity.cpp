@@ -1,7 +1,7 @@
 /// scale_factor_nonlinearity: S2 w abs(w), or S3 w^3; the two are tried as shapes 2 and 3.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

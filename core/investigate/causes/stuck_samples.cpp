@@ -4,9 +4,9 @@
 /// geometric law of the longer. A run of more than a hundredth of the record is a freeze: it says nothing about chance,
 /// and one is enough.
 #include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/lattice.hpp"
+#include "core/investigate/study/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>

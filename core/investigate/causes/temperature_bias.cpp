@@ -1,8 +1,8 @@
 /// temperature_bias: c (T_lag - mean), T_lag the temperature behind a first-order lag that starts settled at the first
 /// sample.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 /// timestamp_jitter: the stamps scatter around the uniform grid by more than 0.2 % of the interval and their own
 /// resolution.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

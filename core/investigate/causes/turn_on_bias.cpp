@@ -1,8 +1,8 @@
 /// turn_on_bias: a bias that differs from recording to recording.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

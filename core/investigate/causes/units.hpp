@@ -1,6 +1,6 @@
 #pragma once
 /// The units in which causes report their parameters.
-#include "core/investigate/evidence.hpp"
+#include "core/investigate/causes/evidence.hpp"
 #include "core/signal/angle.hpp"
 
 namespace driftlab::investigate::units {

@@ -1,7 +1,7 @@
 /// vibration_rectification: a bias proportional to the variance of f along the same axis in a centred window of 1 s.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 namespace driftlab::investigate {
 namespace {

@@ -1,7 +1,7 @@
 /// warm_up_transient: A exp(-t/tau), t from the first sample of the file.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <cmath>
 

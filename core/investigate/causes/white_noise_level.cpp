@@ -2,12 +2,12 @@
 /// Innovations in the scope have variance c [1 + rho (R^2 - 1)], R the ratio of densities and rho the share of the
 /// white part.
 #include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/inputs.hpp"
+#include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
-#include "core/investigate/draft.hpp"
-#include "core/investigate/full_rate.hpp"
-#include "core/investigate/modulation.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/investigate/fullrate/modulation.hpp"
+#include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "core/investigate/lattice.hpp"
+#include "core/investigate/study/lattice.hpp"
 
-#include "core/investigate/time_grid.hpp"
+#include "core/investigate/study/time_grid.hpp"
 #include "core/process/random.hpp"
 
 #include <gtest/gtest.h>

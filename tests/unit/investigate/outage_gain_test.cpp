@@ -1,5 +1,5 @@
 /// What findings become in a navigation simulation, and what they cost there.
-#include "core/investigate/outage_gain.hpp"
+#include "core/investigate/report/outage_gain.hpp"
 
 #include "core/investigate/causes/cause.hpp"
 

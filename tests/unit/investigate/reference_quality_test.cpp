@@ -1,4 +1,4 @@
-#include "core/investigate/reference_quality.hpp"
+#include "core/investigate/study/reference_quality.hpp"
 
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/investigate.hpp"

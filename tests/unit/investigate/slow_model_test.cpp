@@ -1,4 +1,4 @@
-#include "core/investigate/slow_fit.hpp"
+#include "core/investigate/slow/slow_fit.hpp"
 #include "core/process/random.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,5 +1,5 @@
 /// What the choice of a step's time is worth: the search's false alarms against those of a single look.
-#include "core/investigate/step_scan.hpp"
+#include "core/investigate/slow/step_scan.hpp"
 
 #include "core/process/random.hpp"
 

@@ -1,0 +1,73 @@
+#pragma once
+/// A channel group at full rate under the present model: residuals, their innovations, their spectra.
+///
+/// Residuals are the error minus the mean effects found so far. Innovations are what the Kalman filter of the model
+/// (white part and slow states, at single samples) cannot foresee, divided by their standard deviation: independent
+/// standard normal under a right model, so that effects on the variance and on the distribution are statements about
+/// them. With an automatic baseline they are whitened once more by an autoregression fitted to themselves: recorded
+/// noise is never exactly a model's, and an unexplained colour must not pass for a change of its level.
+#include "core/investigate/fullrate/spectrum.hpp"
+#include "core/investigate/slow/slow_model.hpp"
+#include "core/investigate/study/study.hpp"
+
+#include <vector>
+
+namespace driftlab::investigate {
+
+struct FullRate {
+  const Study* study = nullptr;
+  const ChannelGroup* group = nullptr;
+  bool given = false;  ///< the baseline is given: its scale is not free
+  double dt_s = 0.0;
+  double white_share = 1.0;                      ///< of the innovations' variance that the white part drives
+  double innovation_sd = 1.0;                    ///< of one innovation [SI]
+  double lattice_step = 0.0;                     ///< step of the file's lattice [SI], 0: none seen
+  double quantization = 0.0;                     ///< Q^2 of a given baseline [SI^2 s^2]
+  std::vector<double> raised;                    ///< per member, white density that findings taken out have added
+  SlowModel model;                               ///< of the samples
+  BlockSeries samples;                           ///< blocks of one sample
+  std::vector<std::vector<double>> residual;     ///< per member, over its analysed part
+  std::vector<std::vector<double>> innovation;   ///< likewise
+  std::vector<std::vector<unsigned char>> used;  ///< innovation is meaningful
+  std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
+  std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin
+  bool flat = true;  ///< white + slow describes the spectra; false: compare recordings with each other instead
+  /// Recordings of a real sensor repeat their noise level to about 0.6 %, not to 1/sqrt(2 n): where no model describes
+  /// the spectra, gains of contrasts between recordings are divided by 1 + 2 n 0.006^2. 1 elsewhere.
+  double repeatability = 1.0;
+  double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
+
+  [[nodiscard]] std::size_t members() const { return group->members.size(); }
+  /// A band limit has been found: the colour at the top of the band is no news.
+  [[nodiscard]] bool band_limited() const { return corner_hz > 0.0; }
+};
+
+struct FullRateOptions {
+  bool given = false;
+  bool whiten_further = true;
+  double quantization = 0.0;  ///< Q^2 of a given baseline [SI^2 s^2]; the innovations then need whiten_further
+  double lattice_step = 0.0;
+};
+
+/// `residual[r]`: over the analysed part of member r; `mask[r]`: over its grid, removes samples (may be empty).
+[[nodiscard]] FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const SlowModel& model,
+                                         std::vector<std::vector<double>> residual,
+                                         const std::vector<std::vector<unsigned char>>& mask,
+                                         const FullRateOptions& options);
+
+/// Sets `spectrum` and `slow` of member r from its residual. Missing samples stand on a straight line between their
+/// neighbours; power is divided by what `raised` has added to the density.
+void set_spectrum(FullRate& data, std::size_t r);
+/// The same for a member that has a spectrum already.
+void renew_spectrum(FullRate& data, std::size_t r);
+
+/// Recordings of a group by scope: which ones move; members where `select` holds.
+[[nodiscard]] std::vector<std::size_t> all_members(const ChannelGroup& group);
+[[nodiscard]] std::vector<std::size_t> moving_members(const ChannelGroup& group);
+
+/// The scopes in which an effect on the noise may act: all recordings (a given baseline only), the moving ones, each
+/// single one. An automatic baseline is that of the recordings at rest: where one alone rests, it is not that one that
+/// differs from all the others.
+[[nodiscard]] std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bool given);
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,45 @@
+#pragma once
+/// The distribution of the innovations: Gaussian, Student-t, or Gaussian with gross errors.
+#include "core/investigate/fullrate/full_rate.hpp"
+#include "core/signal/estimate.hpp"
+
+#include <functional>
+
+namespace driftlab::investigate {
+
+/// Counts of |e| in bins of 0.05 up to 12; what lies beyond, one by one (cut at 1000).
+struct InnovationHistogram {
+  std::vector<double> centre, count;
+  double samples = 0.0;
+  double square = 0.0;  ///< sum of e^2
+};
+[[nodiscard]] InnovationHistogram histogram_of(const FullRate& data);
+
+struct TailFit {
+  double value = 0.0;  ///< 1/nu of the innovations; 0: Gaussian
+  Interval interval;
+  double gain = 0.0;             ///< over the Gaussian of the baseline's scale (of free scale, where that is free)
+  double gain_free_scale = 0.0;  ///< over the Gaussian of free scale
+};
+/// Student-t of unit variance times a scale (free unless `scale_known`).
+[[nodiscard]] TailFit fit_student(const InnovationHistogram& histogram, bool scale_known);
+
+struct MixtureFit {
+  double fraction = 0.0;
+  double magnitude = 0.0;  ///< in standard deviations
+  Interval fraction_interval, magnitude_interval;
+  double gain = 0.0;
+  double gain_free_scale = 0.0;
+};
+[[nodiscard]] MixtureFit fit_mixture(const InnovationHistogram& histogram, bool scale_known);
+
+/// Log likelihood that tails found elsewhere gain over a Gaussian here; the scale is this histogram's own unless known.
+[[nodiscard]] double student_gain(const InnovationHistogram& histogram, double inverse_nu, bool scale_known);
+[[nodiscard]] double mixture_gain(const InnovationHistogram& histogram, double fraction, double magnitude,
+                                  bool scale_known);
+
+/// Innovations become the normal quantiles of their places in a symmetric distribution, given by the chance beyond e >=
+/// 0 on one side: standard normal where that distribution is right.
+void to_normal_scores(FullRate& data, const std::function<double(double)>& tail);
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,188 @@
+#include "core/investigate/search/given_model.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+bool holds(const std::vector<std::string>& list, const std::string& name) {
+  return list.empty() || std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// Acts in every recording of the group.
+bool everywhere(const GivenEffect& effect, const ChannelGroup& group) {
+  return std::all_of(group.members.begin(), group.members.end(),
+                     [&](const auto& member) { return holds(effect.recordings, member.recording->id); });
+}
+
+void add_process(const GivenProcess& process, SlowModel& model) {
+  const auto& p = process.parameters;
+  if (process.process == "white_noise") {
+    model.white += p[0] * p[0];
+  } else if (process.process == "gauss_markov") {
+    model.components.push_back({SlowKind::GaussMarkov, p[0] * p[0], p[1], {}});
+  } else if (process.process == "random_walk") {
+    model.components.push_back({SlowKind::RandomWalk, p[0] * p[0], 0.0, {}});
+  } else if (process.process == "flicker_noise") {
+    model.components.push_back({SlowKind::Flicker, p[0] * p[0], 0.0, {}});
+  }
+}
+
+void add_slow_effect(const GivenEffect& effect, SlowKind kind, const ChannelGroup& group, SlowModel& model) {
+  SlowComponent component{kind, effect.values[0] * effect.values[0], 0.0, {}};
+  component.beta = effect.values.size() > 1 ? effect.values[1] : 0.0;
+  if (!everywhere(effect, group)) {
+    for (const auto& member : group.members) {
+      component.in.push_back(holds(effect.recordings, member.recording->id) ? 1 : 0);
+    }
+  }
+  model.components.push_back(std::move(component));
+}
+
+}  // namespace
+
+bool applies(const Baseline& baseline, const ChannelGroup& group) {
+  if (baseline.automatic) {
+    return false;
+  }
+  if (!baseline.by_channel.empty()) {
+    return baseline.by_channel.count(group.column) > 0;
+  }
+  return baseline.quantity == group.role.quantity && holds(baseline.channels, group.column);
+}
+
+const std::vector<GivenProcess>& processes_of(const Baseline& baseline, const ChannelGroup& group) {
+  const auto own = baseline.by_channel.find(group.column);
+  return own != baseline.by_channel.end() ? own->second : baseline.processes;
+}
+
+std::vector<const GivenEffect*> effects_on(const Baseline& baseline, const ChannelGroup& group) {
+  std::vector<const GivenEffect*> effects;
+  if (!applies(baseline, group)) {
+    return effects;
+  }
+  for (const GivenEffect& effect : baseline.effects) {
+    const bool meets = std::any_of(group.members.begin(), group.members.end(),
+                                   [&](const auto& member) { return holds(effect.recordings, member.recording->id); });
+    if (meets && holds(effect.channels, group.column) && !effect.values.empty() &&
+        find_cause(effect.cause) != nullptr) {
+      effects.push_back(&effect);
+    }
+  }
+  return effects;
+}
+
+SlowModel given_model(const Baseline& baseline, const ChannelGroup& group) {
+  SlowModel model;
+  for (const GivenProcess& process : processes_of(baseline, group)) {
+    add_process(process, model);
+  }
+  for (const GivenEffect* const effect : effects_on(baseline, group)) {
+    const Cause& cause = *find_cause(effect->cause);
+    if (cause.slow != nullptr) {
+      add_slow_effect(*effect, *cause.slow, group, model);
+    } else if (cause.name == "white_noise_level" && everywhere(*effect, group)) {
+      model.white = effect->values[0] * effect->values[0];
+    }
+  }
+  if (!(model.white > 0.0)) {
+    model.white = 1e-12 * group.members.front().recording->dt_s;
+  }
+  return model;
+}
+
+double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
+  double sum = 0.0;
+  for (const GivenProcess& process : processes_of(baseline, group)) {
+    sum += process.process == "quantization_noise" ? process.parameters[0] * process.parameters[0] : 0.0;
+  }
+  for (const GivenEffect* const effect : effects_on(baseline, group)) {
+    if (effect->cause == "quantization_noise" && everywhere(*effect, group)) {
+      sum += effect->values[0] * effect->values[0];
+    }
+  }
+  return sum;
+}
+
+void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error) {
+  double drift = 0.0;
+  for (const GivenProcess& process : processes_of(baseline, group)) {
+    drift += process.process == "linear_drift" ? process.parameters[0] : 0.0;
+  }
+  const auto own = baseline.drift.find(group.column);
+  drift += own != baseline.drift.end() ? own->second : 0.0;
+  for (std::size_t r = 0; r < error.size() && drift != 0.0; ++r) {
+    for (std::size_t i = 0; i < error[r].size(); ++i) {
+      error[r][i] -= drift * group.members[r].recording->time_s(i);
+    }
+  }
+  for (const GivenEffect* const effect : effects_on(baseline, group)) {
+    const Cause& cause = *find_cause(effect->cause);
+    if (cause.mean == nullptr || cause.mean->free_phase) {
+      continue;
+    }
+    const double shape = effect->values.size() > 1 ? effect->values[1] : 0.0;
+    for (std::size_t r = 0; r < error.size(); ++r) {
+      std::vector<std::vector<double>> columns;
+      const StudyRecording& recording = *group.members[r].recording;
+      if (!holds(effect->recordings, recording.id) || !cause.mean->build(recording, group, shape, columns)) {
+        continue;
+      }
+      for (std::size_t i = 0; i < error[r].size(); ++i) {
+        error[r][i] -= effect->values[0] * columns[0][i];
+      }
+    }
+  }
+}
+
+const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence) {
+  for (const GivenEffect* const effect : effects_on(baseline, group)) {
+    if (effect->cause != evidence.cause->name) {
+      continue;
+    }
+    const bool meets = std::any_of(evidence.members.begin(), evidence.members.end(), [&](std::size_t r) {
+      return r < group.members.size() && holds(effect->recordings, group.members[r].recording->id);
+    });
+    bool agrees = meets;
+    for (std::size_t k = 0; k < evidence.parameters.size() && k < effect->values.size(); ++k) {
+      const Interval& ci = evidence.parameters[k].estimate.ci95;
+      // The model's own value is an estimate too, as uncertain as this one: twice the half width.
+      const double middle = 0.5 * (ci.low + ci.high);
+      const double reach = (ci.high - ci.low) + 1e-9 * std::fabs(middle);
+      agrees = agrees && std::fabs(effect->values[k] - middle) <= reach;
+    }
+    if (agrees) {
+      return effect;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<GivenProcess> noise_processes(const ChannelModel& model) {
+  if (model.given) {
+    return model.given_processes;
+  }
+  std::vector<GivenProcess> list{{"white_noise", {std::sqrt(model.base.white)}}};
+  for (const SlowComponent& component : model.base.components) {
+    const double level = std::sqrt(component.level);
+    switch (component.kind) {
+      case SlowKind::GaussMarkov:
+        list.push_back({"gauss_markov", {level, component.beta}});
+        break;
+      case SlowKind::RandomWalk:
+        list.push_back({"random_walk", {level}});
+        break;
+      case SlowKind::Flicker:
+        list.push_back({"flicker_noise", {level}});
+        break;
+      case SlowKind::Offset:
+        break;
+    }
+  }
+  return list;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,45 @@
+#pragma once
+/// A given model as the search takes it: taken at its word, never refitted.
+///
+/// Processes become the noise model; drifts and mean effects with fixed shape are taken off the error before anything
+/// is looked at; slow effects become processes; a `white_noise_level` or `quantization_noise` replaces or joins the
+/// level of the processes. What cannot be taken off a recording (tails, lines, band limits, facts of the file) stays in
+/// it: found again with parameters that agree with the model, it is no finding but a confirmation. The constant bias
+/// stays free: one number per channel, never a finding (spec/causes.md).
+#include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/search/channel_model.hpp"
+#include "core/investigate/slow/slow_model.hpp"
+#include "core/investigate/study/study.hpp"
+
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// True where the baseline is given and speaks of this group.
+[[nodiscard]] bool applies(const Baseline& baseline, const ChannelGroup& group);
+
+/// The processes of the group's column: its own where it has some, else those of the whole model.
+[[nodiscard]] const std::vector<GivenProcess>& processes_of(const Baseline& baseline, const ChannelGroup& group);
+
+/// The effects that act on the group's column.
+[[nodiscard]] std::vector<const GivenEffect*> effects_on(const Baseline& baseline, const ChannelGroup& group);
+
+/// White level and slow processes, those of the effects included.
+[[nodiscard]] SlowModel given_model(const Baseline& baseline, const ChannelGroup& group);
+
+/// Q^2 of the differenced uniform noise [SI^2 s^2]; 0: none.
+[[nodiscard]] double given_quantization(const Baseline& baseline, const ChannelGroup& group);
+
+/// Takes drifts and mean effects off `error[r]`, over the grid of member r.
+void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error);
+
+/// The given effect that says what was found: the same cause, in a recording of the finding, every value within its
+/// interval. nullptr: the finding is news.
+[[nodiscard]] const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& group,
+                                              const Evidence& evidence);
+
+/// The processes of a channel's noise: as they were given, or as they were fitted. Constant offsets are none of them.
+[[nodiscard]] std::vector<GivenProcess> noise_processes(const ChannelModel& model);
+
+}  // namespace driftlab::investigate

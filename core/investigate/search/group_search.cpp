@@ -1,0 +1,400 @@
+#include "core/investigate/search/group_search.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/causes/lines.hpp"
+#include "core/investigate/search/candidates.hpp"
+#include "core/investigate/search/fact_gain.hpp"
+#include "core/investigate/search/given_model.hpp"
+#include "core/investigate/search/hold_out.hpp"
+#include "core/investigate/search/slow_search.hpp"
+#include "core/investigate/search/take_out.hpp"
+#include "core/investigate/search/thresholds.hpp"
+#include "core/investigate/study/lattice.hpp"
+#include "core/investigate/study/reference_quality.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr int kRounds = 4;
+
+/// One group's state through the search.
+class GroupSearch {
+ public:
+  /// What is found is written to `outcome`.
+  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
+              const RunControl& control, GroupOutcome& outcome)
+      : study_(study), group_(group), index_(index), threads_(threads), control_(control), outcome_(outcome) {}
+
+  void run() {
+    if (!check_usable()) {
+      return;
+    }
+    control_.report("facts of " + group_.column, 0.0);
+    look_at_files();
+    if (!stopped()) {
+      search_slow();
+    }
+    if (!stopped()) {
+      control_.report("noise of " + group_.column, 0.9);
+      search_full_rate();
+    }
+    for (Evidence& evidence : outcome_.found) {
+      evidence.group = index_;
+      for (Evidence& rival : evidence.rivals) {
+        rival.group = index_;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool stopped() const { return control_.stop.stop_requested(); }
+
+  bool check_usable() {
+    double samples = 0.0;
+    bool constant = true;
+    for (const auto& member : group_.members) {
+      samples += static_cast<double>(member.recording->count());
+      const auto [low, high] = std::minmax_element(member.channel->rows.begin(), member.channel->rows.end());
+      constant = constant && *low == *high;
+      const double dt = member.recording->dt_s;
+      if (std::fabs(dt / group_.members.front().recording->dt_s - 1.0) > 0.01) {
+        outcome_.why_not = "its recordings have different sampling rates";
+        outcome_.needs = "recordings at one sampling rate";
+        return false;
+      }
+    }
+    if (constant) {
+      outcome_.why_not = "it never changes";
+      outcome_.needs = "a channel whose values change";
+      return false;
+    }
+    if (samples < 500.0) {
+      outcome_.why_not = "it has fewer than 500 samples";
+      outcome_.needs = "500 samples or more";
+      return false;
+    }
+    outcome_.why_not = why_reference_misleads(group_);
+    if (!outcome_.why_not.empty()) {
+      outcome_.needs = "a reference of the same motion, on the same clock and axes";
+      return false;
+    }
+    outcome_.usable = true;
+    return true;
+  }
+
+  void look_at_files() {
+    mask_.resize(group_.members.size());
+    error_.resize(group_.members.size());
+    for (std::size_t r = 0; r < group_.members.size(); ++r) {
+      mask_[r].assign(group_.members[r].recording->length, 0);
+      error_[r] = group_.members[r].channel->error;
+    }
+    for (const Cause& cause : cause_registry()) {
+      if (cause.file_fact == nullptr) {
+        continue;
+      }
+      for (Evidence& evidence : cause.file_fact(group_)) {
+        evidence.cause = &cause;
+        std::vector<std::vector<unsigned char>> spoilt(group_.members.size());
+        for (const std::size_t r : evidence.members) {
+          spoilt[r].assign(group_.members[r].recording->length, 0);
+          if (cause.spoils != nullptr) {
+            cause.spoils(group_, evidence, r, spoilt[r]);
+            std::transform(mask_[r].begin(), mask_[r].end(), spoilt[r].begin(), mask_[r].begin(),
+                           [](unsigned char a, unsigned char b) { return static_cast<unsigned char>(a | b); });
+          }
+        }
+        hold_out_fact(group_, spoilt, evidence);
+        if (cause.name == "output_resolution" && !evidence.parameters.empty()) {
+          lattice_step_ = evidence.parameters[0].estimate.value;
+        }
+        jitter_ = jitter_ || cause.name == "timestamp_jitter";
+        outcome_.found.push_back(std::move(evidence));
+      }
+    }
+    if (lattice_step_ == 0.0) {
+      const Channel& channel = *group_.members.front().channel;
+      const Lattice lattice = find_lattice(channel.rows);
+      lattice_step_ = std::max(lattice.step, lattice.decimals) * channel.unit.factor;
+    }
+    outcome_.examined = outcome_.found;
+  }
+
+  [[nodiscard]] FullRate full_rate(const SlowSearch& search, bool whiten_further) const {
+    FullRateOptions options;
+    options.given = given_.has_value();
+    options.whiten_further = whiten_further;
+    options.lattice_step = lattice_step_;
+    SlowModel model = search.null_fit().model;
+    model.white_scale.clear();
+    if (given_) {
+      model.white = given_white_;
+      if (quantization_ > 0.0) {
+        options.quantization = quantization_;
+        options.given = false;
+        options.whiten_further = true;
+      }
+      return look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+    }
+    options.whiten_further = false;
+    FullRate data = look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+    model.white = white_at_full_rate(data);
+    options.whiten_further = whiten_further;
+    return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+  }
+
+  /// The given model as blocks see it: of differenced noise only the two ends of a block remain, 2 Q^2/block^2.
+  [[nodiscard]] std::optional<SlowModel> block_model() const {
+    std::optional<SlowModel> model = given_;
+    if (model && quantization_ > 0.0) {
+      model->white += 2.0 * quantization_ * 5.0;  // blocks of about 1/5 s
+    }
+    return model;
+  }
+
+  void search_slow() {
+    const double dt = group_.members.front().recording->dt_s;
+    if (applies(study_.baseline, group_)) {
+      given_ = given_model(study_.baseline, group_);
+      given_->white += lattice_step_ * lattice_step_ / 12.0 * dt;
+      given_white_ = given_->white;
+      quantization_ = given_quantization(study_.baseline, group_);
+      take_given_means(study_.baseline, group_, error_);
+    }
+    SlowSearch search(study_, group_, block_model(), threads_, control_.stop);
+    search.set_data(error_, mask_);
+    search.fit_null();
+    std::vector<Evidence> slow_found;
+    const Cause* const line_cause = find_cause("periodic_disturbance");
+    for (int round = 0; round < kRounds && !stopped(); ++round) {
+      control_.report("search " + group_.column, 0.1 + 0.6 * round / kRounds);
+      FullRate data = full_rate(search, false);
+      if (round == 0) {
+        const std::vector<double> scale = white_scale_of(data);
+        if (!scale.empty()) {
+          search.set_white_scale(scale);
+          search.fit_null();
+          data = full_rate(search, false);
+        }
+      }
+      std::vector<Evidence> candidates = line_cause->examine(data);
+      for (Evidence& line : candidates) {
+        line.cause = line_cause;
+      }
+      // A line far above anything slow could be is taken before the slower search is made.
+      const Evidence* best = strongest(candidates);
+      const bool clear_line = best != nullptr && best->score > 60.0 && best->shape > 2.5;
+      if (!clear_line) {
+        for (Evidence& evidence : search.examine()) {
+          candidates.push_back(std::move(evidence));
+        }
+      }
+      keep_best(outcome_.examined, candidates);
+      std::optional<Evidence> winner = choose(data, candidates);
+      if (!winner) {
+        break;
+      }
+      if (winner->cause == line_cause) {
+        for (const std::size_t r : winner->members) {
+          const std::vector<double> line = fitted_line(data, r, winner->shape);
+          const std::size_t begin = group_.members[r].recording->begin;
+          for (std::size_t i = 0; i < line.size(); ++i) {
+            error_[r][begin + i] -= line[i];
+          }
+        }
+        search.set_data(error_, mask_);
+        search.fit_null();
+        outcome_.found.push_back(*std::move(winner));
+      } else {
+        search.accept(*winner);
+        slow_found.push_back(*std::move(winner));
+      }
+    }
+    if (stopped()) {
+      return;
+    }
+    control_.report("intervals of " + group_.column, 0.7);
+    // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
+    for (std::size_t i = slow_found.size(); i-- > 0;) {
+      search.hold_out(slow_found[i]);
+      if (slow_found[i].heldout_gain <= 0.0) {
+        search.reject(slow_found[i]);
+        slow_found.erase(slow_found.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    for (Evidence& evidence : slow_found) {
+      search.describe(evidence);
+      // A drift that all recordings share is part of an automatic baseline.
+      const bool shared = evidence.members.size() == group_.members.size() && !evidence.parameters.empty();
+      if (!given_ && shared && evidence.cause->name == "linear_drift") {
+        outcome_.model.drift = evidence.parameters[0].estimate.value;
+      } else {
+        outcome_.found.push_back(std::move(evidence));
+      }
+    }
+    ChannelModel& model = outcome_.model;
+    model.channel = group_.column;
+    model.unit = group_.unit;
+    model.quantity = group_.role.quantity;
+    outcome_.after = full_rate(search, !given_);
+    outcome_.before = outcome_.after;
+    if (!outcome_.found.empty()) {  // the recordings as they came, under the base alone
+      std::vector<std::vector<double>> whole;
+      for (const auto& member : group_.members) {
+        whole.push_back(member.channel->error);
+      }
+      if (given_) {
+        take_given_means(study_.baseline, group_, whole);
+      }
+      std::vector<std::vector<double>> raw;
+      for (std::size_t r = 0; r < whole.size(); ++r) {
+        const StudyRecording& recording = *group_.members[r].recording;
+        raw.emplace_back(whole[r].begin() + static_cast<std::ptrdiff_t>(recording.begin),
+                         whole[r].begin() + static_cast<std::ptrdiff_t>(recording.end));
+        for (double& v : raw.back()) {
+          v -= search.null_fit().amplitude[0];
+        }
+      }
+      FullRateOptions options;
+      options.given = given_.has_value();
+      options.whiten_further = !given_;
+      const SlowModel base = outcome_.after.model;
+      outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
+    }
+    model.given = given_.has_value();
+    model.given_processes = given_ ? processes_of(study_.baseline, group_) : std::vector<GivenProcess>{};
+    model.base = search.base();
+    model.base.white = outcome_.after.model.white;
+    model.bias = search.null_fit().amplitude[0];
+  }
+
+  /// Everything that needs the samples: each found effect is taken out before the next is sought.
+  void search_full_rate() {
+    FullRate& data = outcome_.after;
+    take_band_limit(data);
+    bool tails_known = false;
+    for (int round = 0; round < 2; ++round) {
+      std::vector<Evidence> candidates;
+      for (const Cause& cause : cause_registry()) {
+        const bool wanted =
+            (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
+        const bool known = tails_known && cause.family == Family::Tails;
+        const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
+        const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
+        if (!wanted || cause.examine == nullptr || known || jittered || lacking || stopped()) {
+          continue;
+        }
+        for (Evidence& evidence : cause.examine(data)) {
+          evidence.cause = &cause;
+          candidates.push_back(std::move(evidence));
+        }
+      }
+      if (round == 0) {
+        keep_best(outcome_.examined, candidates);
+      }
+      const std::optional<Evidence> winner = choose(data, candidates);
+      if (!winner) {
+        break;
+      }
+      outcome_.found.push_back(*winner);
+      take_out(data, *winner);
+      tails_known = tails_known || winner->cause->tail != nullptr;
+      if (winner->cause->deviation == nullptr && winner->cause->tail == nullptr) {
+        whiten_quantization(data, *winner);
+        break;
+      }
+    }
+  }
+
+  /// Differenced noise that all recordings share is whitened with the model, so that the checks see what it leaves.
+  void whiten_quantization(FullRate& data, const Evidence& found) const {
+    if (found.cause->name != "quantization_noise" || found.members.size() != data.members()) {
+      return;
+    }
+    FullRateOptions options;
+    options.lattice_step = lattice_step_;
+    options.quantization = found.shape;
+    const SlowModel model = data.model;
+    data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+  }
+
+  /// Means over a block of noise behind a low-pass are correlated with their neighbours, which an automatic baseline
+  /// describes by a Gauss-Markov process about as fast as the blocks. Where the spectra show a band limit without it,
+  /// it goes, and its density is white noise again.
+  void drop_fast_process(FullRate& data, const Cause& band_limit) {
+    constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
+    const auto fast = [](const SlowComponent& c) { return c.kind == SlowKind::GaussMarkov && c.beta > kFast; };
+    SlowModel plain = data.model;
+    for (const SlowComponent& component : plain.components) {
+      plain.white += fast(component) ? 2.0 * component.level / component.beta : 0.0;
+    }
+    if (given_ || std::erase_if(plain.components, fast) == 0) {
+      return;
+    }
+    FullRate without = data;
+    without.model = plain;
+    for (std::size_t r = 0; r < without.members(); ++r) {
+      renew_spectrum(without, r);
+    }
+    const std::vector<Evidence> found = band_limit.examine(without);
+    if (!found.empty() && found[0].score > kThreshold) {
+      data = std::move(without);
+      outcome_.model.base = plain;
+    }
+  }
+
+  void take_band_limit(FullRate& data) {
+    const Cause* const cause = find_cause("band_limited_noise");
+    drop_fast_process(data, *cause);
+    std::vector<Evidence> found = cause->examine(data);
+    if (found.empty()) {
+      return;
+    }
+    found[0].cause = cause;
+    keep_best(outcome_.examined, found);
+    if (found[0].score < kThreshold) {
+      return;
+    }
+    hold_out(data, found[0]);
+    outcome_.found.push_back(found[0]);
+    if (!given_) {
+      outcome_.model.base.white = white_below(data, found[0].shape);
+    }
+    FullRateOptions options;
+    options.given = false;  // the level behind the filter is the autoregression's
+    options.lattice_step = lattice_step_;
+    const SlowModel model = data.model;
+    data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
+    data.corner_hz = outcome_.found.back().shape;
+    data.flat = false;
+  }
+
+  const Study& study_;
+  const ChannelGroup& group_;
+  std::size_t index_;
+  unsigned threads_;
+  const RunControl& control_;
+  std::optional<SlowModel> given_;
+  std::vector<std::vector<double>> error_;
+  std::vector<std::vector<unsigned char>> mask_;
+  double lattice_step_ = 0.0;
+  double given_white_ = 0.0;
+  double quantization_ = 0.0;
+  bool jitter_ = false;
+  GroupOutcome& outcome_;
+};
+
+}  // namespace
+
+GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
+                          const RunControl& control) {
+  GroupOutcome outcome;
+  GroupSearch(study, group, index, threads, control, outcome).run();
+  return outcome;
+}
+
+}  // namespace driftlab::investigate

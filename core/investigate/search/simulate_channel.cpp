@@ -1,0 +1,110 @@
+#include "core/investigate/search/simulate_channel.hpp"
+
+#include "core/investigate/causes/draft.hpp"
+#include "core/investigate/search/given_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+void add_process(const GivenProcess& process, Draft& draft, Random& random) {
+  const double dt_s = draft.recording->dt_s;
+  const auto& p = process.parameters;
+  if (process.process == "white_noise") {
+    for (double& v : draft.white) {
+      v += p[0] / std::sqrt(dt_s) * random.normal();
+    }
+  } else if (process.process == "gauss_markov") {
+    add_slow(SlowKind::GaussMarkov, p[0] * p[0], p[1], dt_s, random, draft.slow);
+  } else if (process.process == "random_walk") {
+    add_slow(SlowKind::RandomWalk, p[0] * p[0], 0.0, dt_s, random, draft.slow);
+  } else if (process.process == "flicker_noise") {
+    add_slow(SlowKind::Flicker, p[0] * p[0], 0.0, dt_s, random, draft.slow);
+  } else if (process.process == "linear_drift") {
+    for (std::size_t i = 0; i < draft.mean.size(); ++i) {
+      draft.mean[i] += p[0] * draft.recording->time_s(i);
+    }
+  } else if (const char* const twin = process.process == "quantization_noise" ? "quantization_noise"
+                                      : process.process == "sinusoid"         ? "periodic_disturbance"
+                                                                              : nullptr) {
+    inject(*find_cause(twin), draft, p, random);
+  }
+}
+
+/// Why an effect cannot act in the recording; empty: it can.
+std::string obstacle(const GivenEffect& effect, const Draft& draft) {
+  const Cause* const cause = find_cause(effect.cause);
+  if (cause == nullptr) {
+    return "there is no such cause";
+  }
+  if (!effect.recordings.empty() &&
+      std::find(effect.recordings.begin(), effect.recordings.end(), draft.recording->id) == effect.recordings.end()) {
+    return "it belongs to single recordings";
+  }
+  std::vector<std::vector<double>> columns;
+  const double shape = effect.values.size() > 1 ? effect.values[1] : 0.0;
+  if (cause->mean != nullptr && cause->inject == nullptr &&
+      !cause->mean->build(*draft.recording, *draft.group, shape, columns)) {
+    return "it needs " + std::string(cause->needs);
+  }
+  const bool known = cause->mean != nullptr || cause->slow != nullptr || cause->inject != nullptr;
+  return known ? "" : "it cannot be simulated";
+}
+
+}  // namespace
+
+SimulatedChannel simulate_channel(const Baseline& model, StudyRecording recording, const std::string& column,
+                                  const ColumnRole& role, std::uint64_t seed) {
+  ChannelGroup group;
+  group.column = column;
+  group.role = role;
+  group.unit = role.unit.value_or(Unit{});
+  Random random(seed);
+  Draft draft;
+  draft.recording = &recording;
+  draft.group = &group;
+  draft.white.assign(recording.length, 0.0);
+  draft.slow.assign(recording.length, 0.0);
+  const auto term = [&](const std::map<std::string, double>& terms) {
+    const auto found = terms.find(column);
+    return found != terms.end() ? found->second : 0.0;
+  };
+  draft.mean.assign(recording.length, term(model.bias));
+  add_process({"linear_drift", {term(model.drift)}}, draft, random);
+  for (const GivenProcess& process : processes_of(model, group)) {
+    add_process(process, draft, random);
+  }
+  draft.shared.resize(recording.length);
+  for (double& v : draft.shared) {
+    v = random.normal();
+  }
+  SimulatedChannel result;
+  for (const GivenEffect& effect : model.effects) {
+    const bool mine = effect.channels.empty() ||
+                      std::find(effect.channels.begin(), effect.channels.end(), column) != effect.channels.end();
+    if (!mine) {
+      continue;
+    }
+    if (const std::string why = obstacle(effect, draft); !why.empty()) {
+      result.left_out.push_back(effect.cause + ": " + why);
+    } else {
+      inject(*find_cause(effect.cause), draft, effect.values, random);
+    }
+  }
+  result.reading.resize(recording.length);
+  const auto axis = axis_index(role.axis).value_or(2);
+  const bool turns = role.quantity == Quantity::AngularRate && !recording.rate[axis].empty();
+  for (std::size_t i = 0; i < recording.length; ++i) {
+    result.reading[i] = draft.white[i] + draft.slow[i] + draft.mean[i] + (turns ? recording.rate[axis][i] : 0.0);
+  }
+  for (const auto& step : draft.output) {
+    step(result.reading);
+  }
+  result.present = std::move(draft.present);
+  result.stamp_error_s = std::move(draft.stamp_error_s);
+  return result;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,143 @@
+#pragma once
+/// The search among mean effects and slow noise, which explain the same slow misfit of one channel group.
+///
+/// A wrong baseline hides effects: fitted to a recording with a step it grows a random walk that "explains" the step.
+/// Every effect is therefore (1) screened at several base models (each order fitted to all recordings, and fits to
+/// single ones where the effect may be absent), and (2) the most promising are fitted again jointly with the base from
+/// several starts. Scores are comparable: twice the joint log likelihood minus what base and effect cost, minus that of
+/// the best base alone. The base may be white noise + up to two Gauss-Markov processes + a random walk; 6 per
+/// Gauss-Markov process, 3 per random walk.
+#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/slow/slow_fit.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// What a process of the base costs, in twice the log likelihood.
+inline constexpr double kGaussMarkovCost = 6.0;
+inline constexpr double kRandomWalkCost = 3.0;
+
+/// A mean effect as regressors on the blocks.
+struct Regressor {
+  const Cause* cause = nullptr;  ///< null: the constant bias
+  std::vector<std::size_t> members;
+  double shape = 0.0;
+  int columns = 1;
+};
+
+/// Regressor columns of an effect in a scope.
+[[nodiscard]] inline int width_of(const Cause& cause, const std::vector<std::size_t>& members) {
+  return cause.mean->columns * (cause.mean->free_phase ? static_cast<int>(members.size()) : 1);
+}
+
+/// What the search knows about one group between its rounds.
+class SlowSearch {
+ public:
+  /// `given`: the baseline's slow model where it is given. `threads` share the joint fits; results do not depend on it.
+  /// Once `stop` is requested everything ends soon, with results of no meaning.
+  SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads,
+             std::stop_token stop = {});
+
+  /// (Re)reads the error of the group: `error[r]` over the grid of member r; `mask[r]` removes samples.
+  void set_data(const std::vector<std::vector<double>>& error, const std::vector<std::vector<unsigned char>>& mask);
+
+  /// Level of the white part per recording relative to the common one (nuisance), estimated at higher frequencies.
+  void set_white_scale(std::vector<double> scale);
+
+  /// The best base alone (with what has been accepted): also the start of the next `examine`.
+  const SlowFit& fit_null();
+
+  /// Every mean effect and slow process of the registry that can be examined, each in its best scope and shape, after
+  /// the joint fit; unordered.
+  [[nodiscard]] std::vector<Evidence> examine();
+
+  /// Makes a found effect part of the null.
+  void accept(const Evidence& evidence);
+
+  /// Takes an accepted effect out of the null again.
+  void reject(const Evidence& evidence);
+
+  /// Parameters with intervals of an accepted effect under the present null.
+  void describe(Evidence& evidence) const;
+  /// The held-out gain alone.
+  void hold_out(Evidence& evidence) const;
+
+  [[nodiscard]] const SlowFit& null_fit() const { return null_; }
+  /// The null's model without the accepted slow processes.
+  [[nodiscard]] SlowModel base() const;
+  /// Error minus the accepted mean effects and the bias over the analysed part, at full rate.
+  [[nodiscard]] std::vector<std::vector<double>> residuals(const std::vector<std::vector<double>>& error) const;
+  [[nodiscard]] const BlockSeries& series() const { return series_; }
+  /// Amplitude columns of an accepted effect in the null's fit: index of its first regressor.
+  [[nodiscard]] std::optional<std::size_t> regressor_of(const Evidence& evidence) const;
+  /// Penalised twice-log-likelihood of the null.
+  [[nodiscard]] double null_score() const { return null_score_; }
+
+ private:
+  /// A candidate of the screening: cause, scope, shape, and the base at which it did best.
+  struct Screened {
+    const Cause* cause = nullptr;
+    std::vector<std::size_t> members;
+    double shape = 0.0;
+    double penalty = 0.0;
+    double score = -1e300;  ///< penalised twice-log-likelihood at the screening base
+    SlowModel base;
+  };
+  struct Templates {
+    const Cause* cause = nullptr;
+    double shape = 0.0;
+    std::vector<std::vector<std::vector<double>>> blocks;  ///< column, member, block; empty member: no input
+  };
+  void build_templates();
+  [[nodiscard]] const Templates* find_templates(const Cause* cause, double shape) const;
+  [[nodiscard]] Templates make_templates(const Cause* cause, double shape) const;
+  [[nodiscard]] BlockColumns columns_with(const std::vector<Regressor>& regressors) const;
+  [[nodiscard]] std::vector<SlowModel> starting_orders(const BlockColumns& columns) const;
+  [[nodiscard]] std::vector<SlowModel> screening_bases() const;
+  void screen(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
+  void screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const;
+  /// What a step costs where the choice of its time costs `search_cost`.
+  [[nodiscard]] double step_penalty(const MeanEffect& effect, double search_cost) const;
+  [[nodiscard]] Evidence fit_jointly(const Screened& candidate) const;
+  /// Largest value of the last regressor's effect over the largest reference rate.
+  [[nodiscard]] double share_of_rate(const std::vector<Regressor>& regressors, const SlowFit& fit) const;
+  [[nodiscard]] std::vector<Evidence> examine_slow() const;
+  /// Whether a process of the cause is in the null already, throughout the scope.
+  [[nodiscard]] bool has_extra(const Cause& cause, const std::vector<std::size_t>& scope) const;
+  [[nodiscard]] SlowFit fit_extra(SlowKind kind, const std::vector<std::size_t>& scope, const SlowModel& base,
+                                  const BlockColumns& columns) const;
+  [[nodiscard]] double cost(const SlowModel& model) const;
+  [[nodiscard]] SlowFreedom freedom() const;
+  void refine_shape(Regressor& regressor, const SlowModel& model) const;
+  void describe_mean(Evidence& evidence) const;
+  void describe_slow(Evidence& evidence) const;
+  void hold_out_mean(Evidence& evidence) const;
+  [[nodiscard]] double gain_across_folds(const BlockColumns& columns, const SlowModel& noise, int mine) const;
+  [[nodiscard]] double overstated(const BlockColumns& columns, const SlowFit& noise, int mine, double gain) const;
+  void hold_out_slow(Evidence& evidence) const;
+  void place_step(Evidence& evidence) const;
+  [[nodiscard]] SlowModel widest_base(const BlockColumns& columns) const;
+
+  const Study& study_;
+  const ChannelGroup& group_;
+  std::optional<SlowModel> given_;
+  unsigned threads_;
+  std::stop_token stop_;
+  BlockSeries series_;
+  std::vector<std::vector<double>> error_;
+  std::vector<std::vector<unsigned char>> mask_;
+  std::vector<double> white_scale_;
+  std::vector<Templates> templates_;
+  std::vector<Regressor> accepted_;
+  std::vector<SlowComponent> extra_;  ///< accepted slow processes
+  std::vector<const Cause*> extra_cause_;
+  SlowFit null_;
+  std::vector<SlowFit> orders_;
+  double null_score_ = 0.0;
+  std::size_t base_count_ = 0;  ///< components of null_ that belong to the base, before the extras
+};
+
+}  // namespace driftlab::investigate

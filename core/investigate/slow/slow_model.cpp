@@ -1,0 +1,269 @@
+#include "core/investigate/slow/slow_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr int kFlickerStates = 6;
+
+/// Kalman gains over the blocks of one pattern; the last entry holds for all blocks after it where `steady`.
+struct Gains {
+  std::size_t states = 0;
+  std::vector<double> gain;      ///< blocks x states
+  std::vector<double> inv_sd;    ///< 1/sqrt(S); 0 for an empty block
+  std::vector<double> variance;  ///< S
+  [[nodiscard]] std::size_t at(std::size_t b) const { return std::min(b, inv_sd.size() - 1); }
+};
+
+void add_gauss_markov(BlockStates& states, double level, double beta, const BlockSeries& series) {
+  const double block = static_cast<double>(series.block);
+  const double x = beta * series.dt_s;
+  const double phi_block = std::exp(-x * block);
+  if (series.block == 1) {
+    states.phi.push_back(phi_block);
+    states.q.push_back(level * -std::expm1(-2.0 * x));
+    states.p0.push_back(level);
+    return;
+  }
+  const double phi = std::exp(-x);
+  const double mean = std::expm1(-x * block) / (block * std::expm1(-x));  // (1-phi^L)/(L(1-phi))
+  const double ar = level * std::exp(x * (block - 1.0)) * mean * mean;
+  // lag 0: (1+phi)/(1-phi)/L - 2 phi (1-phi^L)/(L^2 (1-phi)^2); for small x by the series L - ... both agree to 1e-9
+  double total = 0.0;
+  if (x * block < 0.02) {
+    double power = 1.0;
+    total = block;
+    for (double k = 1.0; k < block; ++k) {
+      power *= phi;
+      total += 2.0 * (block - k) * power;
+    }
+    total *= level / (block * block);
+  } else {
+    total = level * ((1.0 + phi) / (-std::expm1(-x)) / block - 2.0 * phi * mean / (block * -std::expm1(-x)));
+  }
+  states.phi.push_back(phi_block);
+  states.q.push_back(ar * -std::expm1(-2.0 * x * block));
+  states.p0.push_back(ar);
+  states.remainder += total - ar;
+}
+
+Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
+  const std::size_t m = states.phi.size();
+  Gains gains;
+  gains.states = m;
+  std::vector<double> covariance(m * m, 0.0);
+  const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance[i * m + j]; };
+  for (std::size_t i = 0; i < m; ++i) {
+    p(i, i) = states.p0[i];
+  }
+  std::vector<double> k(m);
+  const std::size_t count = blocks.filled.size();
+  gains.gain.reserve(std::min<std::size_t>(count, 1024) * m);
+  std::size_t same = 0;
+  const bool uniform =
+      std::all_of(blocks.filled.begin(), blocks.filled.end(), [&](double f) { return f == blocks.filled[0]; });
+  for (std::size_t b = 0; b < count; ++b) {
+    std::fill(k.begin(), k.end(), 0.0);
+    double s = 0.0;
+    const double filled = blocks.filled[b];
+    if (filled > 0.0) {
+      for (std::size_t i = 0; i < m; ++i) {
+        for (std::size_t j = 0; j < m; ++j) {
+          k[i] += p(i, j);
+        }
+        s += k[i];
+      }
+      // A remainder more negative than the white part would be no variance at all; the floor keeps S positive.
+      s += std::max(states.white / filled + states.remainder, 1e-6 * states.white);
+      for (std::size_t i = 0; i < m; ++i) {
+        for (std::size_t j = 0; j < m; ++j) {
+          p(i, j) -= k[i] * k[j] / s;
+        }
+      }
+    }
+    double change = 0.0;
+    for (std::size_t i = 0; i < m; ++i) {
+      const double gain = s > 0.0 ? k[i] / s : 0.0;
+      if (b > 0) {
+        change = std::max(change, std::fabs(gain - gains.gain[(b - 1) * m + i]));
+      }
+      gains.gain.push_back(gain);
+    }
+    gains.variance.push_back(s);
+    gains.inv_sd.push_back(s > 0.0 ? 1.0 / std::sqrt(s) : 0.0);
+    for (std::size_t i = 0; i < m; ++i) {
+      for (std::size_t j = 0; j < m; ++j) {
+        p(i, j) *= states.phi[i] * states.phi[j];
+      }
+      p(i, i) += states.q[i];
+    }
+    same = b > 0 && change < 1e-9 ? same + 1 : 0;
+    if (uniform && same > 8) {
+      break;
+    }
+  }
+  return gains;
+}
+
+}  // namespace
+
+std::size_t SlowModel::count(SlowKind kind) const {
+  return static_cast<std::size_t>(
+      std::count_if(components.begin(), components.end(), [&](const SlowComponent& c) { return c.kind == kind; }));
+}
+
+BlockColumns BlockColumns::zeros(const BlockSeries& series, std::size_t width) {
+  BlockColumns columns;
+  columns.width = width;
+  for (const BlockRecording& recording : series.recordings) {
+    columns.rows.emplace_back(recording.mean.size() * width, 0.0);
+  }
+  return columns;
+}
+
+Eigen::MatrixXd gram_of(const BlockColumns& columns, std::size_t r) {
+  const auto width = static_cast<Eigen::Index>(columns.width);
+  const std::vector<double>& rows = columns.rows[r];
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> m(
+      rows.data(), static_cast<Eigen::Index>(rows.size()) / width, width);
+  return m.transpose() * m;
+}
+
+BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r) {
+  BlockStates states;
+  states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / series.block_s();
+  const double block = static_cast<double>(series.block);
+  for (const SlowComponent& component : model.components) {
+    if (!component.acts_in(r) || !(component.level > 0.0)) {
+      continue;
+    }
+    switch (component.kind) {
+      case SlowKind::GaussMarkov:
+        add_gauss_markov(states, component.level, component.beta, series);
+        break;
+      case SlowKind::RandomWalk: {
+        const double q = component.level * series.block_s();
+        states.phi.push_back(1.0);
+        states.q.push_back(q);
+        states.p0.push_back(component.level * (series.recordings[r].start_s + 0.5 * series.block_s()));
+        states.remainder -= q * (1.0 - 1.0 / (block * block)) / 6.0;
+        break;
+      }
+      case SlowKind::Flicker: {
+        // int over ln(tau) of Gauss-Markov densities gives 1/f: sigma_i^2 = B^2 ln(ratio)/pi, tau from two samples to
+        // twice the longest record.
+        const double low = std::log(2.0 * series.dt_s / std::numbers::pi);
+        const double high = std::log(2.0 * series.longest_s());
+        const double step = (high - low) / kFlickerStates;
+        for (int i = 0; i < kFlickerStates; ++i) {
+          add_gauss_markov(states, component.level * step / std::numbers::pi, std::exp(-(low + (i + 0.5) * step)),
+                           series);
+        }
+        break;
+      }
+      case SlowKind::Offset:
+        states.phi.push_back(1.0);
+        states.q.push_back(0.0);
+        states.p0.push_back(component.level);
+        break;
+    }
+  }
+  return states;
+}
+
+Whitened whiten(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns) {
+  Whitened result;
+  const std::size_t width = columns.width;
+  result.columns.width = width;
+  result.columns.rows.resize(series.recordings.size());
+  result.log_var.reserve(series.blocks());
+  struct Known {
+    std::size_t pattern;
+    BlockStates states;
+    std::unique_ptr<Gains> gains;
+  };
+  std::vector<Known> known;
+  std::vector<double> state;
+  for (std::size_t r = 0; r < series.recordings.size(); ++r) {
+    const BlockRecording& blocks = series.recordings[r];
+    BlockStates states = block_states(model, series, r);
+    const Gains* gains = nullptr;
+    for (const Known& k : known) {
+      if (k.pattern == blocks.pattern && k.states.phi == states.phi && k.states.q == states.q &&
+          k.states.p0 == states.p0 && k.states.white == states.white) {
+        gains = k.gains.get();
+      }
+    }
+    if (gains == nullptr) {
+      known.push_back({blocks.pattern, states, std::make_unique<Gains>(compute_gains(states, blocks))});
+      gains = known.back().gains.get();
+    }
+    const std::size_t m = states.phi.size();
+    state.assign(m * width, 0.0);
+    std::vector<double>& out = result.columns.rows[r];
+    out.assign(blocks.mean.size() * width, 0.0);
+    const double* in = columns.rows[r].data();
+    double last_log = 0.0;
+    std::size_t last_at = static_cast<std::size_t>(-1);
+    for (std::size_t b = 0; b < blocks.mean.size(); ++b) {
+      const std::size_t at = gains->at(b);
+      const double inv_sd = gains->inv_sd[at];
+      const double* k = gains->gain.data() + at * m;
+      for (std::size_t c = 0; c < width; ++c) {
+        double v = in[b * width + c];
+        for (std::size_t i = 0; i < m; ++i) {
+          v -= state[i * width + c];
+        }
+        v = inv_sd > 0.0 ? v : 0.0;
+        out[b * width + c] = v * inv_sd;
+        for (std::size_t i = 0; i < m; ++i) {
+          state[i * width + c] = states.phi[i] * (state[i * width + c] + k[i] * v);
+        }
+      }
+      if (inv_sd > 0.0) {
+        if (at != last_at) {
+          last_log = std::log(gains->variance[at]);
+          last_at = at;
+        }
+        result.sum_log_var += last_log;
+        ++result.used;
+      }
+      result.log_var.push_back(inv_sd > 0.0 ? last_log : 0.0);
+    }
+  }
+  return result;
+}
+
+std::vector<double> whiten_transposed(const BlockSeries& series, const SlowModel& model, std::size_t r,
+                                      std::span<const double> whitened) {
+  const BlockRecording& blocks = series.recordings[r];
+  const BlockStates states = block_states(model, series, r);
+  const Gains gains = compute_gains(states, blocks);
+  const std::size_t m = states.phi.size();
+  // x_{b+1} = phi (x_b + K_b v_b), v_b = y_b - 1'x_b, z_b = v_b / sd_b. Adjoint, backwards with l = d/dx_{b+1}:
+  // d/dv_b = z*_b / sd_b + K_b' phi l;  d/dy_b = that;  d/dx_b = phi l - 1 d/dv_b.
+  std::vector<double> result(whitened.size());
+  std::vector<double> adjoint(m, 0.0);
+  for (std::size_t b = whitened.size(); b-- > 0;) {
+    const std::size_t at = gains.at(b);
+    const double* k = gains.gain.data() + at * m;
+    double dv = 0.0;
+    if (gains.inv_sd[at] > 0.0) {
+      dv = whitened[b] * gains.inv_sd[at];
+      for (std::size_t i = 0; i < m; ++i) {
+        dv += k[i] * states.phi[i] * adjoint[i];
+      }
+    }
+    result[b] = dv;
+    for (std::size_t i = 0; i < m; ++i) {
+      adjoint[i] = states.phi[i] * adjoint[i] - dv;
+    }
+  }
+  return result;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,131 @@
+#include "core/investigate/study/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace driftlab::investigate {
+namespace {
+
+double decimal_place(std::span<const double> rows) {
+  double place = 1.0;
+  for (int digits = 0; digits < 9; ++digits, place *= 0.1) {
+    const bool fits = std::all_of(rows.begin(), rows.end(), [&](double v) {
+      const double q = v / place;
+      return std::fabs(q - std::round(q)) < 1e-5 * std::max(1.0, std::fabs(q) * 1e-9) + 1e-6;
+    });
+    if (fits) {
+      return place;
+    }
+  }
+  return 0.0;
+}
+
+std::vector<double> distinct_values(std::span<const double> rows) {
+  std::vector<double> values(rows.begin(), rows.end());
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+}  // namespace
+
+Lattice find_lattice(std::span<const double> rows) {
+  Lattice lattice;
+  lattice.decimals = decimal_place(rows);
+  const std::vector<double> values = distinct_values(rows);
+  if (values.size() < 3 || values.size() * 2 > rows.size()) {
+    return lattice;
+  }
+  // The step is near the smallest common difference; decimals blur it by one of their units.
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    gaps.push_back(values[i] - values[i - 1]);
+  }
+  std::vector<double> sorted = gaps;
+  std::sort(sorted.begin(), sorted.end());
+  double step = sorted[sorted.size() / 3];
+  const double blur = std::max(lattice.decimals, 1e-9 * std::fabs(values.back()));
+  if (step < 4.5 * blur) {  // five times, but for rounding
+    const bool few = values.size() < 200 && lattice.decimals > 0.0 && std::fabs(step - lattice.decimals) < 0.1 * step;
+    lattice.step = few ? lattice.decimals : 0.0;
+    return lattice;
+  }
+  // Index by whole steps from one value to the next, then refine on ever longer spans.
+  std::vector<double> index(values.size(), 0.0);
+  for (int round = 0; round < 3; ++round) {
+    double sum_ii = 0.0;
+    double sum_iv = 0.0;
+    double mean_i = 0.0;
+    double mean_v = 0.0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      index[i] = index[i - 1] + std::round(gaps[i - 1] / step);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      mean_i += index[i] / static_cast<double>(values.size());
+      mean_v += values[i] / static_cast<double>(values.size());
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      sum_ii += (index[i] - mean_i) * (index[i] - mean_i);
+      sum_iv += (index[i] - mean_i) * (values[i] - mean_v);
+    }
+    step = sum_iv / sum_ii;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      worst = std::max(worst, std::fabs(values[i] - mean_v - step * (index[i] - mean_i)));
+    }
+    lattice.step_sd = blur / std::sqrt(12.0 * sum_ii);
+    if (round == 2 && worst > std::max(1.6 * blur, 0.02 * step)) {
+      return {0.0, 0.0, lattice.decimals};
+    }
+  }
+  lattice.step = step;
+  return lattice;
+}
+
+double noise_of_differences(const StudyRecording& recording, const Channel& channel) {
+  const std::vector<double>& e = channel.error.empty() ? channel.measured : channel.error;
+  std::vector<double> d;
+  d.reserve(recording.count());
+  for (std::size_t i = recording.begin + 1; i < recording.end; ++i) {
+    if (channel.valid[i] != 0 && channel.valid[i - 1] != 0) {
+      d.push_back(std::fabs(e[i] - e[i - 1]));
+    }
+  }
+  if (d.size() < 8) {
+    return 0.0;
+  }
+  double mean = 0.0;
+  for (const double v : d) {
+    mean += v / static_cast<double>(d.size());
+  }
+  const double cut = 5.0 * mean * 1.2533;
+  double square = 0.0;
+  double count = 0.0;
+  for (const double v : d) {
+    if (v <= cut) {
+      square += v * v;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::sqrt(0.5 * square / count) : 0.0;
+}
+
+bool at_limit(double row, double limit) { return std::fabs(row) >= limit * (1.0 - 1e-9); }
+
+double clipped_at(const Channel& channel) {
+  constexpr std::ptrdiff_t kEnough = 8;
+  constexpr double kNear = 0.98;
+  double top = 0.0;
+  for (const double v : channel.rows) {
+    top = std::max(top, std::fabs(v));
+  }
+  const double si = std::fabs(channel.unit.to_si(top) - channel.unit.to_si(0.0));
+  const bool reached = std::any_of(channel.reference.begin(), channel.reference.end(),
+                                   [&](double w) { return std::fabs(w) > kNear * si; });
+  const auto count =
+      std::count_if(channel.rows.begin(), channel.rows.end(), [&](double v) { return at_limit(v, top); });
+  return reached && count >= kEnough ? top : 0.0;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,129 @@
+#pragma once
+/// A study as numbers: recordings on their time grids, what drove each of them, and the error of every criticised
+/// channel (spec/study.md). Everything is SI; only `Channel::rows` keeps the file's own numbers, for its lattice.
+#include "core/signal/recording.hpp"
+#include "core/signal/result.hpp"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// One sensor column of one recording. Grid vectors span the whole file, before trims; a grid place without a sample
+/// has `valid` 0 and holds an interpolated value.
+struct Channel {
+  std::string column;
+  ColumnRole role;
+  Unit unit;
+  std::span<const double> rows;      ///< as in the file, in `unit`; the caller's memory
+  std::vector<double> measured;      ///< grid, SI
+  std::vector<double> error;         ///< grid, measured minus reference, SI; empty where there is no reference
+  std::vector<double> reference;     ///< grid, SI; empty where it is constant
+  std::vector<unsigned char> valid;  ///< grid
+  bool input_only = false;           ///< drives effects of other channels; not criticised itself
+};
+
+/// What the time column says.
+struct Stamps {
+  bool present = false;
+  std::size_t missing = 0;    ///< grid places without a sample, first to last sample
+  double scatter_s = 0.0;     ///< standard deviation of the stamps about the grid, their own resolution taken off
+  double resolution_s = 0.0;  ///< step of the stamps themselves; 0: finer than can be seen
+  std::size_t repeated = 0;   ///< stamps equal to the one before
+};
+
+/// One recording. Vectors over the grid of the whole file; empty where the quantity is not known.
+struct StudyRecording {
+  std::string id;
+  Condition condition;
+  double dt_s = 0.0;
+  std::size_t length = 0;  ///< grid places of the file
+  std::size_t begin = 0;   ///< analysed part [begin, end)
+  std::size_t end = 0;
+  Stamps stamps;
+  std::array<std::vector<double>, 3> rate;          ///< reference angular rate about x, y, z [rad/s]
+  std::array<std::vector<double>, 3> acceleration;  ///< its derivative [rad/s^2]
+  std::array<std::vector<double>, 3> force;         ///< measured specific force [m/s^2]
+  std::vector<double> temperature;                  ///< [K]
+  std::vector<double> angle;                        ///< integral of the rate about the rotation axis [rad]
+  std::vector<Channel> channels;
+  std::vector<std::string> notes;
+
+  [[nodiscard]] bool is_static() const { return condition.kind == ConditionKind::Static; }
+  [[nodiscard]] std::size_t count() const { return end - begin; }
+  [[nodiscard]] double time_s(std::size_t i) const { return static_cast<double>(i) * dt_s; }
+};
+
+/// A process of the baseline by its registry name, its parameters in SI in declared order.
+struct GivenProcess {
+  std::string process;
+  std::vector<double> parameters;
+};
+
+/// An effect that a given model holds besides its processes: a cause with its parameters.
+struct GivenEffect {
+  std::string cause;
+  std::vector<std::string> channels;    ///< columns; empty: all of the model's quantity
+  std::vector<std::string> recordings;  ///< ids; empty: all
+  std::vector<double> values;           ///< SI, as `inject` takes them (core/investigate/causes/draft.hpp)
+};
+
+/// A simulation model: the one that is criticised, or the one that is simulated.
+struct Baseline {
+  bool automatic = true;
+  std::vector<GivenProcess> processes;  ///< given baselines only
+  Quantity quantity = Quantity::AngularRate;
+  std::vector<std::string> channels;                            ///< columns it applies to; empty: all of its quantity
+  std::map<std::string, std::vector<GivenProcess>> by_channel;  ///< where columns have processes of their own
+  std::map<std::string, double> drift;                          ///< by column [SI/s]
+  std::map<std::string, double> bias;                           ///< by column [SI]; for simulations
+  std::vector<GivenEffect> effects;
+};
+
+struct Study {
+  std::string id;
+  std::string device;
+  std::vector<StudyRecording> recordings;
+  Baseline baseline;
+  std::vector<std::string> notes;
+};
+
+/// The recording of `spec` from its decoded columns, which must outlive it. The time column rules: samples are put on
+/// the grid that fits its stamps best, and what they say beside that is kept in `stamps`.
+/// Errors: those of assign_roles; NonMonotonicTime, InconsistentSampling, TooFewSamples.
+[[nodiscard]] Result<StudyRecording> make_study_recording(
+    const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
+    const std::function<std::span<const double>(std::size_t)>& column);
+
+/// Settles which channels are criticised (spec/causes.md, conventions): specific force beside a gyro is an input unless
+/// it has a reference of its own. Call once all recordings are there.
+void settle_channels(Study& study);
+
+/// 0, 1, 2 for x, y, z; nothing for another label.
+[[nodiscard]] std::optional<std::size_t> axis_index(std::string_view axis);
+
+/// One channel through all recordings that hold it: the unit that one base model describes.
+struct ChannelGroup {
+  std::string column;
+  ColumnRole role;
+  Unit unit;
+  struct Member {
+    const StudyRecording* recording = nullptr;
+    const Channel* channel = nullptr;
+    [[nodiscard]] std::string name() const { return recording->id + "/" + channel->column; }
+  };
+  std::vector<Member> members;
+
+  [[nodiscard]] std::size_t axis() const { return axis_index(role.axis).value_or(2); }
+};
+
+/// Every criticised channel once, in the order of first appearance.
+[[nodiscard]] std::vector<ChannelGroup> group_channels(const Study& study);
+
+}  // namespace driftlab::investigate

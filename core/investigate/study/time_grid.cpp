@@ -1,0 +1,132 @@
+#include "core/investigate/study/time_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+namespace {
+
+double median_step(std::span<const double> stamps) {
+  std::vector<double> steps;
+  steps.reserve(stamps.size());
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] > stamps[i - 1]) {
+      steps.push_back(stamps[i] - stamps[i - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0.0;
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+/// Slope and offset of stamps over places by least squares.
+std::pair<double, double> line_through(std::span<const double> stamps, const std::vector<std::size_t>& place) {
+  double mean_t = 0.0;
+  double mean_p = 0.0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    mean_t += stamps[i];
+    mean_p += static_cast<double>(place[i]);
+  }
+  mean_t /= static_cast<double>(stamps.size());
+  mean_p /= static_cast<double>(stamps.size());
+  double cross = 0.0;
+  double square = 0.0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const double p = static_cast<double>(place[i]) - mean_p;
+    cross += p * (stamps[i] - mean_t);
+    square += p * p;
+  }
+  const double slope = cross / square;
+  return {slope, mean_t - slope * mean_p};
+}
+
+/// Places by rounding each step; false where two rows meet or the scatter makes rounding a guess.
+bool place_rows(std::span<const double> stamps, double dt, std::vector<std::size_t>& place) {
+  place.resize(stamps.size());
+  double offset = stamps[0];  // follows the grid slowly, so that a small error of dt does not add up
+  std::size_t doubtful = 0;
+  place[0] = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const double exact = (stamps[i] - offset) / dt;
+    const double rounded = std::round(exact);
+    if (rounded <= static_cast<double>(place[i - 1])) {
+      return false;
+    }
+    doubtful += std::fabs(exact - rounded) > 0.4 ? 1 : 0;
+    place[i] = static_cast<std::size_t>(rounded);
+    offset += 0.01 * dt * (exact - rounded);
+  }
+  return static_cast<double>(doubtful) < 0.01 * static_cast<double>(stamps.size());
+}
+
+/// The step of which all stamps are multiples, of those that decimal text has; 0 where there is none.
+double stamp_resolution(std::span<const double> stamps) {
+  for (const double step : {1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    const bool fits = std::all_of(stamps.begin(), stamps.end(), [&](double t) {
+      const double q = (t - stamps[0]) / step;
+      return std::fabs(q - std::round(q)) < 1e-3;
+    });
+    if (fits) {
+      return step;
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz) {
+  const std::size_t rows = stamps_s.size();
+  for (std::size_t i = 0; i < rows; ++i) {
+    if (!std::isfinite(stamps_s[i])) {
+      return fail(ErrorCode::NonFinite, "The time column holds a value that is not a finite number.",
+                  {{"row", std::to_string(i + 1)}});
+    }
+    if (i > 0 && stamps_s[i] < stamps_s[i - 1]) {
+      return fail(ErrorCode::NonMonotonicTime, "The time column steps back at sample " + std::to_string(i + 1) + ".",
+                  {{"row", std::to_string(i + 1)}});
+    }
+  }
+  const double typical = median_step(stamps_s);
+  if (!(typical > 0.0)) {
+    return fail(ErrorCode::InconsistentSampling, "The time column never advances.");
+  }
+  TimeGrid grid;
+  grid.stamps.present = true;
+  grid.stamps.resolution_s = stamp_resolution(stamps_s);
+  for (std::size_t i = 1; i < rows; ++i) {
+    grid.stamps.repeated += stamps_s[i] == stamps_s[i - 1] ? 1 : 0;
+  }
+  grid.dt_s = rate_hz ? 1.0 / *rate_hz : typical;
+  bool placed = place_rows(stamps_s, grid.dt_s, grid.place);
+  if (!placed && rate_hz) {
+    placed = place_rows(stamps_s, typical, grid.place);
+  }
+  if (!placed) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      grid.place[i] = i;
+    }
+  }
+  const auto [slope, offset] = line_through(stamps_s, grid.place);
+  double square = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double residual = stamps_s[i] - offset - slope * static_cast<double>(grid.place[i]);
+    square += residual * residual;
+  }
+  const double own = grid.stamps.resolution_s * grid.stamps.resolution_s / 12.0;
+  grid.stamps.scatter_s = std::sqrt(std::max(0.0, square / static_cast<double>(rows) - own));
+  if (std::fabs(slope * (rate_hz ? *rate_hz : 1.0 / slope) - 1.0) > 1e-5) {
+    grid.dt_s = slope;
+  }
+  grid.length = grid.place.back() + 1;
+  grid.stamps.missing = grid.length - rows;
+  if (grid.stamps.missing == 0) {
+    grid.place.clear();
+  }
+  return grid;
+}
+
+}  // namespace driftlab::investigate
