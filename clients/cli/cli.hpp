@@ -1,5 +1,6 @@
 #pragma once
-/// The command line: shared pieces of all commands. Each command is one file that adds itself to the application.
+/// The command line: shared pieces of all commands. Each command is one file that adds itself to the application, and
+/// one line of the list in commands.cpp.
 #include "core/signal/result.hpp"
 
 #include <functional>
@@ -22,14 +23,8 @@ enum class Exit : int { Success = 0, Negative = 1, BadInput = 2, ServerOrJob = 4
 /// A command runs after parsing; its exit code is the process's.
 using Command = std::function<Exit()>;
 
-/// Each adds a subcommand whose choice sets `chosen`.
-void add_characterise(CLI::App& app, Command& chosen);
-void add_table(CLI::App& app, Command& chosen);
-void add_trends(CLI::App& app, Command& chosen);
-void add_investigate(CLI::App& app, Command& chosen);
-void add_simulate(CLI::App& app, Command& chosen);
-void add_calibrate(CLI::App& app, Command& chosen);
-void add_outages(CLI::App& app, Command& chosen);
+/// Adds every subcommand; the one that is chosen sets `chosen`.
+void add_all_commands(CLI::App& app, Command& chosen);
 
 /// Stops on Ctrl-C: `interrupt_token` is requested at the first SIGINT or SIGTERM, the second ends the process.
 /// Call once, before threads start.

@@ -36,13 +36,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("driftlab " DRIFTLAB_VERSION));
   app.require_subcommand(1);
   driftlab::cli::Command chosen;
-  driftlab::cli::add_characterise(app, chosen);
-  driftlab::cli::add_table(app, chosen);
-  driftlab::cli::add_trends(app, chosen);
-  driftlab::cli::add_investigate(app, chosen);
-  driftlab::cli::add_simulate(app, chosen);
-  driftlab::cli::add_calibrate(app, chosen);
-  driftlab::cli::add_outages(app, chosen);
+  driftlab::cli::add_all_commands(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The HTTP resources. One file per resource declares its routes and handlers; `add_all_routes` lists them.
+/// The HTTP resources. One file per resource declares its routes and handlers; routes.cpp lists them.
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -23,18 +23,6 @@ struct ApiContext {
   std::function<void()> wake_workers;          ///< a job was queued or cancelled
   std::function<std::string()> not_ready_why;  ///< empty text: ready
 };
-
-void add_device_routes(Router& router, ApiContext& context);
-void add_recording_routes(Router& router, ApiContext& context);
-void add_job_routes(Router& router, ApiContext& context);
-void add_fit_routes(Router& router, ApiContext& context);
-void add_parameter_table_routes(Router& router, ApiContext& context);
-void add_study_routes(Router& router, ApiContext& context);
-void add_outage_evaluation_routes(Router& router, ApiContext& context);
-void add_calibration_routes(Router& router, ApiContext& context);
-void add_investigation_routes(Router& router, ApiContext& context);
-void add_model_routes(Router& router, ApiContext& context);
-void add_service_routes(Router& router, ApiContext& context);
 
 /// Every route of the daemon.
 void add_all_routes(Router& router, ApiContext& context);

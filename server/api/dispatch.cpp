@@ -137,18 +137,4 @@ void complete_problem(const Request& request, Response& response) {
   response.body = to_text(document);
 }
 
-void add_all_routes(Router& router, ApiContext& context) {
-  add_service_routes(router, context);
-  add_device_routes(router, context);
-  add_recording_routes(router, context);
-  add_job_routes(router, context);
-  add_fit_routes(router, context);
-  add_parameter_table_routes(router, context);
-  add_study_routes(router, context);
-  add_outage_evaluation_routes(router, context);
-  add_calibration_routes(router, context);
-  add_investigation_routes(router, context);
-  add_model_routes(router, context);
-}
-
 }  // namespace driftlab::server

@@ -1,7 +1,6 @@
 #include "schema/json/json.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
-#include "server/store/digest.hpp"
 
 #include <charconv>
 
@@ -24,36 +23,34 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
   }
   Faults faults;
   ObjectReader reader(*body, "", faults);
-  NewJob job;
-  job.kind = reader.required_text("kind");
+  const std::string name = reader.required_text("kind");
   const Json* const inputs = reader.member("inputs");
   const Json* const parameters = reader.member("parameters");
-  job.priority = static_cast<int>(std::clamp<std::int64_t>(reader.integer("priority").value_or(5), -1, 10));
+  const int priority = static_cast<int>(std::clamp<std::int64_t>(reader.integer("priority").value_or(5), -1, 10));
   reader.reject_unknown();
-  if (job.priority < 0 || job.priority > 9) {
+  if (priority < 0 || priority > 9) {
     faults.add("/priority", ErrorCode::InvalidArgument, "The priority is a whole number from 0 (first) to 9.");
   }
-  const JobKind* const kind = find_job_kind(job.kind);
-  if (kind == nullptr && (!job.kind.empty() || faults.none())) {
+  const JobKind* const kind = find_job_kind(name);
+  if (kind == nullptr && (!name.empty() || faults.none())) {
     std::string known;
     for (const auto& each : job_kinds()) {
       known += (known.empty() ? "" : ", ") + std::string(each->name());
     }
     faults.add("/kind", ErrorCode::InvalidArgument,
-               "The job kind '" + job.kind + "' is not known; known are " + known + ".");
+               "The job kind '" + name + "' is not known; known are " + known + ".");
   }
   if (kind == nullptr || !faults.none()) {
     return fail(faults.error());
   }
   JobContext job_context{context.store, context.blobs, context.clock};
-  auto canonical = kind->canonical_request(inputs != nullptr ? to_text(*inputs) : "{}",
-                                           parameters != nullptr ? to_text(*parameters) : "{}", job_context);
-  if (!canonical) {
-    return fail(canonical.error());
+  auto job = new_job(*kind, inputs != nullptr ? *inputs : Json::object(),
+                     parameters != nullptr ? *parameters : Json::object(), job_context);
+  if (!job) {
+    return fail(job.error());
   }
-  job.unique_key = sha256_hex(*canonical);
-  job.request_json = std::move(*canonical);
-  auto queued = context.store.enqueue(job);
+  job->priority = priority;
+  auto queued = context.store.enqueue(*job);
   if (!queued) {
     return fail(queued.error());
   }

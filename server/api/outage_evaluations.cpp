@@ -2,13 +2,13 @@
 #include "schema/json/json.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
-#include "server/jobs/outage_evaluation.hpp"
-#include "server/store/digest.hpp"
 
 #include <algorithm>
 
 namespace driftlab::server {
 namespace {
+
+constexpr std::string_view kKind = "outage_evaluation";
 
 std::string address_of(const Job& job) { return "/v1/outage-evaluations/" + job.id; }
 
@@ -73,25 +73,21 @@ Result<Response> create(ApiContext& context, const Request& request) {
       parameters[name] = *value;
     }
   }
-  NewJob job;
-  job.kind = kOutageEvaluationKind;
-  job.priority = static_cast<int>(std::clamp<std::int64_t>(reader.integer("priority").value_or(5), -1, 10));
+  const int priority = static_cast<int>(std::clamp<std::int64_t>(reader.integer("priority").value_or(5), -1, 10));
   reader.reject_unknown();
-  if (job.priority < 0 || job.priority > 9) {
+  if (priority < 0 || priority > 9) {
     faults.add("/priority", ErrorCode::InvalidArgument, "The priority is a whole number from 0 (first) to 9.");
   }
   if (!faults.none()) {
     return fail(faults.error());
   }
   JobContext job_context{context.store, context.blobs, context.clock};
-  auto canonical =
-      find_job_kind(kOutageEvaluationKind)->canonical_request(to_text(inputs), to_text(parameters), job_context);
-  if (!canonical) {
-    return fail(located_in_body(canonical.error()));
+  auto job = new_job(*find_job_kind(kKind), inputs, parameters, job_context);
+  if (!job) {
+    return fail(located_in_body(job.error()));
   }
-  job.unique_key = sha256_hex(*canonical);
-  job.request_json = std::move(*canonical);
-  auto queued = context.store.enqueue(job);
+  job->priority = priority;
+  auto queued = context.store.enqueue(*job);
   if (!queued) {
     return fail(queued.error());
   }
@@ -113,7 +109,7 @@ Result<Response> create(ApiContext& context, const Request& request) {
 
 Result<Response> list(ApiContext& context, const Request& request) {
   JobFilter filter;
-  filter.kind = std::string(kOutageEvaluationKind);
+  filter.kind = std::string(kKind);
   auto state = state_filter(request);
   if (!state) {
     return fail(state.error());
@@ -129,7 +125,7 @@ Result<Response> get(ApiContext& context, const Request& request) {
   if (!job) {
     return fail(job.error());
   }
-  if (job->kind != kOutageEvaluationKind) {
+  if (job->kind != kKind) {
     return fail(ErrorCode::NotFound, "The job " + job->id + " is no outage evaluation.");
   }
   auto document = complete(context, *job);

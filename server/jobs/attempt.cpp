@@ -42,7 +42,8 @@ Result<JobResults> Attempt::work() {
   control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };
   const FaultScope scope(lease_);
   try {
-    return kind_->run(job_.request_json, context_, control);
+    const auto request = parse_json(job_.request_json);
+    return request ? kind_->run(*request, context_, control) : driftlab::fail(request.error());
   } catch (const std::bad_alloc&) {
     out_of_memory_ = true;
     return driftlab::fail(ErrorCode::Internal, "There was not enough memory for the job.");

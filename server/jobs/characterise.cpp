@@ -1,8 +1,12 @@
-#include "server/jobs/characterise.hpp"
-
+/// The job kind `characterise`: recordings in, variances, Allan coefficients and ranked fits of each sensor channel
+/// out.
+///
+/// `inputs`: {"recordings": ["rec_..."]}, 1 to 100 of them, or {"study": "stu_..."}. `parameters`: {"models": ["WN",
+/// ...], "seed": 1}, both optional.
 #include "core/read/open_recording.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
+#include "server/jobs/job_kind.hpp"
 #include "server/jobs/pinned_recording.hpp"
 #include "server/jobs/pool_results.hpp"
 #include "server/jobs/recording_calibration.hpp"
@@ -87,19 +91,14 @@ class Characterise final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "characterise"; }
 
-  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
-                                                      JobContext& context) const override {
-    auto inputs = parse_json(inputs_json);
-    auto parameters = parse_json(parameters_json);
-    if (!inputs || !parameters) {
-      return fail(inputs ? parameters.error() : inputs.error());
-    }
+  [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
+                                               JobContext& context) const override {
     Faults faults;
-    auto wanted = read_inputs(*inputs, context, faults);
+    auto wanted = read_inputs(inputs, context, faults);
     if (!wanted) {
       return fail(wanted.error());
     }
-    const CharacteriseOptions options = characterise_options_from_json(*parameters, "/parameters", faults);
+    const CharacteriseOptions options = characterise_options_from_json(parameters, "/parameters", faults);
     Json pinned = Json::array();
     for (const std::string& id : wanted->recordings) {
       auto recording = context.store.recording(id);
@@ -119,24 +118,20 @@ class Characterise final : public JobKind {
     if (!wanted->study.empty()) {
       named["study"] = wanted->study;
     }
-    return canonical_text(Json{{"kind", name()},
-                               {"inputs", std::move(named)},
-                               {"parameters", to_json(options)},
-                               {"algorithm_version", kAlgorithmVersion}});
+    return Json{{"kind", name()},
+                {"inputs", std::move(named)},
+                {"parameters", to_json(options)},
+                {"algorithm_version", kAlgorithmVersion}};
   }
 
-  [[nodiscard]] Result<JobResults> run(std::string_view request_json, JobContext& context,
+  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
-    auto request = parse_json(request_json);
-    if (!request) {
-      return fail(request.error());
-    }
     Faults faults;
-    const CharacteriseOptions options = characterise_options_from_json((*request)["parameters"], "/parameters", faults);
+    const CharacteriseOptions options = characterise_options_from_json(request["parameters"], "/parameters", faults);
     if (!faults.none()) {
       return fail(faults.error());
     }
-    const Json& inputs = (*request)["inputs"]["recordings"];
+    const Json& inputs = request["inputs"]["recordings"];
     JobResults results;
     std::vector<Json> documents;
     for (const Json& input : inputs) {
@@ -153,7 +148,7 @@ class Characterise final : public JobKind {
       documents.push_back(std::move(*document));
     }
     Json document = characterisation_document(std::move(documents));
-    document["study"] = (*request)["inputs"].value("study", Json());
+    document["study"] = request["inputs"].value("study", Json());
     RunControl last;
     last.stop = control.stop;
     last.progress = [&](std::string_view stage, double fraction) {

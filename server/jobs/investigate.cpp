@@ -1,11 +1,17 @@
-#include "server/jobs/investigate.hpp"
+/// The job kind `investigate`: a study in, what its baseline simulation gets wrong out, and the extended model as a
+/// stored revision.
+///
+/// `inputs`: {"study": "stu_..."}. `parameters`: {"baseline": {...}} in place of the study's own, optional. A baseline
+/// that names a stored model (`{"kind": "model", "id": "mod_..."}`) makes that the parent of the revision; any other is
+/// stored as a model first.
+#include "core/investigate/investigate.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/investigate.hpp"
 #include "core/investigate/report/explain.hpp"
 #include "core/read/column_file.hpp"
 #include "schema/json/investigation.hpp"
 #include "schema/json/simulation_model.hpp"
+#include "server/jobs/job_kind.hpp"
 #include "server/jobs/pinned_recording.hpp"
 #include "server/jobs/stored_baseline.hpp"
 
@@ -171,18 +177,13 @@ class Investigate final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "investigate"; }
 
-  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
-                                                      JobContext& context) const override {
-    auto inputs = parse_json(inputs_json);
-    auto parameters = parse_json(parameters_json);
-    if (!inputs || !parameters) {
-      return fail(inputs ? parameters.error() : inputs.error());
-    }
+  [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
+                                               JobContext& context) const override {
     Faults faults;
-    ObjectReader input_reader(*inputs, "/inputs", faults);
+    ObjectReader input_reader(inputs, "/inputs", faults);
     const std::string study_id = input_reader.required_text("study");
     input_reader.reject_unknown();
-    ObjectReader parameter_reader(*parameters, "/parameters", faults);
+    ObjectReader parameter_reader(parameters, "/parameters", faults);
     const Json* const asked = parameter_reader.member("baseline");
     parameter_reader.reject_unknown();
     if (!faults.none()) {
@@ -214,23 +215,19 @@ class Investigate final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    return canonical_text(Json{{"kind", name()},
-                               {"inputs", {{"study", study_id}, {"recordings", std::move(*pinned)}}},
-                               {"parameters", {{"baseline", baseline}}},
-                               {"algorithm_version", kInvestigationVersion}});
+    return Json{{"kind", name()},
+                {"inputs", {{"study", study_id}, {"recordings", std::move(*pinned)}}},
+                {"parameters", {{"baseline", baseline}}},
+                {"algorithm_version", kInvestigationVersion}};
   }
 
-  [[nodiscard]] Result<JobResults> run(std::string_view request_json, JobContext& context,
+  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
-    auto request = parse_json(request_json);
-    if (!request) {
-      return fail(request.error());
-    }
-    auto row = context.store.study((*request)["inputs"]["study"].get<std::string>());
+    auto row = context.store.study(request["inputs"]["study"].get<std::string>());
     if (!row) {
       return fail(row.error());
     }
-    auto loaded = load(*request, *row, context, control);
+    auto loaded = load(request, *row, context, control);
     if (!loaded) {
       return fail(loaded.error());
     }
@@ -245,7 +242,7 @@ class Investigate final : public JobKind {
     if (!report) {
       return fail(report.error());
     }
-    return Rows(*request, *row, context.clock.now()).of(*report);
+    return Rows(request, *row, context.clock.now()).of(*report);
   }
 
  private:

@@ -2,6 +2,7 @@
 /// A kind of job: one declaring file and one line in the registry (job_kinds.cpp).
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
+#include "schema/json/json.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
 
@@ -28,17 +29,22 @@ class JobKind {
 
   [[nodiscard]] virtual std::string_view name() const = 0;
 
-  /// Checks a request (`inputs` and `parameters` of POST /v1/jobs as JSON text) and returns the canonical document
-  /// whose SHA-256 makes the job unique: sorted members, defaults filled in, input revisions pinned, seed and algorithm
-  /// version. Errors are the client's fault, located by field "pointer" (RFC 6901).
-  [[nodiscard]] virtual Result<std::string> canonical_request(std::string_view inputs_json,
-                                                              std::string_view parameters_json,
-                                                              JobContext& context) const = 0;
+  /// Checks a request (`inputs` and `parameters` of POST /v1/jobs) and completes it: defaults filled in, input
+  /// revisions pinned, algorithm version. Its canonical text makes the job unique. Errors are the client's fault,
+  /// located by fields that are pointers (RFC 6901).
+  [[nodiscard]] virtual Result<Json> canonical_request(const Json& inputs, const Json& parameters,
+                                                       JobContext& context) const = 0;
 
-  /// Does the work. Runs on a worker thread, polls `control.stop`, reports progress. Must not write to the store.
-  [[nodiscard]] virtual Result<JobResults> run(std::string_view request_json, JobContext& context,
+  /// Does the work that a canonical request describes. Runs on a worker thread, polls `control.stop`, reports progress.
+  /// Must not write to the store.
+  [[nodiscard]] virtual Result<JobResults> run(const Json& request, JobContext& context,
                                                const RunControl& control) const = 0;
 };
+
+/// The job that `inputs` and `parameters` ask of `kind`, ready to be queued: its request is the canonical text (sorted
+/// members, no white space), its unique key that text's SHA-256. Errors: those of canonical_request.
+[[nodiscard]] Result<NewJob> new_job(const JobKind& kind, const Json& inputs, const Json& parameters,
+                                     JobContext& context);
 
 /// Every kind once.
 [[nodiscard]] const std::vector<std::unique_ptr<JobKind>>& job_kinds();

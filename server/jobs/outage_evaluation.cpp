@@ -1,10 +1,17 @@
-#include "server/jobs/outage_evaluation.hpp"
+/// The job kind `outage_evaluation`: filters compared through simulated GNSS outages
+/// (core/navigate/outage_evaluation.hpp).
+///
+/// `inputs`: {"scenario": NAME or document}; a sensor or axis of the document may be {"fit": "fit_..."}, a stored fit,
+/// or {"table": {"device", "axis", "method", "model", "schedule", "hysteresis_deg_s", "step_deg_s"}}, the models of a
+/// device's parameter table by |rate| (schema/json/table_schedule.hpp); what they hold is written into the request when
+/// it is queued. `parameters`: {"runs", "seed", "relative_precision"}, all optional.
+#include "schema/json/outage_evaluation.hpp"
 
 #include "core/signal/angle.hpp"
 #include "schema/json/imu_model.hpp"
-#include "schema/json/outage_evaluation.hpp"
 #include "schema/json/outage_scenario.hpp"
 #include "schema/json/table_schedule.hpp"
+#include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_sensor.hpp"
 #include "server/jobs/stored_table.hpp"
 
@@ -108,20 +115,15 @@ int threads_for_a_job() { return static_cast<int>(std::max(1U, std::thread::hard
 
 class OutageEvaluationKind final : public JobKind {
  public:
-  [[nodiscard]] std::string_view name() const override { return kOutageEvaluationKind; }
+  [[nodiscard]] std::string_view name() const override { return "outage_evaluation"; }
 
-  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json, std::string_view parameters_json,
-                                                      JobContext& context) const override {
-    auto inputs = parse_json(inputs_json);
-    auto parameters = parse_json(parameters_json);
-    if (!inputs || !parameters) {
-      return fail(inputs ? parameters.error() : inputs.error());
-    }
+  [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& parameters,
+                                               JobContext& context) const override {
     Faults faults;
-    ObjectReader reader(*inputs, "/inputs", faults);
+    ObjectReader reader(inputs, "/inputs", faults);
     const Json* const scenario = reader.member("scenario");
     reader.reject_unknown();
-    const OutageOptions options = outage_options_from_json(*parameters, "/parameters", faults);
+    const OutageOptions options = outage_options_from_json(parameters, "/parameters", faults);
     Json resolved;
     StoredSensors sensors;
     if (scenario == nullptr) {
@@ -143,21 +145,17 @@ class OutageEvaluationKind final : public JobKind {
     if (!sensors.left_out.empty()) {
       complete["left_out"] = std::move(sensors.left_out);
     }
-    return canonical_text(Json{{"kind", name()},
-                               {"inputs", std::move(complete)},
-                               {"parameters", to_json(options)},
-                               {"algorithm_version", kOutageAlgorithmVersion}});
+    return Json{{"kind", name()},
+                {"inputs", std::move(complete)},
+                {"parameters", to_json(options)},
+                {"algorithm_version", kOutageAlgorithmVersion}};
   }
 
-  [[nodiscard]] Result<JobResults> run(std::string_view request_json, JobContext& /*context*/,
+  [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& /*context*/,
                                        const RunControl& control) const override {
-    auto request = parse_json(request_json);
-    if (!request) {
-      return fail(request.error());
-    }
     Faults faults;
-    const OutageScenario scenario = scenario_or_name((*request)["inputs"]["scenario"], "/inputs/scenario", faults);
-    OutageOptions options = outage_options_from_json((*request)["parameters"], "/parameters", faults);
+    const OutageScenario scenario = scenario_or_name(request["inputs"]["scenario"], "/inputs/scenario", faults);
+    OutageOptions options = outage_options_from_json(request["parameters"], "/parameters", faults);
     if (!faults.none()) {
       return fail(faults.error());
     }
@@ -168,7 +166,7 @@ class OutageEvaluationKind final : public JobKind {
     }
     JobResults results;
     Json document = to_json(*evaluation, to_json(scenario));
-    if (const Json& inputs = (*request)["inputs"]; inputs.contains("left_out")) {
+    if (const Json& inputs = request["inputs"]; inputs.contains("left_out")) {
       document["left_out"] = inputs["left_out"];
     }
     results.document_json = to_text(document);

@@ -23,12 +23,11 @@ class ToyKind final : public JobKind {
  public:
   explicit ToyKind(ToyWork work) : work_(std::move(work)) {}
   [[nodiscard]] std::string_view name() const override { return "toy"; }
-  [[nodiscard]] Result<std::string> canonical_request(std::string_view inputs_json,
-                                                      std::string_view /*parameters_json*/,
-                                                      JobContext& /*context*/) const override {
-    return std::string(inputs_json);
+  [[nodiscard]] Result<Json> canonical_request(const Json& inputs, const Json& /*parameters*/,
+                                               JobContext& /*context*/) const override {
+    return inputs;
   }
-  [[nodiscard]] Result<JobResults> run(std::string_view /*request_json*/, JobContext& /*context*/,
+  [[nodiscard]] Result<JobResults> run(const Json& /*request*/, JobContext& /*context*/,
                                        const RunControl& control) const override {
     return work_(control);
   }
