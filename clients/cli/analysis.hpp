@@ -16,6 +16,7 @@ namespace driftlab::cli {
                                                              const std::string& server);
 
 /// Parameter tables, as text, of every sensor axis in a characterisation document, by both methods.
-[[nodiscard]] std::string tables_of(const Json& document, const std::string& device);
+/// Error: Internal, for a document that driftlab has not written.
+[[nodiscard]] Result<std::string> tables_of(const Json& document, const std::string& device);
 
 }  // namespace driftlab::cli

@@ -39,8 +39,12 @@ Exit run(const Flags& flags) {
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
-  const std::string text = flags.json ? document->dump(2) + "\n" : tables_of(*document, inputs->device);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  const Result<std::string> text =
+      flags.json ? Result<std::string>(document->dump(2) + "\n") : tables_of(*document, inputs->device);
+  if (!text) {
+    return complain(text.error());
+  }
+  std::fwrite(text->data(), 1, text->size(), stdout);
   return Exit::Success;
 }
 

@@ -3,11 +3,11 @@
 #include "clients/cli/workspace.hpp"
 #include "core/read/format.hpp"
 #include "core/read/open_recording.hpp"
+#include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
-#include "schema/json/parameter_table.hpp"
-#include "schema/json/pooled_sensor.hpp"
-#include "schema/json/trend_table.hpp"
+#include "schema/text/parameter_table.hpp"
+#include "schema/text/trend_table.hpp"
 
 #include <algorithm>
 
@@ -59,16 +59,28 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
   document["study"] = inputs.study;
   const RunControl control{interrupt_token(),
                            [&](std::string_view stage, double f) { bar.show(stage, 0.9 + 0.1 * f); }};
-  if (auto added = add_summary(document, inputs.device, sensors_of(document), control); !added) {
-    return tl::unexpected(Failure{added.error(), Exit::Interrupted});
+  const auto sensors = sensors_of(document);
+  const auto summary = sensors ? summarise_campaign(inputs.device, *sensors, control) : fail(sensors.error());
+  if (!summary) {
+    const Exit exit = summary.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
+    return tl::unexpected(Failure{summary.error(), exit});
   }
+  add_summary(document, *summary);
   return document;
 }
 
-std::string tables_of(const Json& document, const std::string& device) {
+Result<std::string> tables_of(const Json& document, const std::string& device) {
   std::string text;
-  for (const SensorSources& sensor : sensors_of(document)) {
-    const Json* const pooled = pooled_of(document, sensor);
+  const auto sensors = sensors_of(document);
+  if (!sensors) {
+    return fail(sensors.error());
+  }
+  for (const SensorSources& sensor : *sensors) {
+    const auto found = pooled_of(document, sensor);
+    if (!found) {
+      return fail(found.error());
+    }
+    const PooledSensor* const pooled = *found ? &**found : nullptr;
     for (const TableMethod method : {TableMethod::Av, TableMethod::Gmwm}) {
       const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
       const auto table = build_parameter_table({device, quantity, sensor.axis, method, ""}, sensor.sources, pooled);
@@ -77,8 +89,8 @@ std::string tables_of(const Json& document, const std::string& device) {
         text += trends_to_text(build_trends(*table)) + "\n";
       }
     }
-    if (pooled != nullptr && (*pooled)["structure"].is_object()) {
-      text += (*pooled)["structure"]["statement"].get<std::string>() + "\n\n";
+    if (pooled != nullptr && pooled->structure) {
+      text += pooled->structure->statement + "\n\n";
     }
   }
   return text;

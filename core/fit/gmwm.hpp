@@ -16,7 +16,7 @@
 namespace driftlab {
 
 /// The estimated wavelet variances and the grid they belong to: one recording's, or those of several stacked one below
-/// the other (core/fit/replicates.hpp), which every estimator here takes alike.
+/// the other (core/campaign/replicates.hpp), which every estimator here takes alike.
 struct WaveletMoments {
   Eigen::VectorXd nu;
   std::vector<double> half;           ///< half lengths m

@@ -12,7 +12,7 @@ Result<ModelSchedule> schedule_along(const Model& base, const std::vector<Parame
       return fail(ErrorCode::InvalidArgument, "A trend belongs to no parameter of the model.",
                   {{"parameter", "trends"}});
     }
-    span = std::max(span, trend.relation.scale);
+    span = std::max(span, trend.last_rad_s);
   }
   if (!(step_rad_s > 0.0) || !(span / step_rad_s < 4000.0)) {
     return fail(ErrorCode::InvalidArgument, "A trend is tabulated in at most 4000 steps.", {{"parameter", "step"}});
@@ -26,7 +26,7 @@ Result<ModelSchedule> schedule_along(const Model& base, const std::vector<Parame
     for (const ParameterTrend& trend : trends) {
       Process& process = model[trend.process];
       const ParameterSpec& spec = process.kind->parameters[trend.parameter];
-      const double value = trend.relation(std::min(rate, trend.relation.scale));
+      const double value = trend.value(std::min(rate, trend.last_rad_s));
       process.parameters[trend.parameter] = std::clamp(value, spec.lower, spec.upper);
     }
     rates.push_back(rate);

@@ -1,7 +1,9 @@
 #include "schema/json/characterisation.hpp"
 
+#include "core/campaign/reported_channel.hpp"
 #include "core/fit/noise_equivalents.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/reported_channel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,53 +83,10 @@ Json contamination_json(const Contamination& contamination) {
               {"not_gaussian", contamination.not_gaussian}};
 }
 
-Json allan_parameters_json(const AllanParameters& parameters, Dimension dimension) {
-  struct Entry {
-    const char* name;
-    int second_power_halves;
-    const std::optional<Estimate>& estimate;
-    const std::string& reason;
-  };
-  const Entry entries[] = {{"N", 1, parameters.n, parameters.n_reason},
-                           {"B", 0, parameters.b, parameters.b_reason},
-                           {"K", -1, parameters.k, parameters.k_reason},
-                           {"Q", 2, parameters.q, parameters.q_reason},
-                           {"R", -2, parameters.r, parameters.r_reason}};
-  Json document = Json::object();
+Json allan_parameters_json(const ReportedValues& parameters) {
   Json reasons = Json::object();
-  for (const Entry& entry : entries) {
-    const ParameterUnit unit = lab_unit(dimension, entry.second_power_halves);
-    document[entry.name] = entry.estimate ? quantity(*entry.estimate, unit.per_si, unit.symbol) : Json(nullptr);
-    if (!entry.estimate) {
-      reasons[entry.name] = entry.reason;
-    }
-  }
+  Json document = to_json(parameters, reasons);
   document["reasons"] = std::move(reasons);
-  return document;
-}
-
-ParameterUnit unit_of(const FittedParameter& parameter, Dimension channel) {
-  if (parameter.channel_power == 0) {
-    return lab_unit(Dimension::One, parameter.second_power_halves);
-  }
-  return lab_unit(channel, parameter.second_power_halves);
-}
-
-Json process_json(const FittedProcess& process, Dimension dimension) {
-  Json params = Json::object();
-  Json reasons = Json::object();
-  for (const FittedParameter& parameter : process.parameters) {
-    const ParameterUnit unit = unit_of(parameter, dimension);
-    params[parameter.name] =
-        parameter.estimate ? quantity(*parameter.estimate, unit.per_si, unit.symbol) : Json(nullptr);
-    if (!parameter.estimate) {
-      reasons[parameter.name] = parameter.reason;
-    }
-  }
-  Json document{{"process", process.process}, {"params", std::move(params)}};
-  if (!reasons.empty()) {
-    document["reasons"] = std::move(reasons);
-  }
   return document;
 }
 
@@ -154,31 +113,6 @@ Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimensio
 
 }  // namespace
 
-Json to_json(const ModelFit& fit, const Unit& unit) {
-  Json processes = Json::array();
-  for (const FittedProcess& process : fit.processes) {
-    processes.push_back(process_json(process, unit.dimension));
-  }
-  Json document{{"model", fit.model},
-                {"robust", fit.robust},
-                {"processes", std::move(processes)},
-                {"objective", number(fit.objective)},
-                {"wic", number(fit.wic)},
-                {"equation_8", number(fit.eq8)},
-                {"optimism", number(fit.optimism)},
-                {"condition_number", number(fit.condition_number)},
-                {"bounds_active", fit.bounds_active},
-                {"intervals", fit.intervals},
-                {"plausible", fit.plausible}};
-  document["j_test"] = fit.j_test ? Json{{"statistic", number(fit.j_test->statistic)},
-                                         {"dof", number(fit.j_test->dof)},
-                                         {"p", number(fit.j_test->p)}}
-                                  : Json(nullptr);
-  document["status"] = fit.status;
-  document["warnings"] = fit.warnings;
-  return document;
-}
-
 Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& channel) {
   const Unit unit = identity.role.unit.value_or(Unit{});
   const double factor = 1.0 / unit.factor;
@@ -193,10 +127,10 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"allan", allan_json(channel.allan, factor)},
                 {"haar", haar_json(channel.haar, factor)},
                 {"contamination", contamination_json(channel.contamination)},
-                {"allan_parameters", allan_parameters_json(channel.allan_parameters, unit.dimension)}};
+                {"allan_parameters", allan_parameters_json(reported(channel.allan_parameters, unit.dimension))}};
   Json fits = Json::array();
   for (const ModelFit& fit : channel.fits) {
-    fits.push_back(to_json(fit, unit));
+    fits.push_back(to_json(reported(fit, unit)));
   }
   document["fits"] = std::move(fits);
   document["equivalents"] = channel.fits.empty() ? Json::object() : equivalents_json(channel, unit.dimension);

@@ -16,9 +16,6 @@ struct ChannelIdentity {
 /// One member of `channels`.
 [[nodiscard]] Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& channel);
 
-/// One member of `fits`, for a channel measured in `unit`.
-[[nodiscard]] Json to_json(const ModelFit& fit, const Unit& unit);
-
 /// One member of `recordings`: `channels` are documents made by `to_json` above.
 [[nodiscard]] Json recording_document(const std::string& id, const RecordingSpec& spec, const Window& window,
                                       std::vector<Json> channels);

@@ -1,7 +1,7 @@
 #include "schema/json/error_model.hpp"
 
+#include "core/process/parameter_unit.hpp"
 #include "core/process/registry.hpp"
-#include "schema/json/parameter_unit.hpp"
 
 namespace driftlab {
 namespace {
@@ -49,29 +49,6 @@ Process process_from_json(const Json& document, Dimension channel, const std::st
 }
 
 }  // namespace
-
-Result<double> parameter_factor(std::string_view symbol, Dimension channel, const ParameterSpec& spec) {
-  const auto unit = parse_parameter_unit(symbol);
-  if (!unit) {
-    return fail(unit.error());
-  }
-  int angle = 0;
-  int length = 0;
-  int second = spec.second_power_halves;
-  if (spec.channel_power == 1 && channel == Dimension::AngularRate) {
-    angle = 2;
-    second -= 2;
-  } else if (spec.channel_power == 1 && channel == Dimension::SpecificForce) {
-    length = 2;
-    second -= 4;
-  }
-  if (unit->angle != angle || unit->length != length || unit->second != second) {
-    return fail(ErrorCode::UnitMismatch,
-                "The unit '" + std::string(symbol) + "' does not fit the parameter " + std::string(spec.name) + ".",
-                {{"unit", std::string(symbol)}});
-  }
-  return unit->factor;
-}
 
 Model model_from_json(const Json& processes, Dimension channel, const std::string& pointer, Faults& faults) {
   Model model;

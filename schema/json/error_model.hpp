@@ -9,10 +9,6 @@
 
 namespace driftlab {
 
-/// SI units in one of `symbol`, a parameter unit (schema/json/parameter_unit.hpp) such as deg/sqrt(h), ug/sqrt(Hz),
-/// 1/s. Errors: UnknownUnit, UnitMismatch (not of dimension (channel unit)^channel_power s^(second_power_halves/2)).
-[[nodiscard]] Result<double> parameter_factor(std::string_view symbol, Dimension channel, const ParameterSpec& spec);
-
 /// Faults are added at `pointer` and below. A number alone, without value and unit, is SI.
 [[nodiscard]] Model model_from_json(const Json& processes, Dimension channel, const std::string& pointer,
                                     Faults& faults);

@@ -1,360 +1,153 @@
 #include "schema/json/pooled_sensor.hpp"
 
-#include "core/fit/replicates.hpp"
-#include "core/fit/structure.hpp"
-#include "schema/json/characterisation.hpp"
 #include "schema/json/recording_spec.hpp"
-#include "schema/json/table_cells.hpp"
+#include "schema/json/reported_channel.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <set>
+#include <limits>
 
 namespace driftlab {
 namespace {
 
-constexpr double kSize = 0.05;
+constexpr double kNotFinite = std::numeric_limits<double>::quiet_NaN();
 
-/// One condition on its way into the document.
-struct Group {
-  Condition condition;
-  std::string text;
-  std::vector<const TableSource*> sources;
-  Unit unit;
-  bool robust = false;
-  std::unique_ptr<Replicates> stack;
-  std::map<std::string, Candidate> joint;  ///< by model; refers to `stack`
-  std::map<std::string, Json> fits;        ///< by model, what is known without fitting again
-  std::map<std::string, StructureScore> scores;
-  Json agreement;  ///< taken over, with the model it is of
-};
-
-bool contaminated(const Json& channel) {
-  const auto found = channel.find("contamination");
-  return found != channel.end() && found->value("verdict", "") == "contaminated";
-}
-
-std::vector<std::string> members_of(const Group& group) {
-  std::vector<std::string> members;
-  members.reserve(group.sources.size());
-  for (const TableSource* source : group.sources) {
-    members.push_back(source->result_id.empty() ? source->recording_id : source->result_id);
+Json condition_to_json(const PooledCondition& entry) {
+  Json fits = Json::array();
+  for (const ReportedFit& fit : entry.fits) {
+    fits.push_back(to_json(fit));
   }
-  std::sort(members.begin(), members.end());
-  return members;
-}
-
-/// The stored curve in SI. Robust values, where they exist, for a contaminated channel.
-WaveletRecord record_of(const Json& channel, double factor) {
-  WaveletRecord record;
-  record.samples = channel.at("samples").get<std::size_t>() + channel.value("missing", std::size_t{0});
-  record.dt_s = channel.at("dt_s").get<double>();
-  const Json& haar = channel.at("haar");
-  const bool robust = contaminated(channel) && haar.contains("robust");
-  const Json& variances = robust ? haar["robust"]["variance"] : haar.at("variance");
-  const Json efficiencies = (robust ? haar["robust"] : haar).value("efficiency_by_scale", Json());
-  for (std::size_t j = 0; j < haar.at("scale").size(); ++j) {
-    const double value = variances[j].is_number() ? variances[j].get<double>() : 0.0;
-    const bool known = efficiencies.is_array() && efficiencies[j].is_number();
-    const double efficiency = known ? efficiencies[j].get<double>() : 1.0;
-    record.half.push_back(haar["scale"][j].get<std::size_t>() / 2);
-    record.variance.push_back(value * factor * factor);
-    record.inflation.push_back(efficiency > 0.0 ? 1.0 / efficiency : 1.0);
+  Json document{{"condition", to_json(entry.condition)},
+                {"key", entry.key},
+                {"label", label(entry.condition)},
+                {"recordings", entry.recordings},
+                {"members", entry.members},
+                {"contamination", text_or_null(entry.contamination)},
+                {"robust", entry.robust},
+                {"agreement", to_json(entry.agreement)},
+                {"best", fits.empty() ? Json(nullptr) : Json(0)},
+                {"fits", std::move(fits)}};
+  if (!entry.reason.empty()) {
+    document["reason"] = entry.reason;
   }
-  return record;
-}
-
-Result<std::vector<Group>> group_by_condition(const std::vector<TableSource>& sources) {
-  std::vector<Group> groups;
-  for (const TableSource& source : sources) {
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.text == source.condition; });
-    if (group == groups.end()) {
-      Group made;
-      made.text = source.condition;
-      made.condition = parse_condition(source.condition).value_or(Condition{});
-      made.unit = parse_unit(source.channel.value("unit", "1")).value_or(Unit{});
-      groups.push_back(std::move(made));
-      group = groups.end() - 1;
-    }
-    const Unit unit = parse_unit(source.channel.value("unit", "1")).value_or(Unit{});
-    if (unit.dimension != groups.front().unit.dimension) {
-      return fail(ErrorCode::InvalidArgument,
-                  "The channels of this axis are in units that do not convert into each other, " +
-                      groups.front().unit.symbol + " and " + unit.symbol + ".");
-    }
-    group->sources.push_back(&source);
-    group->robust = group->robust || contaminated(source.channel);
-  }
-  std::sort(groups.begin(), groups.end(),
-            [](const Group& a, const Group& b) { return comes_before(a.condition, b.condition); });
-  return groups;
-}
-
-/// Names of the models that every source was fitted with, smaller ones first.
-std::vector<std::string> common_models(const std::vector<TableSource>& sources) {
-  std::vector<std::string> names;
-  for (const Json& fit : sources.front().channel.at("fits")) {
-    const std::string name = fit.value("model", "");
-    const bool everywhere = std::all_of(sources.begin(), sources.end(), [&](const TableSource& source) {
-      return find_fit(source.channel, name) != nullptr;
-    });
-    if (everywhere && parse_model(name)) {
-      names.push_back(name);
-    }
-  }
-  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-    const auto key = [](const std::string& name) { return std::pair(parse_model(name)->parameter_count(), name); };
-    return key(a) < key(b);
-  });
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
-StructureScore score_of(const Json& fit) {
-  StructureScore score;
-  if (!fit.value("wic", Json()).is_number()) {
-    return score;
-  }
-  score.fitted = true;
-  score.criterion = fit["wic"].get<double>();
-  if (const Json& test = fit["j_test"]; test.is_object()) {
-    score.misfit = test["statistic"].is_number() ? test["statistic"].get<double>() : 0.0;
-    score.dof = test["dof"].is_number() ? test["dof"].get<double>() : 0.0;
-  }
-  return score;
-}
-
-Status stack_group(Group& group) {
-  if (group.stack) {
-    return {};
-  }
-  std::vector<WaveletRecord> records;
-  for (const TableSource* source : group.sources) {
-    const Unit unit = parse_unit(source->channel.value("unit", "1")).value_or(Unit{});
-    records.push_back(record_of(source->channel, unit.factor));
-  }
-  auto stack = Replicates::stack(records);
-  if (!stack) {
-    return fail(stack.error());
-  }
-  group.stack = std::make_unique<Replicates>(*std::move(stack));
-  return {};
-}
-
-/// The joint fit of one model; nullptr where it has no component.
-Candidate* joint_fit(Group& group, const std::string& model) {
-  if (!stack_group(group)) {
-    return nullptr;
-  }
-  auto found = group.joint.find(model);
-  if (found == group.joint.end()) {
-    found = group.joint.emplace(model, group.stack->fit(*parse_model(model))).first;
-  }
-  return found->second.log_fit == nullptr ? nullptr : &found->second;
-}
-
-Json joint_fit_json(Group& group, Candidate& joint, IntervalMethod method) {
-  ModelFit fit = group.stack->report(joint, method);
-  fit.robust = group.robust;
-  Json document = to_json(fit, group.unit);
-  document["intervals"] = method == IntervalMethod::Profile ? "profile" : "sandwich";
   return document;
 }
 
-/// Fills fits and scores of a group: from the previous document, from the one recording's own fits, or by joint fits.
-void fit_group(Group& group, const std::vector<std::string>& models, std::span<const Json> previous) {
-  const Json* known = nullptr;
-  for (auto older = previous.begin(); older != previous.end() && known == nullptr; ++older) {
-    known = find_pooled(&*older, group.text, members_of(group));
+PooledCondition condition_entry_from_json(const Json& document) {
+  PooledCondition entry;
+  Faults ignored;
+  entry.condition = condition_from_json(document.at("condition"), "", ignored);
+  entry.key = document.at("key").get<std::string>();
+  entry.recordings = document.at("recordings").get<std::vector<std::string>>();
+  entry.members = document.at("members").get<std::vector<std::string>>();
+  entry.contamination = text_member(document, "contamination");
+  entry.robust = document.value("robust", false);
+  if (const Json& agreement = document.at("agreement"); agreement.is_object()) {
+    entry.agreement =
+        RecordingAgreement{text_member(agreement, "model"), finite_member(agreement, "statistic", kNotFinite),
+                           finite_member(agreement, "dof", kNotFinite), finite_member(agreement, "p", kNotFinite)};
   }
-  if (known != nullptr) {
-    for (const Json& fit : known->at("fits")) {
-      group.fits[fit.value("model", "")] = fit;
-    }
-    group.agreement = known->value("agreement", Json());
-  } else if (group.sources.size() == 1 && !group.robust) {
-    const Json& channel = group.sources.front()->channel;
-    for (const Json& fit : channel.at("fits")) {
-      Json taken = fit;
-      taken["intervals"] = &fit == &channel["fits"].front() ? "profile" : "sandwich";
-      group.fits.emplace(fit.value("model", ""), std::move(taken));
-    }
-  }
-  for (const std::string& model : models) {
-    auto fit = group.fits.find(model);
-    if (fit == group.fits.end()) {
-      Candidate* const joint = joint_fit(group, model);
-      if (joint == nullptr || parse_model(model)->parameter_count() > group.stack->rows()) {
-        continue;
-      }
-      fit = group.fits.emplace(model, joint_fit_json(group, *joint, IntervalMethod::Preview)).first;
-    }
-    group.scores[model] = score_of(fit->second);
-  }
+  entry.fits = fits_from_json(document.at("fits"));
+  entry.reason = text_member(document, "reason");
+  return entry;
 }
 
-void sharpen(Group& group, const std::string& model) {
-  const auto fit = group.fits.find(model);
-  if (fit == group.fits.end() || fit->second.value("intervals", "") == "profile") {
-    return;
-  }
-  if (Candidate* const joint = joint_fit(group, model)) {
-    fit->second = joint_fit_json(group, *joint, IntervalMethod::Profile);
-  }
-}
-
-Json agreement_json(Group& group, const std::string& model) {
-  if (group.sources.size() < 2 || model.empty()) {
-    return nullptr;
-  }
-  if (group.agreement.is_object() && group.agreement.value("model", "") == model) {
-    return group.agreement;
-  }
-  Candidate* const joint = joint_fit(group, model);
-  const auto agreement = joint != nullptr ? group.stack->agreement(*joint) : std::nullopt;
-  if (!agreement) {
-    return nullptr;
-  }
-  return Json{{"model", model},
-              {"statistic", number(agreement->statistic)},
-              {"dof", number(agreement->dof)},
-              {"p", number(agreement->p)},
-              {"agree", agreement->p >= kSize}};
-}
-
-std::string worst_verdict(const Group& group) {
-  std::string worst;
-  const auto badness = [](const std::string& v) {
-    return v == "contaminated" ? 3 : v == "undecided" ? 2 : v.empty() ? 0 : 1;
-  };
-  for (const TableSource* source : group.sources) {
-    const auto found = source->channel.find("contamination");
-    const std::string verdict = found == source->channel.end() ? "" : found->value("verdict", "");
-    worst = badness(verdict) > badness(worst) ? verdict : worst;
-  }
-  return worst;
-}
-
-Json group_json(Group& group, const std::string& model) {
-  Json recordings = Json::array();
-  for (const TableSource* source : group.sources) {
-    recordings.push_back(source->recording_id);
-  }
-  Json agreement = agreement_json(group, model);
-  std::vector<const Json*> order;
-  for (const auto& [name, fit] : group.fits) {
-    order.push_back(&fit);
-  }
-  std::sort(order.begin(), order.end(), [](const Json* a, const Json* b) {
-    const auto key = [](const Json& fit) {
-      return std::pair(fit["wic"].is_number() ? fit["wic"].get<double>() : HUGE_VAL, fit["model"].get<std::string>());
-    };
-    return key(*a) < key(*b);
-  });
-  Json fits = Json::array();
-  for (const Json* fit : order) {
-    fits.push_back(*fit);
-  }
-  const std::string verdict = worst_verdict(group);
-  return Json{{"condition", to_json(group.condition)},
-              {"key", group.text},
-              {"label", label(group.condition)},
-              {"recordings", std::move(recordings)},
-              {"members", members_of(group)},
-              {"contamination", verdict.empty() ? Json(nullptr) : Json(verdict)},
-              {"robust", group.robust},
-              {"agreement", std::move(agreement)},
-              {"best", fits.empty() ? Json(nullptr) : Json(0)},
-              {"fits", std::move(fits)}};
-}
-
-Json structure_json(const StructureChoice& choice, const std::vector<std::string>& models,
-                    const std::vector<Group>& groups) {
-  std::vector<std::size_t> order(models.size());
-  for (std::size_t s = 0; s < order.size(); ++s) {
-    order[s] = s;
-  }
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return std::pair(choice.sum[a], a) < std::pair(choice.sum[b], b); });
+Json structure_to_json(const PooledStructure& structure) {
   Json ranking = Json::array();
-  for (const std::size_t s : order) {
-    ranking.push_back(Json{{"model", models[s]}, {"criterion", number(choice.sum[s])}});
+  for (const RankedStructure& ranked : structure.ranking) {
+    ranking.push_back(Json{{"model", ranked.model}, {"criterion", number(ranked.criterion)}});
   }
   Json by_condition = Json::array();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    by_condition.push_back(Json{{"label", label(groups[g].condition)}, {"model", models[choice.by_condition[g]]}});
+  for (const ConditionStructure& one : structure.by_condition) {
+    by_condition.push_back(Json{{"label", one.label}, {"model", one.model}});
   }
-  return Json{{"verdict", name_of(choice.verdict)},
-              {"statement", choice.statement},
-              {"p", number(choice.p)},
-              {"statistic", number(choice.statistic)},
-              {"dof", number(choice.dof)},
-              {"common", models[choice.common]},
-              {"excess", number(choice.excess)},
+  return Json{{"verdict", structure.verdict},
+              {"statement", structure.statement},
+              {"p", number(structure.p)},
+              {"statistic", number(structure.statistic)},
+              {"dof", number(structure.dof)},
+              {"common", structure.common},
+              {"excess", number(structure.excess)},
               {"ranking", std::move(ranking)},
               {"by_condition", std::move(by_condition)}};
 }
 
-}  // namespace
-
-const Json* find_pooled(const Json* pooled, const std::string& condition, std::vector<std::string> members) {
-  if (pooled == nullptr || !pooled->is_object() || !pooled->contains("conditions")) {
-    return nullptr;
+PooledStructure structure_from_json(const Json& document) {
+  PooledStructure structure;
+  structure.verdict = document.at("verdict").get<std::string>();
+  structure.statement = document.at("statement").get<std::string>();
+  structure.p = finite_member(document, "p", kNotFinite);
+  structure.statistic = finite_member(document, "statistic", kNotFinite);
+  structure.dof = finite_member(document, "dof", kNotFinite);
+  structure.common = document.at("common").get<std::string>();
+  structure.excess = finite_member(document, "excess", kNotFinite);
+  for (const Json& ranked : document.at("ranking")) {
+    structure.ranking.push_back(
+        {ranked.at("model").get<std::string>(), finite_member(ranked, "criterion", kNotFinite)});
   }
-  std::sort(members.begin(), members.end());
-  for (const Json& entry : (*pooled)["conditions"]) {
-    if (entry.value("key", "") == condition && entry["members"] == Json(members)) {
-      return &entry;
-    }
+  for (const Json& one : document.at("by_condition")) {
+    structure.by_condition.push_back({one.at("label").get<std::string>(), one.at("model").get<std::string>()});
   }
-  return nullptr;
+  return structure;
 }
 
-Result<Json> pool_sensor(const std::vector<TableSource>& sources, std::span<const Json> previous,
-                         const RunControl& control) {
-  if (sources.empty()) {
-    return fail(ErrorCode::InvalidArgument, "There are no results to put together.");
+PooledSensor sensor_from_json(const Json& document) {
+  PooledSensor pooled;
+  pooled.quantity = text_member(document, "quantity");
+  pooled.axis = text_member(document, "axis");
+  pooled.channel = text_member(document, "channel");
+  pooled.sensor_axis = text_member(document, "sensor_axis");
+  pooled.model = text_member(document, "model");
+  if (const Json& structure = document.at("structure"); structure.is_object()) {
+    pooled.structure = structure_from_json(structure);
   }
-  auto groups = group_by_condition(sources);
-  if (!groups) {
-    return fail(groups.error());
+  for (const Json& entry : document.at("conditions")) {
+    pooled.conditions.push_back(condition_entry_from_json(entry));
   }
-  const std::vector<std::string> models = common_models(sources);
-  std::vector<std::vector<StructureScore>> scores;
-  for (Group& group : *groups) {
-    if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "Putting the recordings together was cancelled.");
-    }
-    control.report("joint fit: " + label(group.condition),
-                   static_cast<double>(scores.size()) / static_cast<double>(groups->size()));
-    fit_group(group, models, previous);
-    std::vector<StructureScore> row;
-    for (const std::string& model : models) {
-      row.push_back(group.scores[model]);
-    }
-    scores.push_back(std::move(row));
+  pooled.reason = text_member(document, "reason");
+  return pooled;
+}
+
+}  // namespace
+
+Json to_json(const std::optional<RecordingAgreement>& agreement) {
+  if (!agreement) {
+    return nullptr;
   }
-  Json structure;
-  std::string model;
-  if (!models.empty()) {
-    const StructureChoice choice = choose_structure(models, scores);
-    model = std::isfinite(choice.sum[choice.best]) ? models[choice.best] : "";
-    structure = structure_json(choice, models, *groups);
-    for (std::size_t g = 0; g < groups->size(); ++g) {
-      sharpen((*groups)[g], models[choice.by_condition[g]]);
-      sharpen((*groups)[g], model);
-    }
-  }
+  const bool joint = !agreement->model.empty();
+  return Json{{"model", text_or_null(agreement->model)},
+              {"statistic", number(agreement->statistic)},
+              {"dof", joint ? number(agreement->dof) : Json(std::lround(agreement->dof))},
+              {"p", number(agreement->p)},
+              {"agree", agreement->agree()}};
+}
+
+Json to_json(const PooledSensor& pooled) {
   Json conditions = Json::array();
-  for (Group& group : *groups) {
-    conditions.push_back(group_json(group, model));
+  for (const PooledCondition& entry : pooled.conditions) {
+    conditions.push_back(condition_to_json(entry));
   }
-  const Json& first = sources.front().channel;
-  return Json{{"quantity", first.value("quantity", Json())}, {"axis", first.value("axis", Json())},
-              {"channel", first.value("channel", Json())},   {"model", model.empty() ? Json(nullptr) : Json(model)},
-              {"structure", std::move(structure)},           {"conditions", std::move(conditions)}};
+  Json document{{"quantity", text_or_null(pooled.quantity)}, {"axis", text_or_null(pooled.axis)}};
+  if (!pooled.channel.empty()) {
+    document["channel"] = pooled.channel;
+  }
+  document["model"] = text_or_null(pooled.model);
+  document["structure"] = pooled.structure ? structure_to_json(*pooled.structure) : Json(nullptr);
+  document["conditions"] = std::move(conditions);
+  if (!pooled.reason.empty()) {
+    document["reason"] = pooled.reason;
+  }
+  if (!pooled.sensor_axis.empty()) {
+    document["sensor_axis"] = pooled.sensor_axis;
+  }
+  return document;
+}
+
+Result<PooledSensor> pooled_sensor_from_json(const Json& document) {
+  try {
+    return sensor_from_json(document);
+  } catch (const Json::exception& fault) {
+    return fail(ErrorCode::Internal, "A stored joint fit cannot be read: " + std::string(fault.what()) + ".");
+  }
 }
 
 }  // namespace driftlab

@@ -1,5 +1,7 @@
 #include "schema/json/parameter_table.hpp"
 #include "schema/json/trend_table.hpp"
+#include "schema/text/parameter_table.hpp"
+#include "schema/text/trend_table.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
@@ -9,7 +11,7 @@ namespace driftlab::server {
 namespace {
 
 /// The table that a request asks for, from stored results alone.
-Result<Json> read_table(ApiContext& context, const Request& request) {
+Result<ParameterTable> read_table(ApiContext& context, const Request& request) {
   const auto name = request.parameter("device");
   if (!name || name->empty()) {
     return fail(ErrorCode::InvalidArgument, "Name the device: ?device=…", {{"parameter", "device"}});
@@ -34,7 +36,7 @@ Result<Response> get_table(ApiContext& context, const Request& request) {
   if (!table) {
     return fail(table.error());
   }
-  Response response = json_response(200, *table);
+  Response response = json_response(200, to_json(*table));
   response.headers.emplace_back("Vary", "Accept");
   if (*type == "text/csv") {
     response.content_type = "text/csv; charset=utf-8";
@@ -58,8 +60,8 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
   if (!table) {
     return fail(table.error());
   }
-  const Json trends = build_trends(*table);
-  Response response = json_response(200, trends);
+  const TrendTable trends = build_trends(*table);
+  Response response = json_response(200, to_json(trends));
   response.headers.emplace_back("Vary", "Accept");
   if (*type == "text/plain") {
     response.content_type = "text/plain; charset=utf-8";

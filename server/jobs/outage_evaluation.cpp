@@ -3,14 +3,14 @@
 ///
 /// `inputs`: {"scenario": NAME or document}; a sensor or axis of the document may be {"fit": "fit_..."}, a stored fit,
 /// or {"table": {"device", "axis", "method", "model", "schedule", "hysteresis_deg_s", "step_deg_s"}}, the models of a
-/// device's parameter table by |rate| (schema/json/table_schedule.hpp); what they hold is written into the request when
-/// it is queued. `parameters`: {"runs", "seed", "relative_precision"}, all optional.
+/// device's parameter table by |rate| (core/analysis/table_schedule.hpp); what they hold is written into the request
+/// when it is queued. `parameters`: {"runs", "seed", "relative_precision"}, all optional.
 #include "schema/json/outage_evaluation.hpp"
 
+#include "core/analysis/table_schedule.hpp"
 #include "core/signal/angle.hpp"
 #include "schema/json/imu_model.hpp"
 #include "schema/json/outage_scenario.hpp"
-#include "schema/json/table_schedule.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_sensor.hpp"
 #include "server/jobs/stored_table.hpp"
@@ -65,9 +65,13 @@ Status resolve_table(Json& node, const std::string& pointer, JobContext& context
     faults.add(pointer + "/table", table.error());
     return {};
   }
-  const ModelSchedule made = schedule_from_table(*table, options, pointer + "/table", faults);
+  const auto made = schedule_from_table(*table, options);
+  if (!made) {
+    faults.add(pointer + "/table", made.error());
+    return {};
+  }
   node.erase("table");
-  node.update(schedule_to_json(made, Dimension::AngularRate));
+  node.update(schedule_to_json(*made, Dimension::AngularRate));
   return {};
 }
 

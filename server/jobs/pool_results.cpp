@@ -1,6 +1,8 @@
 #include "server/jobs/pool_results.hpp"
 
+#include "schema/json/campaign_summary.hpp"
 #include "schema/json/pooled_sensor.hpp"
+#include "schema/json/reported_channel.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -32,11 +34,11 @@ std::vector<Axis> touched(const JobResults& results) {
 }
 
 Result<TableSource> source_of(const ChannelResult& channel) {
-  auto document = parse_json(channel.document_json);
-  if (!document) {
-    return fail(document.error());
+  auto read = parse_json(channel.document_json).and_then(reported_channel_from_json);
+  if (!read) {
+    return fail(read.error());
   }
-  return TableSource{channel.recording_id, channel.condition, std::move(*document), channel.id};
+  return TableSource{channel.recording_id, channel.condition, std::move(*read), channel.id};
 }
 
 /// The latest results of the axis once the job is done.
@@ -75,12 +77,15 @@ Result<std::vector<TableSource>> sources_of(const Axis& axis, JobContext& contex
 }
 
 /// The job's own sources with the ids under which they will be stored.
-std::vector<SensorSources> own_sensors(const Json& document, const JobResults& results) {
-  std::vector<SensorSources> sensors = sensors_of(document);
-  for (SensorSources& sensor : sensors) {
+Result<std::vector<SensorSources>> own_sensors(const Json& document, const JobResults& results) {
+  auto sensors = sensors_of(document);
+  if (!sensors) {
+    return sensors;
+  }
+  for (SensorSources& sensor : *sensors) {
     for (TableSource& source : sensor.sources) {
       const auto row = std::find_if(results.channels.begin(), results.channels.end(), [&](const ChannelResult& r) {
-        return r.recording_id == source.recording_id && r.channel == source.channel.value("channel", "");
+        return r.recording_id == source.recording_id && r.channel == source.channel.channel;
       });
       source.result_id = row == results.channels.end() ? "" : row->id;
     }
@@ -98,23 +103,25 @@ Status pool_axis(const Axis& axis, const Json& document, JobContext& context, co
   if (sources->size() < 2) {
     return {};
   }
-  std::vector<Json> previous;
-  const SensorSources sensor{axis.quantity, axis.axis, {}};
-  if (const Json* const own = pooled_of(document, sensor)) {
-    previous.push_back(*own);
+  std::vector<PooledSensor> previous;
+  auto own = pooled_of(document, {axis.quantity, axis.axis, {}});
+  if (!own) {
+    return fail(own.error());
+  }
+  if (*own) {
+    previous.push_back(std::move(**own));
   }
   if (const auto& stored = *older) {
-    if (auto parsed = parse_json(stored->document_json)) {
+    if (auto parsed = parse_json(stored->document_json).and_then(pooled_sensor_from_json)) {
       previous.push_back(std::move(*parsed));
     }
   }
-  auto pooled = pool_sensor(*sources, previous, control);
-  if (pooled) {
-    results.pooled.push_back({axis.device_id, axis.quantity, axis.axis, to_text(*pooled)});
-    return {};
+  const auto pooled = pool_sensor(*sources, previous, control);
+  if (!pooled) {
+    return fail(pooled.error());
   }
-  // What cannot be put together (units that do not convert) stays apart: the table then says why.
-  return pooled.error().code == ErrorCode::Cancelled ? fail(pooled.error()) : Status{};
+  results.pooled.push_back({axis.device_id, axis.quantity, axis.axis, to_text(to_json(*pooled))});
+  return {};
 }
 
 }  // namespace
@@ -131,9 +138,12 @@ Status pool_results(Json& document, JobContext& context, const RunControl& contr
     if (!device) {
       return fail(device.error());
     }
-    if (auto added = add_summary(document, device->name, own_sensors(document, results), first); !added) {
-      return added;
+    const auto sensors = own_sensors(document, results);
+    const auto summary = sensors ? summarise_campaign(device->name, *sensors, first) : fail(sensors.error());
+    if (!summary) {
+      return fail(summary.error());
     }
+    add_summary(document, *summary);
   } else {
     document["trends"] = Json::array();
     document["replicates"] = Json::array();

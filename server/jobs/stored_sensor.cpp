@@ -1,7 +1,7 @@
 #include "server/jobs/stored_sensor.hpp"
 
+#include "core/process/parameter_unit.hpp"
 #include "core/signal/angle.hpp"
-#include "schema/json/parameter_unit.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #include "server/jobs/stored_table.hpp"
 
-#include "schema/json/parameter_table.hpp"
+#include "schema/json/pooled_sensor.hpp"
+#include "schema/json/reported_channel.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -27,12 +28,6 @@ Result<TableRequest> checked(const StoredTableRequest& wanted, const Device& dev
   return table;
 }
 
-/// A document that was checked when it was written.
-Json document_of(const std::string& text) {
-  auto document = parse_json(text);
-  return document ? std::move(*document) : Json();
-}
-
 /// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
 Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
   std::string present;
@@ -56,7 +51,7 @@ Status check_axis_named(Store& store, const Device& device, const TableRequest& 
 
 }  // namespace
 
-Result<Json> stored_table(Store& store, const StoredTableRequest& request) {
+Result<ParameterTable> stored_table(Store& store, const StoredTableRequest& request) {
   auto device = store.device(request.device);
   if (!device) {
     return fail(device.error());
@@ -81,11 +76,20 @@ Result<Json> stored_table(Store& store, const StoredTableRequest& request) {
   }
   std::vector<TableSource> sources;
   for (const ChannelResult& row : *rows) {
-    sources.push_back({row.recording_id, row.condition, document_of(row.document_json), row.id});
+    auto channel = parse_json(row.document_json).and_then(reported_channel_from_json);
+    if (!channel) {
+      return fail(channel.error());
+    }
+    sources.push_back({row.recording_id, row.condition, std::move(*channel), row.id});
   }
-  const std::optional<PooledResult>& fitted_together = *pooled;
-  const Json together = fitted_together ? document_of(fitted_together->document_json) : Json();
-  return build_parameter_table(*wanted, sources, together.is_object() ? &together : nullptr);
+  if (!pooled->has_value()) {
+    return build_parameter_table(*wanted, sources);
+  }
+  const auto together = parse_json((*pooled)->document_json).and_then(pooled_sensor_from_json);
+  if (!together) {
+    return fail(together.error());
+  }
+  return build_parameter_table(*wanted, sources, &*together);
 }
 
 }  // namespace driftlab::server

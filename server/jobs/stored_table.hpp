@@ -1,7 +1,7 @@
 #pragma once
-/// A parameter table (schema/json/parameter_table.hpp) from stored results: what /v1/parameter-tables gives and what
+/// A parameter table (core/campaign/parameter_table.hpp) from stored results: what /v1/parameter-tables gives and what
 /// jobs over a table read.
-#include "schema/json/json.hpp"
+#include "core/campaign/parameter_table.hpp"
 #include "server/store/store.hpp"
 
 namespace driftlab::server {
@@ -15,7 +15,8 @@ struct StoredTableRequest {
   std::string model;  ///< empty: the best over all rows
 };
 
-/// Errors: NotFound (device, or no result); InvalidArgument, field "parameter"; those of the store.
-[[nodiscard]] Result<Json> stored_table(Store& store, const StoredTableRequest& request);
+/// Errors: NotFound (device, or no result); InvalidArgument (a parameter, which the field "parameter" names; results in
+/// units that do not convert into each other); those of the store.
+[[nodiscard]] Result<ParameterTable> stored_table(Store& store, const StoredTableRequest& request);
 
 }  // namespace driftlab::server

@@ -2,8 +2,8 @@
 /// A simulated rate-table campaign with the iPhone values of Table 4 of Radi, Nassar and El-Sheimy (2017): eight
 /// conditions, each recorded twice at 100 Hz, 15 min but for the ramps of 225 and 155 s; experiment 4, which the paper
 /// leaves out, has the geometric means of experiments 3 and 5 and gross errors.
+#include "core/campaign/replicates.hpp"
 #include "core/fit/characterise.hpp"
-#include "core/fit/replicates.hpp"
 #include "core/process/published_models.hpp"
 
 #include <cmath>

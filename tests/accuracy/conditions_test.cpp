@@ -1,7 +1,7 @@
 // Several recordings together: agreement of replicates, one structure or several, trends over conditions.
-#include "core/fit/replicates.hpp"
-#include "core/fit/structure.hpp"
-#include "core/fit/trends.hpp"
+#include "core/campaign/replicates.hpp"
+#include "core/campaign/structure.hpp"
+#include "core/campaign/trends.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
 #include "tests/accuracy/campaign.hpp"

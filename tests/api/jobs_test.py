@@ -340,6 +340,19 @@ class Tables(JobTest):
         self.expect(304, self.daemon.get(self.target, Accept="text/csv", If_None_Match=etag))
         self.expect(200, self.daemon.get(self.target, If_None_Match=etag))
 
+    def test_units_that_do_not_convert_are_said_in_document_and_table(self) -> None:
+        """A column without a unit beside one in deg/s: the error of pooling was swallowed, and the table averaged the two."""
+        recordings = [self.daemon.upload(samples.gyro_csv(4000, seed=seed), device="mixed", condition="static", rate_hz=100, columns=columns).json["id"]
+                      for seed, columns in ((204, samples.GYRO_Z), (205, "gz=angular_rate:z"))]
+        job = self.daemon.finished(self.daemon.characterise(*recordings, models=["WN", "WN+GM"]).json["id"])
+        document = self.expect(200, self.daemon.get(job["result"]["href"])).json
+        conflict = "units that do not convert into each other, deg/s and 1."
+        self.assertIn(conflict, document["replicates"][0]["reason"])
+        self.assertEqual(document["trends"], [])
+        for method in ("av", "gmwm"):
+            refused = self.problem(400, "invalid_argument", self.daemon.get(f"/v1/parameter-tables?device=mixed&axis=z&method={method}"))
+            self.assertIn(conflict, str(refused["detail"]))
+
     def test_faults_name_the_parameter(self) -> None:
         self.problem(400, "invalid_argument", self.daemon.get("/v1/parameter-tables?axis=z"), parameter="device")
         self.problem(404, "not_found", self.daemon.get("/v1/parameter-tables?device=nobody"))

@@ -16,7 +16,7 @@ CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
 INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "causes", "search", "report")]  # lowest first
 ANALYSIS = [*CORE, "core/campaign", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
-DOCUMENTS = [*USE_CASES, "schema/json", "schema"]
+DOCUMENTS = [*USE_CASES, "schema/json", "schema/text", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -32,6 +32,7 @@ FLOORS: dict[str, list[str]] = {
     "core/investigate": [*CORE, "core/campaign", "core/calibrate", "core/navigate", *INVESTIGATE],
     "core/analysis": [*ANALYSIS, "core/read"],  # one file per use case: what the command line and the jobs ask for
     "schema/json": USE_CASES,
+    "schema/text": USE_CASES,  # for people: tables and lines, of the same types and without a document in between
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
     "server/observe": ["core/signal", "server/store", "schema/json"],

@@ -10,19 +10,16 @@ namespace {
 
 Model base() { return {*make_process("white_noise", {1.0}), *make_process("gauss_markov", {0.5, 0.1})}; }
 
-FittedRelation relation(double low, double high, double exponent, double scale) {
-  FittedRelation made;
-  made.low = low;
-  made.high = high;
-  made.exponent = exponent;
-  made.scale = scale;
-  return made;
+/// value(w) = low + (high - low) (w/last)^exponent of one parameter.
+ParameterTrend trend(std::size_t process, std::size_t parameter, double low, double high, double exponent,
+                     double last) {
+  return {process, parameter, [=](double rate) { return low + (high - low) * std::pow(rate / last, exponent); }, last};
 }
 
 TEST(TrendSchedule, FollowsEachRelationWithinHalfAStep) {
   // N = 1 + 2 (w/2)^0.5, sigma falls from 0.5 to 0.1 over 1 rad/s and stays, beta is constant.
   const ModelSchedule schedule =
-      *schedule_along(base(), {{0, 0, relation(1.0, 3.0, 0.5, 2.0)}, {1, 0, relation(0.5, 0.1, 1.0, 1.0)}}, 0.01);
+      *schedule_along(base(), {trend(0, 0, 1.0, 3.0, 0.5, 2.0), trend(1, 0, 0.5, 0.1, 1.0, 1.0)}, 0.01);
   EXPECT_EQ(schedule.size(), 201U);
   for (const double rate : {0.1, 0.5, 1.2, 1.99}) {
     const Model& model = schedule.model(schedule.band(-rate));
@@ -41,10 +38,10 @@ TEST(TrendSchedule, WithoutTrendsItIsTheModel) {
 }
 
 TEST(TrendSchedule, RefusesParametersThatTheModelLacks) {
-  EXPECT_FALSE(schedule_along(base(), {{2, 0, relation(1.0, 2.0, 1.0, 1.0)}}, 0.01));
-  EXPECT_FALSE(schedule_along(base(), {{0, 1, relation(1.0, 2.0, 1.0, 1.0)}}, 0.01));
-  EXPECT_FALSE(schedule_along(base(), {{0, 0, relation(1.0, 2.0, 1.0, 1.0)}}, 0.0));
-  EXPECT_FALSE(schedule_along(base(), {{0, 0, relation(1.0, 2.0, 1.0, 100.0)}}, 0.01));
+  EXPECT_FALSE(schedule_along(base(), {trend(2, 0, 1.0, 2.0, 1.0, 1.0)}, 0.01));
+  EXPECT_FALSE(schedule_along(base(), {trend(0, 1, 1.0, 2.0, 1.0, 1.0)}, 0.01));
+  EXPECT_FALSE(schedule_along(base(), {trend(0, 0, 1.0, 2.0, 1.0, 1.0)}, 0.0));
+  EXPECT_FALSE(schedule_along(base(), {trend(0, 0, 1.0, 2.0, 1.0, 100.0)}, 0.01));
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+#include "schema/json/campaign_summary.hpp"
+
+#include "schema/json/pooled_sensor.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "schema/json/reported_channel.hpp"
+#include "schema/json/trend_table.hpp"
+
+#include <algorithm>
+
+namespace driftlab {
+namespace {
+
+void add_source(std::vector<SensorSources>& sensors, TableSource source) {
+  const ReportedChannel& channel = source.channel;
+  const std::string& quantity = channel.quantity;
+  const std::string& axis = channel.axis.empty() ? channel.channel : channel.axis;
+  auto sensor = std::find_if(sensors.begin(), sensors.end(),
+                             [&](const SensorSources& s) { return s.quantity == quantity && s.axis == axis; });
+  if (sensor == sensors.end()) {
+    sensors.push_back({quantity, axis, {}});
+    sensor = sensors.end() - 1;
+  }
+  sensor->sources.push_back(std::move(source));
+}
+
+Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
+  std::vector<SensorSources> sensors;
+  for (const Json& recording : characterisation.at("recordings")) {
+    Faults ignored;
+    const std::string condition = to_text(condition_from_json(recording.at("condition"), "", ignored));
+    for (const Json& document : recording.at("channels")) {
+      auto channel = reported_channel_from_json(document);
+      if (!channel) {
+        return fail(channel.error());
+      }
+      add_source(sensors, {recording.at("id").get<std::string>(), condition, std::move(*channel), ""});
+    }
+  }
+  return sensors;
+}
+
+}  // namespace
+
+Result<std::vector<SensorSources>> sensors_of(const Json& characterisation) {
+  try {
+    return read_sensors(characterisation);
+  } catch (const Json::exception& fault) {
+    return fail(ErrorCode::Internal, "A characterisation cannot be read: " + std::string(fault.what()) + ".");
+  }
+}
+
+void add_summary(Json& characterisation, const CampaignSummary& summary) {
+  Json trends = Json::array();
+  for (const TrendTable& table : summary.trends) {
+    trends.push_back(to_json(table));
+  }
+  Json replicates = Json::array();
+  for (const PooledSensor& pooled : summary.replicates) {
+    replicates.push_back(to_json(pooled));
+  }
+  characterisation["trends"] = std::move(trends);
+  characterisation["replicates"] = std::move(replicates);
+}
+
+Result<std::optional<PooledSensor>> pooled_of(const Json& characterisation, const SensorSources& sensor) {
+  const auto list = characterisation.find("replicates");
+  if (list == characterisation.end()) {
+    return std::nullopt;
+  }
+  for (const Json& document : *list) {
+    auto pooled = pooled_sensor_from_json(document);
+    if (!pooled) {
+      return fail(pooled.error());
+    }
+    if (pooled->quantity == sensor.quantity && pooled->sensor_axis == sensor.axis) {
+      return std::optional(std::move(*pooled));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace driftlab

@@ -1,0 +1,192 @@
+#include "schema/json/reported_channel.hpp"
+
+#include <limits>
+
+namespace driftlab {
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+std::optional<double> optional_number(const Json& value) {
+  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
+}
+
+Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+ReportedValue value_from_json(const Json& parameter, const Json& reasons, const std::string& name) {
+  ReportedValue value;
+  if (parameter.is_object()) {
+    value.value = optional_number(parameter.at("value"));
+    value.unit = parameter.at("unit").get<std::string>();
+    value.low = optional_number(parameter.at("ci95").at(0));
+    value.high = optional_number(parameter.at("ci95").at(1));
+  } else if (reasons.is_object()) {
+    value.reason = reasons.value(name, "");
+  }
+  return value;
+}
+
+ReportedProcess process_from_json(const Json& document) {
+  ReportedProcess process{document.at("process").get<std::string>(), {}};
+  const Json reasons = document.value("reasons", Json());
+  for (const auto& [name, parameter] : document.at("params").items()) {
+    process.parameters.emplace_back(name, value_from_json(parameter, reasons, name));
+  }
+  return process;
+}
+
+Json process_to_json(const ReportedProcess& process) {
+  Json reasons = Json::object();
+  Json document{{"process", process.process}, {"params", to_json(process.parameters, reasons)}};
+  if (!reasons.empty()) {
+    document["reasons"] = std::move(reasons);
+  }
+  return document;
+}
+
+std::vector<std::string> texts(const Json& document, const char* name) {
+  const auto found = document.find(name);
+  return found == document.end() ? std::vector<std::string>{} : found->get<std::vector<std::string>>();
+}
+
+ReportedFit fit_from_json(const Json& document) {
+  ReportedFit fit;
+  fit.model = document.at("model").get<std::string>();
+  fit.robust = document.value("robust", false);
+  for (const Json& process : document.at("processes")) {
+    fit.processes.push_back(process_from_json(process));
+  }
+  fit.objective = finite_member(document, "objective", kNotKnown);
+  fit.wic = finite_member(document, "wic", kNotKnown);
+  fit.equation_8 = finite_member(document, "equation_8", kNotKnown);
+  fit.optimism = finite_member(document, "optimism", kNotKnown);
+  fit.condition_number = finite_member(document, "condition_number", kNotKnown);
+  fit.bounds_active = texts(document, "bounds_active");
+  fit.intervals = text_member(document, "intervals");
+  fit.plausible = document.value("plausible", false);
+  if (const auto test = document.find("j_test"); test != document.end() && test->is_object()) {
+    fit.j_test = JTest{finite_member(*test, "statistic", kNotKnown), finite_member(*test, "dof", kNotKnown),
+                       finite_member(*test, "p", kNotKnown)};
+  }
+  fit.status = text_member(document, "status");
+  fit.warnings = texts(document, "warnings");
+  return fit;
+}
+
+/// Numbers of a list with `otherwise` for each null; nothing where there is no list.
+std::vector<double> numbers(const Json& document, const char* name, double otherwise) {
+  std::vector<double> values;
+  if (const auto found = document.find(name); found != document.end() && found->is_array()) {
+    for (const Json& value : *found) {
+      values.push_back(value.is_number() ? value.get<double>() : otherwise);
+    }
+  }
+  return values;
+}
+
+ReportedHaar haar_from_json(const Json& document) {
+  ReportedHaar haar;
+  haar.scale = document.at("scale").get<std::vector<std::size_t>>();
+  haar.variance = numbers(document, "variance", 0.0);
+  haar.efficiency = numbers(document, "efficiency_by_scale", 1.0);
+  if (const auto robust = document.find("robust"); robust != document.end() && robust->is_object()) {
+    haar.robust_variance = numbers(*robust, "variance", 0.0);
+    haar.robust_efficiency = numbers(*robust, "efficiency_by_scale", 1.0);
+  }
+  return haar;
+}
+
+ReportedChannel channel_from_json(const Json& document) {
+  ReportedChannel channel;
+  channel.channel = text_member(document, "channel");
+  channel.quantity = text_member(document, "quantity");
+  channel.axis = text_member(document, "axis");
+  channel.unit = text_member(document, "unit");
+  channel.samples = document.at("samples").get<std::size_t>();
+  channel.missing = document.value("missing", std::size_t{0});
+  channel.dt_s = document.at("dt_s").get<double>();
+  channel.haar = haar_from_json(document.at("haar"));
+  if (const auto found = document.find("contamination"); found != document.end() && found->is_object()) {
+    channel.contamination = text_member(*found, "verdict");
+  }
+  const Json& allan = document.at("allan_parameters");
+  const Json reasons = allan.value("reasons", Json());
+  for (const auto& [name, parameter] : allan.items()) {
+    if (name != "reasons") {
+      channel.allan.emplace_back(name, value_from_json(parameter, reasons, name));
+    }
+  }
+  channel.fits = fits_from_json(document.at("fits"));
+  return channel;
+}
+
+}  // namespace
+
+double finite_member(const Json& object, const char* name, double otherwise) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+std::string text_member(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json to_json(const ReportedValues& values, Json& reasons) {
+  Json document = Json::object();
+  for (const auto& [name, value] : values) {
+    if (!value.value) {
+      document[name] = nullptr;
+      reasons[name] = value.reason;
+      continue;
+    }
+    document[name] = Json{{"value", number(*value.value)},
+                          {"unit", value.unit},
+                          {"ci95", Json::array({optional_number(value.low), optional_number(value.high)})}};
+  }
+  return document;
+}
+
+Json to_json(const ReportedFit& fit) {
+  Json processes = Json::array();
+  for (const ReportedProcess& process : fit.processes) {
+    processes.push_back(process_to_json(process));
+  }
+  return Json{{"model", fit.model},
+              {"robust", fit.robust},
+              {"processes", std::move(processes)},
+              {"objective", number(fit.objective)},
+              {"wic", number(fit.wic)},
+              {"equation_8", number(fit.equation_8)},
+              {"optimism", number(fit.optimism)},
+              {"condition_number", number(fit.condition_number)},
+              {"bounds_active", fit.bounds_active},
+              {"intervals", fit.intervals},
+              {"plausible", fit.plausible},
+              {"j_test", fit.j_test ? Json{{"statistic", number(fit.j_test->statistic)},
+                                           {"dof", number(fit.j_test->dof)},
+                                           {"p", number(fit.j_test->p)}}
+                                    : Json(nullptr)},
+              {"status", fit.status},
+              {"warnings", fit.warnings}};
+}
+
+std::vector<ReportedFit> fits_from_json(const Json& fits) {
+  std::vector<ReportedFit> read;
+  for (const Json& fit : fits) {
+    read.push_back(fit_from_json(fit));
+  }
+  return read;
+}
+
+Result<ReportedChannel> reported_channel_from_json(const Json& document) {
+  try {
+    return channel_from_json(document);
+  } catch (const Json::exception& fault) {
+    return fail(ErrorCode::Internal, "A stored channel cannot be read: " + std::string(fault.what()) + ".");
+  }
+}
+
+}  // namespace driftlab

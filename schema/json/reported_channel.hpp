@@ -1,0 +1,32 @@
+#pragma once
+/// Stored channel documents and back: what tables and joint fits need of a member of `channels` of a characterisation
+/// document (schema/json/characterisation.hpp), as the types of core/campaign/reported_channel.hpp.
+#include "core/campaign/reported_channel.hpp"
+#include "schema/json/json.hpp"
+
+namespace driftlab {
+
+/// One member of `fits`.
+[[nodiscard]] Json to_json(const ReportedFit& fit);
+
+/// `fits` is a list as `to_json` writes its members. May throw Json::exception: call it inside a reader that turns that
+/// into an error.
+[[nodiscard]] std::vector<ReportedFit> fits_from_json(const Json& fits);
+
+/// N, B, ... with null where there is no value; the reasons for it are added to `reasons`.
+[[nodiscard]] Json to_json(const ReportedValues& values, Json& reasons);
+
+/// One member of `channels`. Members that nobody needs for several recordings are passed over. Error: Internal, for a
+/// document that driftlab has not written.
+[[nodiscard]] Result<ReportedChannel> reported_channel_from_json(const Json& document);
+
+/// The member as a finite number, else `otherwise`: null stands for what is not finite or not known.
+[[nodiscard]] double finite_member(const Json& object, const char* name, double otherwise);
+
+/// The member as text; empty where it is null or absent.
+[[nodiscard]] std::string text_member(const Json& object, const char* name);
+
+/// null for an empty text.
+[[nodiscard]] Json text_or_null(const std::string& text);
+
+}  // namespace driftlab

@@ -1,0 +1,202 @@
+#include "schema/text/parameter_table.hpp"
+
+#include "core/signal/number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+namespace driftlab {
+namespace {
+
+/// Four significant digits, without an exponent where people would not write one.
+std::string rounded(double x) {
+  std::array<char, 48> buffer{};
+  const double size = std::fabs(x);
+  const bool plain = size == 0.0 || (size >= 1e-3 && size < 1e5);
+  int decimals = 0;
+  if (plain && size > 0.0) {
+    decimals = std::clamp(3 - static_cast<int>(std::floor(std::log10(size))), 0, 6);
+  }
+  const int length = plain ? std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, x)
+                           : std::snprintf(buffer.data(), buffer.size(), "%.3e", x);
+  return {buffer.data(), static_cast<std::size_t>(length)};
+}
+
+std::string rounded(const std::optional<double>& end) { return end ? rounded(*end) : "…"; }
+
+std::string cell_text(const TableCell& cell) {
+  const ReportedValue& estimate = cell.estimate;
+  if (!estimate.value) {
+    return "…";
+  }
+  std::string text = rounded(*estimate.value) + " [" + rounded(estimate.low) + ", " + rounded(estimate.high) + "]";
+  if (cell.change == Change::Up) {
+    text += " ↑";
+  } else if (cell.change == Change::Down) {
+    text += " ↓";
+  }
+  return text;
+}
+
+/// Characters a person sees: UTF-8 continuation bytes take no room.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    return text;
+  }
+  std::string result = "\"";
+  for (const char c : text) {
+    result += c;
+    if (c == '"') {
+      result += '"';
+    }
+  }
+  return result + "\"";
+}
+
+bool contaminated(const TableRow& row) { return row.contamination == "contaminated"; }
+bool disagrees(const TableRow& row) { return row.agreement && !row.agreement->agree(); }
+
+/// What a reader must know before using a row: contamination and what the fit itself says against it.
+std::string notes_of(const ParameterTable& table) {
+  std::string text;
+  for (const TableRow& row : table.rows) {
+    if (contaminated(row)) {
+      text += "! " + row.label + ": gross errors move the variances of this recording" +
+              (row.robust ? "; the values are from robust variances.\n" : ".\n");
+    }
+    if (disagrees(row)) {
+      text += "! " + row.label + ": its recordings disagree (p = " + rounded(row.agreement->p) +
+              "); the pooled values stand for none of them.\n";
+    }
+    for (const std::string& warning : row.warnings) {
+      text += "! " + row.label + ": " + warning + "\n";
+    }
+  }
+  return text;
+}
+
+/// `*` where a note below speaks of the row itself.
+std::string marked_label(const TableRow& row) { return row.label + (contaminated(row) || disagrees(row) ? " *" : ""); }
+
+std::string heading_of(const ParameterTable& table) {
+  std::string text = table.device + ", " + std::string(sensor_of(table.quantity));
+  if (!table.axis.empty()) {
+    text += " " + table.axis;
+  }
+  return text + (table.method == TableMethod::Av ? ", Allan variance"
+                                                 : ", GMWM, model " + (table.model.empty() ? "?" : table.model));
+}
+
+/// Lines of the table: keys, units, one per row.
+std::vector<std::vector<std::string>> grid_of(const ParameterTable& table) {
+  std::vector<std::vector<std::string>> grid(2, {"condition"});
+  grid[1] = {""};
+  for (const TableColumn& column : table.columns) {
+    grid[0].push_back(column.key);
+    grid[1].push_back(column.unit);
+  }
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> line{marked_label(row)};
+    for (const TableCell& cell : row.cells) {
+      line.push_back(cell_text(cell));
+    }
+    grid.push_back(std::move(line));
+  }
+  return grid;
+}
+
+constexpr const char* kLegend = "value [95 % interval]; … not identifiable; ↑ ↓ changed against the first row";
+
+std::string exact(const std::optional<double>& value) { return value ? to_text(*value) : ""; }
+
+}  // namespace
+
+std::string table_to_csv(const ParameterTable& table) {
+  std::string text = "condition,recordings";
+  for (const TableColumn& column : table.columns) {
+    const std::string unit = column.unit.empty() ? "" : " [" + column.unit + "]";
+    for (const char* const part : {"", " low", " high"}) {
+      text.append(",").append(csv_field(std::string(column.key).append(part).append(unit)));
+    }
+  }
+  text += "\r\n";
+  for (const TableRow& row : table.rows) {
+    std::string recordings;
+    for (const std::string& id : row.recordings) {
+      recordings += (recordings.empty() ? "" : " ") + id;
+    }
+    text += csv_field(row.label) + "," + csv_field(recordings);
+    for (const TableCell& cell : row.cells) {
+      const ReportedValue& estimate = cell.estimate;
+      text +=
+          estimate.value ? "," + exact(estimate.value) + "," + exact(estimate.low) + "," + exact(estimate.high) : ",,,";
+    }
+    text += "\r\n";
+  }
+  return text;
+}
+
+std::string table_to_text(const ParameterTable& table) {
+  const std::vector<std::vector<std::string>> grid = grid_of(table);
+  std::vector<std::size_t> widths(grid[0].size(), 0);
+  for (const auto& line : grid) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      widths[i] = std::max(widths[i], width(line[i]));
+    }
+  }
+  std::string text = heading_of(table) + " (" + kLegend + ")\n\n";
+  for (std::size_t r = 0; r < grid.size(); ++r) {
+    std::string line;
+    for (std::size_t i = 0; i < grid[r].size(); ++i) {
+      line += grid[r][i];
+      if (i + 1 < grid[r].size()) {
+        line += std::string(widths[i] - width(grid[r][i]) + 2, ' ');
+      }
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+    if (r == 1) {
+      std::string rule;
+      for (std::size_t i = 0; i < widths.size(); ++i) {
+        rule += std::string(widths[i], '-') + (i + 1 < widths.size() ? "  " : "");
+      }
+      text += rule + "\n";
+    }
+  }
+  return text + notes_of(table);
+}
+
+std::string table_to_markdown(const ParameterTable& table) {
+  const std::vector<std::vector<std::string>> grid = grid_of(table);
+  std::string text = "**" + heading_of(table) + "** (" + kLegend + ")\n\n";
+  const auto line = [&](const auto& cell) {
+    text += "|";
+    for (std::size_t i = 0; i < grid[0].size(); ++i) {
+      text += " " + cell(i) + " |";
+    }
+    text += "\n";
+  };
+  line([&](std::size_t i) { return grid[0][i] + (grid[1][i].empty() ? "" : " [" + grid[1][i] + "]"); });
+  line([](std::size_t) { return std::string("---"); });
+  for (std::size_t r = 2; r < grid.size(); ++r) {
+    line([&](std::size_t i) { return grid[r][i]; });
+  }
+  const std::string notes = notes_of(table);
+  for (std::size_t start = 0; start < notes.size();) {
+    const std::size_t end = notes.find('\n', start);
+    text += (start == 0 ? "\n- " : "- ") + notes.substr(start + 2, end - start - 2) + "\n";
+    start = end + 1;
+  }
+  return text;
+}
+
+}  // namespace driftlab

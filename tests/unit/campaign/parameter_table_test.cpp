@@ -1,0 +1,157 @@
+#include "core/campaign/parameter_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace driftlab {
+namespace {
+
+ReportedValue cell(double value, std::optional<double> low, std::optional<double> high) {
+  return {value, low, high, "deg/sqrt(h)", ""};
+}
+
+ReportedValue none(const char* reason) { return {{}, {}, {}, "", reason}; }
+
+/// A channel that was fitted with WN and WN+GM: `n` is N of both, `wic` their criteria.
+ReportedChannel channel(const ReportedValue& n, double wic_wn, double wic_gm,
+                        const ReportedValue& beta = none("No beta.")) {
+  const ReportedProcess white{"white_noise", {{"N", n}}};
+  const ReportedProcess markov{"gauss_markov", {{"sigma", none("No sigma.")}, {"beta", beta}}};
+  ReportedChannel made;
+  made.unit = "deg/s";
+  made.allan = {{"N", n}, {"B", none("No B.")}, {"K", none("No K.")}, {"Q", none("")}, {"R", none("")}};
+  made.fits.resize(2);
+  made.fits[0].model = "WN";
+  made.fits[0].wic = wic_wn;
+  made.fits[0].processes = {white};
+  made.fits[1].model = "WN+GM";
+  made.fits[1].wic = wic_gm;
+  made.fits[1].processes = {white, markov};
+  return made;
+}
+
+TableRequest request(TableMethod method = TableMethod::Gmwm, std::string model = "") {
+  return {"phone-07", Quantity::AngularRate, "z", method, std::move(model)};
+}
+
+ParameterTable table(const TableRequest& wanted, const std::vector<TableSource>& sources) {
+  auto built = build_parameter_table(wanted, sources);
+  EXPECT_TRUE(built) << built.error().message;
+  return built ? *built : ParameterTable{};
+}
+
+TEST(ParameterTable, PutsStaticFirstThenRatesBySize) {
+  const ReportedValue n = cell(1.0, 0.9, 1.1);
+  const ParameterTable found = table(request(), {{"rec_a", "constant_rate:z:40:deg/s", channel(n, 1, 2)},
+                                                 {"rec_b", "constant_rate:z:9:deg/s", channel(n, 1, 2)},
+                                                 {"rec_c", "static", channel(n, 1, 2)}});
+  ASSERT_EQ(found.rows.size(), 3U);
+  EXPECT_EQ(found.rows[0].label, "static");
+  EXPECT_EQ(found.rows[1].label, "9 deg/s about z");
+  EXPECT_EQ(found.rows[2].recordings, std::vector<std::string>{"rec_a"});
+}
+
+TEST(ParameterTable, ShowsTheModelWithTheSmallestSumOfTheCriterion) {
+  const ReportedValue n = cell(1.0, 0.9, 1.1);
+  // WN wins one row by 1, WN+GM the other by 5.
+  const std::vector<TableSource> sources{{"rec_a", "static", channel(n, 1, 2)}, {"rec_b", "drive", channel(n, 9, 4)}};
+  EXPECT_EQ(table(request(), sources).model, "WN+GM");
+  EXPECT_EQ(table(request(TableMethod::Gmwm, "WN"), sources).model, "WN");
+  EXPECT_EQ(table(request(TableMethod::Av), sources).model, "");
+}
+
+TEST(ParameterTable, PoolsReplicatesOnTheLogScale) {
+  // Half-widths ln 1.1 and ln 1.21 = 2 ln 1.1: weights 4 to 1, so the mean log is (4 ln 1 + ln 2)/5 = ln 2 / 5.
+  const ParameterTable found =
+      table(request(TableMethod::Av), {{"rec_a", "static", channel(cell(1.0, 1.0 / 1.1, 1.1), 1, 2)},
+                                       {"rec_b", "static", channel(cell(2.0, 2.0 / 1.21, 2.42), 1, 2)}});
+  ASSERT_EQ(found.rows.size(), 1U);
+  const ReportedValue& pooled = found.rows[0].cells[0].estimate;
+  const double h = std::log(1.1);
+  const double half = 1.0 / std::sqrt(1.0 / (h * h) + 1.0 / (4.0 * h * h));
+  EXPECT_NEAR(*pooled.value, std::exp(std::log(2.0) / 5.0), 1e-12);
+  EXPECT_NEAR(std::log(*pooled.high / *pooled.value), half, 1e-12);
+  EXPECT_EQ(found.rows[0].recordings.size(), 2U);
+}
+
+TEST(ParameterTable, TellsWhatSpeaksAgainstARow) {
+  // The worst verdict of the replicates stands for the row; a warning that both fits give is said once.
+  ReportedChannel sound = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  sound.contamination = "clean";
+  sound.fits[0].warnings = {"The model does not fit."};
+  ReportedChannel spoiled = sound;
+  spoiled.contamination = "contaminated";
+  const ParameterTable found =
+      table(request(), {{"rec_a", "static", sound}, {"rec_b", "static", spoiled}, {"rec_c", "drive", sound}});
+  EXPECT_EQ(found.rows[0].contamination, "contaminated");
+  EXPECT_EQ(found.rows[0].warnings, std::vector<std::string>{"The model does not fit."});
+  EXPECT_EQ(found.rows[1].contamination, "clean");
+}
+
+TEST(ParameterTable, MarksChangesAgainstTheFirstRow) {
+  const auto row = [](const char* condition, double value) {
+    return TableSource{"rec", condition, channel(cell(value, value / 1.05, value * 1.05), 1, 2)};
+  };
+  const ParameterTable found =
+      table(request(TableMethod::Av), {row("static", 1.0), row("constant_rate:z:1:deg/s", 1.06),
+                                       row("constant_rate:z:2:deg/s", 1.08), row("constant_rate:z:3:deg/s", 0.9)});
+  // Two half-widths ln 1.05 make sqrt(2) ln 1.05 = ln 1.0714: 1.06 is within, 1.08 and 0.9 are beyond.
+  const Change wanted[] = {Change::None, Change::Up, Change::Down};
+  EXPECT_EQ(found.rows[0].cells[0].change, std::nullopt);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(found.rows[i + 1].cells[0].change, wanted[i]);
+  }
+}
+
+TEST(ParameterTable, GivesTheReasonForWhatIsNotIdentified) {
+  const ParameterTable found = table(request(TableMethod::Gmwm, "WN+GM"),
+                                     {{"rec_a", "static", channel(none("No white noise."), 1, 2, cell(1.0, 0.5, {}))}});
+  ASSERT_EQ(found.columns[2].key, "gauss_markov_1.beta");
+  const std::vector<TableCell>& cells = found.rows[0].cells;
+  EXPECT_FALSE(cells[0].estimate.value);
+  EXPECT_EQ(cells[0].estimate.reason, "No white noise.");
+  EXPECT_FALSE(cells[1].estimate.value);
+  EXPECT_EQ(cells[2].estimate.low, 0.5);
+  EXPECT_EQ(cells[2].estimate.high, std::nullopt);
+}
+
+TEST(ParameterTable, GivesTheUnitOfAColumnThatNoRowIdentifies) {
+  const auto units = [](TableMethod method) {
+    const ParameterTable found = table(request(method, method == TableMethod::Gmwm ? "WN+GM" : ""),
+                                       {{"rec_a", "static", channel(none("No white noise."), 1, 2)}});
+    std::map<std::string, std::string> of_key;
+    for (const TableColumn& column : found.columns) {
+      of_key[column.key] = column.unit;
+    }
+    return of_key;
+  };
+  using Units = std::map<std::string, std::string>;
+  EXPECT_EQ(units(TableMethod::Av), (Units{{"N", "deg/sqrt(h)"}, {"B", "deg/h"}, {"K", "deg/h/sqrt(h)"}}));
+  EXPECT_EQ(
+      units(TableMethod::Gmwm),
+      (Units{{"white_noise.N", "deg/sqrt(h)"}, {"gauss_markov_1.sigma", "deg/h"}, {"gauss_markov_1.beta", "1/s"}}));
+}
+
+TEST(ParameterTable, LeavesOutQuantizationAndRampWhereNobodyHasThem) {
+  const ParameterTable found = table(request(TableMethod::Av), {{"rec_a", "static", channel(cell(1, 0.9, 1.1), 1, 2)}});
+  std::vector<std::string> keys;
+  for (const TableColumn& column : found.columns) {
+    keys.push_back(column.key);
+  }
+  EXPECT_EQ(keys, (std::vector<std::string>{"N", "B", "K"}));
+}
+
+TEST(ParameterTable, RefusesWhatCannotBeShown) {
+  EXPECT_EQ(build_parameter_table(request(), {}).error().code, ErrorCode::NotFound);
+  const std::vector<TableSource> sources{{"rec_a", "static", channel(cell(1, 0.9, 1.1), 1, 2)}};
+  const auto unknown = build_parameter_table(request(TableMethod::Gmwm, "WN+2GM"), sources);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().fields[0], (ErrorField{"parameter", "model"}));
+  EXPECT_EQ(parse_table_method("ml").error().fields[0], (ErrorField{"parameter", "method"}));
+  EXPECT_EQ(parse_table_method(name_of(TableMethod::Av)).value(), TableMethod::Av);
+}
+
+}  // namespace
+}  // namespace driftlab

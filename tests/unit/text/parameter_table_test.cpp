@@ -1,0 +1,73 @@
+#include "schema/text/parameter_table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace driftlab {
+namespace {
+
+TableCell cell(std::optional<double> value, std::optional<double> low = {}, std::optional<double> high = {},
+               std::optional<Change> change = {}) {
+  return {{value, low, high, "deg/sqrt(h)", ""}, change};
+}
+
+TableRow row(std::string label, std::vector<std::string> recordings, const TableCell& n) {
+  TableRow made;
+  made.label = std::move(label);
+  made.recordings = std::move(recordings);
+  made.cells = {n, cell({}), cell({})};
+  return made;
+}
+
+ParameterTable table(std::vector<TableRow> rows) {
+  return {"phone-07",
+          Quantity::AngularRate,
+          "z",
+          TableMethod::Av,
+          "",
+          {{"N", "deg/sqrt(h)"}, {"B", "deg/h"}, {"K", "deg/h/sqrt(h)"}},
+          std::move(rows)};
+}
+
+TEST(TableCsv, QuotesWhatNeedsItAndLeavesUnknownCellsEmpty) {
+  EXPECT_EQ(table_to_csv(table({row("9 deg/s, \"about\" z", {"rec_a", "rec_b"}, cell(0.1, {}, 0.3))})),
+            "condition,recordings,N [deg/sqrt(h)],N low [deg/sqrt(h)],N high [deg/sqrt(h)],B [deg/h],B low [deg/h],"
+            "B high [deg/h],K [deg/h/sqrt(h)],K low [deg/h/sqrt(h)],K high [deg/h/sqrt(h)]\r\n"
+            "\"9 deg/s, \"\"about\"\" z\",rec_a rec_b,0.1,,0.3,,,,,,\r\n");
+}
+
+TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
+  const ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05)),
+                                      row("9 deg/s about z", {"rec_b"}, cell(1234.6, 1200.0)),
+                                      row("40 deg/s about z", {"rec_c"}, cell(2.0, 1.9, 2.1, Change::Up))});
+  EXPECT_EQ(table_to_text(found),
+            "phone-07, gyroscope z, Allan variance (value [95 % interval]; … not identifiable; ↑ ↓ changed against the "
+            "first row)\n\n"
+            "condition         N                       B      K\n"
+            "                  deg/sqrt(h)             deg/h  deg/h/sqrt(h)\n"
+            "----------------  ----------------------  -----  -------------\n"
+            "static            1.000 [0.9500, 1.050]   …      …\n"
+            "9 deg/s about z   1235 [1200, …]          …      …\n"
+            "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
+}
+
+TEST(TableText, SaysBelowWhatSpeaksAgainstARow) {
+  ParameterTable found = table({row("static", {"a", "b"}, cell(1.0)), row("drive", {"c"}, cell(1.0))});
+  found.rows[0].contamination = "contaminated";
+  found.rows[0].robust = true;
+  found.rows[0].agreement = RecordingAgreement{"WN", 9.0, 1.0, 0.0027};
+  found.rows[1].contamination = "clean";
+  found.rows[1].warnings = {"The model does not fit."};
+  const std::string text = table_to_text(found);
+  EXPECT_NE(text.find("\nstatic *"), std::string::npos);
+  EXPECT_NE(text.find("! static: gross errors move the variances of this recording; the values are from robust "
+                      "variances.\n! static: its recordings disagree (p = 0.002700);"),
+            std::string::npos);
+  EXPECT_NE(text.find("! drive: The model does not fit.\n"), std::string::npos);
+  EXPECT_EQ(text.find("! drive: gross errors"), std::string::npos);
+  const std::string markdown = table_to_markdown(found);
+  EXPECT_NE(markdown.find("| static * |"), std::string::npos);
+  EXPECT_NE(markdown.find("\n- drive: The model does not fit.\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace driftlab
