@@ -5,6 +5,7 @@
 #   runtime   shared libraries of the finished binaries driftlab and driftlabd
 #   build     compiler, headers and tools that make them
 #   test      what the suites of tests/ need beside that
+#   python    what tests/python needs beside the set test: builds and checks the package clients/python, runs its notebook
 #   fuzz      clang 19 for the libFuzzer targets
 #   sanitize  clang 19 for the asan-ubsan and tsan presets
 #   tidy      clang-tidy and clang-format 19
@@ -19,10 +20,11 @@ driftlab_packages() {
                 libspdlog-dev libfmt-dev libcli11-dev libssl-dev libexpected-dev libarchive-dev liblzma-dev libzstd-dev zlib1g-dev \
                 libgeographiclib-dev python3 python3-yaml ;;
     test) echo libgtest-dev libgmock-dev libbenchmark-dev python3-numpy python3-jsonschema xz-utils zstd sqlite3 ;;
+    python) echo python3-venv python3-pip python3-setuptools python3-wheel python3-yaml mypy flake8 jupyter-nbconvert python3-ipykernel ;;
     fuzz) echo clang-19 libclang-rt-19-dev ;;
     sanitize) echo clang-19 libclang-rt-19-dev ;;
     tidy) echo clang-19 clang-tidy-19 clang-format-19 ;;
-    *) echo "packages.sh: unknown set '$1'; known: runtime build test fuzz sanitize tidy" >&2; return 2 ;;
+    *) echo "packages.sh: unknown set '$1'; known: runtime build test python fuzz sanitize tidy" >&2; return 2 ;;
   esac
 }
 
@@ -80,5 +82,5 @@ install_packages() {
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then
-  driftlab_packages "${1:?which set? runtime build test fuzz sanitize tidy}"
+  driftlab_packages "${1:?which set? runtime build test python fuzz sanitize tidy}"
 fi

@@ -7,6 +7,7 @@
 #include "core/investigate/report/series.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/group_search.hpp"
+#include "core/investigate/search/join_axes.hpp"
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
@@ -15,38 +16,11 @@
 namespace driftlab::investigate {
 namespace {
 
-/// One lever arm moves two axes: evidence for one cause with one parameter on several channels is joined.
-void join_axes(std::vector<Evidence>& found) {
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    for (std::size_t j = i + 1; j < found.size();) {
-      Evidence& a = found[i];
-      Evidence& b = found[j];
-      if (a.cause != b.cause || a.cause->name != "lever_arm" || a.parameters.empty() || b.parameters.empty()) {
-        ++j;
-        continue;
-      }
-      const auto width = [](const Evidence& e) {
-        return std::max(1e-12, e.parameters[0].estimate.ci95.high - e.parameters[0].estimate.ci95.low);
-      };
-      const double wa = 1.0 / (width(a) * width(a));
-      const double wb = 1.0 / (width(b) * width(b));
-      Estimate& estimate = a.parameters[0].estimate;
-      estimate.value = (wa * estimate.value + wb * b.parameters[0].estimate.value) / (wa + wb);
-      const double half = 0.5 / std::sqrt(wa + wb);
-      estimate.ci95 = {estimate.value - half, estimate.value + half};
-      a.score += b.score;
-      a.gain += b.gain;
-      a.heldout_gain += b.heldout_gain;
-      a.also_groups.push_back(b.group);
-      found.erase(found.begin() + static_cast<std::ptrdiff_t>(j));
-    }
-  }
-}
-
 void examine_together(const std::vector<GroupOutcome>& outcomes, const std::vector<ChannelGroup>& groups,
                       std::vector<Evidence>& found, std::vector<Evidence>& examined) {
   for (const Cause& cause : cause_registry()) {
-    if (cause.examine_together == nullptr) {
+    const CommonNoise* const common = cause.as<CommonNoise>();
+    if (common == nullptr) {
       continue;
     }
     std::vector<FullRate> axes;
@@ -60,7 +34,7 @@ void examine_together(const std::vector<GroupOutcome>& outcomes, const std::vect
     if (axes.size() < 2) {
       continue;
     }
-    for (Evidence& evidence : cause.examine_together(axes)) {
+    for (Evidence& evidence : common->examine_together(axes)) {
       evidence.cause = &cause;
       evidence.group = index.front();
       evidence.also_groups.assign(index.begin() + 1, index.end());

@@ -157,8 +157,10 @@ void read_effect(const Json& document, const std::string& pointer, Baseline& mod
       continue;
     }
     effect.values.push_back(*value);
-    if (effect.cause == "scale_factor_nonlinearity") {  // its template's shape is the power of the rate
-      effect.values = {*value, k == 0 ? 2.0 : 3.0};
+    const auto* const mean = cause->as<investigate::MeanEffect>();
+    if (mean != nullptr &&
+        k < mean->shape_of_parameter.size()) {  // the parameter that is given says which shape it has
+      effect.values = {*value, mean->shape_of_parameter[k]};
       break;
     }
   }
@@ -218,11 +220,11 @@ Json given_effects_json(const Baseline& baseline, const Unit& channel) {
   for (const GivenEffect& effect : baseline.effects) {
     const Cause& cause = *investigate::find_cause(effect.cause);
     Json params = Json::object();
-    const bool powers = effect.cause == "scale_factor_nonlinearity";
-    const std::size_t first = powers && effect.values.size() > 1 && effect.values[1] > 2.5 ? 1 : 0;
-    const std::size_t count = powers ? 1 : std::min(effect.values.size(), cause.parameters.size());
+    const auto* const mean = cause.as<investigate::MeanEffect>();
+    const bool by_shape = mean != nullptr && !mean->shape_of_parameter.empty() && effect.values.size() > 1;
+    const std::size_t count = by_shape ? 1 : std::min(effect.values.size(), cause.parameters.size());
     for (std::size_t k = 0; k < count; ++k) {
-      const CauseParameter& parameter = cause.parameters[first + k];
+      const CauseParameter& parameter = by_shape ? amplitude_of(cause, effect.values[1]) : cause.parameters[k];
       const investigate::LabUnit unit = parameter.unit(channel);
       params[std::string(parameter.name)] = value_json(effect.values[k], unit.per_si, unit.symbol);
     }

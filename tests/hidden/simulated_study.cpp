@@ -278,9 +278,10 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
       for (const Hidden& effect : effects) {
         const bool here = effect.recordings.empty() ||
                           std::find(effect.recordings.begin(), effect.recordings.end(), m) != effect.recordings.end();
-        const bool this_axis = effect.cause != "axis_misalignment" || axis == "x";
+        const investigate::Cause& cause = *investigate::find_cause(effect.cause);
+        const bool this_axis = cause.showing.axis.empty() || axis == cause.showing.axis;
         if (here && this_axis) {
-          investigate::inject(*investigate::find_cause(effect.cause), draft, effect.values, random);
+          investigate::inject(cause, draft, effect.values, random);
         }
       }
       const auto k = investigate::axis_index(axis).value_or(2);

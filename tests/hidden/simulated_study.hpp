@@ -21,17 +21,7 @@ struct BaseModel {
 /// seed.
 [[nodiscard]] BaseModel draw_base(Random& random, bool accelerometer);
 
-enum class Scenario {
-  Static,       ///< two or three static recordings
-  Rates,        ///< static, three to five constant rates of both signs, a ramp
-  Profile,      ///< static and two profiles with a reference column
-  Shake,        ///< static and a recording with bursts of vibration, an accelerometer beside the gyro
-  SixPosition,  ///< six positions, accelerometers beside the gyro
-  Temperature,  ///< two static recordings while the temperature rises and falls
-  Axes,         ///< one static recording of three axes
-  TwoAxes,      ///< static, rates about z; gyroscopes x and z
-  Turning,      ///< static, rates about z; accelerometers x and y
-};
+using investigate::Scenario;
 
 struct World {
   Scenario scenario = Scenario::Static;

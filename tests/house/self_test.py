@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import causes
 import documents
 import floors
 import leaks
@@ -92,6 +93,45 @@ class Floors(Planted):
     def test_an_empty_tree_proves_nothing(self) -> None:
         with tempfile.TemporaryDirectory() as empty:
             self.refused(floors.check(Path(empty)), "no sources")
+
+
+class Causes(Planted):
+    def setUp(self) -> None:
+        super().setUp()
+        for name, rivals in (("bias_jump", '"slow_walk"'), ("slow_walk", '')):
+            self.plant(f"{causes.FOLDER}/{name}.cpp",
+                       f'Cause {name}() {{\n  return {{.name = "{name}", .title = "it",\n          .rivals = {{{rivals}}}}};\n}}\n')
+        self.plant(causes.REGISTRY, "#define DRIFTLAB_CAUSES(CAUSE) \\\n  CAUSE(bias_jump) \\\n  CAUSE(slow_walk)\n")
+        self.plant("core/process/slow_walk.hpp", 'static constexpr std::string_view kName = "slow_walk";\n')
+
+    def test_names_in_their_places_are_clean(self) -> None:
+        self.plant("tests/hidden/a.cpp", 'make_case("bias_jump");\n')
+        self.plant("core/investigate/search/a.cpp", '// unlike "bias_jump"\nauto s = "a bias_jump";\nadd("slow_walk", {level});\n')
+        self.plant("schema/docs/analysis.md", 'the cause "bias_jump"\n')
+        self.assertEqual(causes.check(self.root), [])
+
+    def test_a_name_elsewhere_is_refused(self) -> None:
+        for place, line in (("core/investigate/search/a.cpp", 'if (cause.name == "bias_jump") {'),
+                            ("core/investigate/a.cpp", 'const auto* line = find_cause("slow_walk");'),
+                            ("core/investigate/report/a.cpp", 'bool is = found.cause->name ==\n    "slow_walk";'),
+                            ("schema/json/a.cpp", 'const bool powers = name == "bias_jump";'),
+                            ("server/jobs/a.cpp", 'Json effect{{"cause", "slow_walk"}};'),
+                            ("clients/dashboard/a.ts", 'if (name === "bias_jump") {'),
+                            (f"{causes.FOLDER}/draft.cpp", 'if (name == "bias_jump") {')):
+            with self.subTest(place=place):
+                path = self.plant(place, "int before;\n" + line + "\n")
+                said = "slow_walk" if "slow_walk" in line else "bias_jump"
+                self.refused(causes.check(self.root), place, said, "by name")
+                path.unlink()
+
+    def test_a_cause_without_its_line_or_its_own_file_is_refused(self) -> None:
+        self.plant(f"{causes.FOLDER}/odd.cpp", '  return {.name = "other",\n')
+        self.refused(causes.check(self.root), "a file of its own")
+        self.refused(causes.check(self.root), causes.REGISTRY, "other has 0 lines")
+
+    def test_an_empty_tree_proves_nothing(self) -> None:
+        with tempfile.TemporaryDirectory() as empty:
+            self.refused(causes.check(Path(empty)), "no causes")
 
 
 class Leaks(Planted):

@@ -1,5 +1,5 @@
 /// acceleration_dependent_noise: white noise that grows with the reference acceleration (driven_noise.hpp).
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/driven_noise.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -19,20 +19,21 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   inject_driven(draft, values[0], kDriver);
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {shown_driven(stage, kDriver)}; }
+
 }  // namespace
 
 Cause acceleration_dependent_noise() {
   return {.name = "acceleration_dependent_noise",
           .title = "white noise that grows with the angular acceleration",
-          .family = Family::Variance,
+          .family = NoiseLevel{.examine = examine, .deviation = deviation},
           .rivals = {"white_noise_level", "rate_dependent_noise", "noise_level_change", "quantization_noise"},
           .needs = "several accelerations or a profile",
           .separates = "several accelerations through the same rates",
           .parameters = {{"k", units::per_acceleration}},
           .lacks = lacks_slopes,
-          .examine = examine,
-          .deviation = deviation,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.scenario = Scenario::Profile, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

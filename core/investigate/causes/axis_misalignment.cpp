@@ -1,5 +1,5 @@
 /// axis_misalignment: m w_other on an axis that should see none; the shape is the index of the other axis.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -28,8 +28,6 @@ std::vector<double> shapes(const ChannelGroup& group) {
   return others;
 }
 
-constexpr MeanEffect kEffect{.build = build, .shapes = shapes, .penalty = 1.0, .part_of_rate = true};
-
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   if (group.role.quantity != Quantity::AngularRate || group.role.axis.empty() || shapes(group).empty()) {
     return "a gyroscope axis beside the axis of rotation";
@@ -46,19 +44,21 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   return true;
 }
 
+double shown_other_axis(const Stage& /*stage*/, Random& /*random*/) { return 2.0; }
+
 }  // namespace
 
 Cause axis_misalignment() {
   return {.name = "axis_misalignment",
           .title = "a part of the rate about another axis (misalignment)",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .shapes = shapes, .penalty = 1.0, .part_of_rate = true},
           .rivals = {"turn_on_bias"},
           .needs = "several axes in motion",
           .separates = "rates of both signs about the other axis",
           .parameters = {{"m", units::radians}},
-          .mean = &kEffect,
           .lacks = lacks,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.scenario = Scenario::TwoAxes, .axis = "x", .shape = shown_other_axis}};
 }
 
 }  // namespace driftlab::investigate

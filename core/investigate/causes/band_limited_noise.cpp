@@ -1,7 +1,7 @@
 /// band_limited_noise: the white noise behind a second-order Butterworth low-pass, its density at low frequency kept.
 /// E = N^2 |H|^2 + floor + slow: rounding and the leakage of the periodogram fill the stop band by a level that is
 /// fitted.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -164,20 +164,23 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   return true;
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& random) {
+  return {stage.rate_hz * (0.2 + 0.1 * random.uniform())};
+}
+
 }  // namespace
 
 Cause band_limited_noise() {
   return {.name = "band_limited_noise",
           .title = "white noise that a low-pass filter has narrowed",
-          .family = Family::Variance,
+          .family = BandLimit{.examine = examine, .log_gain = log_gain},
           .rivals = {"gauss_markov"},
           .needs = "any recording",
           .separates = "the data sheet of the filter; a recording with another filter setting",
           .parameters = {{"corner_hz", units::hertz}},
-          .examine = examine,
-          .log_gain = log_gain,
           .inject = inject_effect,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,7 +1,8 @@
 /// bias_step: the mean jumps by `step` at t0, t0 from the first sample of the file, in one recording.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/random.hpp"
 
 namespace driftlab::investigate {
 namespace {
@@ -15,19 +16,19 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .scope_all = false, .scope_single = true, .change_point = true};
+double shown_t0(const Stage& stage, Random& random) { return stage.duration_s * (0.2 + 0.6 * random.uniform()); }
 
 }  // namespace
 
 Cause bias_step() {
   return {.name = "bias_step",
           .title = "a jump of the bias",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .scope_all = false, .scope_single = true, .change_point = true},
           .rivals = {"random_walk", "gauss_markov", "linear_drift", "warm_up_transient", "temperature_bias"},
           .needs = "any recording",
           .separates = "more recordings of the same condition: a jump happens once, a random walk in every record",
           .parameters = {{"step", units::level}, {"t0_s", units::seconds}},
-          .mean = &kEffect};
+          .showing = {.acting = Acting::SecondAlone, .shape = shown_t0}};
 }
 
 }  // namespace driftlab::investigate

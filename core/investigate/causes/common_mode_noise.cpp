@@ -1,7 +1,7 @@
 /// common_mode_noise: equal pairwise correlation of the white parts of the axes.
 /// The pooled correlation r of the innovations has variance 1/(pairs samples) under independence; the white parts' is
 /// r / rho.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
@@ -140,19 +140,23 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  return {stage.z / std::sqrt(3.0 * stage.samples())};
+}
+
 }  // namespace
 
 Cause common_mode_noise() {
   return {.name = "common_mode_noise",
           .title = "noise that the axes share",
-          .family = Family::CommonMode,
+          .family = CommonNoise{.examine_together = examine},
           .rivals = {},
           .needs = "several axes recorded together",
           .separates = "",
           .parameters = {{"correlation", units::one}},
           .lacks = lacks_axes,
-          .examine_together = examine,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.scenario = Scenario::Axes, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

@@ -45,15 +45,15 @@ void inject(const Cause& cause, Draft& draft, std::span<const double> values, Ra
     cause.inject(draft, values, random);
     return;
   }
-  if (cause.slow != nullptr) {
-    add_slow(*cause.slow, values[0] * values[0], values.size() > 1 ? values[1] : 0.0, draft.recording->dt_s, random,
+  if (const SlowNoise* const slow = cause.as<SlowNoise>()) {
+    add_slow(slow->kind, values[0] * values[0], values.size() > 1 ? values[1] : 0.0, draft.recording->dt_s, random,
              draft.slow);
     return;
   }
-  if (cause.mean != nullptr) {
+  if (const MeanEffect* const mean = cause.as<MeanEffect>()) {
     std::vector<std::vector<double>> columns;
     const double shape = values.size() > 1 ? values[1] : 0.0;
-    if (cause.mean->build(*draft.recording, *draft.group, shape, columns)) {
+    if (mean->build(*draft.recording, *draft.group, shape, columns)) {
       for (std::size_t i = 0; i < draft.mean.size(); ++i) {
         draft.mean[i] += values[0] * columns[0][i];
       }

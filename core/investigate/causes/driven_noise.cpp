@@ -57,4 +57,18 @@ void inject_driven(Draft& draft, double k, Driver driver) {
   }
 }
 
+double shown_driven(const Stage& stage, Driver driver) {
+  double sum = 0.0;
+  double square = 0.0;
+  double count = 0.0;
+  for (const StudyRecording& recording : stage.study.recordings) {
+    for (const double v : (recording.*driver)[2]) {
+      sum += std::fabs(v);
+      square += v * v;
+      count += 1.0;
+    }
+  }
+  return stage.z / std::sqrt(2.0 * (stage.given ? square : square - sum * sum / count));
+}
+
 }  // namespace driftlab::investigate

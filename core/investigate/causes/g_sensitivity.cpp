@@ -1,5 +1,5 @@
 /// g_sensitivity: G f on a gyro channel, f the specific force along the same axis.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 
@@ -16,20 +16,18 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
-
 }  // namespace
 
 Cause g_sensitivity() {
   return {.name = "g_sensitivity",
           .title = "a gyro that feels specific force along its axis",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"vibration_rectification", "turn_on_bias"},
           .needs = "an accelerometer along the gyro's axis, and a specific force that varies",
           .separates = "the six positions of the device, each at least twice",
           .parameters = {{"G", units::per_force}},
-          .mean = &kEffect,
-          .lacks = lacks_force};
+          .lacks = lacks_force,
+          .showing = {.scenario = Scenario::SixPosition}};
 }
 
 }  // namespace driftlab::investigate

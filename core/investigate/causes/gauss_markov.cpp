@@ -1,29 +1,27 @@
 /// gauss_markov: one more slow Gauss-Markov process.
-#include "core/investigate/causes/causes.hpp"
-#include "core/investigate/causes/unit_axis.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/random.hpp"
 
 namespace driftlab::investigate {
 namespace {
 
-constexpr SlowKind kKind = SlowKind::GaussMarkov;
-
-bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "gauss_markov", found); }
+double shown_beta(const Stage& /*stage*/, Random& random) { return 0.2 + 0.3 * random.uniform(); }
 
 }  // namespace
 
 Cause gauss_markov() {
   return {.name = "gauss_markov",
           .title = "one more slow Gauss-Markov process",
-          .family = Family::Mean,
+          .family = SlowNoise{SlowKind::GaussMarkov},
           .rivals = {"random_walk", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step", "turn_on_bias"},
           .needs = "a baseline that does not already hold it",
           .separates = "a recording many correlation times long",
           .parameters = {{"sigma", units::level}, {"beta", units::per_hertz_rate}},
-          .slow = &kKind,
+          .process = "gauss_markov",
           .lacks = lacks_motion,
-          .in_unit = in_unit};
+          .showing = {.given = true, .shape = shown_beta}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,7 +1,7 @@
 /// heavy_tailed_noise: the white part is Student-t with nu degrees of freedom and its variance unchanged.
 /// The innovations' nu_e follows by maximum likelihood; kurtosis passes to the white part as the square of its share of
 /// the variance: 6/(nu - 4) = 6/(nu_e - 4) / rho^2.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
@@ -73,20 +73,22 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  return {4.0 + 6.0 / (stage.z * std::sqrt(24.0 / stage.samples()))};
+}
+
 }  // namespace
 
 Cause heavy_tailed_noise() {
   return {.name = "heavy_tailed_noise",
           .title = "white noise with heavier tails than a Gaussian",
-          .family = Family::Tails,
+          .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail},
           .rivals = {"outliers"},
           .needs = "any recording",
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
           .parameters = {{"nu", units::one}},
-          .examine = examine,
-          .tail = tail,
-          .log_gain = log_gain,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 /// lever_arm: rotation about z at distance r: -r w^2 on x (radial), r dw/dt on y (tangential).
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 
@@ -19,8 +19,6 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
-
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   const bool usable = group.role.quantity == Quantity::SpecificForce && group.axis() < 2 && !group.role.axis.empty() &&
                       turns_about(group, 2);
@@ -32,13 +30,13 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
 Cause lever_arm() {
   return {.name = "lever_arm",
           .title = "accelerometers away from the axis of rotation",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .penalty = 1.0, .one_for_all_axes = true},
           .rivals = {"turn_on_bias"},
           .needs = "accelerometers in rotation about z",
           .separates = "several rates: the error grows with their square",
           .parameters = {{"r", units::metres}},
-          .mean = &kEffect,
-          .lacks = lacks};
+          .lacks = lacks,
+          .showing = {.scenario = Scenario::Turning}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 /// missing_samples: samples are absent and the time column jumps. Counted on the grid that fits the stamps.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -10,7 +10,7 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<Evidence> file_fact(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
   double missing = 0.0;
   double places = 0.0;
@@ -35,6 +35,11 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   return {evidence};
 }
 
+void events(const Channel& channel, std::vector<unsigned char>& mask) {
+  std::transform(channel.valid.begin(), channel.valid.end(), mask.begin(),
+                 [](unsigned char valid) { return static_cast<unsigned char>(valid == 0 ? 1 : 0); });
+}
+
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
   draft.present.resize(draft.white.size(), 1);
   for (std::size_t i = 1; i + 1 < draft.present.size(); ++i) {
@@ -42,19 +47,21 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {0.002 * stage.z}; }
+
 }  // namespace
 
 Cause missing_samples() {
   return {.name = "missing_samples",
           .title = "samples that are absent",
-          .family = Family::File,
+          .family = FileFact{.find = find, .events = events},
           .rivals = {},
           .needs = "a time column",
           .separates = "",
           .parameters = {{"fraction", units::one}},
           .lacks = lacks_stamps,
-          .file_fact = file_fact,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

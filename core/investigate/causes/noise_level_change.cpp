@@ -1,6 +1,6 @@
 /// noise_level_change: the whole zero-mean error of one recording times `ratio` from t0 on.
 /// Every sample is tried as t0 by running sums of the squared innovations.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
@@ -141,20 +141,22 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& random) {
+  return {1.0 + stage.z * std::sqrt(1.0 / stage.samples_each()), stage.duration_s * (0.3 + 0.4 * random.uniform())};
+}
+
 }  // namespace
 
 Cause noise_level_change() {
   return {.name = "noise_level_change",
           .title = "noise that changes its level within a recording",
-          .family = Family::Variance,
+          .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true},
           .rivals = {"white_noise_level", "outliers"},
           .needs = "any recording",
           .separates = "more recordings of the same condition",
           .parameters = {{"ratio", units::one}, {"t0_s", units::seconds}},
-          .examine = examine,
-          .deviation = deviation,
-          .within_recording = true,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.acting = Acting::SecondAlone, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,6 @@
 /// once_per_revolution: A sin(theta + phi), theta the integral of the rate from the first sample of the file; phi is
 /// free in each recording, for the turntable starts anywhere.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 #include "core/investigate/study/reference_quality.hpp"
@@ -23,8 +23,6 @@ bool build(const StudyRecording& recording, const ChannelGroup& /*group*/, doubl
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0};
-
 std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   if (stamps_are_loose(group)) {
     return std::string(kTightStamps);
@@ -42,13 +40,13 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
 Cause once_per_revolution() {
   return {.name = "once_per_revolution",
           .title = "an error that repeats with every revolution",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0},
           .rivals = {"periodic_disturbance", "gauss_markov"},
           .needs = "rotation through several revolutions",
           .separates = "another rate: the error keeps its angle, a disturbance its frequency",
           .parameters = {{"amplitude", units::level}},
-          .mean = &kEffect,
-          .lacks = lacks};
+          .lacks = lacks,
+          .showing = {.scenario = Scenario::Rates}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,6 @@
 /// outliers: a fraction of the samples has a gross error of +-magnitude added, its sign at random.
 /// Innovations are a mixture (1 - p) N(0, c) + p/2 [N(m, c) + N(-m, c)].
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
@@ -61,20 +61,22 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  return {0.1 * stage.z * stage.z / stage.samples(), 6.0 * stage.white_sd()};
+}
+
 }  // namespace
 
 Cause outliers() {
   return {.name = "outliers",
           .title = "gross errors in single samples",
-          .family = Family::Tails,
+          .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail},
           .rivals = {"heavy_tailed_noise"},
           .needs = "any recording",
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
           .parameters = {{"fraction", units::one}, {"magnitude", units::level}},
-          .examine = examine,
-          .tail = tail,
-          .log_gain = log_gain,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 /// output_resolution: the output is rounded to multiples of a step that is coarse enough to show against the noise.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -14,7 +14,7 @@ namespace {
 constexpr double kNoticed = 0.1;   ///< step over noise from which it is reported
 constexpr double kStriking = 0.2;  ///< below this it is ranked last
 
-std::vector<Evidence> file_fact(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
   double weight = 0.0;
   double step = 0.0;
@@ -46,6 +46,27 @@ std::vector<Evidence> file_fact(const ChannelGroup& group) {
   return {evidence};
 }
 
+/// Every value of one half that lies on the lattice of the other tells its place among all decimals; one beside it
+/// costs as much.
+double log_gain(const Channel& channel) {
+  const auto middle = channel.rows.size() / 2;
+  const std::span<const double> parts[2] = {channel.rows.first(middle), channel.rows.subspan(middle)};
+  double gain = 0.0;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Lattice lattice = find_lattice(parts[half]);
+    if (!(lattice.step > 0.0) || !(lattice.decimals > 0.0)) {
+      continue;
+    }
+    const double worth = std::log(std::max(1.0, lattice.step / lattice.decimals));
+    for (const double v : parts[1 - half]) {
+      const double q = v / lattice.step;
+      const bool on = std::fabs(q - std::round(q)) * lattice.step < 1.6 * lattice.decimals + 0.02 * lattice.step;
+      gain += on ? worth : -worth;
+    }
+  }
+  return gain;
+}
+
 void inject_effect(Draft& draft, std::span<const double> values, Random& /*random*/) {
   const double step = values[0];
   draft.output.emplace_back([step](std::vector<double>& out) {
@@ -60,19 +81,23 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   return true;
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  return {stage.white_sd() * (0.4 + 0.02 * stage.z)};
+}
+
 }  // namespace
 
 Cause output_resolution() {
   return {.name = "output_resolution",
           .title = "a coarse output resolution",
-          .family = Family::File,
+          .family = FileFact{.find = find, .log_gain = log_gain, .gives_lattice_step = true},
           .rivals = {},
           .needs = "any recording",
           .separates = "",
           .parameters = {{"step", units::level}},
-          .file_fact = file_fact,
           .inject = inject_effect,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,10 +1,9 @@
 /// periodic_disturbance: A sin(2 pi f0 t + phi), amplitude and frequency the same in all recordings of the scope, phase
 /// free in each. Found in the periodogram of the innovations, each ordinate against its neighbourhood
 /// (core/investigate/causes/lines.hpp).
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/lines.hpp"
-#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
@@ -15,8 +14,6 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<Evidence> examine(const FullRate& data) { return find_lines(data); }
-
 /// A line that is clear in the whole may be too weak in a part to be found among all frequencies: it is sought where
 /// it was found, within what the part resolves.
 Evidence find_again(const FullRate& data, const Evidence& found) {
@@ -25,6 +22,10 @@ Evidence find_again(const FullRate& data, const Evidence& found) {
     longest_s = std::max(longest_s, static_cast<double>(data.residual[r].size()) * data.dt_s);
   }
   return line_near(data, found.members, found.shape, 1.0 / longest_s);
+}
+
+std::vector<double> values_of(const FullRate& data, std::size_t r, const Evidence& found) {
+  return fitted_line(data, r, found.shape);
 }
 
 double log_gain(const FullRate& data, const Evidence& found) {
@@ -38,23 +39,24 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
-bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "sinusoid", found); }
+std::vector<double> shown_values(const Stage& stage, Random& random) {
+  return {stage.z * stage.white_sd() * std::sqrt(2.0 / stage.samples()), 1.0 + 8.0 * random.uniform()};
+}
 
 }  // namespace
 
 Cause periodic_disturbance() {
   return {.name = "periodic_disturbance",
           .title = "a sinusoidal disturbance",
-          .family = Family::Line,
+          .family =
+              SpectralLine{.examine = find_lines, .find_again = find_again, .log_gain = log_gain, .values = values_of},
           .rivals = {"once_per_revolution", "gauss_markov"},
           .needs = "any recording",
           .separates = "the same recording with the suspected source switched off",
           .parameters = {{"amplitude", units::level}, {"frequency_hz", units::hertz}},
-          .examine = examine,
-          .find_again = find_again,
-          .log_gain = log_gain,
+          .process = "sinusoid",
           .inject = inject_effect,
-          .in_unit = in_unit};
+          .showing = {.values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

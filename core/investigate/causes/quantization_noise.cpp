@@ -1,9 +1,8 @@
 /// quantization_noise: differenced uniform noise, density Q^2 |1 - exp(-i w)|^2 / dt, in all recordings or in some.
 /// Fitted to the spectra beside white and slow noise; where these do not describe the recordings, against a spectrum
 /// free in every bin that the recordings outside the scope share.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
-#include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/added_density.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
@@ -58,23 +57,24 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
-bool in_unit(const Evidence& found, UnitAxis& axis) { return add_process(axis, "quantization_noise", found); }
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  return {std::sqrt(stage.z * std::sqrt(1.0 / stage.samples())) * stage.white_sd() * stage.dt_s()};
+}
 
 }  // namespace
 
 Cause quantization_noise() {
   return {.name = "quantization_noise",
           .title = "quantisation noise of an integrated output",
-          .family = Family::Variance,
+          .family = DifferencedNoise{.examine = examine, .log_gain = log_gain},
           .rivals = {"white_noise_level"},
           .needs = "any recording; with an automatic baseline recordings of several conditions",
           .separates = "a recording at a higher rate",
           .parameters = {{"Q", units::integral}},
+          .process = "quantization_noise",
           .lacks = lacks_contrast,
-          .examine = examine,
-          .log_gain = log_gain,
           .inject = inject_effect,
-          .in_unit = in_unit};
+          .showing = {.given = true, .values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 /// rate_dependent_noise: white noise that grows with the reference rate (driven_noise.hpp).
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/driven_noise.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -19,20 +19,21 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& /*rando
   inject_driven(draft, values[0], kDriver);
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {shown_driven(stage, kDriver)}; }
+
 }  // namespace
 
 Cause rate_dependent_noise() {
   return {.name = "rate_dependent_noise",
           .title = "white noise that grows with the rate",
-          .family = Family::Variance,
+          .family = NoiseLevel{.examine = examine, .deviation = deviation},
           .rivals = {"white_noise_level", "acceleration_dependent_noise", "noise_level_change", "quantization_noise"},
           .needs = "several rates or a profile",
           .separates = "more rates, at constant acceleration",
           .parameters = {{"k", units::per_rate}},
           .lacks = lacks_rates,
-          .examine = examine,
-          .deviation = deviation,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.scenario = Scenario::Rates, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

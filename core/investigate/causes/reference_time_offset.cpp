@@ -1,5 +1,5 @@
 /// reference_time_offset: measured follows w(t - delta), to first order -delta w'(t).
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 
@@ -11,20 +11,18 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return follow_slope(recording, group, columns, [](double /*t*/, double a) { return -a; });
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
-
 }  // namespace
 
 Cause reference_time_offset() {
   return {.name = "reference_time_offset",
           .title = "a reference that is shifted in time",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"reference_clock_drift", "scale_factor_error"},
           .needs = "a profile with a reference column",
           .separates = "the same motion early and late in a long recording",
           .parameters = {{"delta_s", units::seconds}},
-          .mean = &kEffect,
-          .lacks = lacks_profile};
+          .lacks = lacks_profile,
+          .showing = {.scenario = Scenario::Profile}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,43 +1,53 @@
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
+
+#include <cmath>
+
+/// The causes, one line each, named after the function of their file, in the order in which the search takes them.
+#define DRIFTLAB_CAUSES(CAUSE)        \
+  CAUSE(white_noise_level)            \
+  CAUSE(gauss_markov)                 \
+  CAUSE(random_walk)                  \
+  CAUSE(linear_drift)                 \
+  CAUSE(flicker_noise)                \
+  CAUSE(quantization_noise)           \
+  CAUSE(output_resolution)            \
+  CAUSE(periodic_disturbance)         \
+  CAUSE(band_limited_noise)           \
+  CAUSE(heavy_tailed_noise)           \
+  CAUSE(noise_level_change)           \
+  CAUSE(common_mode_noise)            \
+  CAUSE(outliers)                     \
+  CAUSE(bias_step)                    \
+  CAUSE(turn_on_bias)                 \
+  CAUSE(warm_up_transient)            \
+  CAUSE(temperature_bias)             \
+  CAUSE(stuck_samples)                \
+  CAUSE(missing_samples)              \
+  CAUSE(timestamp_jitter)             \
+  CAUSE(saturation)                   \
+  CAUSE(rate_dependent_noise)         \
+  CAUSE(acceleration_dependent_noise) \
+  CAUSE(scale_factor_error)           \
+  CAUSE(scale_factor_asymmetry)       \
+  CAUSE(scale_factor_nonlinearity)    \
+  CAUSE(axis_misalignment)            \
+  CAUSE(reference_time_offset)        \
+  CAUSE(reference_clock_drift)        \
+  CAUSE(once_per_revolution)          \
+  CAUSE(g_sensitivity)                \
+  CAUSE(vibration_rectification)      \
+  CAUSE(lever_arm)
 
 namespace driftlab::investigate {
 
+#define DRIFTLAB_DECLARE_CAUSE(name) Cause name();
+DRIFTLAB_CAUSES(DRIFTLAB_DECLARE_CAUSE)
+#undef DRIFTLAB_DECLARE_CAUSE
+
 const std::vector<Cause>& cause_registry() {
-  static const std::vector<Cause> all_causes{
-      white_noise_level(),
-      gauss_markov(),
-      random_walk(),
-      linear_drift(),
-      flicker_noise(),
-      quantization_noise(),
-      output_resolution(),
-      periodic_disturbance(),
-      band_limited_noise(),
-      heavy_tailed_noise(),
-      noise_level_change(),
-      common_mode_noise(),
-      outliers(),
-      bias_step(),
-      turn_on_bias(),
-      warm_up_transient(),
-      temperature_bias(),
-      stuck_samples(),
-      missing_samples(),
-      timestamp_jitter(),
-      saturation(),
-      rate_dependent_noise(),
-      acceleration_dependent_noise(),
-      scale_factor_error(),
-      scale_factor_asymmetry(),
-      scale_factor_nonlinearity(),
-      axis_misalignment(),
-      reference_time_offset(),
-      reference_clock_drift(),
-      once_per_revolution(),
-      g_sensitivity(),
-      vibration_rectification(),
-      lever_arm(),
-  };
+#define DRIFTLAB_ENTER_CAUSE(name) name(),
+  static const std::vector<Cause> all_causes{DRIFTLAB_CAUSES(DRIFTLAB_ENTER_CAUSE)};
+#undef DRIFTLAB_ENTER_CAUSE
   return all_causes;
 }
 
@@ -48,6 +58,37 @@ const Cause* find_cause(std::string_view name) {
     }
   }
   return nullptr;
+}
+
+const Cause* cause_of_process(std::string_view process) {
+  for (const Cause& cause : cause_registry()) {
+    if (!process.empty() && cause.process == process) {
+      return &cause;
+    }
+  }
+  return nullptr;
+}
+
+Examine examine_of(const Cause& cause) {
+  return std::visit(
+      [](const auto& family) -> Examine {
+        if constexpr (requires { family.examine; }) {
+          return family.examine;
+        } else {
+          return nullptr;
+        }
+      },
+      cause.family);
+}
+
+const CauseParameter& amplitude_of(const Cause& cause, double shape) {
+  std::size_t nearest = 0;
+  const MeanEffect* const mean = cause.as<MeanEffect>();
+  for (std::size_t k = 1; mean != nullptr && k < mean->shape_of_parameter.size(); ++k) {
+    const auto distance = [&](std::size_t j) { return std::fabs(mean->shape_of_parameter[j] - shape); };
+    nearest = distance(k) < distance(nearest) ? k : nearest;
+  }
+  return cause.parameters[nearest];
 }
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,6 @@
 /// saturation: the output is clipped at +-limit: at least eight values at one extreme while the reference comes near
 /// it.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -13,7 +13,7 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<Evidence> file_fact(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
   double limit = 0.0;
   double decimals = 0.0;
@@ -68,21 +68,30 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   return true;
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  double top = 0.0;
+  for (const StudyRecording& recording : stage.study.recordings) {
+    for (const double w : recording.rate[2]) {
+      top = std::max(top, std::fabs(w));
+    }
+  }
+  return {top * (1.0 - 0.005 * stage.z)};
+}
+
 }  // namespace
 
 Cause saturation() {
   return {.name = "saturation",
           .title = "an output that is clipped",
-          .family = Family::File,
+          .family = FileFact{.find = find, .spoils = spoils},
           .rivals = {},
           .needs = "motion beyond the range, with a reference",
           .separates = "",
           .parameters = {{"limit", units::level}},
           .lacks = lacks_rates,
-          .file_fact = file_fact,
-          .spoils = spoils,
           .inject = inject_effect,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.scenario = Scenario::Profile, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

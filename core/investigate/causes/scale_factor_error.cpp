@@ -1,5 +1,5 @@
 /// scale_factor_error: S w, w the reference rate about the sensor's own axis.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -14,8 +14,6 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return follow_rate(recording, group, columns, [](double w) { return w; });
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0, .part_of_rate = true};
-
 bool in_unit(const Evidence& found, UnitAxis& axis) {
   axis.scale_factor = found.parameters[0].estimate.value;
   return true;
@@ -26,14 +24,14 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
 Cause scale_factor_error() {
   return {.name = "scale_factor_error",
           .title = "an output that is proportional to the rate (scale-factor error)",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .penalty = 1.0, .part_of_rate = true},
           .rivals = {"scale_factor_asymmetry", "scale_factor_nonlinearity", "turn_on_bias"},
           .needs = "several rates, or a profile",
           .separates = "rates of both signs and several magnitudes; the same rates on another turntable",
           .parameters = {{"S", units::ppm}},
-          .mean = &kEffect,
           .lacks = lacks_rotation,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.scenario = Scenario::Rates}};
 }
 
 }  // namespace driftlab::investigate

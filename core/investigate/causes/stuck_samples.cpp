@@ -3,7 +3,7 @@
 /// p^k times. Runs beyond the k at which that falls below 0.001 are stuck. Shorter stuck runs are counted by the
 /// geometric law of the longer. A run of more than a hundredth of the record is a freeze: it says nothing about chance,
 /// and one is enough.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/lattice.hpp"
@@ -138,7 +138,7 @@ Stuck stuck_in(const Runs& runs) {
   return stuck;
 }
 
-std::vector<Evidence> file_fact(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
   double runs = 0.0;
   double repeats = 0.0;
@@ -259,19 +259,20 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   });
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {0.002 * stage.z, 6.0}; }
+
 }  // namespace
 
 Cause stuck_samples() {
   return {.name = "stuck_samples",
           .title = "runs in which the last value repeats",
-          .family = Family::File,
+          .family = FileFact{.find = find, .spoils = spoils},
           .rivals = {},
           .needs = "any recording",
           .separates = "",
           .parameters = {{"fraction", units::one}, {"mean_run", units::one}},
-          .file_fact = file_fact,
-          .spoils = spoils,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

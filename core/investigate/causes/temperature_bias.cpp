@@ -1,8 +1,9 @@
 /// temperature_bias: c (T_lag - mean), T_lag the temperature behind a first-order lag that starts settled at the first
 /// sample.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/random.hpp"
 
 #include <cmath>
 
@@ -46,21 +47,21 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
   return "a temperature column";
 }
 
-constexpr MeanEffect kEffect{
-    .build = build, .shapes = shapes, .continuous = true, .penalty = 4.0, .scope_single = true};
+double shown_lag(const Stage& /*stage*/, Random& random) { return 20.0 + 40.0 * random.uniform(); }
 
 }  // namespace
 
 Cause temperature_bias() {
-  return {.name = "temperature_bias",
-          .title = "a bias that follows the temperature",
-          .family = Family::Mean,
-          .rivals = {"linear_drift", "warm_up_transient", "random_walk", "gauss_markov", "bias_step"},
-          .needs = "a temperature column, and a temperature that changes",
-          .separates = "a recording with another course of the temperature: up and down again, or held",
-          .parameters = {{"coefficient", units::per_kelvin}, {"lag_s", units::seconds}},
-          .mean = &kEffect,
-          .lacks = lacks};
+  return {
+      .name = "temperature_bias",
+      .title = "a bias that follows the temperature",
+      .family = MeanEffect{.build = build, .shapes = shapes, .continuous = true, .penalty = 4.0, .scope_single = true},
+      .rivals = {"linear_drift", "warm_up_transient", "random_walk", "gauss_markov", "bias_step"},
+      .needs = "a temperature column, and a temperature that changes",
+      .separates = "a recording with another course of the temperature: up and down again, or held",
+      .parameters = {{"coefficient", units::per_kelvin}, {"lag_s", units::seconds}},
+      .lacks = lacks,
+      .showing = {.scenario = Scenario::Temperature, .shape = shown_lag}};
 }
 
 }  // namespace driftlab::investigate

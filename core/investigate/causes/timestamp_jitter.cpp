@@ -1,6 +1,6 @@
 /// timestamp_jitter: the stamps scatter around the uniform grid by more than 0.2 % of the interval and their own
 /// resolution.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNoticed = 0.002;
 
-std::vector<Evidence> file_fact(const ChannelGroup& group) {
+std::vector<Evidence> find(const ChannelGroup& group) {
   Evidence evidence;
   double square = 0.0;
   double count = 0.0;
@@ -45,19 +45,21 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
   }
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {0.003 * stage.z * stage.dt_s()}; }
+
 }  // namespace
 
 Cause timestamp_jitter() {
   return {.name = "timestamp_jitter",
           .title = "time stamps that scatter around the uniform grid",
-          .family = Family::File,
+          .family = FileFact{.find = find},
           .rivals = {"acceleration_dependent_noise"},
           .needs = "a time column",
           .separates = "stamps from the sensor's own data-ready line",
           .parameters = {{"sigma_s", units::seconds}},
           .lacks = lacks_stamps,
-          .file_fact = file_fact,
-          .inject = inject_effect};
+          .inject = inject_effect,
+          .showing = {.values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

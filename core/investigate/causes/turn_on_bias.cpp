@@ -1,5 +1,5 @@
 /// turn_on_bias: a bias that differs from recording to recording.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
@@ -9,27 +9,27 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr SlowKind kKind = SlowKind::Offset;
-
 bool in_unit(const Evidence& found, UnitAxis& axis) {
   axis.bias_sd = std::hypot(axis.bias_sd, found.parameters[0].estimate.value);
   return true;
 }
+
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { return {0.003 * stage.z * kDegree}; }
 
 }  // namespace
 
 Cause turn_on_bias() {
   return {.name = "turn_on_bias",
           .title = "a bias that differs from recording to recording",
-          .family = Family::Mean,
+          .family = SlowNoise{SlowKind::Offset},
           .rivals = {"scale_factor_error", "scale_factor_asymmetry", "scale_factor_nonlinearity", "gauss_markov",
                      "axis_misalignment", "g_sensitivity", "lever_arm", "vibration_rectification"},
           .needs = "several recordings",
           .separates = "the same condition several times, switched off in between",
           .parameters = {{"sigma", units::level}},
-          .slow = &kKind,
           .lacks = lacks_recordings,
-          .in_unit = in_unit};
+          .in_unit = in_unit,
+          .showing = {.scenario = Scenario::Rates, .values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 #pragma once
-/// What a finding means to a simulated inertial unit: the last part of a cause's declaration (Cause::in_unit).
+/// What a finding means to a simulated inertial unit (Cause::in_unit).
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/model.hpp"
 

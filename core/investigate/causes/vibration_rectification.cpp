@@ -1,5 +1,5 @@
 /// vibration_rectification: a bias proportional to the variance of f along the same axis in a centred window of 1 s.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 
@@ -16,20 +16,18 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
   return true;
 }
 
-constexpr MeanEffect kEffect{.build = build, .penalty = 1.0};
-
 }  // namespace
 
 Cause vibration_rectification() {
   return {.name = "vibration_rectification",
           .title = "a bias that vibration causes",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"g_sensitivity", "turn_on_bias", "gauss_markov"},
           .needs = "an accelerometer along the gyro's axis, and vibration that comes and goes",
           .separates = "vibration of several strengths in one recording",
           .parameters = {{"coefficient", units::per_force_squared}},
-          .mean = &kEffect,
-          .lacks = lacks_force};
+          .lacks = lacks_force,
+          .showing = {.scenario = Scenario::Shake}};
 }
 
 }  // namespace driftlab::investigate

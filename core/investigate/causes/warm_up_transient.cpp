@@ -1,7 +1,8 @@
 /// warm_up_transient: A exp(-t/tau), t from the first sample of the file.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/random.hpp"
 
 #include <cmath>
 
@@ -26,20 +27,24 @@ std::vector<double> shapes(const ChannelGroup& group) {
   return taus;
 }
 
-constexpr MeanEffect kEffect{
-    .build = build, .shapes = shapes, .continuous = true, .penalty = 4.0, .scope_moving = true, .scope_single = true};
+double shown_tau(const Stage& /*stage*/, Random& random) { return 40.0 + 80.0 * random.uniform(); }
 
 }  // namespace
 
 Cause warm_up_transient() {
   return {.name = "warm_up_transient",
           .title = "a bias that decays exponentially after switching on",
-          .family = Family::Mean,
+          .family = MeanEffect{.build = build,
+                               .shapes = shapes,
+                               .continuous = true,
+                               .penalty = 4.0,
+                               .scope_moving = true,
+                               .scope_single = true},
           .rivals = {"linear_drift", "random_walk", "gauss_markov", "temperature_bias", "bias_step"},
           .needs = "any recording that starts soon after switching on",
           .separates = "switch on again after cooling down: a warm-up repeats, noise does not",
           .parameters = {{"amplitude", units::level}, {"tau_s", units::seconds}},
-          .mean = &kEffect};
+          .showing = {.shape = shown_tau}};
 }
 
 }  // namespace driftlab::investigate

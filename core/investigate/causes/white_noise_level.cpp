@@ -1,7 +1,7 @@
 /// white_noise_level: white noise of another density than the baseline's, in all recordings or in some.
 /// Innovations in the scope have variance c [1 + rho (R^2 - 1)], R the ratio of densities and rho the share of the
 /// white part.
-#include "core/investigate/causes/causes.hpp"
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
@@ -58,22 +58,27 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
   return add_process(axis, "white_noise", found);
 }
 
+std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
+  const double own = stage.given ? 0.0 : 0.5 / stage.samples_each();
+  return {stage.density * (1.0 + stage.z * std::sqrt(0.5 / (stage.samples_each() * (stage.recordings() - 1.0)) + own))};
+}
+
 }  // namespace
 
 Cause white_noise_level() {
   return {
       .name = "white_noise_level",
       .title = "white noise of another level than the baseline's",
-      .family = Family::Variance,
+      .family = NoiseLevel{.examine = examine, .deviation = deviation, .replaces_white = true},
       .rivals = {"rate_dependent_noise", "acceleration_dependent_noise", "noise_level_change", "quantization_noise"},
       .needs = "any recording; with an automatic baseline recordings of several conditions",
       .separates = "a profile through many rates",
       .parameters = {{"N", units::density}},
+      .process = "white_noise",
       .lacks = lacks_contrast,
-      .examine = examine,
-      .deviation = deviation,
       .inject = inject_effect,
-      .in_unit = in_unit};
+      .in_unit = in_unit,
+      .showing = {.scenario = Scenario::Rates, .acting = Acting::AllButFirst, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

@@ -56,7 +56,7 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
                                 ? finding.channels
                                 : std::vector<std::string>{finding.channels.front(), "others"}));
   text.append(". ");
-  if (evidence.cause->family == Family::File) {
+  if (evidence.cause->as<FileFact>() != nullptr) {
     text.append("The file itself shows it. ").append(evidence.note).append(evidence.note.empty() ? "" : " ");
   } else {
     text.append("Adding it to the model raises twice the log likelihood by ");

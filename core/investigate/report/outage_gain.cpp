@@ -40,7 +40,12 @@ Model base_model(const ChannelModel& channel) {
 
 /// False where a navigation simulation cannot hold the finding.
 bool extend(const Evidence& found, UnitAxis& axis) {
-  return found.cause->in_unit != nullptr && !found.parameters.empty() && found.cause->in_unit(found, axis);
+  const Cause& cause = *found.cause;
+  if (found.parameters.empty()) {
+    return false;
+  }
+  return cause.in_unit != nullptr ? cause.in_unit(found, axis)
+                                  : !cause.process.empty() && add_process(axis, cause.process, found);
 }
 
 /// What was found of the axis, as properties of the unit.

@@ -67,7 +67,7 @@ std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& cand
       return std::nullopt;
     }
     Evidence winner = *best;
-    if (winner.cause->family != Family::Mean) {
+    if (!winner.cause->is_slow()) {
       hold_out(data, winner);
       if (winner.heldout && winner.heldout_gain < 0.0) {
         candidates.erase(candidates.begin() + (best - candidates.data()));

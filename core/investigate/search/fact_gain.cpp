@@ -1,7 +1,6 @@
 #include "core/investigate/search/fact_gain.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/study/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,52 +11,38 @@ namespace {
 /// Log score of k events among n at rate p.
 double bernoulli(double k, double n, double p) { return k * std::log(p) + (n - k) * std::log1p(-p); }
 
-double lattice_gain(const Channel& channel) {
-  const auto middle = channel.rows.size() / 2;
-  const std::span<const double> parts[2] = {channel.rows.first(middle), channel.rows.subspan(middle)};
-  double gain = 0.0;
-  for (std::size_t half = 0; half < 2; ++half) {
-    const Lattice lattice = find_lattice(parts[half]);
-    if (!(lattice.step > 0.0) || !(lattice.decimals > 0.0)) {
-      continue;
-    }
-    const double worth = std::log(std::max(1.0, lattice.step / lattice.decimals));
-    for (const double v : parts[1 - half]) {
-      const double q = v / lattice.step;
-      const bool on = std::fabs(q - std::round(q)) * lattice.step < 1.6 * lattice.decimals + 0.02 * lattice.step;
-      gain += on ? worth : -worth;
-    }
-  }
-  return gain;
-}
-
 }  // namespace
 
-void hold_out_fact(const ChannelGroup& group, const std::vector<std::vector<unsigned char>>& mask, Evidence& found) {
-  const std::string_view name = found.cause->name;
-  if (name == "timestamp_jitter") {
+void hold_out_fact(const ChannelGroup& group, const std::vector<std::vector<unsigned char>>& spoilt, Evidence& found) {
+  const FileFact& fact = *found.cause->as<FileFact>();
+  if (fact.log_gain == nullptr && fact.events == nullptr && fact.spoils == nullptr) {
     return;
   }
   double gain = 0.0;
   double samples = 0.0;
   double events[2] = {0.0, 0.0};
   double places[2] = {0.0, 0.0};
+  std::vector<unsigned char> marked;
   for (const std::size_t r : found.members) {
     const Channel& channel = *group.members[r].channel;
     const std::size_t length = channel.valid.size();
     samples += static_cast<double>(length);
-    if (name == "output_resolution") {
-      gain += lattice_gain(channel);
+    if (fact.log_gain != nullptr) {
+      gain += fact.log_gain(channel);
       continue;
     }
+    if (fact.events != nullptr) {
+      marked.assign(length, 0);
+      fact.events(channel, marked);
+    }
+    const std::vector<unsigned char>& at = fact.events != nullptr ? marked : spoilt[r];
     for (std::size_t i = 0; i < length; ++i) {
       const std::size_t half = 2 * i / length;
-      const bool event = name == "missing_samples" ? channel.valid[i] == 0 : mask[r][i] != 0;
-      events[half] += event ? 1.0 : 0.0;
+      events[half] += at[i] != 0 ? 1.0 : 0.0;
       places[half] += 1.0;
     }
   }
-  if (name != "output_resolution") {
+  if (fact.log_gain == nullptr) {
     for (std::size_t half = 0; half < 2; ++half) {
       const double never = 1.0 / places[1 - half];
       const double rate = std::clamp(events[half] / places[half], never, 1.0 - never);

@@ -82,9 +82,10 @@ SlowModel given_model(const Baseline& baseline, const ChannelGroup& group) {
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
     const Cause& cause = *find_cause(effect->cause);
-    if (cause.slow != nullptr) {
-      add_slow_effect(*effect, *cause.slow, group, model);
-    } else if (cause.name == "white_noise_level" && everywhere(*effect, group)) {
+    const NoiseLevel* const level = cause.as<NoiseLevel>();
+    if (const SlowNoise* const slow = cause.as<SlowNoise>()) {
+      add_slow_effect(*effect, slow->kind, group, model);
+    } else if (level != nullptr && level->replaces_white && everywhere(*effect, group)) {
       model.white = effect->values[0] * effect->values[0];
     }
   }
@@ -97,10 +98,12 @@ SlowModel given_model(const Baseline& baseline, const ChannelGroup& group) {
 double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
   double sum = 0.0;
   for (const GivenProcess& process : processes_of(baseline, group)) {
-    sum += process.process == "quantization_noise" ? process.parameters[0] * process.parameters[0] : 0.0;
+    const Cause* const cause = cause_of_process(process.process);
+    const bool differenced = cause != nullptr && cause->as<DifferencedNoise>() != nullptr;
+    sum += differenced ? process.parameters[0] * process.parameters[0] : 0.0;
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
-    if (effect->cause == "quantization_noise" && everywhere(*effect, group)) {
+    if (find_cause(effect->cause)->as<DifferencedNoise>() != nullptr && everywhere(*effect, group)) {
       sum += effect->values[0] * effect->values[0];
     }
   }
@@ -120,15 +123,15 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
     }
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
-    const Cause& cause = *find_cause(effect->cause);
-    if (cause.mean == nullptr || cause.mean->free_phase) {
+    const MeanEffect* const mean = find_cause(effect->cause)->as<MeanEffect>();
+    if (mean == nullptr || mean->free_phase) {
       continue;
     }
     const double shape = effect->values.size() > 1 ? effect->values[1] : 0.0;
     for (std::size_t r = 0; r < error.size(); ++r) {
       std::vector<std::vector<double>> columns;
       const StudyRecording& recording = *group.members[r].recording;
-      if (!holds(effect->recordings, recording.id) || !cause.mean->build(recording, group, shape, columns)) {
+      if (!holds(effect->recordings, recording.id) || !mean->build(recording, group, shape, columns)) {
         continue;
       }
       for (std::size_t i = 0; i < error[r].size(); ++i) {

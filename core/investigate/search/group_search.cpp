@@ -1,7 +1,6 @@
 #include "core/investigate/search/group_search.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/causes/lines.hpp"
 #include "core/investigate/search/candidates.hpp"
 #include "core/investigate/search/fact_gain.hpp"
 #include "core/investigate/search/given_model.hpp"
@@ -94,25 +93,25 @@ class GroupSearch {
       error_[r] = group_.members[r].channel->error;
     }
     for (const Cause& cause : cause_registry()) {
-      if (cause.file_fact == nullptr) {
+      const FileFact* const fact = cause.as<FileFact>();
+      if (fact == nullptr) {
         continue;
       }
-      for (Evidence& evidence : cause.file_fact(group_)) {
+      for (Evidence& evidence : fact->find(group_)) {
         evidence.cause = &cause;
         std::vector<std::vector<unsigned char>> spoilt(group_.members.size());
         for (const std::size_t r : evidence.members) {
           spoilt[r].assign(group_.members[r].recording->length, 0);
-          if (cause.spoils != nullptr) {
-            cause.spoils(group_, evidence, r, spoilt[r]);
+          if (fact->spoils != nullptr) {
+            fact->spoils(group_, evidence, r, spoilt[r]);
             std::transform(mask_[r].begin(), mask_[r].end(), spoilt[r].begin(), mask_[r].begin(),
                            [](unsigned char a, unsigned char b) { return static_cast<unsigned char>(a | b); });
           }
         }
         hold_out_fact(group_, spoilt, evidence);
-        if (cause.name == "output_resolution" && !evidence.parameters.empty()) {
+        if (fact->gives_lattice_step && !evidence.parameters.empty()) {
           lattice_step_ = evidence.parameters[0].estimate.value;
         }
-        jitter_ = jitter_ || cause.name == "timestamp_jitter";
         outcome_.found.push_back(std::move(evidence));
       }
     }
@@ -169,7 +168,6 @@ class GroupSearch {
     search.set_data(error_, mask_);
     search.fit_null();
     std::vector<Evidence> slow_found;
-    const Cause* const line_cause = find_cause("periodic_disturbance");
     for (int round = 0; round < kRounds && !stopped(); ++round) {
       control_.report("search " + group_.column, 0.1 + 0.6 * round / kRounds);
       FullRate data = full_rate(search, false);
@@ -181,10 +179,7 @@ class GroupSearch {
           data = full_rate(search, false);
         }
       }
-      std::vector<Evidence> candidates = line_cause->examine(data);
-      for (Evidence& line : candidates) {
-        line.cause = line_cause;
-      }
+      std::vector<Evidence> candidates = lines_in(data);
       // A line far above anything slow could be is taken before the slower search is made.
       const Evidence* best = strongest(candidates);
       const bool clear_line = best != nullptr && best->score > 60.0 && best->shape > 2.5;
@@ -198,9 +193,9 @@ class GroupSearch {
       if (!winner) {
         break;
       }
-      if (winner->cause == line_cause) {
+      if (const SpectralLine* const found_line = winner->cause->as<SpectralLine>()) {
         for (const std::size_t r : winner->members) {
-          const std::vector<double> line = fitted_line(data, r, winner->shape);
+          const std::vector<double> line = found_line->values(data, r, *winner);
           const std::size_t begin = group_.members[r].recording->begin;
           for (std::size_t i = 0; i < line.size(); ++i) {
             error_[r][begin + i] -= line[i];
@@ -230,7 +225,8 @@ class GroupSearch {
       search.describe(evidence);
       // A drift that all recordings share is part of an automatic baseline.
       const bool shared = evidence.members.size() == group_.members.size() && !evidence.parameters.empty();
-      if (!given_ && shared && evidence.cause->name == "linear_drift") {
+      const MeanEffect* const mean = evidence.cause->as<MeanEffect>();
+      if (!given_ && shared && mean != nullptr && mean->drift_of_baseline) {
         outcome_.model.drift = evidence.parameters[0].estimate.value;
       } else {
         outcome_.found.push_back(std::move(evidence));
@@ -272,23 +268,48 @@ class GroupSearch {
     model.bias = search.null_fit().amplitude[0];
   }
 
+  /// Sinusoids in the innovations, each with its cause.
+  [[nodiscard]] static std::vector<Evidence> lines_in(const FullRate& data) {
+    std::vector<Evidence> lines;
+    for (const Cause& cause : cause_registry()) {
+      if (const SpectralLine* const line = cause.as<SpectralLine>()) {
+        for (Evidence& evidence : line->examine(data)) {
+          evidence.cause = &cause;
+          lines.push_back(std::move(evidence));
+        }
+      }
+    }
+    return lines;
+  }
+
+  /// A fact of the file that can look like the cause has been found.
+  [[nodiscard]] bool looks_like_fact(const Cause& cause) const {
+    return std::any_of(outcome_.found.begin(), outcome_.found.end(), [&](const Evidence& found) {
+      const auto& rivals = found.cause->rivals;
+      return found.cause->as<FileFact>() != nullptr &&
+             std::find(rivals.begin(), rivals.end(), cause.name) != rivals.end();
+    });
+  }
+
   /// Everything that needs the samples: each found effect is taken out before the next is sought.
   void search_full_rate() {
     FullRate& data = outcome_.after;
-    take_band_limit(data);
+    for (const Cause& cause : cause_registry()) {
+      if (cause.as<BandLimit>() != nullptr && !data.band_limited()) {
+        take_band_limit(data, cause);
+      }
+    }
     bool tails_known = false;
     for (int round = 0; round < 2; ++round) {
       std::vector<Evidence> candidates;
       for (const Cause& cause : cause_registry()) {
-        const bool wanted =
-            (cause.family == Family::Variance && cause.name != "band_limited_noise") || cause.family == Family::Tails;
-        const bool known = tails_known && cause.family == Family::Tails;
-        const bool jittered = jitter_ && cause.name == "acceleration_dependent_noise";
+        const bool tails = cause.as<NoiseTails>() != nullptr;
+        const bool wanted = tails || cause.as<NoiseLevel>() != nullptr || cause.as<DifferencedNoise>() != nullptr;
         const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
-        if (!wanted || cause.examine == nullptr || known || jittered || lacking || stopped()) {
+        if (!wanted || (tails && tails_known) || looks_like_fact(cause) || lacking || stopped()) {
           continue;
         }
-        for (Evidence& evidence : cause.examine(data)) {
+        for (Evidence& evidence : examine_of(cause)(data)) {
           evidence.cause = &cause;
           candidates.push_back(std::move(evidence));
         }
@@ -302,8 +323,8 @@ class GroupSearch {
       }
       outcome_.found.push_back(*winner);
       take_out(data, *winner);
-      tails_known = tails_known || winner->cause->tail != nullptr;
-      if (winner->cause->deviation == nullptr && winner->cause->tail == nullptr) {
+      tails_known = tails_known || winner->cause->as<NoiseTails>() != nullptr;
+      if (winner->cause->as<DifferencedNoise>() != nullptr) {
         whiten_quantization(data, *winner);
         break;
       }
@@ -312,7 +333,7 @@ class GroupSearch {
 
   /// Differenced noise that all recordings share is whitened with the model, so that the checks see what it leaves.
   void whiten_quantization(FullRate& data, const Evidence& found) const {
-    if (found.cause->name != "quantization_noise" || found.members.size() != data.members()) {
+    if (found.members.size() != data.members()) {
       return;
     }
     FullRateOptions options;
@@ -325,7 +346,7 @@ class GroupSearch {
   /// Means over a block of noise behind a low-pass are correlated with their neighbours, which an automatic baseline
   /// describes by a Gauss-Markov process about as fast as the blocks. Where the spectra show a band limit without it,
   /// it goes, and its density is white noise again.
-  void drop_fast_process(FullRate& data, const Cause& band_limit) {
+  void drop_fast_process(FullRate& data, const BandLimit& limit) {
     constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
     const auto fast = [](const SlowComponent& c) { return c.kind == SlowKind::GaussMarkov && c.beta > kFast; };
     SlowModel plain = data.model;
@@ -340,21 +361,21 @@ class GroupSearch {
     for (std::size_t r = 0; r < without.members(); ++r) {
       renew_spectrum(without, r);
     }
-    const std::vector<Evidence> found = band_limit.examine(without);
+    const std::vector<Evidence> found = limit.examine(without);
     if (!found.empty() && found[0].score > kThreshold) {
       data = std::move(without);
       outcome_.model.base = plain;
     }
   }
 
-  void take_band_limit(FullRate& data) {
-    const Cause* const cause = find_cause("band_limited_noise");
-    drop_fast_process(data, *cause);
-    std::vector<Evidence> found = cause->examine(data);
+  void take_band_limit(FullRate& data, const Cause& cause) {
+    const BandLimit& limit = *cause.as<BandLimit>();
+    drop_fast_process(data, limit);
+    std::vector<Evidence> found = limit.examine(data);
     if (found.empty()) {
       return;
     }
-    found[0].cause = cause;
+    found[0].cause = &cause;
     keep_best(outcome_.examined, found);
     if (found[0].score < kThreshold) {
       return;
@@ -384,7 +405,6 @@ class GroupSearch {
   double lattice_step_ = 0.0;
   double given_white_ = 0.0;
   double quantization_ = 0.0;
-  bool jitter_ = false;
   GroupOutcome& outcome_;
 };
 

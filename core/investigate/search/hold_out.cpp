@@ -55,8 +55,8 @@ FullRate half_of(const FullRate& data, std::size_t half) {
 /// What a part of the data shows of a finding; nothing where it is not seen there.
 std::optional<Evidence> train_on(const FullRate& part, const Evidence& found) {
   const Cause& cause = *found.cause;
-  std::vector<Evidence> all = cause.find_again != nullptr ? std::vector{cause.find_again(part, found)}  //
-                                                          : cause.examine(part);
+  const SpectralLine* const line = cause.as<SpectralLine>();
+  std::vector<Evidence> all = line != nullptr ? std::vector{line->find_again(part, found)} : examine_of(cause)(part);
   for (Evidence& evidence : all) {
     if (evidence.members == found.members) {
       evidence.cause = &cause;
@@ -74,12 +74,13 @@ double gain_of_deviation(const FullRate& test, const Evidence& trained) {
   double logs = 0.0;
   std::vector<double> sd;
   // Levels of other recordings say nothing where they do not repeat.
-  const bool alone = trained.cause->within_recording && !test.given && test.repeatability > 1.0;
+  const NoiseLevel& level = *trained.cause->as<NoiseLevel>();
+  const bool alone = level.within_recording && !test.given && test.repeatability > 1.0;
   for (std::size_t r = 0; r < test.members(); ++r) {
     if (alone && r != trained.members.front()) {
       continue;
     }
-    trained.cause->deviation(test, trained, r, sd);
+    level.deviation(test, trained, r, sd);
     for (std::size_t i = 0; i < sd.size(); ++i) {
       if (test.used[r][i] != 0) {
         const double e = test.innovation[r][i];
@@ -99,35 +100,42 @@ double gain_of_deviation(const FullRate& test, const Evidence& trained) {
   return 0.5 * n * std::log(plain / divided) - logs;
 }
 
+/// Log likelihood that a cause of a family with `log_gain` gains on data it was not fitted to; null for the others.
+using LogGain = double (*)(const FullRate& data, const Evidence& found);
+LogGain log_gain_of(const Cause& cause) {
+  return std::visit(
+      [](const auto& family) -> LogGain {
+        if constexpr (requires(const FullRate& data, const Evidence& found) { family.log_gain(data, found); }) {
+          return family.log_gain;
+        } else {
+          return nullptr;
+        }
+      },
+      cause.family);
+}
+
 }  // namespace
 
 void hold_out(const FullRate& data, Evidence& found) {
-  const Cause& cause = *found.cause;
+  const LogGain log_gain = log_gain_of(*found.cause);
+  const bool halves = log_gain != nullptr;
   double gain = 0.0;
   double samples = 0.0;
   for (const auto& e : data.residual) {
     samples += static_cast<double>(e.size());
   }
-  bool done = true;
   for (std::size_t fold = 0; fold < 2; ++fold) {
-    const bool halves = cause.log_gain != nullptr;
     const FullRate train = halves ? half_of(data, fold) : fold_of(data, fold);
     const FullRate test = halves ? half_of(data, 1 - fold) : fold_of(data, 1 - fold);
     const std::optional<Evidence> trained = train_on(train, found);
     if (!trained) {
       continue;  // nothing would have been added, nothing gained
     }
-    if (halves) {
-      gain += cause.log_gain(test, *trained);
-    } else if (cause.deviation != nullptr) {
-      gain += gain_of_deviation(test, *trained);
-    } else {
-      done = false;
-    }
+    gain += halves ? log_gain(test, *trained) : gain_of_deviation(test, *trained);
   }
   found.heldout_gain = gain;
   found.heldout_samples = samples;
-  found.heldout = done;
+  found.heldout = true;
 }
 
 }  // namespace driftlab::investigate

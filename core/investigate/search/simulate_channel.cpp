@@ -26,10 +26,8 @@ void add_process(const GivenProcess& process, Draft& draft, Random& random) {
     for (std::size_t i = 0; i < draft.mean.size(); ++i) {
       draft.mean[i] += p[0] * draft.recording->time_s(i);
     }
-  } else if (const char* const twin = process.process == "quantization_noise" ? "quantization_noise"
-                                      : process.process == "sinusoid"         ? "periodic_disturbance"
-                                                                              : nullptr) {
-    inject(*find_cause(twin), draft, p, random);
+  } else if (const Cause* const twin = cause_of_process(process.process)) {
+    inject(*twin, draft, p, random);
   }
 }
 
@@ -45,11 +43,11 @@ std::string obstacle(const GivenEffect& effect, const Draft& draft) {
   }
   std::vector<std::vector<double>> columns;
   const double shape = effect.values.size() > 1 ? effect.values[1] : 0.0;
-  if (cause->mean != nullptr && cause->inject == nullptr &&
-      !cause->mean->build(*draft.recording, *draft.group, shape, columns)) {
+  const MeanEffect* const mean = cause->as<MeanEffect>();
+  if (mean != nullptr && cause->inject == nullptr && !mean->build(*draft.recording, *draft.group, shape, columns)) {
     return "it needs " + std::string(cause->needs);
   }
-  const bool known = cause->mean != nullptr || cause->slow != nullptr || cause->inject != nullptr;
+  const bool known = cause->is_slow() || cause->inject != nullptr;
   return known ? "" : "it cannot be simulated";
 }
 

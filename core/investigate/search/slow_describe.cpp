@@ -10,7 +10,7 @@
 namespace driftlab::investigate {
 
 void SlowSearch::describe(Evidence& evidence) const {
-  if (evidence.cause->mean != nullptr) {
+  if (evidence.cause->as<MeanEffect>() != nullptr) {
     describe_mean(evidence);
   } else {
     describe_slow(evidence);
@@ -47,7 +47,7 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
     return;
   }
   const Cause& cause = *evidence.cause;
-  const MeanEffect& effect = *cause.mean;
+  const MeanEffect& effect = *cause.as<MeanEffect>();
   evidence.shape = mine->shape;
   BlockColumns columns = columns_with(accepted_);
   // The shape is uncertain too: its derivative is one more regressor while the amplitude's interval is sought.
@@ -98,8 +98,7 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
   Interval interval = profile_amplitude(series_, columns, fit, *position + 1, freedom());
   const double value = here.amplitude[index];
   interval = {std::min(interval.low, value), std::max(interval.high, value)};
-  const CauseParameter& first =
-      cause.name == "scale_factor_nonlinearity" && evidence.shape > 2.5 ? cause.parameters[1] : cause.parameters[0];
+  const CauseParameter& first = amplitude_of(cause, evidence.shape);
   evidence.parameters = {{std::string(first.name), {value, interval}, first.unit(unit)}};
   if (effect.change_point) {
     place_step(evidence);

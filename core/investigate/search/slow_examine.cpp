@@ -74,11 +74,11 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
   const auto everyone = all_members(group_);
   const auto moving = moving_members(group_);
   for (const Cause& cause : cause_registry()) {
-    if (cause.slow == nullptr) {
+    if (cause.as<SlowNoise>() == nullptr) {
       continue;
     }
     std::vector<std::vector<std::size_t>> scopes;
-    if (*cause.slow == SlowKind::Offset) {
+    if (cause.as<SlowNoise>()->kind == SlowKind::Offset) {
       if (group_.members.size() > 2) {
         scopes.push_back(everyone);
       }
@@ -107,7 +107,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
   std::vector<Evidence> results(jobs.size());
   parallel_for(jobs.size(), threads_, [&](std::size_t i) {
     const Job& job = jobs[i];
-    const SlowKind kind = *job.cause->slow;
+    const SlowKind kind = job.cause->as<SlowNoise>()->kind;
     const SlowFit fit = fit_extra(kind, job.scope, job.base, columns);
     SlowModel base = fit.model;
     const SlowComponent extra = base.components.back();

@@ -63,7 +63,7 @@ BlockSeries half_of(const BlockSeries& series, std::size_t half) {
 }  // namespace
 
 void SlowSearch::hold_out(Evidence& evidence) const {
-  if (evidence.cause->mean != nullptr) {
+  if (evidence.cause->as<MeanEffect>() != nullptr) {
     hold_out_mean(evidence);
   } else {
     hold_out_slow(evidence);

@@ -59,7 +59,7 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
   const auto moving = moving_members(group_);
   const auto singles = group_.members.size();
   for (const Templates& templates : templates_) {
-    const MeanEffect& effect = *templates.cause->mean;
+    const MeanEffect& effect = *templates.cause->as<MeanEffect>();
     BlockColumns columns = BlockColumns::zeros(series_, fixed_width + templates.blocks.size());
     for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
       for (std::size_t b = 0; b < series_.recordings[r].mean.size(); ++b) {
@@ -99,12 +99,12 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
 void SlowSearch::screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const {
   const StepScan scan(series_, base, columns_with(accepted_));
   for (const Cause& cause : cause_registry()) {
-    if (cause.mean == nullptr || !cause.mean->change_point) {
+    if (cause.as<MeanEffect>() == nullptr || !cause.as<MeanEffect>()->change_point) {
       continue;
     }
     for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
       const StepScan::Best step = scan.best_in(r);
-      const double penalty = step_penalty(*cause.mean, step.search_cost);
+      const double penalty = step_penalty(*cause.as<MeanEffect>(), step.search_cost);
       const BlockRecording& blocks = series_.recordings[r];
       const double t0 = blocks.start_s + static_cast<double>(step.block) * series_.block_s();
       offer(best, Screened{&cause, {r}, t0, penalty, base_score + step.gain - penalty, base});
@@ -123,7 +123,7 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
     with.back().shape = shape;
     return evaluate_slow(series_, columns_with(with), model).log_likelihood;
   };
-  const MeanEffect& effect = *regressor.cause->mean;
+  const MeanEffect& effect = *regressor.cause->as<MeanEffect>();
   if (effect.continuous) {
     const bool from_zero = regressor.shape < 1.0;
     double width = from_zero ? 2.0 : 0.4;  // seconds near zero, else a share
@@ -195,7 +195,7 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   for (const SlowModel& start : starts) {
     with.back().shape = candidate.shape;
     SlowFit fit = fit_slow(series_, columns_with(with), start, freedom());
-    if (candidate.cause->mean->continuous || candidate.cause->mean->change_point) {
+    if (candidate.cause->as<MeanEffect>()->continuous || candidate.cause->as<MeanEffect>()->change_point) {
       Regressor refined = with.back();
       refine_shape(refined, fit.model);
       if (refined.shape != with.back().shape) {
@@ -213,16 +213,17 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   evidence.shape = best_shape;
   evidence.gain = best - null_score_;
   double penalty = candidate.penalty;
-  if (candidate.cause->mean->change_point) {
+  if (candidate.cause->as<MeanEffect>()->change_point) {
     const StepScan scan(series_, best_fit.model, columns_with(accepted_));
-    penalty = step_penalty(*candidate.cause->mean, scan.best_in(candidate.members.front()).search_cost);
+    penalty = step_penalty(*candidate.cause->as<MeanEffect>(), scan.best_in(candidate.members.front()).search_cost);
   }
   evidence.score = evidence.gain - penalty;
   with.back().shape = best_shape;
-  if (candidate.cause->mean->part_of_rate && share_of_rate(with, best_fit) > kLargestPart) {
+  if (candidate.cause->as<MeanEffect>()->part_of_rate && share_of_rate(with, best_fit) > kLargestPart) {
     evidence.score = std::min(evidence.score, 0.0);
   }
-  if (candidate.cause->mean->free_phase) {  // what free amplitudes gain over one amplitude is not the effect's
+  if (candidate.cause->as<MeanEffect>()
+          ->free_phase) {  // what free amplitudes gain over one amplitude is not the effect's
     const BlockColumns columns = columns_with(with);
     const std::size_t own = columns.width - static_cast<std::size_t>(with.back().columns);
     const ScopedGram gram(whiten(series_, best_fit.model, columns).columns, own);

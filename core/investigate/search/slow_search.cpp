@@ -98,13 +98,13 @@ SlowFreedom SlowSearch::freedom() const {
 
 SlowSearch::Templates SlowSearch::make_templates(const Cause* cause, double shape) const {
   Templates made{cause, shape, {}};
-  made.blocks.assign(static_cast<std::size_t>(cause->mean->columns), {});
+  made.blocks.assign(static_cast<std::size_t>(cause->as<MeanEffect>()->columns), {});
   for (auto& column : made.blocks) {
     column.resize(group_.members.size());
   }
   std::vector<std::vector<double>> columns;
   for (std::size_t r = 0; r < group_.members.size(); ++r) {
-    if (cause->mean->build(*group_.members[r].recording, group_, shape, columns)) {
+    if (cause->as<MeanEffect>()->build(*group_.members[r].recording, group_, shape, columns)) {
       for (std::size_t c = 0; c < columns.size(); ++c) {
         made.blocks[c][r] = average_like(series_, r, columns[c]);
       }
@@ -120,11 +120,12 @@ void SlowSearch::build_templates() {
   };
   std::vector<Wanted> wanted;
   for (const Cause& cause : cause_registry()) {
-    if (cause.mean == nullptr || cause.mean->change_point ||
+    if (cause.as<MeanEffect>() == nullptr || cause.as<MeanEffect>()->change_point ||
         (cause.lacks != nullptr && !cause.lacks(study_, group_).empty())) {
       continue;
     }
-    for (const double shape : cause.mean->shapes != nullptr ? cause.mean->shapes(group_) : std::vector<double>{0.0}) {
+    for (const double shape : cause.as<MeanEffect>()->shapes != nullptr ? cause.as<MeanEffect>()->shapes(group_)
+                                                                        : std::vector<double>{0.0}) {
       wanted.push_back({&cause, shape});
     }
   }
@@ -165,7 +166,7 @@ BlockColumns SlowSearch::columns_with(const std::vector<Regressor>& regressors) 
         source = &made;
       }
     }
-    const bool own = regressor.cause != nullptr && regressor.cause->mean->free_phase;
+    const bool own = regressor.cause != nullptr && regressor.cause->as<MeanEffect>()->free_phase;
     const std::size_t templates = source == nullptr ? 1 : source->blocks.size();
     for (std::size_t k = 0; k < regressor.members.size(); ++k) {
       const std::size_t r = regressor.members[k];
@@ -275,7 +276,7 @@ const SlowFit& SlowSearch::fit_null() {
 }
 
 void SlowSearch::accept(const Evidence& evidence) {
-  if (evidence.cause->mean != nullptr) {
+  if (evidence.cause->as<MeanEffect>() != nullptr) {
     accepted_.push_back(
         {evidence.cause, evidence.members, evidence.shape, width_of(*evidence.cause, evidence.members)});
     fit_null();
@@ -290,7 +291,7 @@ void SlowSearch::accept(const Evidence& evidence) {
   const BlockColumns columns = columns_with(accepted_);
   SlowFit best;
   for (const SlowFit& order : orders_) {
-    SlowFit fit = fit_extra(*evidence.cause->slow, evidence.members, order.model, columns);
+    SlowFit fit = fit_extra(evidence.cause->as<SlowNoise>()->kind, evidence.members, order.model, columns);
     SlowModel base = fit.model;
     base.components.pop_back();
     SlowModel best_base = best.model;
@@ -308,7 +309,7 @@ void SlowSearch::accept(const Evidence& evidence) {
 }
 
 void SlowSearch::reject(const Evidence& evidence) {
-  if (evidence.cause->mean != nullptr) {
+  if (evidence.cause->as<MeanEffect>() != nullptr) {
     std::erase_if(accepted_,
                   [&](const Regressor& r) { return r.cause == evidence.cause && r.members == evidence.members; });
   } else if (const auto it = std::find(extra_cause_.begin(), extra_cause_.end(), evidence.cause);
@@ -351,10 +352,10 @@ std::vector<std::vector<double>> SlowSearch::residuals(const std::vector<std::ve
         for (double& v : e) {
           v -= null_.amplitude[static_cast<Eigen::Index>(at)];
         }
-      } else if (acts && regressor.cause->mean->build(recording, group_, regressor.shape, columns)) {
+      } else if (acts && regressor.cause->as<MeanEffect>()->build(recording, group_, regressor.shape, columns)) {
         const auto k = static_cast<std::size_t>(std::find(regressor.members.begin(), regressor.members.end(), r) -
                                                 regressor.members.begin());
-        const std::size_t first = at + (regressor.cause->mean->free_phase ? k * columns.size() : 0);
+        const std::size_t first = at + (regressor.cause->as<MeanEffect>()->free_phase ? k * columns.size() : 0);
         for (std::size_t c = 0; c < columns.size(); ++c) {
           const double a = null_.amplitude[static_cast<Eigen::Index>(first + c)];
           for (std::size_t i = 0; i < e.size(); ++i) {

@@ -30,7 +30,7 @@ struct Regressor {
 
 /// Regressor columns of an effect in a scope.
 [[nodiscard]] inline int width_of(const Cause& cause, const std::vector<std::size_t>& members) {
-  return cause.mean->columns * (cause.mean->free_phase ? static_cast<int>(members.size()) : 1);
+  return cause.as<MeanEffect>()->columns * (cause.as<MeanEffect>()->free_phase ? static_cast<int>(members.size()) : 1);
 }
 
 /// What the search knows about one group between its rounds.

@@ -36,10 +36,11 @@ void raise_density(FullRate& data, std::size_t r, double excess) {
 }
 
 void take_out_deviation(FullRate& data, const Evidence& found) {
+  const NoiseLevel& effect = *found.cause->as<NoiseLevel>();
   std::vector<double> sd;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    found.cause->deviation(data, found, r, sd);
-    const bool free = found.cause->within_recording && !data.given && found.members.front() == r;
+    effect.deviation(data, found, r, sd);
+    const bool free = effect.within_recording && !data.given && found.members.front() == r;
     const double level = free ? level_left(data, r, sd) : 1.0;
     double square = 0.0;
     for (std::size_t i = 0; i < sd.size(); ++i) {
@@ -62,15 +63,15 @@ void take_out_tails(FullRate& data, const Evidence& found) {
     }
     raise_density(data, r, square / std::max(1.0, count) - 1.0);
   }
-  to_normal_scores(data, found.cause->tail(data, found));
+  to_normal_scores(data, found.cause->as<NoiseTails>()->tail(data, found));
 }
 
 }  // namespace
 
 void take_out(FullRate& data, const Evidence& found) {
-  if (found.cause->deviation != nullptr) {
+  if (found.cause->as<NoiseLevel>() != nullptr) {
     take_out_deviation(data, found);
-  } else if (found.cause->tail != nullptr) {
+  } else if (found.cause->as<NoiseTails>() != nullptr) {
     take_out_tails(data, found);
   }
 }

@@ -8,8 +8,8 @@
 
 namespace driftlab::investigate {
 
-/// A finding that states a deviation, or a distribution (Cause::deviation, Cause::tail); anything else leaves the data
-/// as they are.
+/// A finding that states a deviation, or a distribution (NoiseLevel::deviation, NoiseTails::tail); anything else leaves
+/// the data as they are.
 void take_out(FullRate& data, const Evidence& found);
 
 /// N^2 at full rate: the mean of spectrum minus slow part over all recordings.

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -38,14 +37,9 @@ bool names(const Finding& finding, const std::string& cause) {
                                                    [&](const Evidence& rival) { return rival.cause->name == cause; });
 }
 
-/// Whether `make_case` sizes the effect by an oracle's likelihood: not facts of the file, and not where only the
-/// leading term is known (tails, quantization) or where a few low frequencies carry everything (a random walk, a bias).
-bool has_oracle(const Cause& cause) {
-  constexpr std::array kSizedOtherwise{"band_limited_noise", "turn_on_bias",       "outliers",
-                                       "heavy_tailed_noise", "quantization_noise", "random_walk"};
-  return cause.family != Family::File &&
-         std::find(kSizedOtherwise.begin(), kSizedOtherwise.end(), cause.name) == kSizedOtherwise.end();
-}
+/// Whether the effect is sized by an oracle's likelihood: not facts of the file, and not where only the leading term is
+/// known (tails, quantization) or where a few low frequencies carry everything (a random walk, a bias).
+bool has_oracle(const Cause& cause) { return cause.as<FileFact>() == nullptr && cause.showing.oracle; }
 
 struct Cell {
   int cases = 0, named = 0, wrong = 0, further = 0;

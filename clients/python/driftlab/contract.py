@@ -1,0 +1,1832 @@
+"""The wire contract as Python types. Made by generate_contract.py from schema/; not edited by hand."""
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple, NotRequired, TypeAlias, TypedDict
+
+
+class Operation(NamedTuple):
+    """One row of the contract: how a request is put together. Parameters that every request may have are not listed."""
+
+    method: str
+    path: str
+    query: tuple[str, ...]
+    headers: tuple[str, ...]
+    media: tuple[str, ...]
+
+
+class Calibration(TypedDict):
+    """Calibration. Bias, scale factor and misalignment of a device's sensors, what they were made from, and what
+    corrects readings."""
+
+    id: str
+    device: str
+    # What it was made from; empty where it was made elsewhere.
+    recordings: list[CalibrationRecording]
+    gravity_m_s2: NotRequired[float]
+    misalignment: NotRequired[bool]
+    calibration: CalibrationSensors
+    created_at: str
+
+
+class CalibrationRecording(TypedDict):
+    id: str
+    revision: int
+
+
+class CalibrationRequest(TypedDict):
+    """Calibration request. Recordings to calibrate from, or a calibration made elsewhere."""
+
+    device: CalibrationRequestDevice
+    recordings: NotRequired[list[str]]
+    calibration: NotRequired[CalibrationSensors]
+    gravity_m_s2: NotRequired[float]
+    # Of known positions: estimate how the axes lie to each other too.
+    misalignment: NotRequired[bool]
+
+
+class CalibrationRequestDevice(TypedDict):
+    # Name or id of the device.
+    id: str
+
+
+class CalibrationSensor(TypedDict):
+    # x = correction (y - bias): y the readings in reading_unit, x the true values in SI.
+    apply: CalibrationSensorApply
+    # By axis.
+    bias: NotRequired[CalibrationEstimates]
+    # By axis.
+    scale_factor: NotRequired[CalibrationEstimates]
+    # By pair of axes: what the first reads of the second.
+    misalignment: NotRequired[CalibrationEstimates]
+    # Of positions in any attitude: by pair of axes, upper triangle.
+    correction: NotRequired[CalibrationEstimates]
+    # Readings per true value, by axis.
+    matrix: NotRequired[list[list[float]]]
+    readings: NotRequired[int]
+    positions: NotRequired[int]
+    chi_square_per_dof: NotRequired[float | None]
+    converged: NotRequired[bool]
+    condition_number: NotRequired[float | None]
+    warnings: NotRequired[list[str]]
+    residual_rms: NotRequired[CalibrationSensorResidualRms]
+
+
+class CalibrationSensorApply(TypedDict):
+    """x = correction (y - bias): y the readings in reading_unit, x the true values in SI."""
+
+    reading_unit: str
+    bias: list[float]
+    correction: list[list[float]]
+
+
+class CalibrationSensorResidualRms(TypedDict):
+    before: float | None
+    after: float | None
+    unit: str
+
+
+class CalibrationSensors(TypedDict):
+    """As `driftlab calibrate --json` prints it."""
+
+    accelerometer: NotRequired[CalibrationSensor]
+    gyroscope: NotRequired[CalibrationSensor]
+    notes: NotRequired[list[str]]
+
+
+class Characterisation(TypedDict):
+    """Characterisation. Variances with intervals, Allan parameters and ranked models of every channel of some
+    recordings: the result of a characterise job and of `driftlab characterise --json`."""
+
+    # The study that was characterised; null for single recordings.
+    study: Any
+    recordings: list[CharacterisationRecording]
+    # Of each sensor axis with two recordings or more, by both methods.
+    trends: NotRequired[list[Trends]]
+    # Each sensor axis with two recordings or more: its recordings put together.
+    replicates: NotRequired[list[PooledSensor]]
+
+
+class CharacterisationChannel(TypedDict):
+    # The file's column name.
+    channel: str
+    quantity: str
+    axis: str | None
+    # The channel's own unit; `mean`, `allan` and `haar` are in it.
+    unit: str
+    samples: int
+    # Samples absent between the analysed ones; nothing is interpolated.
+    missing: NotRequired[int]
+    dt_s: float
+    mean: float | None
+    # Overlapping Allan deviation at octaves.
+    allan: CharacterisationChannelAllan
+    # Haar wavelet variance; the scale is the length of the filter in samples.
+    haar: CharacterisationChannelHaar
+    # Where a reference column was subtracted: by how much the channel shows it later, and whether it was shifted by
+    # that.
+    reference: NotRequired[CharacterisationChannelReference]
+    # Whether gross errors move the variances.
+    contamination: NotRequired[CharacterisationChannelContamination]
+    # Angle or velocity random walk N, bias instability B, rate random walk K, quantization Q, rate ramp R.
+    allan_parameters: CharacterisationChannelAllanParameters
+    # Best first.
+    fits: list[FitModelFit]
+    # N and K of the best model as other conventions write them (schema/docs/conventions.md); empty where it has
+    # neither.
+    equivalents: NotRequired[CharacterisationChannelEquivalents]
+    # Indexes `fits`.
+    best: int | None
+    warnings: list[str]
+
+
+class CharacterisationChannelAllan(TypedDict):
+    """Overlapping Allan deviation at octaves."""
+
+    tau_s: list[float]
+    deviation: list[float | None]
+    ci95: list[list[float | None]]
+    # Equivalent degrees of freedom.
+    edf: NotRequired[list[float | None]]
+
+
+class CharacterisationChannelAllanParameters(TypedDict):
+    """Angle or velocity random walk N, bias instability B, rate random walk K, quantization Q, rate ramp R."""
+
+    N: QuantityIdentified
+    B: QuantityIdentified
+    K: QuantityIdentified
+    Q: QuantityIdentified
+    R: QuantityIdentified
+    reasons: dict[str, str]
+
+
+class CharacterisationChannelContamination(TypedDict):
+    """Whether gross errors move the variances."""
+
+    verdict: Literal['clean', 'contaminated', 'undecided']
+    p: float | None
+    disjoint_scales: list[int]
+    flagged_samples: int
+    not_gaussian: NotRequired[bool]
+
+
+class CharacterisationChannelEquivalents(TypedDict):
+    """N and K of the best model as other conventions write them (schema/docs/conventions.md); empty where it has
+    neither."""
+
+    N: NotRequired[list[CharacterisationEquivalent]]
+    K: NotRequired[list[CharacterisationEquivalent]]
+
+
+class CharacterisationChannelHaar(TypedDict):
+    """Haar wavelet variance; the scale is the length of the filter in samples."""
+
+    scale: list[int]
+    variance: list[float | None]
+    ci95: list[list[float | None]]
+    # What is left of each variance's precision where samples are missing; absent where none is.
+    efficiency_by_scale: NotRequired[list[float | None]]
+    # Robust estimate: coefficient by coefficient (Tukey biweight; null where its equation has no root) while no sample
+    # is flagged, else sample by sample.
+    robust: NotRequired[CharacterisationChannelHaarRobust]
+
+
+class CharacterisationChannelHaarRobust(TypedDict):
+    """Robust estimate: coefficient by coefficient (Tukey biweight; null where its equation has no root) while no sample
+    is flagged, else sample by sample."""
+
+    method: NotRequired[Literal['coefficient_wise', 'sample_wise']]
+    variance: list[float | None]
+    ci95: list[list[Any] | None]
+    efficiency: float | None
+    efficiency_by_scale: NotRequired[list[float | None]]
+
+
+class CharacterisationChannelReference(TypedDict):
+    """Where a reference column was subtracted: by how much the channel shows it later, and whether it was shifted by
+    that."""
+
+    column: str
+    applied: bool
+    delay: QuantityIdentified
+    gain: NotRequired[float | None]
+    correlation: NotRequired[float | None]
+    warnings: NotRequired[list[str]]
+    # Why it was not estimated or not shifted.
+    reason: NotRequired[str]
+
+
+class CharacterisationEquivalent(TypedDict):
+    convention: str
+    value: float
+    unit: str
+    ci95: list[float | None]
+
+
+class CharacterisationRecording(TypedDict):
+    id: str
+    condition: Condition
+    duration_s: float
+    rate_hz: float
+    quality: StoredRecordingQuality
+    # What the readings were corrected by: a file or an id; absent where they were not.
+    calibration: NotRequired[str]
+    channels: list[CharacterisationChannel]
+
+
+class ConditionConstantAngularAcceleration(TypedDict):
+    """a constant angular acceleration about an axis, from rest at the first sample of the file."""
+
+    kind: Literal['constant_angular_acceleration']
+    axis: ConditionAxis
+    value: float
+    # A unit of angular acceleration.
+    unit: str
+
+
+class ConditionConstantRate(TypedDict):
+    """a constant rate about an axis."""
+
+    kind: Literal['constant_rate']
+    axis: ConditionAxis
+    value: float
+    # A unit of angular rate.
+    unit: str
+
+
+class ConditionSixPosition(TypedDict):
+    """one of the six static positions."""
+
+    kind: Literal['six_position']
+    axis: ConditionAxis
+    # Where the axis points.
+    direction: Literal['up', 'down']
+
+
+class ConditionStaticProfileDrive(TypedDict):
+    """at rest, a motion with a reference column, or free motion."""
+
+    kind: Literal['static', 'profile', 'drive']
+
+
+class ContractAnswer(TypedDict):
+    openapi: str
+    info: dict[str, Any]
+    tags: NotRequired[list[Any]]
+    paths: dict[str, Any]
+    components: dict[str, Any]
+
+
+class Device(TypedDict):
+    """Device."""
+
+    id: str
+    # The user's name of the device; unique.
+    name: str
+    model: str
+    imu: str
+    serial: str
+    labels: dict[str, str]
+    revision: int
+    created_at: str
+    updated_at: str
+
+
+class DeviceChange(TypedDict):
+    model: NotRequired[str]
+    imu: NotRequired[str]
+    serial: NotRequired[str]
+    labels: NotRequired[dict[str, str]]
+
+
+class Fit(TypedDict):
+    """Stored fit. One model fitted to one channel, with where it comes from."""
+
+    id: str
+    device: str
+    recording: str
+    recording_revision: int
+    job: str
+    # The file's column name.
+    channel: str
+    quantity: str
+    axis: str | None
+    condition: Condition
+    # 0 is the best by the criterion.
+    rank: int
+    model: str
+    robust: bool
+    processes: FitModelFitProcesses
+    objective: float | None
+    wic: float | None
+    equation_8: NotRequired[float | None]
+    optimism: NotRequired[float | None]
+    condition_number: NotRequired[float | None]
+    bounds_active: NotRequired[list[str]]
+    intervals: NotRequired[FitModelFitIntervals]
+    plausible: NotRequired[bool]
+    j_test: FitModelFitJTest | None
+    status: str
+    warnings: list[str]
+    created_at: str
+
+
+class FitModelFit(TypedDict):
+    model: str
+    robust: bool
+    processes: list[FitProcess]
+    # The value of the GMWM objective at its minimum.
+    objective: float | None
+    # The criterion that ranks (schema/docs/analysis.md); smaller is better.
+    wic: float | None
+    # Equation 8 of the seed paper with its optimism, diagonal weights.
+    equation_8: NotRequired[float | None]
+    # The second term of equation 8: what choosing the parameters on the same data gains.
+    optimism: NotRequired[float | None]
+    # Ratio of the best to the worst known combination of the logarithms of the parameters; null: one is not known at
+    # all.
+    condition_number: NotRequired[float | None]
+    # Parameters at an end of their range.
+    bounds_active: NotRequired[list[str]]
+    # How the parameters' intervals were made.
+    intervals: NotRequired[Literal['profile', 'sandwich', 'bootstrap']]
+    # In the set of models that the data cannot tell apart from the best.
+    plausible: NotRequired[bool]
+    # The test of over-identifying restrictions; null where the model leaves no degrees of freedom.
+    j_test: FitModelFitJTest | None
+    status: str
+    warnings: list[str]
+
+
+class FitModelFitJTest(TypedDict):
+    """The test of over-identifying restrictions; null where the model leaves no degrees of freedom."""
+
+    statistic: float | None
+    dof: float | None
+    p: float | None
+
+
+class FitProcess(TypedDict):
+    process: str
+    params: dict[str, QuantityIdentified]
+    # Why a parameter is null.
+    reasons: NotRequired[dict[str, str]]
+
+
+class HealthAnswer(TypedDict):
+    status: Literal['alive']
+    version: str
+
+
+class Investigation(TypedDict):
+    """Investigation. What a simulation gets wrong about the recordings of a study, and why."""
+
+    study: str
+    # From here on, of stored investigations alone.
+    id: NotRequired[str]
+    job: NotRequired[str]
+    device: NotRequired[str]
+    # The model that was criticised.
+    baseline_model: NotRequired[str]
+    # The extended model as it is stored; the baseline where nothing was found.
+    model: NotRequired[str]
+    created_at: NotRequired[str]
+    baseline: InvestigationModel
+    checks: list[InvestigationCheck]
+    findings: list[InvestigationFinding]
+    extended_model: InvestigationModel
+    gain: InvestigationGain
+    unexplained: list[InvestigationUnexplainedItem]
+    not_examined: NotRequired[list[InvestigationNotExaminedItem]]
+    notes: NotRequired[list[str]]
+
+
+class InvestigationBand(TypedDict):
+    q025: list[float | None]
+    median: list[float | None]
+    q975: list[float | None]
+
+
+class InvestigationCheck(TypedDict):
+    id: str
+    recording: str | None
+    channel: str
+    observed: float | None
+    simulated: InvestigationCheckSimulated
+    p: float | None
+    p_adjusted: float | None
+    failed: bool
+
+
+class InvestigationCheckSimulated(TypedDict):
+    q025: float | None
+    median: float | None
+    q975: float | None
+
+
+class InvestigationFinding(TypedDict):
+    cause: str
+    status: Literal['identified', 'ambiguous']
+    alternatives: list[str]
+    channels: list[str]
+    because: list[str]
+    explanation: str
+    parameters: Investigation
+    score: NotRequired[float | None]
+    gain: InvestigationFindingGain
+    next_measurement: str | None
+    series: NotRequired[InvestigationSeries]
+
+
+class InvestigationFindingGain(TypedDict):
+    log_score_per_sample: float | None
+    misfit_before: float | None
+    misfit_after: float | None
+    heldout: bool
+    heldout_share: NotRequired[float | None]
+    heldout_samples: NotRequired[float | None]
+
+
+class InvestigationGain(TypedDict):
+    misfit_before: float | None
+    misfit_after: float | None
+    checks_failed_before: int
+    checks_failed_after: int
+    # Mean horizontal position error [m] at the end of two simulated outages of 10 s. null: no axis of an inertial unit
+    # was examined.
+    outage_error_m: InvestigationGainOutageErrorM
+
+
+class InvestigationGainOutageErrorM(TypedDict):
+    """Mean horizontal position error [m] at the end of two simulated outages of 10 s. null: no axis of an inertial unit
+    was examined."""
+
+    # As the baseline predicts it for a filter that believes it.
+    baseline: float | None
+    # As the extended model predicts it for the same filter.
+    extended: float | None
+    # Along a reference trajectory, where the study holds one.
+    measured: float | None
+    # As the extended model predicts it for a filter that believes the extended model.
+    adopted: NotRequired[float | None]
+    ci95: NotRequired[InvestigationGainOutageErrorMCi95]
+    # Findings that the navigation simulation cannot hold.
+    left_out: NotRequired[list[str]]
+    # Processes that are in the data and in no filter.
+    left_out_of_filters: NotRequired[list[str]]
+
+
+class InvestigationGainOutageErrorMCi95(TypedDict):
+    baseline: NotRequired[list[float | None]]
+    extended: NotRequired[list[float | None]]
+    adopted: NotRequired[list[float | None]]
+
+
+class InvestigationModel(TypedDict):
+    processes: list[dict[str, Any]]
+    deterministic: dict[str, Any]
+    channels: NotRequired[dict[str, Any]]
+    effects: NotRequired[list[InvestigationModelEffect]]
+
+
+class InvestigationModelEffect(TypedDict):
+    cause: str
+    channels: list[str]
+    # Where it acts; left out: everywhere.
+    recordings: NotRequired[list[str]]
+    params: dict[str, ModelNumber]
+
+
+class InvestigationNotExaminedItem(TypedDict):
+    cause: str
+    channel: str
+    needs: str
+
+
+class InvestigationSeries(TypedDict):
+    """What a figure needs, of the first recording: measured against simulated by the baseline, and what remains against
+    the extended model."""
+
+    recording: str
+    channel: str
+    unit: str
+    # Haar wavelet deviation by scale.
+    wavelet: InvestigationSeriesWavelet
+    # Two-sided density [unit^2/Hz].
+    spectrum: InvestigationSeriesSpectrum
+    # Means over stretches of time; `effect` is what the extended model puts into the mean.
+    course: InvestigationSeriesCourse
+
+
+class InvestigationSeriesCourse(TypedDict):
+    """Means over stretches of time; `effect` is what the extended model puts into the mean."""
+
+    time_s: NotRequired[list[float | None]]
+    error: NotRequired[list[float | None]]
+    effect: NotRequired[list[float | None]]
+
+
+class InvestigationSeriesSpectrum(TypedDict):
+    """Two-sided density [unit^2/Hz]."""
+
+    f_hz: NotRequired[list[float | None]]
+    measured: NotRequired[list[float | None]]
+    baseline: NotRequired[list[float | None]]
+    remaining: NotRequired[list[float | None]]
+
+
+class InvestigationSeriesWavelet(TypedDict):
+    """Haar wavelet deviation by scale."""
+
+    scale_s: NotRequired[list[float | None]]
+    measured: NotRequired[list[float | None]]
+    baseline: NotRequired[InvestigationBand]
+    remaining: NotRequired[list[float | None]]
+    extended: NotRequired[InvestigationBand]
+
+
+class InvestigationSummary(TypedDict):
+    """Investigation in a list."""
+
+    id: str
+    job: str
+    device: str
+    study: str
+    baseline_model: str
+    model: str
+    findings: list[InvestigationSummaryFinding]
+    created_at: str
+
+
+class InvestigationSummaryFinding(TypedDict):
+    cause: str
+    status: Literal['identified', 'ambiguous']
+    channels: list[str]
+    log_score_per_sample: float | None
+
+
+class InvestigationUnexplainedItem(TypedDict):
+    channel: str
+    explanation: str
+    checks: list[str]
+
+
+class Job(TypedDict):
+    """Job."""
+
+    id: str
+    kind: str
+    state: JobState
+    # What the worker is doing.
+    stage: str | None
+    progress: float
+    # Grows with every start; 0 before the first.
+    attempt: int
+    priority: int
+    cancel_requested: bool
+    created_at: str
+    started_at: str | None
+    # Set if and only if the state is final.
+    finished_at: str | None
+    # What was asked for, complete: equal requests are one job.
+    request: JobRequestMember
+    # Where the result is, once the job has succeeded.
+    result: JobResult | None
+    # Why the last attempt failed.
+    problem: ProblemStored | None
+    # The problem of every failed attempt, oldest first; empty in lists.
+    failed_attempts: list[ProblemStored]
+
+
+class JobEvent(TypedDict):
+    """Data of one server-sent event."""
+
+    job: str
+    state: JobState
+    stage: str | None
+    progress: float
+    attempt: int
+    at: str
+
+
+class JobRequestCharacterise(TypedDict):
+    kind: Literal['characterise']
+    # Recordings, or a study that names them.
+    inputs: JobRequestCharacteriseInputs
+    parameters: NotRequired[JobRequestCharacteriseParameters]
+    priority: NotRequired[int]
+
+
+class JobRequestCharacteriseInputs(TypedDict):
+    """Recordings, or a study that names them."""
+
+    study: NotRequired[str]
+    recordings: NotRequired[list[str]]
+
+
+class JobRequestCharacteriseParameters(TypedDict):
+    # Candidate models; the default is the nine of the seed paper's Table 3.
+    models: NotRequired[list[str]]
+    seed: NotRequired[int]
+    # stepwise: from the best of `models` on, process by process over all that are known.
+    search: NotRequired[Literal['listed', 'stepwise']]
+    # Replicates (40 or more) of a parametric bootstrap of the best model's intervals.
+    bootstrap: NotRequired[int]
+
+
+class JobRequestInvestigate(TypedDict):
+    kind: Literal['investigate']
+    inputs: JobRequestInvestigateInputs
+    parameters: NotRequired[JobRequestInvestigateParameters]
+    priority: NotRequired[int]
+
+
+class JobRequestInvestigateInputs(TypedDict):
+    study: str
+
+
+class JobRequestInvestigateParameters(TypedDict):
+    # In place of the study's own.
+    baseline: NotRequired[StudyBaseline]
+
+
+class JobRequestMember(TypedDict):
+    """What was asked for, complete: equal requests are one job."""
+
+    kind: str
+    inputs: JobRequestMemberInputs
+    parameters: JobRequestMemberParameters
+    algorithm_version: int
+
+
+class JobRequestMemberInputs(TypedDict):
+    # The study that named the recordings.
+    study: NotRequired[str]
+    recordings: NotRequired[list[JobRequestMemberInputsRecording]]
+    # Of an outage evaluation: a name, or the document.
+    scenario: NotRequired[str | dict[str, Any]]
+    # Of an outage evaluation: what its stored simulation models say that the scenario does not hold.
+    left_out: NotRequired[list[dict[str, Any]]]
+
+
+class JobRequestMemberInputsRecording(TypedDict):
+    id: str
+    revision: int
+    # In the study of an investigation.
+    name: NotRequired[str]
+
+
+class JobRequestMemberParameters(TypedDict):
+    models: NotRequired[list[str]]
+    seed: NotRequired[int]
+    search: NotRequired[Literal['listed', 'stepwise']]
+    bootstrap: NotRequired[int]
+    runs: NotRequired[int]
+    relative_precision: NotRequired[float]
+    # Of an investigation, complete.
+    baseline: NotRequired[dict[str, Any]]
+
+
+class JobRequestOutageEvaluation(TypedDict):
+    kind: Literal['outage_evaluation']
+    inputs: JobRequestOutageEvaluationInputs
+    parameters: NotRequired[JobRequestOutageEvaluationParameters]
+    priority: NotRequired[int]
+
+
+class JobRequestOutageEvaluationInputs(TypedDict):
+    scenario: Literal['paper', 'paper-position-only', 'paper-nhc', 'paper-s-curves'] | OutageScenario
+
+
+class JobRequestOutageEvaluationParameters(TypedDict):
+    runs: NotRequired[int]
+    seed: NotRequired[int]
+    relative_precision: NotRequired[float]
+
+
+class JobResult(TypedDict):
+    """Where the result is, once the job has succeeded."""
+
+    href: str
+
+
+class ListDocumentationAnswer(TypedDict):
+    pages: list[ListDocumentationAnswerPage]
+    problems: list[ListDocumentationAnswerProblem]
+
+
+class ListDocumentationAnswerPage(TypedDict):
+    name: str
+    href: str
+
+
+class ListDocumentationAnswerProblem(TypedDict):
+    slug: str
+    href: str
+
+
+class Model(TypedDict):
+    """Simulation model. What simulators, filters and investigations are given. It never changes; a changed one is a
+    child."""
+
+    id: str
+    parent: str | None
+    device: str | None
+    name: str
+    processes: ModelProcesses
+    channels: NotRequired[ModelChannels]
+    deterministic: ModelDeterministic
+    effects: ModelEffects
+    # Where it came from. `changes` of a child: what was added to its parent, and why.
+    provenance: ModelProvenance
+    created_at: str
+
+
+class ModelChannel(TypedDict):
+    processes: ModelProcesses
+
+
+class ModelDeterministicItem(TypedDict):
+    bias: NotRequired[ModelNumber]
+    drift: NotRequired[ModelNumber]
+
+
+class ModelEffect(TypedDict):
+    cause: str
+    channels: NotRequired[list[str]]
+    # Where it acts; left out: everywhere.
+    recordings: NotRequired[list[str]]
+    params: ModelNumbers
+
+
+class ModelNumber(TypedDict):
+    value: float
+    unit: str
+    ci95: NotRequired[list[float | None]]
+
+
+class ModelProcess(TypedDict):
+    process: str
+    params: ModelNumbers
+
+
+class ModelProvenance(TypedDict):
+    """Where it came from. `changes` of a child: what was added to its parent, and why."""
+
+    made_by: Literal['investigation', 'hand']
+    why: NotRequired[str | None]
+    investigation: NotRequired[str]
+    study: NotRequired[str]
+    baseline: NotRequired[dict[str, Any]]
+    recordings: NotRequired[list[dict[str, Any]]]
+    algorithm_version: NotRequired[int]
+    driftlab_version: NotRequired[str]
+    changes: NotRequired[list[ModelProvenanceChange]]
+
+
+class ModelProvenanceChange(TypedDict):
+    change: Literal['added']
+    cause: str
+    status: Literal['identified', 'ambiguous']
+    channels: list[str]
+    why: str
+    # On samples it was not fitted to [nat].
+    log_score_per_sample: float | None
+
+
+class ModelRequest(TypedDict):
+    """Simulation model to store. The same document again gives the model that exists."""
+
+    name: str
+    # The model that this one changes.
+    parent: NotRequired[str]
+    # Id or name of a device.
+    device: NotRequired[str]
+    # What changed, and why.
+    why: NotRequired[str]
+    processes: ModelProcesses
+    channels: NotRequired[ModelChannels]
+    deterministic: NotRequired[ModelDeterministic]
+    effects: NotRequired[ModelEffects]
+
+
+class NewDevice(TypedDict):
+    # Not beginning with dev_, and without control characters.
+    name: str
+    model: NotRequired[str]
+    imu: NotRequired[str]
+    serial: NotRequired[str]
+    labels: NotRequired[dict[str, str]]
+
+
+class NewOutageEvaluation(TypedDict):
+    # A scenario by name, or its document.
+    scenario: Literal['paper', 'paper-position-only', 'paper-nhc', 'paper-s-curves'] | OutageScenario
+    # Monte Carlo runs at most.
+    runs: NotRequired[int]
+    seed: NotRequired[int]
+    # Stop once every mean error is known to this half-width, relative to it; 0: never.
+    relative_precision: NotRequired[float]
+    # 0 is first.
+    priority: NotRequired[int]
+
+
+class OutageEvaluation(TypedDict):
+    """Outage evaluation. Filters compared through simulated GNSS outages; every filter saw the same data."""
+
+    scenario: OutageScenario
+    runs: int
+    seed: int
+    # The precision asked for was reached before the last run.
+    stopped_early: bool
+    algorithm_version: int
+    filters: list[OutageEvaluationFilter]
+    # Every pair, in both orders.
+    paired: list[OutageEvaluationPair]
+    # The gain of M_dyn(GMWM) over M_stat(AV) in parts; null where the scenario lacks the controls.
+    attribution: OutageEvaluationAttribution | None
+    claims: list[OutageEvaluationClaim]
+    trajectory: OutageEvaluationPath
+    # What stored simulation models say that the scenario does not hold: effects, and biases that a filter is not told.
+    left_out: NotRequired[list[OutageEvaluationLeftOutItem]]
+
+
+class OutageEvaluationAttribution(TypedDict):
+    """The gain of M_dyn(GMWM) over M_stat(AV) in parts; null where the scenario lacks the controls."""
+
+    total: OutageEvaluationPair
+    low_frequency_noise: OutageEvaluationPair
+    gauss_markov_states: OutageEvaluationPair
+    switching: OutageEvaluationPair
+    switching_av: OutageEvaluationPair
+
+
+class OutageEvaluationClaim(TypedDict):
+    claim: str
+    supported: bool
+    because: str
+
+
+class OutageEvaluationFilter(TypedDict):
+    name: str
+    about: str
+    states: int
+    mean_error_m: Quantity
+    outages: list[OutageEvaluationOutage]
+    nees: float
+    nees_ci95: list[float | None]
+    coverage50: float
+    coverage95: float
+    heading_rms_deg: float
+    tilt_rms_deg: float
+    trajectory: OutageEvaluationPath
+
+
+class OutageEvaluationLeftOutItem(TypedDict):
+    where: str
+    simulation_model: str
+    what: list[str]
+
+
+class OutageEvaluationMoments(TypedDict):
+    """Second moments of the horizontal error and the ellipses of a normal distribution that has them."""
+
+    north_m2: float
+    east_m2: float
+    north_east_m2: float
+    ellipses: list[OutageEvaluationMomentsEllipse]
+
+
+class OutageEvaluationMomentsEllipse(TypedDict):
+    fraction: float
+    semi_major_m: float
+    semi_minor_m: float
+    # From north over east.
+    major_axis_azimuth_deg: float
+
+
+class OutageEvaluationOutage(TypedDict):
+    index: int
+    start_s: float
+    end_s: float
+    error_m: Quantity
+    rms_m: float
+    median_m: float
+    p95_m: float
+    # Mean of e^T P^-1 e over the runs, two dimensions: 2 where P is right.
+    nees: float
+    nees_ci95: list[float | None]
+    coverage50: float
+    coverage95: float
+    heading_rms_deg: float
+    tilt_rms_deg: float
+    mean_error_m: OutageEvaluationOutageMeanErrorM
+    predicted: OutageEvaluationMoments
+    actual: OutageEvaluationMoments
+    # Estimate minus truth in single runs, at most 200.
+    errors: OutageEvaluationOutageErrors
+
+
+class OutageEvaluationOutageErrors(TypedDict):
+    """Estimate minus truth in single runs, at most 200."""
+
+    north_m: list[float | None]
+    east_m: list[float | None]
+
+
+class OutageEvaluationOutageMeanErrorM(TypedDict):
+    north: float
+    east: float
+
+
+class OutageEvaluationPair(TypedDict):
+    """`filter` minus `against`, run by run; negative is better."""
+
+    filter: str
+    against: str
+    difference_m: Quantity
+    relative: Quantity
+    outages: list[Quantity]
+
+
+class OutageEvaluationPath(TypedDict):
+    """Once a second, metres from the start of the drive."""
+
+    time_s: list[float | None]
+    north_m: list[float | None]
+    east_m: list[float | None]
+
+
+class OutageEvaluationResource(TypedDict):
+    """Outage evaluation with its result."""
+
+    id: str
+    job: OutageEvaluationResourceJob
+    scenario_name: str
+    runs: int
+    seed: int
+    relative_precision: float
+    state: JobState
+    stage: str | None
+    progress: float
+    created_at: str
+    finished_at: str | None
+    problem: ProblemStored | None
+    evaluation: OutageEvaluation | None
+
+
+class OutageEvaluationResourceJob(TypedDict):
+    href: str
+
+
+class OutageEvaluationSummary(TypedDict):
+    """Outage evaluation without its result."""
+
+    id: str
+    job: OutageEvaluationSummaryJob
+    scenario_name: str
+    runs: int
+    seed: int
+    relative_precision: float
+    state: JobState
+    stage: str | None
+    progress: float
+    created_at: str
+    finished_at: str | None
+    problem: ProblemStored | None
+
+
+class OutageEvaluationSummaryJob(TypedDict):
+    href: str
+
+
+class OutageScenario(TypedDict):
+    """Scenario of an outage evaluation. A drive, an inertial unit, a receiver with outages, and the filters that are
+    compared. Body axes forward, right, down; angles in deg, rates in deg/s. Members that are not named here are
+    refused."""
+
+    name: NotRequired[str]
+    about: NotRequired[str]
+    # May be left out for a recorded trajectory, which has its own.
+    duration_s: NotRequired[float]
+    imu_rate_hz: NotRequired[float]
+    gnss_rate_hz: NotRequired[float]
+    trajectory: OutageScenarioTrajectory
+    outages: list[OutageScenarioOutages1Item] | OutageScenarioOutages2
+    truth: OutageScenarioTruth
+    gnss: NotRequired[OutageScenarioGnss]
+    gnss_velocity: NotRequired[Literal['used', 'not used']]
+    initial: NotRequired[OutageScenarioInitial]
+    non_holonomic: NotRequired[OutageScenarioNonHolonomic]
+    filters: list[OutageScenarioFilter]
+    # Ignored.
+    variants: NotRequired[Any]
+
+
+class OutageScenarioAxis(TypedDict):
+    processes: NotRequired[OutageScenarioModel]
+    # A stored fit in place of processes; only over HTTP.
+    fit: NotRequired[str]
+    # A stored simulation model in place of processes: those of the channel, its drift, and for the truth its bias. What
+    # a scenario cannot hold is named in `left_out` of the result. Only over HTTP.
+    simulation_model: NotRequired[str]
+    # Beside simulation_model: which channel of it; without it gx, gy, gz or fx, fy, fz, or the only one.
+    channel: NotRequired[str]
+    # Gyroscopes: the models of a device's parameter table by |rate|; only over HTTP. switched: the model of the nearest
+    # measured rate; continuous: parameters along their trends.
+    table: NotRequired[OutageScenarioAxisTable]
+    # Gyroscopes: one model per band of |rate|.
+    by_rate: NotRequired[OutageScenarioAxisByRate]
+    # Gyroscopes: parameters as continuous functions of |rate| through these points.
+    trend: NotRequired[OutageScenarioAxisTrend]
+    # Gyroscopes.
+    constant_bias_sd_deg_s: NotRequired[float]
+    # Accelerometers.
+    constant_bias_sd_mg: NotRequired[float]
+    # Accelerometers.
+    white_noise_mg_per_sqrt_hz: NotRequired[float]
+    # Accelerometers.
+    in_run: NotRequired[OutageScenarioAxisInRun]
+
+
+class OutageScenarioAxisByRate(TypedDict):
+    """Gyroscopes: one model per band of |rate|."""
+
+    bounds_deg_s: list[float]
+    processes: list[OutageScenarioModel]
+    hysteresis_deg_s: NotRequired[float]
+
+
+class OutageScenarioAxisInRun(TypedDict):
+    """Accelerometers."""
+
+    process: Literal['gauss_markov']
+    sigma_mg: float
+    tau_s: float
+
+
+class OutageScenarioAxisTable(TypedDict):
+    """Gyroscopes: the models of a device's parameter table by |rate|; only over HTTP. switched: the model of the
+    nearest measured rate; continuous: parameters along their trends."""
+
+    # Id or name.
+    device: str
+    axis: NotRequired[Literal['x', 'y', 'z']]
+    method: NotRequired[Literal['av', 'gmwm']]
+    # Without it the one that is best over all rows.
+    model: NotRequired[str]
+    schedule: NotRequired[Literal['switched', 'continuous']]
+    hysteresis_deg_s: NotRequired[float]
+    step_deg_s: NotRequired[float]
+
+
+class OutageScenarioAxisTrend(TypedDict):
+    """Gyroscopes: parameters as continuous functions of |rate| through these points."""
+
+    rates_deg_s: list[float]
+    processes: list[OutageScenarioModel]
+    step_deg_s: NotRequired[float]
+
+
+class OutageScenarioFilter(TypedDict):
+    name: str
+    about: NotRequired[str]
+    gyro: NotRequired[Literal['white noise, N of Table 1; constant bias',
+                              'white noise, N of Tables 1 and 2 by |z reading| through Table 5; constant bias',
+                              'WN + 2 GM of Table 4 by |z reading| through Table 5',
+                              'WN + 2 GM of Table 4, experiment 0',
+                              'N of Table 1; random-walk bias with q = sigma2 sqrt(2 beta2) of experiment 0',
+                              'N_eq = sqrt(N^2 + 2 sigma1^2/beta1) of experiment 0; the same random-walk bias'] | OutageScenarioSensor]
+    accelerometer: NotRequired[OutageScenarioSensor]
+    covariance_samples: NotRequired[int]
+
+
+class OutageScenarioGnss(TypedDict):
+    position_sd_m: NotRequired[list[float]]
+    velocity_sd_m_s: NotRequired[list[float]]
+    correlated_sd_m: NotRequired[list[float]]
+    correlation_time_s: NotRequired[float]
+    latency_s: NotRequired[float]
+    lever_arm_m: NotRequired[list[float]]
+    white: NotRequired[Literal[True]]
+
+
+class OutageScenarioHardware(TypedDict):
+    """Deterministic errors, for all axes or per axis; deg/s or m/s^2."""
+
+    bias: NotRequired[float | list[float]]
+    scale_factor: NotRequired[float | list[float]]
+    quantization_step: NotRequired[float | list[float]]
+    range: NotRequired[float | list[float]]
+    bandwidth_hz: NotRequired[float | list[float]]
+    misalignment_mrad: NotRequired[list[list[float]]]
+
+
+class OutageScenarioInitial(TypedDict):
+    position_sd_m: NotRequired[list[float]]
+    velocity_sd_m_s: NotRequired[list[float]]
+    tilt_sd_deg: NotRequired[float]
+    heading_sd_deg: NotRequired[float]
+    # Of filters that are named by a published sentence.
+    gyro_bias_sd_deg_s: NotRequired[float]
+    filters_without_gm_states_add_slow_gm_to_initial_bias_sd: NotRequired[Literal[True]]
+
+
+class OutageScenarioModelItem(TypedDict):
+    process: Literal['white_noise', 'gauss_markov', 'random_walk', 'linear_drift', 'quantization_noise',
+                     'flicker_noise', 'sinusoid']
+    # As in the `processes` of a fit; a number alone is SI.
+    params: dict[str, float | OutageScenarioModelItemParam2]
+
+
+class OutageScenarioModelItemParam2(TypedDict):
+    value: float
+    unit: str
+    ci95: NotRequired[list[Any]]
+
+
+class OutageScenarioNonHolonomic(TypedDict):
+    rate_hz: NotRequired[float]
+    sd_m_s: NotRequired[float]
+
+
+class OutageScenarioOutages1Item(TypedDict):
+    start_s: float
+    duration_s: float
+
+
+class OutageScenarioOutages2(TypedDict):
+    """One over each turn."""
+
+    start: Literal['turn onset']
+    duration_s: float
+    error_scored: NotRequired[str]
+
+
+class OutageScenarioPublishedGyro(TypedDict):
+    model: Literal['Table 4, iPhone 5S, every axis']
+    condition: NotRequired[Literal['z by true |rate| through Table 5, x and y at experiment 0']]
+    constant_bias_sd_deg_s: NotRequired[float]
+
+
+class OutageScenarioSegment(TypedDict):
+    # Start; segments stand in this order. Turns add where they overlap; a change of speed begins after the one before
+    # it has ended.
+    t_s: float
+    kind: Literal['straight', 'turn', 'accelerate', 's_curve', 'stop']
+    # turn, s_curve: positive to the right.
+    rate_deg_s: NotRequired[float]
+    # turn; each half of an s_curve.
+    duration_s: NotRequired[float]
+    # accelerate, stop: magnitude.
+    m_s2: NotRequired[float]
+    # accelerate.
+    until_speed_m_s: NotRequired[float]
+
+
+class OutageScenarioSensor2(TypedDict):
+    x: OutageScenarioAxis
+    y: OutageScenarioAxis
+    z: OutageScenarioAxis
+
+
+class OutageScenarioTrajectory(TypedDict):
+    start: NotRequired[OutageScenarioTrajectoryStart]
+    # Rates and accelerations rise and fall over this time; a turn keeps its angle.
+    ramp_s: NotRequired[float]
+    segments_by_start_time: NotRequired[list[OutageScenarioSegment]]
+    # Lists of one length. Without angles the vehicle looks where it goes.
+    recorded: NotRequired[OutageScenarioTrajectoryRecorded]
+
+
+class OutageScenarioTrajectoryRecorded(TypedDict):
+    """Lists of one length. Without angles the vehicle looks where it goes."""
+
+    time_s: list[float]
+    velocity_ned_m_s: list[list[float]]
+    roll_deg: NotRequired[list[float]]
+    pitch_deg: NotRequired[list[float]]
+    heading_deg: NotRequired[list[float]]
+
+
+class OutageScenarioTrajectoryStart(TypedDict):
+    speed_m_s: NotRequired[float]
+    heading_deg: NotRequired[float]
+    latitude_deg: NotRequired[float]
+    longitude_deg: NotRequired[float]
+    height_m: NotRequired[float]
+
+
+class OutageScenarioTruth(TypedDict):
+    gyro: OutageScenarioPublishedGyro | OutageScenarioSensor
+    accelerometer: OutageScenarioSensor
+    gyro_errors: NotRequired[OutageScenarioHardware]
+    accelerometer_errors: NotRequired[OutageScenarioHardware]
+
+
+class ParameterTable(TypedDict):
+    """Parameter table. One sensor axis of one device: a row per dynamic condition, a column per parameter."""
+
+    # The user's name of the device.
+    device: str
+    sensor: Literal['gyroscope', 'accelerometer', 'sensor']
+    axis: str | None
+    method: Literal['av', 'gmwm']
+    # The one model of all rows; null for method av.
+    model: str | None
+    columns: list[ParameterTableColumn]
+    rows: list[ParameterTableRow]
+
+
+class ParameterTableCell(TypedDict):
+    value: float
+    unit: str
+    ci95: list[float | None]
+    # Against the first row; null for that row and where an interval is open.
+    change: Literal['up', 'down', 'none', None]
+
+
+class ParameterTableColumn(TypedDict):
+    key: str
+    # Also where no row identifies the parameter; null where the unit of the channel is not known.
+    unit: str | None
+
+
+class ParameterTableRow(TypedDict):
+    condition: Condition
+    label: str
+    # The worst verdict of the recordings of the row.
+    contamination: NotRequired[Literal['clean', 'undecided', 'contaminated', None]]
+    # What the fits shown say against themselves.
+    warnings: NotRequired[list[str]]
+    recordings: list[str]
+    # One recording; replicates averaged from their intervals; replicates fitted jointly.
+    pooling: NotRequired[Literal['single', 'average', 'joint']]
+    # The values come from robust variances.
+    robust: NotRequired[bool]
+    agreement: NotRequired[PooledSensorAgreement | None]
+    # Keyed by column; null where the parameter is not identifiable.
+    values: dict[str, ParameterTableCell | None]
+    # Why a value is null.
+    reasons: dict[str, str]
+
+
+class PooledSensor(TypedDict):
+    """Pooled sensor axis. The recordings of one sensor axis put together: replicates fitted jointly, their agreement,
+    and the model structure over all conditions."""
+
+    quantity: str
+    axis: str | None
+    # The column name in the first recording.
+    channel: NotRequired[str | None]
+    # The axis, or the column name of a channel that has none.
+    sensor_axis: NotRequired[str]
+    # The structure with the smallest sum of the criterion over all conditions.
+    model: str | None
+    # Why nothing could be put together.
+    reason: NotRequired[str]
+    structure: PooledSensorStructure | None
+    conditions: list[PooledSensorCondition]
+
+
+class PooledSensorAgreement(TypedDict):
+    # Of the joint fit; null for averages.
+    model: NotRequired[str | None]
+    statistic: float | None
+    dof: float | None
+    p: float | None
+    # p is 0.05 or more.
+    agree: bool
+
+
+class PooledSensorCondition(TypedDict):
+    condition: Condition
+    # The condition in one word.
+    key: NotRequired[str]
+    label: str
+    recordings: list[str]
+    # The results it was made of.
+    members: NotRequired[list[str]]
+    contamination: NotRequired[Literal['clean', 'undecided', 'contaminated', None]]
+    # A recording with gross errors took part with its robust variances.
+    robust: bool
+    agreement: PooledSensorAgreement | None
+    best: int | None
+    fits: list[FitModelFit]
+
+
+class PooledSensorStructure(TypedDict):
+    verdict: Literal['one_structure', 'changes', 'undecided']
+    statement: str
+    # The smallest structure that serves every condition, whole or in part.
+    common: str
+    # That the common structure fits every condition.
+    p: float | None
+    statistic: NotRequired[float | None]
+    dof: NotRequired[float | None]
+    # By how much its criterion exceeds the best in the condition that shows it best; above 6 the structure changes.
+    excess: float | None
+    ranking: list[PooledSensorStructureRankingItem]
+    by_condition: list[PooledSensorStructureByConditionItem]
+
+
+class PooledSensorStructureByConditionItem(TypedDict):
+    label: str
+    model: str
+
+
+class PooledSensorStructureRankingItem(TypedDict):
+    model: str
+    criterion: float | None
+
+
+class Problem(TypedDict):
+    """Problem document (RFC 9457). The body of every answer from 400 up."""
+
+    # A page that says what this means and what to do.
+    type: str
+    title: str
+    status: int
+    # One sentence about this case.
+    detail: str
+    # The last part of `type` with underscores.
+    code: str
+    # Whether the same request may succeed later.
+    retryable: bool
+    # What is at fault: row, column, parameter, part, byte, ...
+    where: NotRequired[dict[str, str | int]]
+    # Every fault of a JSON body.
+    errors: list[ProblemError]
+    instance: str
+    request_id: str
+
+
+class ProblemError(TypedDict):
+    # JSON Pointer (RFC 6901); the empty one is the document.
+    pointer: str
+    code: str
+    detail: str
+
+
+class ProblemStored(TypedDict):
+    """The problem of a job: without the request that asked."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    code: str
+    retryable: bool
+    where: NotRequired[dict[str, str | int]]
+    errors: ProblemErrors
+
+
+class Quantity(TypedDict):
+    """Quantity with unit and 95 % interval."""
+
+    value: float
+    unit: str
+    ci95: list[float | None]
+
+
+class ReadinessAnswer(TypedDict):
+    status: Literal['ready']
+
+
+class Recording(TypedDict):
+    """Recording, as a user describes it. What the columns of a file measure, how fast it was sampled, and under which
+    condition: one member of `recordings` of a study. Members that are not named here are refused."""
+
+    # The user's name of the recording.
+    id: NotRequired[str]
+    # The file beside the study; an upload carries its bytes itself and ignores it.
+    file: NotRequired[str]
+    # Samples per second; required without a time column.
+    rate_hz: NotRequired[float]
+    # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
+    # a note.
+    columns: NotRequired[dict[str, RecordingColumn]]
+    condition: Condition
+    # Seconds to leave out at the ends.
+    trim: NotRequired[RecordingTrim]
+    # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
+    # HTTP the id of a stored one.
+    calibration: NotRequired[str]
+
+
+class RecordingChange(TypedDict):
+    id: NotRequired[str | None]
+    file: NotRequired[str | None]
+    rate_hz: NotRequired[float | None]
+    columns: NotRequired[RecordingMembersColumns | None]
+    condition: NotRequired[Condition]
+    trim: NotRequired[RecordingMembersTrim | None]
+
+
+class RecordingColumn(TypedDict):
+    quantity: Literal['time', 'angular_rate', 'specific_force', 'temperature', 'reference_angular_rate',
+                      'reference_specific_force', 'reference_angle', 'magnetic_field', 'gnss_position', 'gnss_velocity',
+                      'reference_position', 'reference_velocity', 'reference_attitude']
+    # x, y, z; lat, lon, height or north, east, down for positions; north, east, down for velocities; roll, pitch, yaw
+    # for attitudes.
+    axis: NotRequired[str]
+    # A unit that measures the quantity; without one the channel has the unit 1, with a note.
+    unit: NotRequired[str]
+
+
+class RecordingDevice(TypedDict):
+    # The user's name of the device, or its id.
+    id: str
+    model: NotRequired[str]
+    imu: NotRequired[str]
+    serial: NotRequired[str]
+
+
+class RecordingMembers(TypedDict):
+    # The user's name of the recording.
+    id: NotRequired[str]
+    # The file beside the study; an upload carries its bytes itself and ignores it.
+    file: NotRequired[str]
+    # Samples per second; required without a time column.
+    rate_hz: NotRequired[float]
+    # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
+    # a note.
+    columns: NotRequired[dict[str, RecordingColumn]]
+    condition: Condition
+    # Seconds to leave out at the ends.
+    trim: NotRequired[RecordingTrim]
+    # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
+    # HTTP the id of a stored one.
+    calibration: NotRequired[str]
+
+
+class RecordingTrim(TypedDict):
+    """Seconds to leave out at the ends."""
+
+    start_s: NotRequired[float]
+    end_s: NotRequired[float]
+
+
+class RecordingUploadMetadata(TypedDict):
+    """Metadata of an upload. A recording and the device that made it."""
+
+    # The user's name of the recording.
+    id: NotRequired[str]
+    # The file beside the study; an upload carries its bytes itself and ignores it.
+    file: NotRequired[str]
+    # Samples per second; required without a time column.
+    rate_hz: NotRequired[float]
+    # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
+    # a note.
+    columns: NotRequired[dict[str, RecordingColumn]]
+    condition: Condition
+    # Seconds to leave out at the ends.
+    trim: NotRequired[RecordingTrim]
+    # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
+    # HTTP the id of a stored one.
+    calibration: NotRequired[str]
+    device: NotRequired[str | RecordingDevice]
+
+
+class StoredRecording(TypedDict):
+    """Stored recording."""
+
+    id: str
+    device: str
+    # Grows when the metadata change; results name it.
+    revision: int
+    metadata: Recording
+    quality: StoredRecordingQuality
+    # The bytes as uploaded; in lists only their digest.
+    file: StoredRecordingFile
+    created_at: str
+    updated_at: str
+
+
+class StoredRecordingFile(TypedDict):
+    """The bytes as uploaded; in lists only their digest."""
+
+    sha256: str
+    bytes: NotRequired[int]
+    format: NotRequired[Literal['csv', 'npy']]
+    compression: NotRequired[Literal['none', 'gzip', 'xz', 'zstd']]
+    rows: NotRequired[int]
+    # Names in file order.
+    columns: NotRequired[list[str]]
+    notes: NotRequired[list[str]]
+
+
+class StoredRecordingQuality(TypedDict):
+    """What was found true of the recording as it came."""
+
+    samples: int
+    # Samples of the window that analysis uses.
+    analysed: int
+    # Samples that the time column says are missing between these.
+    missing: NotRequired[int]
+    gaps: int
+    repeated_stamps: int
+    longest_gap_s: float | None
+    # Steps of the time column below 0; the recording is split there.
+    backward_steps: NotRequired[int]
+    # Times a counter in the time column started again; it is continued.
+    counter_wraps: NotRequired[int]
+    # Stamps given on arrival; samples are read as evenly spaced.
+    bursts: NotRequired[bool]
+    # Half the distance of the 5 % and 95 % quantiles of the steps of the time column.
+    jitter_s: NotRequired[float]
+    # From the time column; null without one.
+    measured_rate_hz: float | None
+    # Measured over stated rate, where both are there.
+    clock_ratio: NotRequired[float | None]
+    # What is true of each sensor column over the whole file, and which of its samples are analysed.
+    channels: NotRequired[list[StoredRecordingQualityChannel]]
+    notes: list[str]
+
+
+class StoredRecordingQualityChannel(TypedDict):
+    column: str
+    # Cells without a number.
+    missing: int
+    # Numbers that are no measurements (-9999, -1.7e38), taken as missing.
+    implausible: int
+    # Samples equal to the one before.
+    repeated: int
+    # Distinct values; null above 256.
+    distinct: int | None
+    # Step of the lattice on which the values lie, in the unit of the column.
+    resolution: float | None
+    # Samples at full scale.
+    saturated: int
+    # Samples of a stretch in which the sensor gives one value only.
+    frozen: int
+    # Its first sample, from 1.
+    frozen_from: int | None
+    # First analysed sample, from 1.
+    first: int
+    # Last analysed sample.
+    last: NotRequired[int]
+    # Samples analysed: those of first to last without any of the above.
+    analysed: int
+
+
+class StoredStudy(TypedDict):
+    """Stored study. A study over uploaded recordings."""
+
+    id: str
+    device: str
+    study: StudyRequest
+    created_at: str
+
+
+class Study(TypedDict):
+    """Study. One device, some of its recordings, and the dynamic condition under which each was made."""
+
+    device: RecordingDevice
+    labels: NotRequired[dict[str, str]]
+    recordings: list[Recording]
+    baseline: NotRequired[StudyBaseline]
+
+
+class StudyBaselineAuto(TypedDict):
+    kind: Literal['auto']
+
+
+class StudyBaselineFitModel(TypedDict):
+    kind: Literal['fit', 'model']
+    # A stored fit or model.
+    id: str
+    channels: NotRequired[list[str]]
+
+
+class StudyBaselineModel(TypedDict):
+    kind: Literal['model']
+    processes: ModelProcesses
+    # Columns it is for, or columns with processes of their own.
+    channels: NotRequired[list[str] | ModelChannels]
+    deterministic: NotRequired[ModelDeterministic]
+    effects: NotRequired[ModelEffects]
+
+
+class StudyRequest(TypedDict):
+    """Study over uploaded recordings. The study document with uploaded recordings in place of files. What it says about
+    a recording must be what is stored; leave it out to take that."""
+
+    device: StudyRequestDevice
+    labels: NotRequired[dict[str, str]]
+    recordings: list[StudyRequestRecording]
+    baseline: NotRequired[StudyBaseline]
+
+
+class StudyRequestDevice(TypedDict):
+    # Name or id of a device that is known.
+    id: str
+    model: NotRequired[str]
+    imu: NotRequired[str]
+    serial: NotRequired[str]
+
+
+class StudyRequestRecording(TypedDict):
+    recording: str
+    # The name of the recording in the study.
+    id: NotRequired[str]
+    rate_hz: NotRequired[float]
+    columns: NotRequired[dict[str, Any]]
+    condition: NotRequired[Condition]
+    trim: NotRequired[dict[str, Any]]
+    calibration: NotRequired[str]
+
+
+class Trends(TypedDict):
+    """Trends. How each parameter of one sensor axis moves with |rate| and |angular acceleration|."""
+
+    device: str
+    sensor: Literal['gyroscope', 'accelerometer', 'sensor']
+    axis: str | None
+    method: Literal['av', 'gmwm']
+    model: str | None
+    trends: list[TrendsTrend]
+
+
+class TrendsRelation(TypedDict):
+    """low + (high - low) (w/scale)^exponent, w the magnitude."""
+
+    kind: Literal['constant', 'linear', 'power']
+    formula: str
+    low: float
+    high: float
+    exponent: float
+    scale: float
+    # Standard deviation of the logarithm about the relation that the intervals do not explain.
+    spread: float
+    aicc: float
+
+
+class TrendsTrend(TypedDict):
+    parameter: str
+    unit: str | None
+    against: TrendsTrendAgainst
+    points: list[TrendsTrendPoint]
+    # Conditions that do not identify the parameter.
+    left_out: list[TrendsTrendLeftOutItem]
+    # Cochran's Q: that all conditions share one value.
+    equal: TrendsTrendEqual
+    # Weighted regression on the rank of the magnitude; up or down at 5 %.
+    monotone: TrendsTrendMonotone
+    relation: TrendsRelation
+    candidates: NotRequired[list[TrendsRelation]]
+    statement: str
+
+
+class TrendsTrendAgainst(TypedDict):
+    kind: Literal['rate', 'angular_acceleration']
+    unit: Literal['deg/s', 'deg/s^2']
+
+
+class TrendsTrendEqual(TypedDict):
+    """Cochran's Q: that all conditions share one value."""
+
+    statistic: float
+    dof: int
+    p: float
+
+
+class TrendsTrendLeftOutItem(TypedDict):
+    label: str
+    at: float
+    reason: str
+
+
+class TrendsTrendMonotone(TypedDict):
+    """Weighted regression on the rank of the magnitude; up or down at 5 %."""
+
+    statistic: float | None
+    p: float | None
+    direction: Literal['up', 'down', 'none']
+    # Two or three conditions: no spread between them can be told.
+    few: bool
+
+
+class TrendsTrendPoint(TypedDict):
+    label: str
+    at: float
+    value: float
+    ci95: list[float | None]
+    contamination: NotRequired[Literal['clean', 'undecided', 'contaminated', None]]
+    robust: NotRequired[bool]
+
+
+CalibrationEstimates: TypeAlias = "dict[str, Quantity]"
+Condition: TypeAlias = (
+    "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
+    "ConditionSixPosition")
+ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
+FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
+FitModelFitProcesses: TypeAlias = "list[FitProcess]"
+JobRequest: TypeAlias = "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate"
+JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"
+ModelChannels: TypeAlias = "dict[str, ModelChannel]"
+ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"
+ModelEffects: TypeAlias = "list[ModelEffect]"
+ModelNumbers: TypeAlias = "dict[str, ModelNumber]"
+ModelProcesses: TypeAlias = "list[ModelProcess]"
+OutageScenarioModel: TypeAlias = "list[OutageScenarioModelItem]"
+OutageScenarioSensor: TypeAlias = "OutageScenarioAxis | OutageScenarioSensor2"
+ProblemErrors: TypeAlias = "list[ProblemError]"
+QuantityIdentified: TypeAlias = "Quantity | None"
+RecordingMembersColumns: TypeAlias = "dict[str, RecordingColumn]"
+RecordingMembersTrim: TypeAlias = "RecordingTrim"
+StudyBaseline: TypeAlias = "StudyBaselineAuto | StudyBaselineModel | StudyBaselineFitModel"
+
+# operationId -> what it takes and gives; `media` are the types of a good answer.
+OPERATIONS: dict[str, Operation] = {
+    'frontPage': Operation(
+        'GET', '/', (), (), ('text/html',)),
+    'health': Operation(
+        'GET', '/healthz', (), (), ('application/json',)),
+    'readiness': Operation(
+        'GET', '/readyz', (), (), ('application/json',)),
+    'contract': Operation(
+        'GET', '/openapi.json', (), (), ('application/json',)),
+    'listDocumentation': Operation(
+        'GET', '/docs', (), (), ('application/json',)),
+    'getDocumentation': Operation(
+        'GET', '/docs/{page}', (), (), ('text/markdown',)),
+    'getProblemType': Operation(
+        'GET', '/problems/{slug}', (), (), ('text/markdown',)),
+    'getSchema': Operation(
+        'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
+    'listDevices': Operation(
+        'GET', '/v1/devices', ('limit', 'cursor'), (), ('application/json',)),
+    'createDevice': Operation(
+        'POST', '/v1/devices', (), ('Idempotency-Key',), ('application/json',)),
+    'getDevice': Operation(
+        'GET', '/v1/devices/{id}', (), (), ('application/json',)),
+    'changeDevice': Operation(
+        'PATCH', '/v1/devices/{id}', (), ('If-Match',), ('application/json',)),
+    'listRecordings': Operation(
+        'GET', '/v1/recordings', ('limit', 'cursor', 'device', 'condition'), (), ('application/json',)),
+    'uploadRecording': Operation(
+        'POST', '/v1/recordings',
+        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
+         'trim_end_s', 'calibration'),
+        ('Idempotency-Key', 'Repr-Digest'), ('application/json',)),
+    'getRecording': Operation(
+        'GET', '/v1/recordings/{id}', (), (), ('application/json',)),
+    'changeRecording': Operation(
+        'PATCH', '/v1/recordings/{id}', (), ('If-Match',), ('application/json',)),
+    'deleteRecording': Operation(
+        'DELETE', '/v1/recordings/{id}', (), ('If-Match',), ()),
+    'listJobs': Operation(
+        'GET', '/v1/jobs', ('limit', 'cursor', 'kind', 'state'), (), ('application/json',)),
+    'createJob': Operation(
+        'POST', '/v1/jobs', (), ('Idempotency-Key',), ('application/json',)),
+    'getJob': Operation(
+        'GET', '/v1/jobs/{id}', (), ('Prefer',), ('application/json',)),
+    'getJobResult': Operation(
+        'GET', '/v1/jobs/{id}/result', (), (), ('application/json',)),
+    'cancelJob': Operation(
+        'POST', '/v1/jobs/{id}/cancel', (), ('Idempotency-Key',), ('application/json',)),
+    'streamJobEvents': Operation(
+        'GET', '/v1/jobs/{id}/events', (), ('Last-Event-ID',), ('text/event-stream',)),
+    'listFits': Operation(
+        'GET', '/v1/fits',
+        ('limit', 'cursor', 'device', 'recording', 'job', 'quantity', 'axis', 'model', 'best'),
+        (), ('application/json',)),
+    'getFit': Operation(
+        'GET', '/v1/fits/{id}', (), (), ('application/json',)),
+    'getParameterTable': Operation(
+        'GET', '/v1/parameter-tables',
+        ('device', 'sensor', 'axis', 'method', 'model'),
+        (), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
+    'getTrends': Operation(
+        'GET', '/v1/trends', ('device', 'sensor', 'axis', 'method', 'model'), (), ('application/json', 'text/plain')),
+    'listStudies': Operation(
+        'GET', '/v1/studies', ('limit', 'cursor', 'device'), (), ('application/json',)),
+    'createStudy': Operation(
+        'POST', '/v1/studies', (), ('Idempotency-Key',), ('application/json',)),
+    'getStudy': Operation(
+        'GET', '/v1/studies/{id}', (), (), ('application/json',)),
+    'listOutageEvaluations': Operation(
+        'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'state'), (), ('application/json',)),
+    'createOutageEvaluation': Operation(
+        'POST', '/v1/outage-evaluations', (), ('Idempotency-Key',), ('application/json',)),
+    'getOutageEvaluation': Operation(
+        'GET', '/v1/outage-evaluations/{id}', (), ('Prefer',), ('application/json',)),
+    'listCalibrations': Operation(
+        'GET', '/v1/calibrations', ('limit', 'cursor', 'device'), (), ('application/json',)),
+    'createCalibration': Operation(
+        'POST', '/v1/calibrations', (), ('Idempotency-Key',), ('application/json',)),
+    'getCalibration': Operation(
+        'GET', '/v1/calibrations/{id}', (), (), ('application/json',)),
+    'listInvestigations': Operation(
+        'GET', '/v1/investigations', ('limit', 'cursor', 'device', 'study', 'job'), (), ('application/json',)),
+    'getInvestigation': Operation(
+        'GET', '/v1/investigations/{id}', (), (), ('application/json', 'text/markdown')),
+    'listModels': Operation(
+        'GET', '/v1/models', ('limit', 'cursor', 'device', 'parent'), (), ('application/json',)),
+    'createModel': Operation(
+        'POST', '/v1/models', (), ('Idempotency-Key',), ('application/json',)),
+    'getModel': Operation(
+        'GET', '/v1/models/{id}', (), (), ('application/json',)),
+}

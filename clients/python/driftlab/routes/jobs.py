@@ -1,0 +1,67 @@
+"""Jobs, and outage evaluations, which are jobs of their own kind."""
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import cast
+
+from ..contract import Characterisation, Investigation, Job, JobEvent, JobRequest, JobState, NewOutageEvaluation
+from ..contract import OutageEvaluation, OutageEvaluationResource, OutageEvaluationSummary
+from .base import PAGE, Routes, operation
+
+
+class JobRoutes(Routes):
+    @operation("listJobs")
+    def jobs(self, *, kind: str | None = None, state: JobState | None = None, page_size: int = PAGE) -> Iterator[Job]:
+        """Jobs, oldest first."""
+        return self._list("listJobs", {"kind": kind, "state": state}, page_size)
+
+    @operation("createJob")
+    def create_job(self, request: JobRequest, *, idempotency_key: str | None = None) -> Job:
+        """Queues a job, or gives the same one that lives or has succeeded already."""
+        return cast(Job, self._post("createJob", request, idempotency_key))
+
+    @operation("getJob")
+    def job(self, id: str, *, wait_s: float | None = None) -> Job:
+        """One job; with `wait_s` (at most 60) once it has ended, or after that time."""
+        return cast(Job, self._get("getJob", {"id": id}, wait_s=wait_s))
+
+    @operation("getJobResult")
+    def job_result(self, id: str) -> Characterisation | OutageEvaluation | Investigation:
+        """What a job found, of the shape of its kind; NotFound until it has succeeded."""
+        return cast("Characterisation | OutageEvaluation | Investigation", self._get("getJobResult", {"id": id}))
+
+    @operation("cancelJob")
+    def cancel_job(self, id: str, *, idempotency_key: str | None = None) -> Job:
+        """Asks a job to stop."""
+        return cast(Job, self._post("cancelJob", None, idempotency_key, {"id": id}))
+
+    @operation("streamJobEvents")
+    def job_events(self, id: str, *, last_event_id: int | None = None) -> Iterator[tuple[int, JobEvent]]:
+        """(number, event) from the first on, or from after `last_event_id`, until the job has ended. Not resumed by itself."""
+        number, data = -1, ""
+        headers = {} if last_event_id is None else {"Last-Event-ID": str(last_event_id)}
+        for line in self._transport.lines("streamJobEvents", {"id": id}, headers):
+            name, _, value = line.partition(":")
+            if name == "id":
+                number = int(value)
+            elif name == "data":
+                data += value.removeprefix(" ")
+            elif not line and data:
+                yield number, cast(JobEvent, json.loads(data))
+                data = ""
+
+    @operation("listOutageEvaluations")
+    def outage_evaluations(self, *, state: JobState | None = None, page_size: int = PAGE) -> Iterator[OutageEvaluationSummary]:
+        """Outage evaluations, oldest first, without their results."""
+        return self._list("listOutageEvaluations", {"state": state}, page_size)
+
+    @operation("createOutageEvaluation")
+    def create_outage_evaluation(self, request: NewOutageEvaluation, *, idempotency_key: str | None = None) -> OutageEvaluationResource:
+        """Queues the comparison of filters through simulated outages; the same request is the same evaluation."""
+        return cast(OutageEvaluationResource, self._post("createOutageEvaluation", request, idempotency_key))
+
+    @operation("getOutageEvaluation")
+    def outage_evaluation(self, id: str, *, wait_s: float | None = None) -> OutageEvaluationResource:
+        """One evaluation; its member `evaluation` is None until its job has succeeded."""
+        return cast(OutageEvaluationResource, self._get("getOutageEvaluation", {"id": id}, wait_s=wait_s))

@@ -1,0 +1,84 @@
+"""Devices and their recordings."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import cast
+
+from ..contract import Condition, Device, DeviceChange, RecordingChange, StoredRecording
+from ..transport import Body
+from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query
+from .base import PAGE, Routes, given, operation
+
+
+class RecordingRoutes(Routes):
+    @operation("listDevices")
+    def devices(self, *, page_size: int = PAGE) -> Iterator[Device]:
+        """Every device, oldest first."""
+        return self._list("listDevices", {}, page_size)
+
+    @operation("createDevice")
+    def create_device(self, name: str, *, model: str | None = None, imu: str | None = None, serial: str | None = None,
+                      labels: Mapping[str, str] | None = None, idempotency_key: str | None = None) -> Device:
+        """Makes a device known, or gives the one that has these very properties; Conflict where it has others."""
+        body = given(name=name, model=model, imu=imu, serial=serial, labels=labels)
+        return cast(Device, self._post("createDevice", body, idempotency_key))
+
+    @operation("getDevice")
+    def device(self, id: str) -> Device:
+        """One device by id or name."""
+        return cast(Device, self._get("getDevice", {"id": id}))
+
+    def device_etag(self, id: str) -> str:
+        """Names the state of a device, for `if_match`."""
+        return self._etag("getDevice", {"id": id})
+
+    @operation("changeDevice")
+    def change_device(self, id: str, change: DeviceChange, *, if_match: str = "*") -> Device:
+        """Replaces the members given. With an ETag as `if_match` only where the device is still as it was read: else Conflict."""
+        answer = self._transport.call("changeDevice", {"id": id}, body=Body.of_json(change), if_match=if_match)
+        return cast(Device, answer.json)
+
+    @operation("listRecordings")
+    def recordings(self, *, device: str | None = None, condition: str | None = None, page_size: int = PAGE) -> Iterator[StoredRecording]:
+        """Recordings, oldest first; `condition` in its compact form, for example constant_rate:z:9:deg/s."""
+        return self._list("listRecordings", {"device": device, "condition": condition}, page_size)
+
+    @operation("uploadRecording")
+    def upload(self, source: Source, *, device: str, condition: str | Condition = "static", rate_hz: float | None = None,
+               columns: Columns | None = None, id: str | None = None, trim_start_s: float | None = None, trim_end_s: float | None = None,
+               calibration: str | None = None, axis: str | None = None, value: float | None = None, unit: str | None = None,
+               direction: str | None = None, progress: Progress | None = None, idempotency_key: str | None = None) -> StoredRecording:
+        """Uploads a file, bytes, or an array whose rows are samples, and says what it is. Queues no job.
+
+        columns and condition are given as in the manual (gz=angular_rate:z:deg/s; constant_rate:z:9:deg/s) or as documents; axis,
+        value, unit and direction stand beside a condition of which only the kind is given. `progress` is called with the bytes sent
+        and the bytes in all. An upload that the network cuts off is sent again under the same Idempotency-Key; the daemon checks the
+        digest, and stores the recording once.
+        """
+        upload = Upload(source, progress)
+        query = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns), "trim_start_s": trim_start_s,
+                 "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis, "value": value, "unit": unit,
+                 "direction": direction, **condition_query(condition)}
+        answer = self._transport.call("uploadRecording", None, query, upload.body(), idempotency_key=idempotency_key,
+                                      headers={"Repr-Digest": upload.digest})
+        return cast(StoredRecording, answer.json)
+
+    @operation("getRecording")
+    def recording(self, id: str) -> StoredRecording:
+        """One recording with its metadata, quality and file."""
+        return cast(StoredRecording, self._get("getRecording", {"id": id}))
+
+    def recording_etag(self, id: str) -> str:
+        """Names the state of a recording, for `if_match`."""
+        return self._etag("getRecording", {"id": id})
+
+    @operation("changeRecording")
+    def change_recording(self, id: str, change: RecordingChange, *, if_match: str = "*") -> StoredRecording:
+        """Replaces members of the metadata; None removes one. The change makes a revision."""
+        answer = self._transport.call("changeRecording", {"id": id}, body=Body.of_json(change), if_match=if_match)
+        return cast(StoredRecording, answer.json)
+
+    @operation("deleteRecording")
+    def delete_recording(self, id: str, *, if_match: str = "*") -> None:
+        """Deletes a recording and its results."""
+        self._transport.call("deleteRecording", {"id": id}, if_match=if_match)

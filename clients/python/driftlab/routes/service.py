@@ -1,0 +1,49 @@
+"""Health, contract and documentation."""
+from __future__ import annotations
+
+from typing import Any, cast
+
+from ..contract import ContractAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
+from .base import Routes, operation
+
+
+class ServiceRoutes(Routes):
+    @operation("frontPage")
+    def front_page(self) -> str:
+        """The page a person sees first, as HTML."""
+        return self._text("frontPage", "text/html")
+
+    @operation("health")
+    def health(self) -> HealthAnswer:
+        """The process answers; its version."""
+        return cast(HealthAnswer, self._get("health"))
+
+    @operation("readiness")
+    def readiness(self) -> ReadinessAnswer:
+        """The daemon can take work; Unavailable at once, without retries, where it cannot."""
+        return cast(ReadinessAnswer, self._transport.call("readiness", retries=False).json)
+
+    @operation("contract")
+    def contract(self) -> ContractAnswer:
+        """The daemon's own OpenAPI document."""
+        return cast(ContractAnswer, self._get("contract"))
+
+    @operation("getSchema")
+    def schema(self, name: str) -> dict[str, Any]:
+        """A JSON Schema that the contract refers to, for example recording.schema.json."""
+        return cast("dict[str, Any]", self._transport.call("getSchema", {"name": name}).json)
+
+    @operation("listDocumentation")
+    def documentation(self) -> ListDocumentationAnswer:
+        """The pages of the manual and of the problem types."""
+        return cast(ListDocumentationAnswer, self._get("listDocumentation"))
+
+    @operation("getDocumentation")
+    def documentation_page(self, page: str) -> str:
+        """A page of the manual as Markdown."""
+        return self._text("getDocumentation", "text/markdown", {"page": page})
+
+    @operation("getProblemType")
+    def problem_type(self, slug: str) -> str:
+        """What a problem type means and what to do about it, as Markdown; `slug` is the last part of a problem's `type`."""
+        return self._text("getProblemType", "text/markdown", {"slug": slug})

@@ -1,0 +1,62 @@
+"""Studies, simulation models and calibrations."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import cast
+
+from ..contract import Calibration, CalibrationSensors, Model, ModelRequest, StoredStudy, StudyBaseline, StudyRequestRecording
+from .base import PAGE, Routes, given, operation
+
+
+class StudyRoutes(Routes):
+    @operation("listStudies")
+    def studies(self, *, device: str | None = None, page_size: int = PAGE) -> Iterator[StoredStudy]:
+        """Studies, oldest first."""
+        return self._list("listStudies", {"device": device}, page_size)
+
+    @operation("createStudy")
+    def create_study(self, device: str, recordings: Sequence[str | StudyRequestRecording], *, labels: Mapping[str, str] | None = None,
+                     baseline: StudyBaseline | None = None, idempotency_key: str | None = None) -> StoredStudy:
+        """Names recordings of one device as one study. A recording is its id, or a document that says more of it."""
+        members = [{"recording": each} if isinstance(each, str) else each for each in recordings]
+        body = given(device={"id": device}, recordings=members, labels=labels, baseline=baseline)
+        return cast(StoredStudy, self._post("createStudy", body, idempotency_key))
+
+    @operation("getStudy")
+    def study(self, id: str) -> StoredStudy:
+        """One study."""
+        return cast(StoredStudy, self._get("getStudy", {"id": id}))
+
+    @operation("listModels")
+    def models(self, *, device: str | None = None, parent: str | None = None, page_size: int = PAGE) -> Iterator[Model]:
+        """Simulation models; with `parent` the revisions of that one."""
+        return self._list("listModels", {"device": device, "parent": parent}, page_size)
+
+    @operation("createModel")
+    def create_model(self, request: ModelRequest, *, idempotency_key: str | None = None) -> Model:
+        """Stores a simulation model; the same document again gives the model that exists."""
+        return cast(Model, self._post("createModel", request, idempotency_key))
+
+    @operation("getModel")
+    def model(self, id: str) -> Model:
+        """One model."""
+        return cast(Model, self._get("getModel", {"id": id}))
+
+    @operation("listCalibrations")
+    def calibrations(self, *, device: str | None = None, page_size: int = PAGE) -> Iterator[Calibration]:
+        """Stored calibrations."""
+        return self._list("listCalibrations", {"device": device}, page_size)
+
+    @operation("createCalibration")
+    def create_calibration(self, device: str, *, recordings: Sequence[str] | None = None, calibration: CalibrationSensors | None = None,
+                           gravity_m_s2: float | None = None, misalignment: bool | None = None,
+                           idempotency_key: str | None = None) -> Calibration:
+        """Calibrates from uploaded recordings, or keeps a calibration made elsewhere."""
+        body = given(device={"id": device}, recordings=None if recordings is None else list(recordings), calibration=calibration,
+                     gravity_m_s2=gravity_m_s2, misalignment=misalignment)
+        return cast(Calibration, self._post("createCalibration", body, idempotency_key))
+
+    @operation("getCalibration")
+    def calibration(self, id: str) -> Calibration:
+        """One stored calibration."""
+        return cast(Calibration, self._get("getCalibration", {"id": id}))

@@ -1,0 +1,83 @@
+"""How a file becomes the body of an upload: read twice, once for its digest, once to be sent; never whole in memory."""
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+import os
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO, Union
+
+import numpy
+
+from .contract import Condition, RecordingColumn
+from .transport import Body
+
+PIECE = 1 << 18
+Progress = Callable[[int, int], None]  # bytes sent, bytes in all
+Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, "numpy.ndarray[Any, numpy.dtype[Any]]"]
+Columns = Union[str, Mapping[str, RecordingColumn]]
+
+
+def opener_of(source: Source) -> Callable[[], BinaryIO]:
+    """What opens the bytes anew, from their beginning. An array is the .npy file of it: rows are samples."""
+    if isinstance(source, (str, os.PathLike)):
+        path = Path(source)
+        return lambda: path.open("rb")
+    if isinstance(source, numpy.ndarray):
+        stream = io.BytesIO()
+        numpy.save(stream, source if source.dtype == numpy.float32 else source.astype("<f8"), allow_pickle=False)
+        content = stream.getvalue()
+        return lambda: io.BytesIO(content)
+    if isinstance(source, bytes):
+        whole = source
+        return lambda: io.BytesIO(whole)
+    rest = source.read()  # a stream of unknown kind: what it still holds
+    return lambda: io.BytesIO(rest)
+
+
+class Upload:
+    """The bytes of one recording, their size and digest. An upload that was cut off is sent again from its beginning."""
+
+    def __init__(self, source: Source, progress: Progress | None = None) -> None:
+        self._open, self._progress = opener_of(source), progress
+        digest, self.size = hashlib.sha256(), 0
+        with self._open() as file:
+            while piece := file.read(PIECE):
+                digest.update(piece)
+                self.size += len(piece)
+        self.digest = "sha-256=:" + base64.b64encode(digest.digest()).decode() + ":"
+
+    def body(self) -> Body:
+        return Body(self.size, "application/octet-stream", self._pieces)
+
+    def _pieces(self) -> Iterator[bytes]:
+        """`progress` is told of a piece once the one after it is asked for, which is when the system has taken it."""
+        sent = 0
+        with self._open() as file:
+            while piece := file.read(PIECE):
+                yield piece
+                sent += len(piece)
+                if self._progress is not None:
+                    self._progress(sent, self.size)
+
+
+def condition_query(condition: str | Condition) -> dict[str, str | float]:
+    """`condition` and what stands beside it in the query, from the compact form or from the document."""
+    if isinstance(condition, str):
+        return {"condition": condition}
+    members: dict[str, Any] = {**condition}
+    return {"condition": members.pop("kind"), **members}
+
+
+def columns_text(columns: Columns | None) -> str | None:
+    """NAME=QUANTITY:AXIS:UNIT,... from that form or from the document of columns."""
+    if columns is None or isinstance(columns, str):
+        return columns
+    pieces = []
+    for name, column in columns.items():
+        if {"=", ","} & set(name):
+            raise ValueError(f"The column name {name!r} holds '=' or ','; give the column by its number instead, from \"0\".")
+        pieces.append(f"{name}={column['quantity']}:{column.get('axis', '')}:{column.get('unit', '')}".rstrip(":"))
+    return ",".join(pieces)

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Fails where code knows a cause of an investigation by name.
+
+A cause is one file of core/investigate/causes/ and one line of the registry there: the search, the report, documents, server
+and clients work from what it declares. Its name may stand in its own file, among the `rivals` of another cause, in the
+registry, in tests and in documentation. A name that is also a registered process's (core/process) may stand where processes
+are spoken of, but not where a cause is compared, looked up or written down.
+"""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import tree
+
+FOLDER = "core/investigate/causes"
+REGISTRY = f"{FOLDER}/registry.cpp"
+LITERAL = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+RIVALS = re.compile(r"\.rivals\s*=\s*\{[^}]*\}")
+LINE = re.compile(r"\bCAUSE\((\w+)\)")
+NAME = re.compile(r'\.name\s*=\s*"(\w+)"')
+PROCESS = re.compile(r'\bkName\s*=\s*"(\w+)"')
+SUFFIXES = {".cpp", ".hpp", ".h", ".ts", ".tsx", ".js", ".py"}
+TOPS = {"core", "schema", "server", "clients"}
+
+
+def without_comments(text: str) -> str:
+    """The text with comments blanked out, literals and line breaks kept."""
+    return COMMENT.sub(lambda m: m.group(0) if m.group(0)[0] == '"' else re.sub(r"[^\n]", " ", m.group(0)), text)
+
+
+def blank(pattern: re.Pattern[str], text: str) -> str:
+    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m.group(0)), text)
+
+
+def speaks_of_causes(text: str, start: int, end: int) -> bool:
+    """The literal text[start:end] is a cause's name: its own statement, as far as it reaches, says so."""
+    before = re.split(r"[;{}]\s*\n", text[:start])[-1]
+    after = re.split(r"[;\n]", text[end:], maxsplit=1)[0]
+    return re.search(r"cause", before[-160:] + after, re.IGNORECASE) is not None
+
+
+def check(root: Path) -> list[str]:
+    paths = [path for path in tree.files(root) if path.suffix in SUFFIXES]
+    texts = {path.relative_to(root).as_posix(): path.read_text() for path in paths}
+    causes: dict[str, str] = {}
+    for name, text in texts.items():
+        if name.startswith(FOLDER + "/"):
+            causes.update({cause: name for cause in NAME.findall(without_comments(text))})
+    if not causes:
+        return [f"no causes under {root / FOLDER}"]
+    processes = {p for name, text in texts.items() if name.startswith("core/process/") for p in PROCESS.findall(text)}
+    faults: list[str] = []
+    listed = LINE.findall(texts.get(REGISTRY, ""))
+    for cause, name in causes.items():
+        if Path(name).stem != cause:
+            faults.append(f"{name}: the cause {cause} belongs in a file of its own, {FOLDER}/{cause}.cpp")
+        if listed.count(cause) != 1:
+            faults.append(f"{REGISTRY}: the cause {cause} has {listed.count(cause)} lines; it needs one")
+    for name, text in texts.items():
+        if name.split("/")[0] not in TOPS:
+            continue
+        code = without_comments(text)
+        if name.startswith(FOLDER + "/"):
+            code = blank(RIVALS, code)
+        for match in LITERAL.finditer(code):
+            said = match.group(1)
+            if said not in causes or causes[said] == name:
+                continue
+            if said in processes and not speaks_of_causes(code, *match.span()):
+                continue
+            line = code.count("\n", 0, match.start()) + 1
+            faults.append(f'{name}:{line}: knows the cause "{said}" by name; let {causes[said]} declare what is special about it')
+    return faults
+
+
+if __name__ == "__main__":
+    tree.main(check)
