@@ -53,7 +53,9 @@ class Uploads(ClientTest):
         self.assertGreater(len(seen), 1)
         self.assertEqual(seen[-1], (size, size))
         self.assertEqual(sorted(seen), seen)
-        again = self.client.upload(io.BytesIO(samples.gyro_csv(60000)), device="progress", rate_hz=100, columns=samples.GYRO_Z)
+        stream = io.BytesIO(b"not of it" + samples.gyro_csv(60000))
+        stream.seek(9)
+        again = self.client.upload(stream, device="progress", rate_hz=100, columns=samples.GYRO_Z)
         self.assertEqual(again["id"], made["id"])
 
     def test_an_array_is_uploaded_as_it_is(self) -> None:
@@ -231,6 +233,7 @@ class Everything(ClientTest):
         self.assertEqual(client.fit(fit["id"]), fit)
         self.assertTrue(client.parameter_table("all-07", axis="z").rows())
         self.assertIsInstance(client.trends("all-07", axis="z").rows(), list)
+        self.assertIn("two conditions", client.trends_text("all-07", axis="z"))
 
         study = client.create_study("all-07", [first, {"recording": second}])
         self.assertEqual(client.study(study["id"])["id"], study["id"])

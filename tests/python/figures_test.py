@@ -12,7 +12,7 @@ from unittest import mock
 
 import numpy
 
-from driftlab import Calibration, Channel, Characterisation, Curve, Investigation, OutageEvaluation, ParameterTable, Trends
+from driftlab import Calibration, Channel, Characterisation, Curve, Investigation, OutageEvaluation, ParameterTable, Trends, arrays
 from driftlab.html import estimate, number
 from driftlab.tables import Frame
 
@@ -70,7 +70,7 @@ TRENDS = {"device": "phone-07", "sensor": "gyroscope", "axis": "z", "method": "g
 INVESTIGATION = {"study": "rest", "checks": [], "unexplained": [{"channel": "gz", "explanation": "Unknown.", "checks": []}],
                  "gain": {"checks_failed_before": 2, "checks_failed_after": 1}, "findings": [
                      {"cause": "temperature_bias", "status": "identified", "channels": ["gz"], "explanation": "It warms up.",
-                      "gain": {"log_score_per_sample": 0.1}}]}
+                      "gain": {"log_score_per_sample": 0.1}, "series": {"unit": "deg/s", "wavelet": {"scale_s": [0.02, 0.04]}}}]}
 OUTAGES = {"runs": 2, "seed": 1, "claims": [{"claim": "c", "supported": False, "because": "b"}],
            "filters": [{"name": "matched", "states": 9, "mean_error_m": QUANTITY, "nees": 2, "coverage95": 0.9}]}
 CALIBRATION = {"accelerometer": {"apply": {"reading_unit": "g", "bias": [0, 0, 0], "correction": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},
@@ -169,6 +169,15 @@ class Rows(unittest.TestCase):
         with mock.patch.dict(sys.modules, {"pandas": None}), self.assertRaisesRegex(ImportError, r"rows\(\) gives a list of dict"):
             table.to_pandas()
         self.assertTrue(issubclass(Channel, Frame))
+
+    def test_every_list_of_numbers_is_an_array_by_its_path(self) -> None:
+        found = arrays({"a": {"b": [1, None]}, "c": [{"d": [2.5]}, {"d": []}], "e": ["x"], "f": 1})
+        self.assertEqual(list(found), ["a.b", "c.0.d"])
+        numpy.testing.assert_array_equal(found["a.b"], [1.0, numpy.nan])
+        report = Investigation(INVESTIGATION)  # type: ignore[arg-type]
+        numpy.testing.assert_array_equal(report.series("temperature_bias")["wavelet.scale_s"], [0.02, 0.04])
+        with self.assertRaisesRegex(KeyError, "temperature_bias was"):
+            report.series("vibration")
 
     def test_open_ends_of_intervals_are_zero_and_infinity(self) -> None:
         allan = Channel(CHANNEL, "rest").allan  # type: ignore[arg-type]

@@ -76,6 +76,9 @@ class Local(unittest.TestCase):
         by_file, by_document = local.investigate("study.json"), local.investigate(study)
         self.assertEqual(by_file.document["checks"], by_document.document["checks"])
         self.assertIsInstance(by_file.rows(), list)
+        unnamed: Any = {"device": {"id": "p"}, "recordings": [{"id": "a", "rate_hz": 100, "condition": {"kind": "static"}}]}
+        with self.assertRaises(InvalidInput):
+            local.characterise(unnamed)
         os.chdir("/")
         self.assertEqual(len(local.characterise(study, folder=self.folder, models=["WN"]).channels), 1)
 

@@ -5,6 +5,9 @@ import email.utils
 import json
 import random
 import socket
+import ssl
+import subprocess
+import tempfile
 import threading
 import time
 import unittest
@@ -55,6 +58,7 @@ class Flaky:
     """Answers each connection with the next act; the last one goes on."""
 
     acts: list[Act]
+    tls: ssl.SSLContext | None = None
     requests: list[Request] = field(default_factory=list)
 
     def __enter__(self) -> Flaky:
@@ -75,6 +79,11 @@ class Flaky:
                 connection, _ = self.listener.accept()
             except OSError:
                 return
+            if self.tls is not None:
+                try:
+                    connection = self.tls.wrap_socket(connection, server_side=True)
+                except OSError:
+                    continue  # the client does not believe the certificate
             with connection:
                 raw = connection.makefile("rb")
                 method, target, _ = raw.readline().decode().split(" ")
@@ -189,6 +198,36 @@ class RetryTest(unittest.TestCase):
         with Flaky([problem(503, Retry_After="1")]) as server, self.assertRaises(Unavailable):
             self.client(server).readiness()
         self.assertEqual((len(server.requests), self.pauses), (1, []))
+
+
+def certificate(folder: str) -> str:
+    """A key and a certificate for 127.0.0.1, in one file, signed by itself."""
+    path = f"{folder}/server.pem"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2",
+                    "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", path + ".key", "-out", path + ".crt"],
+                   check=True, capture_output=True)
+    with open(path, "w") as file:
+        for part in (".key", ".crt"):
+            with open(path + part) as made:
+                file.write(made.read())
+    return path
+
+
+class Tls(unittest.TestCase):
+    def setUp(self) -> None:
+        self.pauses: list[float] = []
+
+    def test_a_certificate_is_believed_only_where_it_is_trusted(self) -> None:
+        path = certificate(self.enterContext(tempfile.TemporaryDirectory()))
+        serving = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        serving.load_cert_chain(path)
+        with Flaky([answer(200, {"status": "alive", "version": "0"})], tls=serving) as server:
+            address = f"https://127.0.0.1:{server.port}"
+            retry = Retry(sleep=self.pauses.append)
+            with self.assertRaisesRegex(Unavailable, "not trusted") as caught:
+                Client(address, retry=retry).health()
+            self.assertEqual((caught.exception.code, self.pauses, server.requests), ("untrusted", [], []))
+            self.assertEqual(Client(address, tls=ssl.create_default_context(cafile=path), retry=retry).health()["status"], "alive")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from __future__ import annotations
 from . import local
 from .client import Client
 from .problems import ClientProblem, Conflict, Forbidden, InvalidInput, JobCancelled, NotFound, Problem, ServerProblem, Unavailable
-from .results import Calibration, Channel, Characterisation, Curve, Investigation, OutageEvaluation
+from .results import Calibration, Channel, Characterisation, Curve, Investigation, OutageEvaluation, arrays
 from .tables import ParameterTable, Trends
 from .transport import Retry
 
@@ -19,4 +19,4 @@ __version__ = "0.1.0"
 __all__ = [
     "Calibration", "Channel", "Characterisation", "Client", "ClientProblem", "Conflict", "Curve", "Forbidden", "InvalidInput",
     "Investigation", "JobCancelled", "NotFound", "OutageEvaluation", "ParameterTable", "Problem", "Retry", "ServerProblem", "Trends",
-    "Unavailable", "local"]
+    "Unavailable", "arrays", "local"]

@@ -97,7 +97,9 @@ def as_files(files: Files | Document, folder: PathName) -> Iterator[list[str]]:
         elif isinstance(files, Mapping):
             document = {**files}
             if "recordings" in document:
-                document["recordings"] = [{**r, "file": str(Path(folder, r["file"]).resolve())} for r in document["recordings"]]
+                document["recordings"] = [{**recording, **{member: str(Path(folder, recording[member]).resolve())
+                                                           for member in ("file", "calibration") if member in recording}}
+                                          for recording in document["recordings"]]
             name = Path(scratch, "study.json")
             name.write_text(json.dumps(document, allow_nan=False), "utf-8")
             yield [str(name)]

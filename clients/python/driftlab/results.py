@@ -13,7 +13,7 @@ from .contract import Investigation as InvestigationDocument
 from .contract import InvestigationFinding
 from .contract import OutageEvaluation as OutageEvaluationDocument
 from .figure import Numbers
-from .tables import Frame, Row, split
+from .tables import Frame, Row, Trends, split
 
 
 def array(values: list[Any]) -> Numbers:
@@ -25,6 +25,20 @@ def ends(intervals: list[Any], count: int) -> tuple[Numbers, Numbers]:
     """Low and high ends of intervals; an open low end is 0, an open high end infinite, a missing interval NaN."""
     pairs = [interval if interval is not None else (numpy.nan, numpy.nan) for interval in intervals] or [(numpy.nan, numpy.nan)] * count
     return (array([0.0 if low is None else low for low, _ in pairs]), array([numpy.inf if high is None else high for _, high in pairs]))
+
+
+def arrays(document: Any) -> dict[str, Numbers]:
+    """Every list of numbers in a document as an array, under its path: `wavelet.scale_s`, `filters.0.outages.2.errors.north_m`, ..."""
+    found: dict[str, Numbers] = {}
+
+    def walk(node: Any, path: str) -> None:
+        if isinstance(node, list) and node and all(value is None or isinstance(value, (int, float)) for value in node):
+            found[path] = array(node)
+        elif isinstance(node, (dict, list)):
+            for key, value in node.items() if isinstance(node, dict) else enumerate(node):
+                walk(value, f"{path}.{key}" if path else str(key))
+    walk(document, "")
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +149,11 @@ class Characterisation(Frame):
         there = ", ".join(f"{c.name} of {c.recording}" for c in self.channels)
         raise KeyError(f"{len(found)} channels are meant by {name!r}; there are {there}")
 
+    @property
+    def trends(self) -> list[Trends]:
+        """How the parameters move with the dynamics, per sensor axis with two recordings or more."""
+        return [Trends(document) for document in self.document.get("trends", [])]
+
     def rows(self) -> list[Row]:
         """The rows of every channel."""
         return [row for channel in self.channels for row in channel.rows()]
@@ -159,6 +178,13 @@ class Investigation(Frame):
     @property
     def findings(self) -> list[InvestigationFinding]:
         return self.document["findings"]
+
+    def series(self, cause: str) -> dict[str, Numbers]:
+        """The arrays of the figures of a finding: measured against simulated `wavelet.…`, `spectrum.…` and `course.…`."""
+        for finding in self.findings:
+            if finding["cause"] == cause:
+                return arrays(finding.get("series", {}))
+        raise KeyError(f"{cause!r} was not found; {', '.join(f['cause'] for f in self.findings) or 'nothing'} was.")
 
     def rows(self) -> list[Row]:
         """A dict per finding: cause, status, channels, the sentence, and its gain on samples it was not fitted to [nat per sample]."""

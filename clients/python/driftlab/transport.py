@@ -16,6 +16,7 @@ from typing import Any
 from .contract import OPERATIONS, Operation
 from .problems import Problem, ServerProblem, Unavailable, problem_of
 
+SLOWEST = 4e6  # bytes per second that a daemon needs at least to take and decode an upload
 Query = Mapping[str, "str | int | float | bool | None"]
 
 
@@ -90,7 +91,7 @@ class Transport:
             sent["Idempotency-Key"] = idempotency_key or uuid.uuid4().hex
         if if_match is not None:
             sent["If-Match"] = if_match
-        patience = self.timeout
+        patience = self.timeout + (body.size if body else 0) / SLOWEST
         if wait_s is not None and "Prefer" in described.headers:
             sent["Prefer"] = f"wait={max(0, round(wait_s))}"
             patience += wait_s
@@ -112,7 +113,8 @@ class Transport:
             except Problem as problem:
                 attempt += 1
                 # What a lost connection leaves unknown is safe to ask for again only where the daemon knows the request by its key.
-                lost = problem.status == 0 and (operation.method in ("GET", "POST") or problem.code == "not_connected")
+                safe = operation.method in ("GET", "POST") or problem.code == "not_connected"
+                lost = problem.status == 0 and problem.retryable and safe
                 again = lost or problem.status in (429, 503) or (problem.status == 409 and problem.retryable)
                 if not again or attempt >= attempts or (problem.retry_after or 0.0) > self.retry.patience_s:
                     raise

@@ -6,6 +6,7 @@ import hashlib
 import io
 import os
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any, BinaryIO, Union
 
@@ -20,21 +21,29 @@ Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, "numpy.ndarray[Any, num
 Columns = Union[str, Mapping[str, RecordingColumn]]
 
 
-def opener_of(source: Source) -> Callable[[], BinaryIO]:
-    """What opens the bytes anew, from their beginning. An array is the .npy file of it: rows are samples."""
+def opener_of(source: Source) -> Callable[[], AbstractContextManager[BinaryIO]]:
+    """What opens the bytes anew, from their beginning. An array is the .npy file of it: rows are samples.
+
+    A stream is read from where it stands, and left open; one that cannot go back is read into memory.
+    """
     if isinstance(source, (str, os.PathLike)):
         path = Path(source)
         return lambda: path.open("rb")
     if isinstance(source, numpy.ndarray):
-        stream = io.BytesIO()
-        numpy.save(stream, source if source.dtype == numpy.float32 else source.astype("<f8"), allow_pickle=False)
-        content = stream.getvalue()
+        made = io.BytesIO()
+        numpy.save(made, source if source.dtype == numpy.float32 else source.astype("<f8"), allow_pickle=False)
+        content = made.getvalue()
         return lambda: io.BytesIO(content)
     if isinstance(source, bytes):
         whole = source
         return lambda: io.BytesIO(whole)
-    rest = source.read()  # a stream of unknown kind: what it still holds
-    return lambda: io.BytesIO(rest)
+    stream = source if source.seekable() else io.BytesIO(source.read())
+    start = stream.tell()
+
+    def rewound() -> AbstractContextManager[BinaryIO]:
+        stream.seek(start)
+        return nullcontext(stream)
+    return rewound
 
 
 class Upload:

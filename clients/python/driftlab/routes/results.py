@@ -55,6 +55,12 @@ class ResultRoutes(Routes):
         query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
         return Trends(cast(TrendsDocument, self._get("getTrends", None, query, wait_s)))
 
+    def trends_text(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
+                    model: str | None = None) -> str:
+        """The same trends as the daemon writes them."""
+        query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
+        return self._text("getTrends", "text/plain", None, query)
+
     @operation("listInvestigations")
     def investigations(self, *, device: str | None = None, study: str | None = None, job: str | None = None,
                        page_size: int = PAGE) -> Iterator[InvestigationSummary]:
