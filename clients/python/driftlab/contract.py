@@ -1312,6 +1312,8 @@ class PooledSensorCondition(TypedDict):
     robust: bool
     agreement: PooledSensorAgreement | None
     best: int | None
+    # Why the recordings of the condition have no joint fit; left out where they have one.
+    reason: NotRequired[str]
     fits: list[FitModelFit]
 
 
