@@ -111,6 +111,11 @@ class Markup(unittest.TestCase):
                      "white_noise.N [deg/sqrt(h)]", "1.036 [1.031, …] ↑", "static*", "from robust"):
             self.assertIn(part, shown)
 
+    def test_a_table_that_will_change_says_so(self) -> None:
+        pending: Any = {**TABLE, "pooling": {"state": "pending", "job": "/v1/jobs/job_x", "reason": None}}
+        self.assertIn("is pending", ParameterTable(pending)._repr_html_())
+        self.assertEqual((ParameterTable(pending).pooling, ParameterTable(TABLE).pooling), ("pending", "done"))  # type: ignore[arg-type]
+
     def test_numbers_are_written_as_the_command_line_does(self) -> None:
         written = [number(x) for x in (1.0364, 160.38, 0.0, 1e-5, 123456.0, float("nan"), None, 7, "word")]
         self.assertEqual(written, ["1.036", "160.4", "0", "1.000e-05", "1.235e+05", "…", "…", "7", "word"])

@@ -194,6 +194,12 @@ class RetryTest(unittest.TestCase):
                 self.client(server).health()
         self.assertEqual((caught.exception.status, caught.exception.detail), (502, "The daemon answered 502."))
 
+    def test_the_wish_to_wait_goes_where_the_contract_takes_it(self) -> None:
+        with Flaky([answer(200, DEVICE)]) as server:
+            self.client(server).job("job_x", wait_s=5.4)
+            self.client(server).create_device("phone-07")
+        self.assertEqual([request.headers.get("prefer") for request in server.requests], ["wait=5", None])
+
     def test_readiness_is_asked_once(self) -> None:
         with Flaky([problem(503, Retry_After="1")]) as server, self.assertRaises(Unavailable):
             self.client(server).readiness()

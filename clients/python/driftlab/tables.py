@@ -51,6 +51,12 @@ class ParameterTable(Frame):
         return ", ".join([*words, *([f"model {head['model']}"] if head["model"] else [])])
 
     @property
+    def pooling(self) -> str:
+        """pending while a job still fits replicates jointly, and the table will change; failed where it could not; else done."""
+        members: dict[str, Any] = {**self.document}
+        return str(members.get("pooling", {}).get("state", "done"))
+
+    @property
     def columns(self) -> list[str]:
         return [column["key"] for column in self.document["columns"]]
 
@@ -88,6 +94,8 @@ class ParameterTable(Frame):
         notes = ["value [95 % interval]; … not identifiable; ↑ ↓ changed against the first row"]
         if any(row.get("robust") for row in self.document["rows"]):
             notes.append("* gross errors: from robust variances")
+        if self.pooling != "done":
+            notes.append(f"The joint fit of replicates is {self.pooling}: they are averaged.")
         return html.table(head, rows, self.title, notes)
 
 

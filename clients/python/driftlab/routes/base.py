@@ -27,12 +27,14 @@ class Routes:
     def _get(self, name: str, path: dict[str, str] | None = None, query: Query | None = None, wait_s: float | None = None) -> Any:
         return self._transport.call(name, path, query, accept="application/json", wait_s=wait_s).json
 
-    def _text(self, name: str, media: str, path: dict[str, str] | None = None, query: Query | None = None) -> str:
-        return self._transport.call(name, path, query, accept=media).content.decode()
+    def _text(self, name: str, media: str, path: dict[str, str] | None = None, query: Query | None = None,
+              wait_s: float | None = None) -> str:
+        return self._transport.call(name, path, query, accept=media, wait_s=wait_s).content.decode()
 
-    def _post(self, name: str, document: object | None, key: str | None, path: dict[str, str] | None = None) -> Any:
+    def _post(self, name: str, document: object | None, key: str | None, path: dict[str, str] | None = None,
+              wait_s: float | None = None) -> Any:
         body = None if document is None else Body.of_json(document)
-        return self._transport.call(name, path, None, body, accept="application/json", idempotency_key=key).json
+        return self._transport.call(name, path, None, body, accept="application/json", idempotency_key=key, wait_s=wait_s).json
 
     def _etag(self, name: str, path: dict[str, str]) -> str:
         return self._transport.call(name, path, accept="application/json").headers["etag"]

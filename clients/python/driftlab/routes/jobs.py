@@ -17,9 +17,9 @@ class JobRoutes(Routes):
         return self._list("listJobs", {"kind": kind, "state": state}, page_size)
 
     @operation("createJob")
-    def create_job(self, request: JobRequest, *, idempotency_key: str | None = None) -> Job:
-        """Queues a job, or gives the same one that lives or has succeeded already."""
-        return cast(Job, self._post("createJob", request, idempotency_key))
+    def create_job(self, request: JobRequest, *, wait_s: float | None = None, idempotency_key: str | None = None) -> Job:
+        """Queues a job, or gives the same one that lives or has succeeded already; `wait_s` where the daemon takes that wish here."""
+        return cast(Job, self._post("createJob", request, idempotency_key, wait_s=wait_s))
 
     @operation("getJob")
     def job(self, id: str, *, wait_s: float | None = None) -> Job:
@@ -57,9 +57,10 @@ class JobRoutes(Routes):
         return self._list("listOutageEvaluations", {"state": state}, page_size)
 
     @operation("createOutageEvaluation")
-    def create_outage_evaluation(self, request: NewOutageEvaluation, *, idempotency_key: str | None = None) -> OutageEvaluationResource:
+    def create_outage_evaluation(self, request: NewOutageEvaluation, *, wait_s: float | None = None,
+                                 idempotency_key: str | None = None) -> OutageEvaluationResource:
         """Queues the comparison of filters through simulated outages; the same request is the same evaluation."""
-        return cast(OutageEvaluationResource, self._post("createOutageEvaluation", request, idempotency_key))
+        return cast(OutageEvaluationResource, self._post("createOutageEvaluation", request, idempotency_key, wait_s=wait_s))
 
     @operation("getOutageEvaluation")
     def outage_evaluation(self, id: str, *, wait_s: float | None = None) -> OutageEvaluationResource:

@@ -43,10 +43,10 @@ class ResultRoutes(Routes):
         return ParameterTable(cast(ParameterTableDocument, self._get("getParameterTable", None, query, wait_s)))
 
     def parameter_table_text(self, device: str, *, media: TableText = "text/plain", sensor: Sensor = "gyroscope", axis: Axis | None = None,
-                             method: AnalysisMethod = "gmwm", model: str | None = None) -> str:
+                             method: AnalysisMethod = "gmwm", model: str | None = None, wait_s: float | None = 30.0) -> str:
         """The same table as the daemon writes it: aligned text, CSV or Markdown."""
         query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
-        return self._text("getParameterTable", media, None, query)
+        return self._text("getParameterTable", media, None, query, wait_s)
 
     @operation("getTrends")
     def trends(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
@@ -56,10 +56,10 @@ class ResultRoutes(Routes):
         return Trends(cast(TrendsDocument, self._get("getTrends", None, query, wait_s)))
 
     def trends_text(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
-                    model: str | None = None) -> str:
+                    model: str | None = None, wait_s: float | None = 30.0) -> str:
         """The same trends as the daemon writes them."""
         query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
-        return self._text("getTrends", "text/plain", None, query)
+        return self._text("getTrends", "text/plain", None, query, wait_s)
 
     @operation("listInvestigations")
     def investigations(self, *, device: str | None = None, study: str | None = None, job: str | None = None,
