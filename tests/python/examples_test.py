@@ -59,7 +59,7 @@ class Examples(unittest.TestCase):
                 ran = subprocess.run([sys.executable, "-B", str(script)], capture_output=True, text=True, check=False)
                 self.assertEqual(ran.returncode, 0, ran.stderr)
                 self.assertIn("white_noise.N = ", ran.stdout)
-        self.assertIn("static, gz [deg/s]", Path("allan.svg").read_text("utf-8"))
+        self.assertIn(">static, gz<", Path("allan.svg").read_text("utf-8"))
 
     def test_every_notebook_runs_and_shows_its_figures(self) -> None:
         notebooks = sorted(EXAMPLES.glob("*.ipynb"))

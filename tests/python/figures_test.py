@@ -189,6 +189,7 @@ class Rows(unittest.TestCase):
         numpy.testing.assert_array_equal(allan.low, [0.1, 0.0, 0.0])
         numpy.testing.assert_array_equal(allan.high, [0.3, numpy.inf, 0.2])
         numpy.testing.assert_array_equal(numpy.isnan(allan.deviation), [False, True, False])
+        self.assertEqual((allan.of, allan.unit), ("rest, gz", "deg/s"))
 
 
 if __name__ == "__main__":

@@ -80,7 +80,8 @@ class Channel(Frame):
 
     @property
     def title(self) -> str:
-        return f"{self.recording}, {self.name}"
+        """The recording and the column, whose unit stands at the axis."""
+        return f"{self.recording}, {self.name.partition(' [')[0]}"
 
     @property
     def allan(self) -> Curve:
