@@ -22,27 +22,6 @@ struct ReplicateGroup {
   std::map<std::string, StructureScore> scores;
 };
 
-/// The curve in SI. Robust values, where they exist, for a contaminated channel.
-WaveletRecord record_in_si(const ReportedChannel& channel) {
-  const double factor = channel.parsed_unit().factor;
-  WaveletRecord record;
-  record.samples = channel.samples + channel.missing;
-  record.dt_s = channel.dt_s;
-  const ReportedHaar& haar = channel.haar;
-  const bool robust = channel.contaminated() && !haar.robust_variance.empty();
-  const std::vector<double>& variances = robust ? haar.robust_variance : haar.variance;
-  const std::vector<double>& efficiencies = robust ? haar.robust_efficiency : haar.efficiency;
-  for (std::size_t j = 0; j < haar.scale.size(); ++j) {
-    const double efficiency = j < efficiencies.size() ? efficiencies[j] : 1.0;
-    record.half.push_back(haar.scale[j] / 2);
-    record.inflation.push_back(efficiency > 0.0 ? 1.0 / efficiency : 1.0);
-  }
-  for (const double variance : variances) {
-    record.variance.push_back(variance * factor * factor);
-  }
-  return record;
-}
-
 std::vector<ReplicateGroup> group_by_condition(const std::vector<TableSource>& sources) {
   std::vector<ReplicateGroup> groups;
   for (const TableSource& source : sources) {
@@ -112,7 +91,7 @@ Status stack_group(ReplicateGroup& group) {
   }
   std::vector<WaveletRecord> records;
   for (const TableSource* source : group.sources) {
-    records.push_back(record_in_si(source->channel));
+    records.push_back(record_of(source->channel));
   }
   auto stack = Replicates::stack(records);
   if (stack) {

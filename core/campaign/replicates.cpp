@@ -71,17 +71,22 @@ void withdraw_ambiguous(const Model& model, double dt_s, ModelFit& fit) {
 
 }  // namespace
 
-WaveletRecord record_of(const ChannelCharacterisation& channel) {
+WaveletRecord record_of(const ReportedChannel& channel) {
+  const double factor = channel.parsed_unit().factor;
   WaveletRecord record;
-  record.samples = channel.samples + channel.missing;  // the grid
+  record.samples = channel.samples + channel.missing;
   record.dt_s = channel.dt_s;
-  const HaarCurve& haar = channel.haar;
-  const bool robust = channel.contamination.verdict == "contaminated" && !haar.robust_variance.empty();
+  const ReportedHaar& haar = channel.haar;
+  const bool robust = channel.contaminated() && !haar.robust_variance.empty();
+  const std::vector<double>& variances = robust ? haar.robust_variance : haar.variance;
+  const std::vector<double>& efficiencies = robust ? haar.robust_efficiency : haar.efficiency;
   for (std::size_t j = 0; j < haar.scale.size(); ++j) {
+    const double efficiency = j < efficiencies.size() ? efficiencies[j] : 1.0;
     record.half.push_back(haar.scale[j] / 2);
-    record.variance.push_back(robust ? haar.robust_variance[j].value_or(0.0) : haar.variance[j]);
-    const double efficiency = robust ? haar.robust_efficiency[j] : haar.efficiency.empty() ? 1.0 : haar.efficiency[j];
     record.inflation.push_back(efficiency > 0.0 ? 1.0 / efficiency : 1.0);
+  }
+  for (const double variance : variances) {
+    record.variance.push_back(variance * factor * factor);
   }
   return record;
 }

@@ -15,6 +15,7 @@
 /// under the covariance of the joint fit, by a chi-square of (R - 1) p degrees of freedom, p the parameters of the
 /// components that the joint fit has (likelihood ratio of nested models; L is a quasi-likelihood with the right
 /// covariance). Measured size and power: tests/ACCURACY.md.
+#include "core/campaign/reported_channel.hpp"
 #include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
 #include "core/fit/fit_report.hpp"
@@ -38,9 +39,9 @@ struct WaveletRecord {
   double dt_s = 0.0;
 };
 
-/// What a joint fit takes of a characterised channel [SI]: its wavelet variances, the robust ones where gross errors
-/// move the classical (verdict `contaminated`).
-[[nodiscard]] WaveletRecord record_of(const ChannelCharacterisation& channel);
+/// What a joint fit takes of a channel [SI]: its wavelet variances, the robust ones where gross errors move the
+/// classical (verdict `contaminated`).
+[[nodiscard]] WaveletRecord record_of(const ReportedChannel& channel);
 
 /// Do the recordings share their parameters?
 struct Agreement {

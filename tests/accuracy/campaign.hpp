@@ -80,7 +80,7 @@ inline Row characterise_row(const Experiment& experiment, const std::string& mod
     const std::vector<double> x = record(experiment, seed, 2 * stream + replicate);
     const auto channel = characterise_channel({.values = x, .dt_s = kDt}, {.models = {"WN"}});
     row.contaminated += channel->contamination.verdict == "contaminated" ? 1 : 0;
-    records.push_back(record_of(*channel));
+    records.push_back(record_of(reported("x", ColumnRole{}, *channel)));
   }
   auto stack = Replicates::stack(records);
   Candidate joint = stack->fit(*parse_model(model));
