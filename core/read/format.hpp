@@ -67,8 +67,8 @@ inline constexpr std::size_t kSniffBytes = std::size_t{64} * 1024;
 /// The name of a format that driftlab knows but does not read, by its magic number: "a ZIP archive", "an HDF5 file".
 [[nodiscard]] std::optional<std::string> recognise_foreign(std::string_view head);
 
-/// What unreadable bytes look like, as the end of a sentence: "a ZIP archive", "a MATLAB 5 file", "a PX4 ULog flight
-/// log", "semicolon-separated text", "binary data".
+/// What unreadable bytes look like, as the end of a sentence: "a ZIP archive", "a MATLAB 5 file", "semicolon-separated
+/// text", "binary data".
 [[nodiscard]] std::string describe_unknown(std::string_view head);
 
 /// What came out of a file.

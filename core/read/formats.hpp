@@ -11,7 +11,9 @@
   FORMAT(kMat5)     /* mat5.cpp */      \
   FORMAT(kPhoneZip) /* phone_export.cpp */ \
   FORMAT(kCxd5602)  /* cxd5602.cpp */   \
-  FORMAT(kVmu931)   /* vmu931.cpp */
+  FORMAT(kVmu931)   /* vmu931.cpp */ \
+  FORMAT(kUlog)     /* ulog.cpp */ \
+  FORMAT(kDataflash) /* dataflash.cpp */
 // clang-format on
 
 namespace driftlab::formats {

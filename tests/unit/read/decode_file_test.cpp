@@ -93,7 +93,6 @@ TEST(Unknown, IsNamedByWhatItLooksLike) {
       {"PK\x03\x04............................[Content_Types].xml", "Office"},
       {"MATLAB 7.3 MAT-file, Platform: GLNXA64", "HDF5"},
       {"\x89HDF\r\n\x1a\n\0\0\0"s, "HDF5"},
-      {"ULog\x01\x12\x35\x01", "ULog"},
       {"#ROSBAG V2.0\nE\0\0\0"s, "ROS bag"},
       {"\x89MCAP0\r\n\x01", "MCAP"},
       {"SQLite format 3\0\x10"s, "SQLite"},

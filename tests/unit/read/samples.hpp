@@ -3,6 +3,7 @@
 /// own.
 #include "core/read/format.hpp"
 #include "tests/unit/read/archives.hpp"
+#include "tests/unit/read/inertial_samples.hpp"
 
 #include <gtest/gtest.h>
 #include <lzma.h>
@@ -218,6 +219,8 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"cxd5602",
        {"9b981977,41d84d00,b9685f6a,39738705,b8c2bdea,3e823bd9,bc5bae10,411c758a\r\n"
         "9b9e7c5a,41d81f00,38b19c82,3a490aa1,b8eed188,3e81f398,bc33c37e,411c991c\r\n"}},
+      {"ulog", {ulog(inertial_rows())}},
+      {"dataflash", {dataflash(inertial_rows())}},
   };
 }
 

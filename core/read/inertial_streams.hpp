@@ -1,0 +1,82 @@
+#pragma once
+/// One recording out of a file that holds several inertial streams, each on its own clock. Internal to core/read.
+///
+/// Logs of flight controllers and robots hold many streams at several rates; a recording is one table on one clock. The
+/// rule, the same for every such format: of the streams with gyroscope and accelerometer the one with the most samples,
+/// that is of the highest rate, for all are counted over the same stretch of the file; where there is none, the same
+/// among those with a gyroscope alone, then an accelerometer alone; of equals the one that comes first in the file.
+/// What else there is stands in a note.
+///
+/// The rule is applied at the end of the file or when 16 MiB of samples are waiting, whichever is first: from there on
+/// the chosen stream passes through and the others are counted. Memory: those 16 MiB.
+#include "core/read/format.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab {
+
+/// What a stream measures, the poorest first.
+enum class Inertial { Accelerometer, Gyroscope, Both };
+
+/// The columns of a stream in SI behind its time: gyro_x (rad/s), ..., acc_x (m/s^2), ...
+[[nodiscard]] ColumnNames inertial_columns(Inertial holds);
+
+/// `name` from a file, fit for a sentence: printable ASCII, at most 80 characters, in quotes.
+[[nodiscard]] std::string quoted_name(std::string_view name);
+
+/// A list for a sentence that does not grow with the file: "'a', 'b' and 12 more".
+class NameList {
+ public:
+  void add(const std::string& entry);
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::string text_;
+  std::size_t count_ = 0;
+  std::size_t shown_ = 0;
+};
+
+class InertialStreams {
+ public:
+  /// Stamps count `ticks_per_s`. The sink's begin() is called when the choice is made.
+  InertialStreams(ColumnSink& sink, double ticks_per_s) : sink_(sink), ticks_per_s_(ticks_per_s) {}
+
+  /// A stream and its columns without the time. Error: LimitExceeded above 1024 streams.
+  [[nodiscard]] Result<std::size_t> add(std::string name, Inertial holds, ColumnNames columns);
+
+  /// The next sample of a stream. Its time is that since the stream's first sample; a value that is not finite is a
+  /// missing sample. Errors: those of the sink.
+  [[nodiscard]] Status take(std::size_t stream, std::uint64_t stamp, std::span<const double> values);
+
+  /// No sample so far.
+  [[nodiscard]] bool empty() const { return samples_ == 0; }
+
+  /// Delivers what is left and notes what was left out. Error: NoSamples, with `nothing` as its sentence.
+  [[nodiscard]] Status finish(const std::string& nothing);
+
+ private:
+  struct Stream {
+    std::string name;
+    Inertial holds;
+    ColumnNames columns;
+    std::vector<double> waiting;  ///< rows until the choice is made, and a batch of them afterwards
+    std::uint64_t first = 0;
+    std::uint64_t samples = 0;
+  };
+  [[nodiscard]] Status choose();
+  [[nodiscard]] Status flush(Stream& stream);
+
+  ColumnSink& sink_;
+  double ticks_per_s_;
+  std::vector<Stream> streams_;
+  std::size_t chosen_ = static_cast<std::size_t>(-1);
+  std::size_t waiting_bytes_ = 0;
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace driftlab
