@@ -373,7 +373,10 @@ Status CsvDecoder::finish() {
 }
 
 /// True if a format of one kind of text takes it: the table of numbers is for what nobody else knows.
-bool is_special(std::string_view head) { return kCxd5602.sniff(head) > 0 || kVmu931.sniff(head) > 0; }
+bool is_special(std::string_view head) {
+  constexpr std::array kOfText{&kCxd5602, &kVmu931, &kGeneactiv, &kEuroc, &kRostopic, &kKfGins};
+  return std::any_of(kOfText.begin(), kOfText.end(), [head](const Format* format) { return format->sniff(head) > 0; });
+}
 
 int sniff(std::string_view head) {
   if (head.starts_with(text::kByteOrderMark)) {

@@ -13,7 +13,12 @@
   FORMAT(kCxd5602)  /* cxd5602.cpp */   \
   FORMAT(kVmu931)   /* vmu931.cpp */ \
   FORMAT(kUlog)     /* ulog.cpp */ \
-  FORMAT(kDataflash) /* dataflash.cpp */
+  FORMAT(kDataflash) /* dataflash.cpp */ \
+  FORMAT(kCwa)      /* cwa.cpp */ \
+  FORMAT(kGeneactiv) /* geneactiv.cpp */ \
+  FORMAT(kEuroc)    /* euroc.cpp */ \
+  FORMAT(kRostopic) /* rostopic.cpp */ \
+  FORMAT(kKfGins)   /* kf_gins.cpp */
 // clang-format on
 
 namespace driftlab::formats {

@@ -42,7 +42,6 @@ constexpr std::array kSignatures{
               "ELF"sv,
               "a program"},
     Signature{0, "RIFF"sv, "a RIFF file (WAV or AVI)"},
-    Signature{0, "MD\xfc\x03"sv, "an Axivity CWA file"},
     Signature{0, "\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
     Signature{0, "\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
 };

@@ -221,6 +221,11 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
         "9b9e7c5a,41d81f00,38b19c82,3a490aa1,b8eed188,3e81f398,bc33c37e,411c991c\r\n"}},
       {"ulog", {ulog(inertial_rows())}},
       {"dataflash", {dataflash(inertial_rows())}},
+      {"cwa", {cwa()}},
+      {"euroc", {euroc(inertial_rows(3))}},
+      {"rostopic", {rostopic(inertial_rows(3))}},
+      {"kf_gins", {kf_gins(inertial_rows(10))}},
+      {"geneactiv", {geneactiv()}},
   };
 }
 
