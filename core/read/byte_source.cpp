@@ -39,6 +39,7 @@ class FileReader final : public ByteReader {
     }
   }
   [[nodiscard]] double fraction() const override { return ratio(taken_, size_); }
+  [[nodiscard]] std::optional<std::filesystem::path> path() const override { return path_; }
   [[nodiscard]] std::uint64_t size() const override { return size_; }
 
  private:

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,9 @@ class ByteReader {
 
   /// Size of the underlying input [bytes].
   [[nodiscard]] virtual std::uint64_t size() const = 0;
+
+  /// The file whose bytes these are, as they are; nothing for bytes that are no file's or were decompressed.
+  [[nodiscard]] virtual std::optional<std::filesystem::path> path() const { return std::nullopt; }
 };
 
 /// A file. Errors: NotFound, Io; the field `path` is the file name without its directory.
@@ -82,6 +86,9 @@ class ByteSource {
   [[nodiscard]] double fraction() const { return reader_->fraction(); }
 
   [[nodiscard]] std::uint64_t input_size() const { return reader_->size(); }
+
+  /// For a format that is read where it lies instead of as a stream: that of the reader.
+  [[nodiscard]] std::optional<std::filesystem::path> path() const { return reader_->path(); }
 
  private:
   std::unique_ptr<ByteReader> reader_;

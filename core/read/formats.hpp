@@ -13,9 +13,12 @@
   FORMAT(kCxd5602)  /* cxd5602.cpp */   \
   FORMAT(kVmu931)   /* vmu931.cpp */ \
   FORMAT(kUlog)     /* ulog.cpp */ \
+  FORMAT(kMcap)     /* mcap.cpp */ \
+  FORMAT(kRosbag)   /* rosbag.cpp */ \
   FORMAT(kDataflash) /* dataflash.cpp */ \
   FORMAT(kCwa)      /* cwa.cpp */ \
   FORMAT(kGeneactiv) /* geneactiv.cpp */ \
+  FORMAT(kRosbag2)  /* rosbag2.cpp */ \
   FORMAT(kEuroc)    /* euroc.cpp */ \
   FORMAT(kRostopic) /* rostopic.cpp */ \
   FORMAT(kKfGins)   /* kf_gins.cpp */

@@ -22,9 +22,6 @@ struct Signature {
 constexpr std::array kSignatures{
     Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save it with -v7, or the samples as CSV or .npy"},
     Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
-    Signature{0, "#ROSBAG V"sv, "a ROS bag"},
-    Signature{0, "\x89MCAP0\r\n"sv, "an MCAP file"},
-    Signature{0, "SQLite format 3\0"sv, "an SQLite database (a ROS 2 bag is one)"},
     Signature{0, "%PDF"sv, "a PDF document"},
     Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image"},
     Signature{0, "\xff\xd8\xff"sv, "a JPEG image"},

@@ -44,9 +44,9 @@ FLOORS: dict[str, list[str]] = {
     "clients/cli": DOCUMENTS,
 }
 
-# Headers -> the modules (by prefix) that may include them; every other module may not.
+# Headers -> the modules (by prefix) and single files that may include them; everything else may not.
 RESERVED = {
-    r"sqlite3\.h": ("server/store",),
+    r"sqlite3\.h": ("server/store", "core/read/rosbag2.cpp"),  # a ROS 2 bag is an SQLite database
     r"boost/(beast|asio).*": ("server", "clients/cli"),
     r"nlohmann/.*": ("schema/json", "server", "clients/cli"),
     r"spdlog/.*": ("server",),
@@ -102,7 +102,7 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
         if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
             fault(match.start(2), f"include {included} by its path from the top of the repository")
         for pattern, owners in RESERVED.items():
-            if re.fullmatch(pattern, included) and not any(module == o or module.startswith(o + "/") for o in owners):
+            if re.fullmatch(pattern, included) and not any(o in (module, name) or module.startswith(o + "/") for o in owners):
                 fault(match.start(2), f"{module} may not include <{included}>: it is kept to {', '.join(owners)}")
     if module.startswith("core/"):
         for number, line in enumerate(code_of(text).split("\n"), start=1):

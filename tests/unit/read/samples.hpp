@@ -4,6 +4,7 @@
 #include "core/read/format.hpp"
 #include "tests/unit/read/archives.hpp"
 #include "tests/unit/read/inertial_samples.hpp"
+#include "tests/unit/read/ros_samples.hpp"
 
 #include <gtest/gtest.h>
 #include <lzma.h>
@@ -226,6 +227,9 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"rostopic", {rostopic(inertial_rows(3))}},
       {"kf_gins", {kf_gins(inertial_rows(10))}},
       {"geneactiv", {geneactiv()}},
+      {"rosbag2", {rosbag2(inertial_rows(2))}},
+      {"mcap", {mcap(inertial_rows(2)), mcap(inertial_rows(2), "zstd", "ros1"), mcap(inertial_rows(2), "lz4")}},
+      {"rosbag", {rosbag(inertial_rows(2)), rosbag(inertial_rows(2), "bz2"), rosbag(inertial_rows(2), "lz4")}},
   };
 }
 
