@@ -9,7 +9,7 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-constexpr std::size_t kMostStreams = 1024;
+constexpr std::size_t kMostStreams = 256;
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr std::size_t kBatch = 8192;
 constexpr std::size_t kLongestName = 80;

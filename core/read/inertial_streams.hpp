@@ -46,7 +46,7 @@ class InertialStreams {
   /// Stamps count `ticks_per_s`. The sink's begin() is called when the choice is made.
   InertialStreams(ColumnSink& sink, double ticks_per_s) : sink_(sink), ticks_per_s_(ticks_per_s) {}
 
-  /// A stream and its columns without the time. Error: LimitExceeded above 1024 streams.
+  /// A stream and its columns without the time. Error: LimitExceeded above 256 streams.
   [[nodiscard]] Result<std::size_t> add(std::string name, Inertial holds, ColumnNames columns);
 
   /// The next sample of a stream. Its time is that since the stream's first sample; a value that is not finite is a

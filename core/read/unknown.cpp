@@ -22,6 +22,10 @@ struct Signature {
 constexpr std::array kSignatures{
     Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save it with -v7, or the samples as CSV or .npy"},
     Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
+    Signature{0, "\xb5\x62"sv, "a u-blox UBX log, which holds a receiver's messages and no recording of an IMU"},
+    Signature{0, "$GP"sv, "an NMEA log, which holds a receiver's messages and no recording of an IMU"},
+    Signature{0, "$GN"sv, "an NMEA log, which holds a receiver's messages and no recording of an IMU"},
+    Signature{0, "FMT, 128, 89"sv, "an ArduPilot log turned into text; send the .bin"},
     Signature{0, "%PDF"sv, "a PDF document"},
     Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image"},
     Signature{0, "\xff\xd8\xff"sv, "a JPEG image"},
