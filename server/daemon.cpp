@@ -18,8 +18,11 @@ namespace {
 constexpr double kLeastFreeFraction = 0.05;
 constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
 
-int worker_count(const Settings& settings) {
-  return settings.workers > 0 ? settings.workers : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+/// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
+void settle_threads(const Settings& settings, WorkerOptions& options) {
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  options.computing = settings.threads > 0 ? settings.threads : std::max(cores, settings.workers);
+  options.threads = settings.workers > 0 ? std::min(settings.workers, options.computing) : options.computing;
 }
 
 void log_request(const AccessRecord& record) {
@@ -128,7 +131,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
   }
   WorkerOptions worker_options;
-  worker_options.threads = worker_count(settings);
+  settle_threads(settings, worker_options);
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
   auto parts =
       std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(worker_options));

@@ -69,8 +69,12 @@ void add_settings(CLI::App& app, Settings& settings) {
       ->capture_default_str();
   app.add_option("--allow-host", settings.allow_host, "Another name to answer for in the Host header")
       ->envname("DRIFTLAB_ALLOW_HOST");
-  app.add_option("--workers", settings.workers, "Jobs that run at once; 0 is one per core")
+  app.add_option("--workers", settings.workers, "Jobs that run at once; 0 is as many as threads")
       ->envname("DRIFTLAB_WORKERS")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  app.add_option("--threads", settings.threads, "Threads that all jobs share; 0 is one per core, or per worker if more")
+      ->envname("DRIFTLAB_THREADS")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   app.add_option("--io-threads", settings.io_threads, "Threads that serve connections")

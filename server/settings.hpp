@@ -13,7 +13,8 @@ struct Settings {
   std::filesystem::path data = "driftlab-data";
   std::string listen = "127.0.0.1:8477";
   std::vector<std::string> allow_host;  ///< Host names answered for, beside the address and localhost
-  int workers = 0;                      ///< 0: one per core
+  int workers = 0;                      ///< jobs at a time; 0: as many as threads
+  int threads = 0;                      ///< that compute for all jobs together; 0: one per core, or per worker if more
   int io_threads = 2;
   bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
   std::string log_level = "info";

@@ -12,7 +12,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <deque>
 #include <fstream>
@@ -92,15 +91,15 @@ Exit run(const Flags& flags) {
     return complain(inputs.error());
   }
   ProgressBar bar;
-  const RunControl control{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }};
+  Executor executor(std::thread::hardware_concurrency());
+  const RunControl control{
+      interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }, {&executor}};
   auto loaded = load(*inputs, control);
   if (!loaded) {
     const bool stopped = loaded.error().code == ErrorCode::Cancelled;
     return stopped ? complain(loaded.error(), Exit::Interrupted) : complain(loaded.error());
   }
-  investigate::InvestigateOptions options;
-  options.threads = std::clamp(std::thread::hardware_concurrency(), 1U, 8U);
-  auto report = investigate::investigate(loaded->study, options, control);
+  auto report = investigate::investigate(loaded->study, {}, control);
   if (!report) {
     const bool stopped = report.error().code == ErrorCode::Cancelled;
     return stopped ? complain(report.error(), Exit::Interrupted) : complain(report.error());

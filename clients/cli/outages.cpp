@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -66,10 +65,10 @@ Exit run(const Flags& flags) {
   options.runs = flags.runs;
   options.seed = flags.seed;
   options.relative_precision = flags.precision;
-  options.threads =
-      flags.threads > 0 ? flags.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Executor executor(flags.threads > 0 ? static_cast<unsigned>(flags.threads) : std::thread::hardware_concurrency());
   RunControl control;
   control.stop = interrupt_token();
+  control.threads.executor = &executor;
   Result<OutageEvaluation> evaluation;
   {
     ProgressBar bar;

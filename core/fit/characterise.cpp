@@ -114,9 +114,8 @@ Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, con
   }
   std::erase_if(candidates, [](const Candidate& candidate) { return candidate.log_fit == nullptr; });
   if (options.search == ModelSearch::Stepwise && !candidates.empty()) {
-    RunControl part;
-    part.stop = control.stop;
-    part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.7 + 0.1 * fraction); };
+    const RunControl part = control.reporting(
+        [&](std::string_view stage, double fraction) { control.report(stage, 0.7 + 0.1 * fraction); });
     return search_models(moments, sd, covariance_of, std::move(candidates), part);
   }
   return candidates;
@@ -190,9 +189,8 @@ Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& opti
   rank(*candidates, moments, fitted.sd);
   std::vector<double> rises;
   if (options.bootstrap != 0) {
-    RunControl part;
-    part.stop = control.stop;
-    part.progress = [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); };
+    const RunControl part = control.reporting(
+        [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); });
     Result<std::vector<double>> found =
         bootstrap_rises(candidates->front(), moments, options.bootstrap, options.seed, part);
     if (!found) {

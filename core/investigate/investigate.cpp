@@ -116,12 +116,10 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The investigation was stopped.");
     }
-    RunControl part;
-    part.stop = control.stop;
-    part.progress = [&](std::string_view stage, double fraction) {
-      control.report(stage, 0.95 * (static_cast<double>(g) + fraction) / static_cast<double>(groups.size()));
-    };
-    outcomes.push_back(search_group(study, groups[g], g, options.threads, part));
+    outcomes.push_back(
+        search_group(study, groups[g], g, control.reporting([&](std::string_view stage, double fraction) {
+          control.report(stage, 0.95 * (static_cast<double>(g) + fraction) / static_cast<double>(groups.size()));
+        })));
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The investigation was stopped.");
     }
@@ -185,10 +183,9 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     finding.next_measurement = next_measurement(finding);
   }
   if (options.predict_outages) {
-    RunControl last;
-    last.stop = control.stop;
-    last.progress = [&](std::string_view, double fraction) { control.report("outages", 0.97 + 0.03 * fraction); };
-    auto outages = outage_gain(report, groups, options.threads, last);
+    auto outages = outage_gain(report, groups, control.reporting([&](std::string_view, double fraction) {
+      control.report("outages", 0.97 + 0.03 * fraction);
+    }));
     if (!outages) {
       return fail(outages.error());
     }

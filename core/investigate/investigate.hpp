@@ -20,7 +20,6 @@
 namespace driftlab::investigate {
 
 struct InvestigateOptions {
-  unsigned threads = 2;         ///< results do not depend on it
   bool predict_outages = true;  ///< half a second more
 };
 

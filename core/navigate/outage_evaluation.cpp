@@ -172,25 +172,20 @@ bool precise_enough(const Scores& scores, std::size_t filters, double relative_p
   return true;
 }
 
-/// Runs `first` to `last` - 1 on `threads` threads; the calling one works too and alone reports.
+/// Runs `first` to `last` - 1; of the threads that share them the calling one alone reports.
 void run_batch(const OutageExperiment& experiment, const OutageOptions& options, std::size_t first, std::size_t last,
                Scores& scores, std::vector<OutagePath>& paths, const RunControl& control) {
-  std::atomic<std::size_t> next{first};
   std::atomic<std::size_t> done{first};
-  const auto work = [&](bool reports) {
-    for (std::size_t run = next++; run < last && !control.stop.stop_requested(); run = next++) {
-      scores[run] = experiment.run(options.seed, run, run == 0 ? &paths : nullptr, control.stop);
-      const std::size_t finished = ++done;
-      if (reports) {
-        control.report("outages", static_cast<double>(finished) / static_cast<double>(options.runs));
-      }
+  const auto caller = std::this_thread::get_id();
+  const auto task = [&](std::size_t number) {
+    const std::size_t run = first + number;
+    scores[run] = experiment.run(options.seed, run, run == 0 ? &paths : nullptr, control.stop);
+    const std::size_t finished = ++done;
+    if (std::this_thread::get_id() == caller) {
+      control.report("outages", static_cast<double>(finished) / static_cast<double>(options.runs));
     }
   };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < options.threads; ++i) {
-    helpers.emplace_back([&] { work(false); });
-  }
-  work(true);
+  parallel_for(control.threads, last - first, task, control.stop);
 }
 
 }  // namespace
@@ -214,7 +209,7 @@ std::optional<PairedDifference> OutageEvaluation::difference(std::string_view fi
 
 Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const OutageOptions& options,
                                           const RunControl& control) {
-  if (options.runs < 2 || options.runs > 100000 || options.threads < 1 || !(options.relative_precision >= 0.0)) {
+  if (options.runs < 2 || options.runs > 100000 || !(options.relative_precision >= 0.0)) {
     return fail(ErrorCode::InvalidArgument,
                 "An evaluation takes 2 to 100000 runs and a precision that is not negative.", {{"parameter", "runs"}});
   }

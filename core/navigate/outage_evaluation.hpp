@@ -29,7 +29,6 @@ struct OutageOptions {
   /// Stops after a batch of 20 runs once every filter's mean error is known to this half-width, relative to it; 0:
   /// never.
   double relative_precision = 0.0;
-  int threads = 1;
   int scatter_runs = 200;  ///< errors of single runs kept in the result, for plotting
 };
 
@@ -99,7 +98,8 @@ struct OutageEvaluation {
   [[nodiscard]] std::optional<PairedDifference> difference(std::string_view filter, std::string_view against) const;
 };
 
-/// Errors: those of check(scenario), of the trajectory and of FilterDesign; Cancelled.
+/// The runs are tasks of `control.threads`. Errors: those of check(scenario), of the trajectory and of FilterDesign;
+/// Cancelled.
 [[nodiscard]] Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario,
                                                         const OutageOptions& options = {},
                                                         const RunControl& control = {});

@@ -54,12 +54,9 @@ FilterCandidate believing(const char* name, const ImuModel& model, const OutageS
 
 /// The second of two evaluations, which are as long as three filters' runs.
 RunControl share_of(const RunControl& control, double from, double share) {
-  RunControl part;
-  part.stop = control.stop;
-  part.progress = [&control, from, share](std::string_view stage, double fraction) {
+  return control.reporting([&control, from, share](std::string_view stage, double fraction) {
     control.report(stage, from + share * fraction);
-  };
-  return part;
+  });
 }
 
 }  // namespace
@@ -91,7 +88,6 @@ Result<OutagePrediction> predict_outage_errors(const SensorErrorModel& baseline,
   OutageOptions evaluation;
   evaluation.runs = options.runs;
   evaluation.seed = options.seed;
-  evaluation.threads = options.threads;
   evaluation.scatter_runs = 0;
   OutageScenario before = scenario;
   before.truth = promised;

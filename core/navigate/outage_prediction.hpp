@@ -31,7 +31,6 @@ struct SensorErrorModel {
 struct PredictionOptions {
   int runs = 40;  ///< 2 to 100 000
   std::uint64_t seed = 1;
-  int threads = 1;
 };
 
 struct OutagePrediction {

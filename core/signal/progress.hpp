@@ -1,8 +1,11 @@
 #pragma once
-/// Progress and cancellation as arguments, so that core/ neither prints nor reads a clock.
+/// Progress, cancellation and threads as arguments, so that core/ neither prints, reads a clock nor starts threads.
+#include "core/signal/executor.hpp"
+
 #include <functional>
 #include <stop_token>
 #include <string_view>
+#include <utility>
 
 namespace driftlab {
 
@@ -10,17 +13,22 @@ namespace driftlab {
 /// falling. Called from the calling thread only.
 using ProgressFunction = std::function<void(std::string_view stage, double fraction)>;
 
-/// What a long computation is given beside its input. Both members may be empty.
-/// A computation polls `stop` at least every 100 ms of work and then returns ErrorCode::Cancelled.
+/// What a long computation is given beside its input. Every member may be empty.
+/// A computation polls `stop` at least every 100 ms of work and then returns ErrorCode::Cancelled. Its result is the
+/// same to the bit whatever `threads` it may use.
 struct RunControl {
   std::stop_token stop;
   ProgressFunction progress;
+  ThreadShare threads = {};
 
   void report(std::string_view stage, double fraction) const {
     if (progress) {
       progress(stage, fraction);
     }
   }
+
+  /// The same stop token and threads with another progress function: for a part of a computation.
+  [[nodiscard]] RunControl reporting(ProgressFunction other) const { return {stop, std::move(other), threads}; }
 };
 
 }  // namespace driftlab

@@ -10,12 +10,13 @@
 
 namespace driftlab::server {
 
-Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, const WorkerOptions& options,
+Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, const WorkerOptions& options,
                  const std::function<void(const std::string&)>& changed)
     : job_(std::move(job)),
       lease_{job_.id, job_.attempt},
       kind_(kind),
       context_(context),
+      executor_(executor),
       options_(options),
       changed_(changed) {}
 
@@ -40,9 +41,15 @@ Result<JobResults> Attempt::work() {
   RunControl control;
   control.stop = stop_.get_token();
   control.progress = [this](std::string_view stage, double fraction) { report(stage, fraction); };
+  control.threads.executor = &executor_;
+  control.threads.around = [this](const std::function<void()>& helping) {
+    const FaultScope scope(lease_);
+    helping();
+  };
   const FaultScope scope(lease_);
   try {
     const auto request = parse_json(job_.request_json);
+    const Executor::Seat seat(executor_);
     return request ? kind_->run(*request, context_, control) : driftlab::fail(request.error());
   } catch (const std::bad_alloc&) {
     out_of_memory_ = true;

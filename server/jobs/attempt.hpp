@@ -21,10 +21,10 @@ namespace driftlab::server {
 class Attempt {
  public:
   /// `kind` may be null: the attempt then fails for good.
-  Attempt(Job job, const JobKind* kind, JobContext& context, const WorkerOptions& options,
+  Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, const WorkerOptions& options,
           const std::function<void(const std::string&)>& changed);
 
-  /// Runs the job and writes how it ended.
+  /// Waits for a seat of the executor, runs the job there and writes how it ended.
   void run();
   /// Writes progress that was thinned out, where its time has come.
   void catch_up();
@@ -54,6 +54,7 @@ class Attempt {
   const Lease lease_;
   const JobKind* kind_;
   JobContext& context_;
+  Executor& executor_;
   const WorkerOptions& options_;
   const std::function<void(const std::string&)>& changed_;
   std::stop_source stop_;

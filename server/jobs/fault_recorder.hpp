@@ -3,9 +3,10 @@
 /// SIGABRT).
 ///
 /// Such a job would bring the daemon down again after every restart. The handler writes one line, "<job id> <attempt>",
-/// to a file opened beforehand; the next daemon reads it and fails those attempts with `fault_signal`, and the store
-/// gives a job up
-/// (`dead`) at the second. SIGKILL and power loss leave no line and do not count.
+/// to a file opened beforehand; which job is that of the thread that raised the signal, be it a worker or a thread that
+/// helps it (a job's threads carry its FaultScope). The next daemon reads it and fails those attempts with
+/// `fault_signal`, and the store gives a job up (`dead`) at the second. SIGKILL and power loss leave no line and do not
+/// count.
 #include "core/signal/result.hpp"
 #include "server/store/store.hpp"
 

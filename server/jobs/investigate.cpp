@@ -231,14 +231,10 @@ class Investigate final : public JobKind {
     if (!loaded) {
       return fail(loaded.error());
     }
-    RunControl search;
-    search.stop = control.stop;
-    search.progress = [&](std::string_view stage, double fraction) {
+    const RunControl search = control.reporting([&](std::string_view stage, double fraction) {
       control.report(stage, kLoadShare + (1.0 - kLoadShare) * fraction);
-    };
-    investigate::InvestigateOptions options;
-    options.threads = 1;  // other jobs run beside this one
-    auto report = investigate::investigate(loaded->study, options, search);
+    });
+    auto report = investigate::investigate(loaded->study, {}, search);
     if (!report) {
       return fail(report.error());
     }

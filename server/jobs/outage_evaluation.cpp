@@ -15,9 +15,6 @@
 #include "server/jobs/stored_sensor.hpp"
 #include "server/jobs/stored_table.hpp"
 
-#include <algorithm>
-#include <thread>
-
 namespace driftlab::server {
 namespace {
 
@@ -114,9 +111,6 @@ void add_biases(Json& scenario, const StoredSensors& sensors, const std::string&
   }
 }
 
-/// Half of the processors: an evaluation is one job among others, and its result does not depend on this.
-int threads_for_a_job() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency() / 2)); }
-
 class OutageEvaluationKind final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return "outage_evaluation"; }
@@ -159,11 +153,10 @@ class OutageEvaluationKind final : public JobKind {
                                        const RunControl& control) const override {
     Faults faults;
     const OutageScenario scenario = scenario_or_name(request["inputs"]["scenario"], "/inputs/scenario", faults);
-    OutageOptions options = outage_options_from_json(request["parameters"], "/parameters", faults);
+    const OutageOptions options = outage_options_from_json(request["parameters"], "/parameters", faults);
     if (!faults.none()) {
       return fail(faults.error());
     }
-    options.threads = threads_for_a_job();
     auto evaluation = evaluate_outages(scenario, options, control);
     if (!evaluation) {
       return fail(evaluation.error());

@@ -20,6 +20,7 @@ struct WorkerPool::Implementation {
         options(std::move(worker_options)),
         changed(std::move(on_change)),
         kinds(std::move(lookup)),
+        executor(static_cast<unsigned>(options.computing > 0 ? options.computing : std::max(1, options.threads))),
         maintenance(context.store, context.blobs, context.clock, {}, [this] { wake(); }) {}
 
   void start();
@@ -35,6 +36,7 @@ struct WorkerPool::Implementation {
   const WorkerOptions options;
   const std::function<void(const std::string&)> changed;
   const JobKindLookup kinds;
+  Executor executor;
   Maintenance maintenance;
 
   std::mutex mutex;
@@ -92,7 +94,7 @@ bool WorkerPool::Implementation::run_next() {
     return false;
   }
   const JobKind* kind = kinds(claimed->kind);
-  const auto attempt = std::make_shared<Attempt>(std::move(*claimed), kind, context, options, changed);
+  const auto attempt = std::make_shared<Attempt>(std::move(*claimed), kind, context, executor, options, changed);
   bool too_late = false;
   {
     const std::lock_guard<std::mutex> guard(mutex);

@@ -4,7 +4,9 @@
 /// Lease 60 s, renewed every 15 s by a heartbeat thread; a lost lease or a cancel request stops the job through its
 /// stop token. Failed attempts are retried only for retryable codes (Io, DiskFull, Internal from std::bad_alloc). An
 /// idle worker sleeps until `wake` or one second. On `stop` running jobs are asked to stop and get 20 s to end, then
-/// are released. The rules of states and retries: server/jobs/README.md.
+/// are released. A job may hand independent tasks to the threads that no other job computes on; a fault or an exception
+/// there counts against that job's attempt, as one in its worker does. The rules of states and retries:
+/// server/jobs/README.md.
 #include "server/jobs/job_kind.hpp"
 
 #include <functional>
@@ -14,7 +16,10 @@
 namespace driftlab::server {
 
 struct WorkerOptions {
-  int threads = 2;
+  int threads = 2;  ///< jobs that run at a time
+  /// Threads that compute for all jobs together (core/signal/executor.hpp), the workers among them; 0: as many as
+  /// workers. A job that finds all of them at work waits for one.
+  int computing = 0;
   std::int64_t lease_micros = 60'000'000;
   std::int64_t renew_micros = 15'000'000;
   /// How long an idle worker sleeps when nobody wakes it.

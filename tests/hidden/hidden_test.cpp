@@ -73,12 +73,11 @@ TEST(NothingHidden, NothingIsFound) {
 TEST(NothingHidden, TheResultDoesNotDependOnTheNumberOfThreads) {
   const Case hidden = make_case("linear_drift", 12.0, 3);
   const SimulatedStudy simulated = simulate_study(hidden.world, {hidden.effect});
-  InvestigateOptions one;
-  one.threads = 1;
-  InvestigateOptions three;
-  three.threads = 3;
-  const auto a = investigate::investigate(simulated.study, one);
-  const auto b = investigate::investigate(simulated.study, three);
+  Executor three(3);
+  RunControl shared;
+  shared.threads.executor = &three;
+  const auto a = investigate::investigate(simulated.study);
+  const auto b = investigate::investigate(simulated.study, {}, shared);
   ASSERT_TRUE(a && b);
   ASSERT_EQ(a->findings.size(), b->findings.size());
   for (std::size_t i = 0; i < a->findings.size(); ++i) {

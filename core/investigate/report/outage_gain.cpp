@@ -94,16 +94,14 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
 }
 
 Result<std::optional<OutageGain>> outage_gain(const Report& report, const std::vector<ChannelGroup>& groups,
-                                              unsigned threads, const RunControl& control) {
+                                              const RunControl& control) {
   const OutageScenario scenario = prediction_scenario();
   SensorModels models = sensor_models(report, groups, scenario);
   if (std::none_of(models.baseline.axes.begin(), models.baseline.axes.end(),
                    [](const auto& axis) { return axis.has_value(); })) {
     return std::optional<OutageGain>();
   }
-  PredictionOptions options;
-  options.threads = static_cast<int>(std::max(1U, threads));
-  auto predicted = predict_outage_errors(models.baseline, models.extended, scenario, options, control);
+  auto predicted = predict_outage_errors(models.baseline, models.extended, scenario, {}, control);
   if (!predicted) {
     if (predicted.error().code == ErrorCode::Cancelled) {
       return fail(predicted.error());

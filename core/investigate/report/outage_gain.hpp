@@ -26,7 +26,7 @@ struct SensorModels {
 
 /// Nothing where no studied column is an axis of a gyroscope or accelerometer. Deterministic. Errors: Cancelled.
 [[nodiscard]] Result<std::optional<OutageGain>> outage_gain(const Report& report,
-                                                            const std::vector<ChannelGroup>& groups, unsigned threads,
+                                                            const std::vector<ChannelGroup>& groups,
                                                             const RunControl& control = {});
 
 }  // namespace driftlab::investigate

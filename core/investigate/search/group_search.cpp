@@ -24,9 +24,9 @@ constexpr int kRounds = 4;
 class GroupSearch {
  public:
   /// What is found is written to `outcome`.
-  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
-              const RunControl& control, GroupOutcome& outcome)
-      : study_(study), group_(group), index_(index), threads_(threads), control_(control), outcome_(outcome) {}
+  GroupSearch(const Study& study, const ChannelGroup& group, std::size_t index, const RunControl& control,
+              GroupOutcome& outcome)
+      : study_(study), group_(group), index_(index), control_(control), outcome_(outcome) {}
 
   void run() {
     if (!check_usable()) {
@@ -164,7 +164,7 @@ class GroupSearch {
       quantization_ = given_quantization(study_.baseline, group_);
       take_given_means(study_.baseline, group_, error_);
     }
-    SlowSearch search(study_, group_, block_model(), threads_, control_.stop);
+    SlowSearch search(study_, group_, block_model(), control_);
     search.set_data(error_, mask_);
     search.fit_null();
     std::vector<Evidence> slow_found;
@@ -397,7 +397,6 @@ class GroupSearch {
   const Study& study_;
   const ChannelGroup& group_;
   std::size_t index_;
-  unsigned threads_;
   const RunControl& control_;
   std::optional<SlowModel> given_;
   std::vector<std::vector<double>> error_;
@@ -410,10 +409,9 @@ class GroupSearch {
 
 }  // namespace
 
-GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, unsigned threads,
-                          const RunControl& control) {
+GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index, const RunControl& control) {
   GroupOutcome outcome;
-  GroupSearch(study, group, index, threads, control, outcome).run();
+  GroupSearch(study, group, index, control, outcome).run();
   return outcome;
 }
 

@@ -25,6 +25,6 @@ struct GroupOutcome {
 
 /// `group` is number `index` of the study. Once `stop` is requested it ends soon, with an outcome of no meaning.
 [[nodiscard]] GroupOutcome search_group(const Study& study, const ChannelGroup& group, std::size_t index,
-                                        unsigned threads, const RunControl& control = {});
+                                        const RunControl& control = {});
 
 }  // namespace driftlab::investigate

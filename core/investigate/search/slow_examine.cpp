@@ -1,6 +1,5 @@
 /// One look at a group: slow processes of their own, and the mean effects that screening proposes.
 #include "core/investigate/fullrate/full_rate.hpp"
-#include "core/investigate/search/parallel.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/slow/screening.hpp"
 
@@ -105,7 +104,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
     }
   }
   std::vector<Evidence> results(jobs.size());
-  parallel_for(jobs.size(), threads_, [&](std::size_t i) {
+  parallel_for(threads_, jobs.size(), [&](std::size_t i) {
     const Job& job = jobs[i];
     const SlowKind kind = job.cause->as<SlowNoise>()->kind;
     const SlowFit fit = fit_extra(kind, job.scope, job.base, columns);
@@ -136,7 +135,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
 std::vector<Evidence> SlowSearch::examine() {
   const std::vector<SlowModel> bases = screening_bases();
   std::vector<std::vector<Screened>> per_base(bases.size());
-  parallel_for(bases.size(), threads_, [&](std::size_t i) {
+  parallel_for(threads_, bases.size(), [&](std::size_t i) {
     if (stop_.stop_requested()) {
       return;
     }
@@ -181,7 +180,7 @@ std::vector<Evidence> SlowSearch::examine() {
     }
   }
   std::vector<Evidence> found(chosen.size());
-  parallel_for(chosen.size(), threads_, [&](std::size_t i) { found[i] = fit_jointly(chosen[i]); });
+  parallel_for(threads_, chosen.size(), [&](std::size_t i) { found[i] = fit_jointly(chosen[i]); });
   if (stop_.stop_requested()) {
     return {};
   }

@@ -1,6 +1,5 @@
 /// Mean effects: every candidate at a few bases without refitting, the best of them jointly with the base.
 #include "core/investigate/fullrate/full_rate.hpp"
-#include "core/investigate/search/parallel.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/slow/screening.hpp"
 #include "core/investigate/slow/step_scan.hpp"
@@ -26,7 +25,7 @@ std::vector<SlowModel> SlowSearch::screening_bases() const {
   // Fits to single recordings: where the effect is absent, the base is clean.
   const std::size_t pooled = bases.size();
   bases.resize(pooled + group_.members.size());
-  parallel_for(group_.members.size(), threads_, [&](std::size_t r) {
+  parallel_for(threads_, group_.members.size(), [&](std::size_t r) {
     BlockSeries single = series_;
     single.recordings = {series_.recordings[r]};
     single.recordings[0].pattern = 0;

@@ -1,7 +1,6 @@
 #include "core/investigate/search/slow_search.hpp"
 
 #include "core/investigate/fullrate/full_rate.hpp"
-#include "core/investigate/search/parallel.hpp"
 #include "core/investigate/study/inputs.hpp"
 
 #include <algorithm>
@@ -37,9 +36,9 @@ bool needs_full_rate(const ChannelGroup& group) {
 
 }  // namespace
 
-SlowSearch::SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads,
-                       std::stop_token stop)
-    : study_(study), group_(group), given_(std::move(given)), threads_(threads), stop_(std::move(stop)) {
+SlowSearch::SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given,
+                       const RunControl& control)
+    : study_(study), group_(group), given_(std::move(given)), threads_(control.threads), stop_(control.stop) {
   accepted_.push_back({nullptr, all_members(group), 0.0, 1});
 }
 
@@ -130,7 +129,7 @@ void SlowSearch::build_templates() {
     }
   }
   templates_.resize(wanted.size());
-  parallel_for(wanted.size(), threads_,
+  parallel_for(threads_, wanted.size(),
                [&](std::size_t i) { templates_[i] = make_templates(wanted[i].cause, wanted[i].shape); });
 }
 
@@ -248,7 +247,7 @@ const SlowFit& SlowSearch::fit_null() {
   } else {
     const std::vector<SlowModel> starts = starting_orders(columns);
     orders_.resize(starts.size());
-    parallel_for(starts.size(), threads_,
+    parallel_for(threads_, starts.size(),
                  [&](std::size_t i) { orders_[i] = fit_slow(series_, columns, starts[i], freedom()); });
     // One order above the best two.
     if (orders_.back().log_likelihood - orders_[1].log_likelihood > 0.5 * kGaussMarkovCost) {

@@ -9,6 +9,7 @@
 /// Gauss-Markov process, 3 per random walk.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
+#include "core/signal/progress.hpp"
 
 #include <optional>
 #include <span>
@@ -36,10 +37,10 @@ struct Regressor {
 /// What the search knows about one group between its rounds.
 class SlowSearch {
  public:
-  /// `given`: the baseline's slow model where it is given. `threads` share the joint fits; results do not depend on it.
-  /// Once `stop` is requested everything ends soon, with results of no meaning.
-  SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given, unsigned threads,
-             std::stop_token stop = {});
+  /// `given`: the baseline's slow model where it is given. Of `control` it uses the threads, to which it hands the
+  /// joint fits, and the stop token: once stop is requested everything ends soon, with results of no meaning.
+  SlowSearch(const Study& study, const ChannelGroup& group, std::optional<SlowModel> given,
+             const RunControl& control = {});
 
   /// (Re)reads the error of the group: `error[r]` over the grid of member r; `mask[r]` removes samples.
   void set_data(const std::vector<std::vector<double>>& error, const std::vector<std::vector<unsigned char>>& mask);
@@ -124,7 +125,7 @@ class SlowSearch {
   const Study& study_;
   const ChannelGroup& group_;
   std::optional<SlowModel> given_;
-  unsigned threads_;
+  ThreadShare threads_;
   std::stop_token stop_;
   BlockSeries series_;
   std::vector<std::vector<double>> error_;

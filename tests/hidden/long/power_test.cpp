@@ -280,10 +280,12 @@ TEST(HiddenEffects, EightQuartersOfAnHourTakeSeconds) {
   }
   InvestigateOptions two;
   two.predict_outages = false;
-  two.threads = 2;
+  Executor executor(2);
+  RunControl control;
+  control.threads.executor = &executor;
   const auto began = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  const auto report = investigate::investigate(simulated.study, two);
+  const auto report = investigate::investigate(simulated.study, two, control);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   const double cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   ASSERT_TRUE(report);

@@ -79,17 +79,20 @@ TEST(OutageGain, SlowNoiseThatTheBaselineLacksCostsMetresAndAFilterThatKnowsItLo
   Report report = with_noise_alone("gz");
   report.findings.push_back(found("random_walk", {1e-4}));  // [rad/s/sqrt(s)]
   const std::vector<ChannelGroup> groups{gyro_group("gz", "z")};
-  const auto one = outage_gain(report, groups, 1);
+  const auto one = outage_gain(report, groups);
   ASSERT_TRUE(one && *one);
   EXPECT_GT((*one)->extended_m.value, 1.3 * (*one)->baseline_m.value);
   EXPECT_LT((*one)->adopted_m.value, (*one)->extended_m.value);
-  const auto two = outage_gain(report, groups, 2);
+  Executor executor(2);
+  RunControl control;
+  control.threads.executor = &executor;
+  const auto two = outage_gain(report, groups, control);
   ASSERT_TRUE(two && *two);
   EXPECT_EQ((*two)->extended_m.value, (*one)->extended_m.value) << "depends on the number of threads";
 }
 
 TEST(OutageGain, WithoutAFindingBothModelsPredictTheSame) {
-  const auto gain = outage_gain(with_noise_alone("gz"), {gyro_group("gz", "z")}, 1);
+  const auto gain = outage_gain(with_noise_alone("gz"), {gyro_group("gz", "z")});
   ASSERT_TRUE(gain && *gain);
   EXPECT_EQ((*gain)->baseline_m.value, (*gain)->extended_m.value);
 }
@@ -97,7 +100,7 @@ TEST(OutageGain, WithoutAFindingBothModelsPredictTheSame) {
 TEST(OutageGain, AColumnThatIsNoAxisOfAnInertialUnitHasNone) {
   ChannelGroup group = gyro_group("m", "z");
   group.role.quantity = Quantity::MagneticField;
-  const auto gain = outage_gain(with_noise_alone("m"), {group}, 1);
+  const auto gain = outage_gain(with_noise_alone("m"), {group});
   ASSERT_TRUE(gain);
   EXPECT_FALSE(*gain);
 }

@@ -37,8 +37,12 @@ TEST(OutageEvaluation, IsTheSameForAnyNumberOfThreads) {
   options.runs = 7;
   options.seed = 42;
   const auto one = *evaluate_outages(first_turn(), options);
-  options.threads = 3;
-  EXPECT_TRUE(same(one, *evaluate_outages(first_turn(), options)));
+  for (const unsigned threads : {2U, 8U}) {
+    Executor executor(threads);
+    RunControl control;
+    control.threads.executor = &executor;
+    EXPECT_TRUE(same(one, *evaluate_outages(first_turn(), options, control))) << threads << " threads";
+  }
   options.seed = 43;
   EXPECT_FALSE(same(one, *evaluate_outages(first_turn(), options)));
 }
