@@ -51,7 +51,7 @@ void drop_confirmed(const Baseline& baseline, const std::vector<ChannelGroup>& g
                     std::vector<std::string>& notes) {
   std::erase_if(found, [&](const Evidence& evidence) {
     const ChannelGroup& group = groups[evidence.group];
-    if (confirmed_by(baseline, group, evidence) == nullptr) {
+    if (!confirmed(baseline, group, evidence)) {
       return false;
     }
     notes.push_back("The baseline holds " + std::string(evidence.cause->name) + " of " + group.column +

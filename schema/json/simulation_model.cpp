@@ -129,6 +129,40 @@ std::vector<std::string> texts(const Json* list) {
   return names;
 }
 
+/// One value per parameter of the cause, in declared order; where each shape of a mean effect has a parameter of its
+/// own, the first one there is, and its shape. Nothing where one is missing or does not fit.
+std::optional<std::vector<double>> read_effect_values(const Json& params, const Cause& cause,
+                                                      const std::string& pointer, Faults& faults) {
+  const auto* const mean = cause.as<investigate::MeanEffect>();
+  const bool one_of_them = mean != nullptr && !mean->shape_of_parameter.empty();
+  std::vector<double> values;
+  for (std::size_t k = 0; k < cause.parameters.size(); ++k) {
+    const CauseParameter& parameter = cause.parameters[k];
+    const std::string name(parameter.name);
+    const std::string here = pointer + "/" + name;
+    const auto found = params.find(name);
+    if (found == params.end()) {
+      if (one_of_them && k + 1 < cause.parameters.size()) {
+        continue;
+      }
+      faults.add(here, ErrorCode::InvalidArgument,
+                 "The parameter " + name + " of " + std::string(cause.name) + " is missing.");
+      return std::nullopt;
+    }
+    const std::optional<double> value = cause_value(read_measured(*found, here, faults), parameter);
+    if (!value) {
+      faults.add(here + "/unit", ErrorCode::UnitMismatch,
+                 "This unit does not measure " + name + " of " + std::string(cause.name) + ".");
+      return std::nullopt;
+    }
+    if (one_of_them) {
+      return std::vector{*value, mean->shape_of_parameter[k]};
+    }
+    values.push_back(*value);
+  }
+  return values;
+}
+
 void read_effect(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {
   ObjectReader reader(document, pointer, faults);
   GivenEffect effect;
@@ -143,32 +177,11 @@ void read_effect(const Json& document, const std::string& pointer, Baseline& mod
                "An effect names a cause, and there is none called '" + effect.cause + "'.");
     return;
   }
-  for (std::size_t k = 0; k < cause->parameters.size(); ++k) {
-    const CauseParameter& parameter = cause->parameters[k];
-    const auto found = params->find(std::string(parameter.name));
-    if (found == params->end()) {
-      continue;
-    }
-    const std::string here = pointer + "/params/" + std::string(parameter.name);
-    const std::optional<double> value = cause_value(read_measured(*found, here, faults), parameter);
-    if (!value) {
-      faults.add(here + "/unit", ErrorCode::UnitMismatch,
-                 "This unit does not measure " + std::string(parameter.name) + " of " + effect.cause + ".");
-      continue;
-    }
-    effect.values.push_back(*value);
-    const auto* const mean = cause->as<investigate::MeanEffect>();
-    if (mean != nullptr &&
-        k < mean->shape_of_parameter.size()) {  // the parameter that is given says which shape it has
-      effect.values = {*value, mean->shape_of_parameter[k]};
-      break;
-    }
+  auto values = read_effect_values(*params, *cause, pointer + "/params", faults);
+  if (values) {
+    effect.values = *std::move(values);
+    model.effects.push_back(std::move(effect));
   }
-  if (effect.values.empty()) {
-    faults.add(pointer + "/params", ErrorCode::InvalidArgument, "The effect has none of the parameters of its cause.");
-    return;
-  }
-  model.effects.push_back(std::move(effect));
 }
 
 void read_deterministic(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {

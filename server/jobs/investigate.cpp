@@ -21,7 +21,7 @@ namespace driftlab::server {
 namespace {
 
 /// Grows whenever the same study could give another report.
-constexpr int kInvestigationVersion = 1;
+constexpr int kInvestigationVersion = 2;
 /// Of the progress; the rest is the search.
 constexpr double kLoadShare = 0.1;
 

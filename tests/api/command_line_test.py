@@ -106,7 +106,8 @@ class CommandLine(DaemonTest):
         model = {"processes": [{"process": "white_noise", "params": {"N": {"value": 0.01, "unit": "deg/sqrt(s)"}}}],
                  "effects": [{"cause": "missing_samples", "params": {"fraction": {"value": 0.1, "unit": "1"}}},
                              {"cause": "output_resolution", "params": {"step": {"value": 0.5, "unit": "deg/s"}}},
-                             {"cause": "temperature_bias", "params": {"coefficient": {"value": 1, "unit": "deg/s/degC"}}}]}
+                             {"cause": "temperature_bias", "params": {"coefficient": {"value": 1, "unit": "deg/s/degC"},
+                                                                 "lag_s": {"value": 0, "unit": "s"}}}]}
         (self.folder / "model.json").write_text(json.dumps({"extended_model": model}))
         made = self.driftlab("simulate", "--model", "model.json", "--duration-s", "100", "--out", "effects.csv")
         self.assertEqual(made.returncode, 0, made.stderr)

@@ -117,7 +117,7 @@ class OutageEvaluations(DaemonTest):
             "name": "by channel", "processes": [white(1.5)],
             "channels": {"gx": {"processes": [white(1.5)]}, "gy": {"processes": [white(2.5)]}, "gz": {"processes": [white(3.5)]}},
             "deterministic": {"gz": {"bias": level(0.7, "deg/s"), "drift": level(0.001, "deg/s/s")}},
-            "effects": [{"cause": "bias_step", "channels": ["gz"], "params": {"step": level(1, "deg/s")}},
+            "effects": [{"cause": "bias_step", "channels": ["gz"], "params": {"step": level(1, "deg/s"), "t0_s": level(60, "s")}},
                         {"cause": "scale_factor_error", "channels": ["gw"], "params": {"S": level(250, "ppm")}}]})).json["id"]
         scenario = copy.deepcopy(SCENARIO)
         scenario["truth"]["gyro"] = {"simulation_model": model, "constant_bias_sd_deg_s": 0.05}

@@ -41,6 +41,9 @@ void add_slow(SlowKind kind, double level, double beta, double dt_s, Random& ran
 }
 
 void inject(const Cause& cause, Draft& draft, std::span<const double> values, Random& random) {
+  if (values.size() < cause.parameters.size()) {
+    return;
+  }
   if (cause.inject != nullptr) {
     cause.inject(draft, values, random);
     return;

@@ -24,7 +24,8 @@ struct Draft {
   std::vector<double> stamp_error_s;                              ///< empty: exact stamps
 };
 
-/// Puts `cause` with parameters `values` (SI, in declared order) into the draft.
+/// Puts `cause` with parameters `values` (SI, in declared order) into the draft. With fewer values than the cause has
+/// parameters the draft stays as it is.
 void inject(const Cause& cause, Draft& draft, std::span<const double> values, Random& random);
 
 /// Adds one realisation of a slow process to `out`.

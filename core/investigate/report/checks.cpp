@@ -47,10 +47,18 @@ Moments moments_of(const std::vector<double>& e, const std::vector<unsigned char
   return m;
 }
 
-/// Variance over sixteen segments; a heavy tail widens the scatter by 1 + kurtosis/2.
-double segment_statistic(const std::vector<double>& e, const std::vector<unsigned char>& used, const Moments& all) {
+/// A sum of squares, and of how many independent ones.
+struct ChiSquare {
+  double x = 0.0;
+  double dof = 0.0;
+};
+
+/// Variance over sixteen segments about their common level; a heavy tail widens the scatter by 1 + kurtosis/2. A
+/// segment with 20 samples in use or fewer has no say, and no degree of freedom.
+ChiSquare segment_statistic(const std::vector<double>& e, const std::vector<unsigned char>& used, const Moments& all) {
   constexpr std::size_t kSegments = 16;
   double sum = 0.0;
+  double segments = 0.0;
   for (std::size_t s = 0; s < kSegments; ++s) {
     double square = 0.0;
     double count = 0.0;
@@ -61,13 +69,14 @@ double segment_statistic(const std::vector<double>& e, const std::vector<unsigne
     if (count > 20.0) {
       const double deviation = square / count / all.mean_square - 1.0;
       sum += 0.5 * count * deviation * deviation;
+      segments += 1.0;
     }
   }
-  return sum / std::max(0.5, 1.0 + 0.5 * all.kurtosis);
+  return {sum / std::max(0.5, 1.0 + 0.5 * all.kurtosis), segments - 1.0};
 }
 
-/// Correlations of one-second means of the innovations at lags 1 to 10 (Ljung and Box).
-double whiteness_statistic(const std::vector<double>& e, double dt_s) {
+/// Correlations of one-second means of the innovations at lags 1 to 10, or as many as there are (Ljung and Box).
+ChiSquare whiteness_statistic(const std::vector<double>& e, double dt_s) {
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / dt_s)));
   std::vector<double> mean(e.size() / block, 0.0);
   for (std::size_t b = 0; b < mean.size(); ++b) {
@@ -80,14 +89,16 @@ double whiteness_statistic(const std::vector<double>& e, double dt_s) {
   }
   const auto n = static_cast<double>(mean.size());
   double sum = 0.0;
+  double lags = 0.0;
   for (std::size_t lag = 1; lag <= 10 && lag < mean.size(); ++lag) {
     double c = 0.0;
     for (std::size_t i = lag; i < mean.size(); ++i) {
       c += mean[i] * mean[i - lag];
     }
     sum += n * (n + 2.0) / (n - static_cast<double>(lag)) * c * c / (zero * zero);
+    lags += 1.0;
   }
-  return sum;
+  return {sum, lags};
 }
 
 /// Spectrum of the innovations in sixteen bands of equal width up to a share of the Nyquist frequency, against their
@@ -167,9 +178,13 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
       continue;
     }
     const std::string stem = member.name() + ".";
-    checks.push_back(
-        chi_square_check(stem + "variance_over_time", member, segment_statistic(e, data.used[r], all), 15.0));
-    checks.push_back(chi_square_check(stem + "whiteness", member, whiteness_statistic(e, data.dt_s), 10.0));
+    const auto add = [&](const char* name, const ChiSquare& statistic) {
+      if (statistic.dof > 0.0) {
+        checks.push_back(chi_square_check(stem + name, member, statistic.x, statistic.dof));
+      }
+    };
+    add("variance_over_time", segment_statistic(e, data.used[r], all));
+    add("whiteness", whiteness_statistic(e, data.dt_s));
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
       const double share = data.band_limited() ? std::min(1.0, data.corner_hz * data.dt_s) : 1.0;
@@ -189,7 +204,7 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
   }
 }
 
-/// Holm's step-down adjustment.
+/// Holm's step-down adjustment over all of them.
 void adjust(std::vector<Check>& checks) {
   std::vector<std::size_t> order(checks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -203,7 +218,8 @@ void adjust(std::vector<Check>& checks) {
   }
 }
 
-Check cause_check(const Evidence& evidence, const ChannelGroup& group) {
+/// `causes`: how many such checks the study has.
+Check cause_check(const Evidence& evidence, const ChannelGroup& group, std::size_t causes) {
   Check check;
   check.id = group.column + "." + std::string(evidence.cause->name);
   check.recording = evidence.members.size() == 1 ? group.members[evidence.members.front()].recording->id : "";
@@ -213,9 +229,9 @@ Check cause_check(const Evidence& evidence, const ChannelGroup& group) {
   check.q025 = chi_squared_quantile(0.025, dof);
   check.median = chi_squared_quantile(0.5, dof);
   check.q975 = chi_squared_quantile(0.975, dof);
-  check.p_adjusted = std::clamp(0.05 * std::exp(-0.5 * (evidence.score - kThreshold)), 0.0, 1.0);
-  check.p = check.p_adjusted;
-  check.failed = evidence.score > kThreshold;
+  const bool shown = evidence.cause->as<FileFact>() != nullptr && evidence.score > kThreshold;
+  const double any = 0.05 * std::exp(-0.5 * (evidence.score - kThreshold));
+  check.p = shown ? 0.0 : std::clamp(any / static_cast<double>(causes), 0.0, 1.0);
   return check;
 }
 
@@ -240,6 +256,9 @@ void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<Grou
     }
   }
   report.misfit_after = samples > 0.0 ? misfit / samples : 0.0;
+  for (const Evidence& evidence : examined) {
+    before.push_back(cause_check(evidence, groups[evidence.group], examined.size()));
+  }
   adjust(before);
   adjust(after);
   const auto failed = [](const std::vector<Check>& checks) {
@@ -248,11 +267,7 @@ void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<Grou
   };
   report.failed_before = failed(before);
   report.failed_after = failed(after);
-  report.checks = before;
-  for (const Evidence& evidence : examined) {
-    report.checks.push_back(cause_check(evidence, groups[evidence.group]));
-    report.failed_before += report.checks.back().failed ? 1 : 0;
-  }
+  report.checks = std::move(before);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     Unexplained left{groups[g].column, "", {}};
     for (const Check& check : after) {

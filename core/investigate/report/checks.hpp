@@ -3,9 +3,18 @@
 ///
 /// General checks per recording, on block innovations (whiteness, Ljung and Box 1978) and on innovations at full rate
 /// (variance over sixteen segments, spectrum in sixteen bands, wavelet variance per scale, kurtosis): chi-square or
-/// normal under the model. And one check per cause: its likelihood ratio, whose probability under the model follows
-/// from the score (p = 0.05 exp(-(score - threshold)/2) over the whole study). Probabilities are adjusted over all
-/// checks of a study by Holm (1979); the chance that any fails without reason is at most 5 %.
+/// normal under the model, with as many degrees of freedom as segments, lags, bands or coefficients were in use.
+///
+/// One check per cause and channel that was examined: its likelihood ratio. The search pays in each score for the
+/// places that it looked at, and its threshold is set so that at most 5 % of studies without any effect reach it with
+/// any cause (search/thresholds.hpp); among `c` such checks of a study the probability of one is therefore taken to be
+///   p = 0.05 exp(-(score - threshold)/2) / c.
+/// What the file itself shows (a lattice, runs of one value, absent samples) is certain and has p = 0.
+///
+/// Holm's correction (1979) runs over all checks of the study together, general ones and causes of every recording and
+/// channel alike: the chance that any of them fails without reason is at most 5 %. A finding is reported by its
+/// score; one that only just passes the threshold may stand beside a check that does not fail. The general checks
+/// under the extended model are a family of their own.
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/group_search.hpp"
 

@@ -18,8 +18,8 @@ struct Check {
   double observed = 0.0;
   double q025 = 0.0, median = 0.0, q975 = 0.0;  ///< under the model
   double p = 1.0;
-  double p_adjusted = 1.0;  ///< over all checks of the study (Holm 1979)
-  bool failed = false;
+  double p_adjusted = 1.0;  ///< over all checks of the study together (Holm 1979)
+  bool failed = false;      ///< p_adjusted is below 0.05
 };
 
 struct FindingGain {

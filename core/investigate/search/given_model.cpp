@@ -31,6 +31,23 @@ void add_process(const GivenProcess& process, SlowModel& model) {
   }
 }
 
+/// A process that nothing takes off the recordings: what is found again with its parameters confirms it.
+bool stays(const GivenProcess& process) { return process.process == "sinusoid"; }
+
+/// Every value within the interval of what was found.
+bool agree(const std::vector<double>& values, const Evidence& evidence) {
+  for (std::size_t k = 0; k < evidence.parameters.size() && k < values.size(); ++k) {
+    const Interval& ci = evidence.parameters[k].estimate.ci95;
+    // The model's own value is an estimate too, as uncertain as this one: twice the half width.
+    const double middle = 0.5 * (ci.low + ci.high);
+    const double reach = (ci.high - ci.low) + 1e-9 * std::fabs(middle);
+    if (!(std::fabs(values[k] - middle) <= reach)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 void add_slow_effect(const GivenEffect& effect, SlowKind kind, const ChannelGroup& group, SlowModel& model) {
   SlowComponent component{kind, effect.values[0] * effect.values[0], 0.0, {}};
   component.beta = effect.values.size() > 1 ? effect.values[1] : 0.0;
@@ -141,27 +158,22 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
   }
 }
 
-const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence) {
+bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence) {
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
-    if (effect->cause != evidence.cause->name) {
-      continue;
-    }
     const bool meets = std::any_of(evidence.members.begin(), evidence.members.end(), [&](std::size_t r) {
       return r < group.members.size() && holds(effect->recordings, group.members[r].recording->id);
     });
-    bool agrees = meets;
-    for (std::size_t k = 0; k < evidence.parameters.size() && k < effect->values.size(); ++k) {
-      const Interval& ci = evidence.parameters[k].estimate.ci95;
-      // The model's own value is an estimate too, as uncertain as this one: twice the half width.
-      const double middle = 0.5 * (ci.low + ci.high);
-      const double reach = (ci.high - ci.low) + 1e-9 * std::fabs(middle);
-      agrees = agrees && std::fabs(effect->values[k] - middle) <= reach;
-    }
-    if (agrees) {
-      return effect;
+    if (effect->cause == evidence.cause->name && meets && agree(effect->values, evidence)) {
+      return true;
     }
   }
-  return nullptr;
+  if (!applies(baseline, group)) {
+    return false;
+  }
+  const std::vector<GivenProcess>& processes = processes_of(baseline, group);
+  return std::any_of(processes.begin(), processes.end(), [&](const GivenProcess& process) {
+    return stays(process) && process.process == evidence.cause->process && agree(process.parameters, evidence);
+  });
 }
 
 std::vector<GivenProcess> noise_processes(const ChannelModel& model) {

@@ -3,9 +3,9 @@
 ///
 /// Processes become the noise model; drifts and mean effects with fixed shape are taken off the error before anything
 /// is looked at; slow effects become processes; a `white_noise_level` or `quantization_noise` replaces or joins the
-/// level of the processes. What cannot be taken off a recording (tails, lines, band limits, facts of the file) stays in
-/// it: found again with parameters that agree with the model, it is no finding but a confirmation. The constant bias
-/// stays free: one number per channel, never a finding (spec/causes.md).
+/// level of the processes. What cannot be taken off a recording (sinusoids, tails, band limits, facts of the file)
+/// stays in it: found again with parameters that agree with the model, it is no finding but a confirmation. The
+/// constant bias stays free: one number per channel, never a finding (spec/causes.md).
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/slow/slow_model.hpp"
@@ -34,10 +34,9 @@ namespace driftlab::investigate {
 /// Takes drifts and mean effects off `error[r]`, over the grid of member r.
 void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error);
 
-/// The given effect that says what was found: the same cause, in a recording of the finding, every value within its
-/// interval. nullptr: the finding is news.
-[[nodiscard]] const GivenEffect* confirmed_by(const Baseline& baseline, const ChannelGroup& group,
-                                              const Evidence& evidence);
+/// True where the baseline says what was found: an effect of the same cause in a recording of the finding, or a process
+/// that stays in the recordings (a sinusoid) and is what the cause adds, every value within its interval.
+[[nodiscard]] bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence);
 
 /// The processes of a channel's noise: as they were given, or as they were fitted. Constant offsets are none of them.
 [[nodiscard]] std::vector<GivenProcess> noise_processes(const ChannelModel& model);

@@ -37,6 +37,9 @@ std::string obstacle(const GivenEffect& effect, const Draft& draft) {
   if (cause == nullptr) {
     return "there is no such cause";
   }
+  if (effect.values.size() < cause->parameters.size()) {
+    return "it lacks the parameter " + std::string(cause->parameters[effect.values.size()].name);
+  }
   if (!effect.recordings.empty() &&
       std::find(effect.recordings.begin(), effect.recordings.end(), draft.recording->id) == effect.recordings.end()) {
     return "it belongs to single recordings";

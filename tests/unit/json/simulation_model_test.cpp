@@ -71,6 +71,34 @@ TEST(SimulationModel, EveryParameterOfEveryCauseComesBack) {
   }
 }
 
+/// A `bias_step` that lost its `step` was read as a step of `t0_s` at time zero.
+TEST(SimulationModel, AMissingParameterIsAFaultAndShiftsNothing) {
+  for (const investigate::Cause& cause : investigate::cause_registry()) {
+    const auto* const mean = cause.as<investigate::MeanEffect>();
+    const bool alternatives = mean != nullptr && !mean->shape_of_parameter.empty();
+    for (std::size_t lost = 0; lost < cause.parameters.size() && !alternatives; ++lost) {
+      Json params = Json::object();
+      for (std::size_t k = 0; k < cause.parameters.size(); ++k) {
+        const auto& parameter = cause.parameters[k];
+        if (k != lost) {
+          params[std::string(parameter.name)] =
+              Json{{"value", 2.0}, {"unit", parameter.unit(*parse_unit("deg/s")).symbol}};
+        }
+      }
+      Json document = *parse_json(
+          R"json({"processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]})json");
+      document["effects"] = Json{{{"cause", std::string(cause.name)}, {"params", std::move(params)}}};
+      Faults faults;
+      const auto model = simulation_model_from_json(document, "/model", faults);
+      const std::string name(cause.parameters[lost].name);
+      ASSERT_FALSE(faults.none()) << cause.name << " " << name;
+      EXPECT_EQ(faults.error().message, "The parameter " + name + " of " + std::string(cause.name) + " is missing.");
+      EXPECT_EQ(faults.error().fields.front().name, "/model/effects/0/params/" + name);
+      EXPECT_TRUE(model.effects.empty());
+    }
+  }
+}
+
 TEST(SimulationModel, FaultsAreRefused) {
   for (
       const char* const text :
