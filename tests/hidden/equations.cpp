@@ -136,8 +136,7 @@ std::vector<double> put_out(const Draft& draft, std::vector<double> values) {
 /// density.
 double student_within(double c, double nu) {
   const double limit = c * std::sqrt(nu / (nu - 2.0));
-  const double norm =
-      std::exp(std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu)) / std::sqrt(nu * std::numbers::pi);
+  const double norm = std::tgamma(0.5 * (nu + 1.0)) / std::tgamma(0.5 * nu) / std::sqrt(nu * std::numbers::pi);
   constexpr int kSteps = 400;
   double sum = 0.0;
   for (int k = 0; k <= kSteps; ++k) {
