@@ -121,6 +121,13 @@ bool ends_with_separator(const std::vector<Cells>& lines, std::size_t width) {
   return seen && width > 1;
 }
 
+/// The line above the first row of the common width, where the names of the columns stand if anywhere.
+const Cells& line_of_names(const std::vector<Cells>& lines, std::size_t width) {
+  const auto row = std::find_if(lines.begin(), lines.end(),
+                                [width](const Cells& line) { return line.cells.size() == width && line.numbers > 0; });
+  return row == lines.begin() || row == lines.end() ? lines.front() : *(row - 1);
+}
+
 Reading read_as(const Head& head, char separator, bool decimal_comma) {
   Reading reading{separator, decimal_comma, 0, false, 0.0, 0.0, {}};
   for (const Line& line : head.content) {
@@ -145,7 +152,7 @@ Reading read_as(const Head& head, char separator, bool decimal_comma) {
   const auto named_trailing = [&](const Cells& line) {
     return line.cells.size() + 1 == reading.width || line.cells.back().empty();
   };
-  if (reading.trailing && !named_trailing(reading.lines.front())) {
+  if (reading.trailing && !named_trailing(line_of_names(reading.lines, reading.width))) {
     reading.trailing = false;
   }
   reading.width -= reading.trailing ? 1 : 0;

@@ -186,6 +186,17 @@ TEST(Csv, ReadsEveryDialect) {
   expect_the_same_table("t,gx,gy\n0.5,-1.25,1e-3\n# paused\n0.5,-1.25,1e-3\n0.5,-1.25,1e-3\n", names);
 }
 
+TEST(Csv, IgnoresTheSeparatorBehindEachRowBelowLinesAboutTheSensor) {
+  // A phone wrote two lines about its sensor above the names; the first line, not the names, was asked whether it ends
+  // as the rows do, and the file was refused for a row of one cell too many.
+  const Outcome outcome = decode_bytes(
+      "Sensor: LSM6DSL\nVendor: STM\nTime [ns]; GyroX [rad/s]; GyroY "
+      "[rad/s]\n47;-0.0251;0.0010;\n48;-0.0116;0.0034;\n");
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("Time [ns]", "GyroX [rad/s]", "GyroY [rad/s]"));
+  EXPECT_EQ(outcome.decoded.rows, 2U);
+}
+
 TEST(Csv, KeepsAnEmptyFirstNameBeforeATab) {
   EXPECT_THAT(decode_bytes("\tgx\tgy\n0\t1\t2\n1\t3\t4\n").decoded.names, ElementsAre("0", "gx", "gy"));
 }
