@@ -10,6 +10,7 @@
 #include "core/read/decimal.hpp"
 #include "core/read/dialect.hpp"
 #include "core/read/formats.hpp"
+#include "core/read/stated_scale.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/missing.hpp"
 
@@ -397,7 +398,8 @@ int sniff(std::string_view head) {
 }
 
 Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {
-  return CsvDecoder(source, limits, sink, control).run();
+  ScalingSink in_units(sink);
+  return CsvDecoder(source, limits, in_units, control).run();
 }
 
 }  // namespace

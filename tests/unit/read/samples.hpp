@@ -197,7 +197,8 @@ inline std::vector<double> ramp(std::size_t count) {
 inline std::map<std::string, std::vector<std::string>> valid_samples() {
   return {
       {"csv",
-       {"t,gx,gy\n0.00,1.5,-2\n0.01,1e-3,+4\n0.02,-0.125,6.\n", "gx\n1\n2\n3\n", "1,2\n3,4", "1\n2\n",
+       {"t,gx,gy\n0.00,1.5,-2\n0.01,1e-3,+4\n0.02,-0.125,6.\n", "gx\n1\n2\n3\n",
+        "t,gx [131 LSB/(deg/s)],ax [0.5 mg/LSB]\n0,262,-4\n0.01,,8\n", "1,2\n3,4", "1\n2\n",
         "Time (s);X (rad/s)\n0,5;1,25E-3\n1,0;\n",
         "// Rate: 5\n// Sample rate: 50.0Hz\nCounter\tAcc_X\n 7\t1.5\t\n9\tnan\t\n",
         "-8.42 0.06 5.24\n -8.47 -0.01 \t5.18 \n", "Fs,100\nax,ay,az\n1,2,3\n,two,-9999\n",
