@@ -130,6 +130,11 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   } else if (*ended > 0) {
     log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
   }
+  if (auto queued = (*store)->queue_missing_pools(); !queued) {
+    return fail(queued.error());
+  } else if (*queued > 0) {
+    log_info("results of an earlier release are pooled again", Json{{"jobs", *queued}});
+  }
   WorkerOptions worker_options;
   settle_threads(settings, worker_options);
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };

@@ -21,6 +21,9 @@ using asio::ip::tcp;
 
 namespace {
 
+/// How long one answer may be waited for.
+constexpr int kPatienceS = 20;
+
 /// One connection for one exchange.
 class Exchange {
  public:
@@ -71,7 +74,7 @@ class Exchange {
     }
     const auto& message = parser.get();
     return HttpReply{static_cast<int>(message.result_int()), std::string(message[http::field::content_type]),
-                     message.body()};
+                     message.body(), message.find(http::field::retry_after) != message.end()};
   }
 
   [[nodiscard]] tcp::socket& socket() { return socket_; }
@@ -101,6 +104,20 @@ Result<HttpClient> HttpClient::to(std::string_view server) {
 }
 
 Result<HttpReply> HttpClient::get(const std::string& target, const std::string& accept) {
+  return get(target, accept, 0);
+}
+
+Result<HttpReply> HttpClient::get_settled(const std::string& target, const std::string& accept,
+                                          const std::function<bool()>& stop) {
+  while (true) {
+    auto reply = get(target, accept, kPatienceS);
+    if (!reply || reply->status != 200 || !reply->pending || stop()) {
+      return reply;
+    }
+  }
+}
+
+Result<HttpReply> HttpClient::get(const std::string& target, const std::string& accept, int wait_s) {
   Exchange exchange(host_, port_);
   if (auto connected = exchange.connect(); !connected) {
     return fail(connected.error());
@@ -108,6 +125,9 @@ Result<HttpReply> HttpClient::get(const std::string& target, const std::string& 
   http::request<http::empty_body> request(http::verb::get, target, 11);
   exchange.prepare(request);
   request.set(http::field::accept, accept);
+  if (wait_s > 0) {
+    request.set(http::field::prefer, "wait=" + std::to_string(wait_s));
+  }
   return exchange.ask(request);
 }
 

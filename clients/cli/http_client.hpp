@@ -16,6 +16,7 @@ struct HttpReply {
   int status = 0;
   std::string content_type;
   std::string body;
+  bool pending = false;  ///< the answer will change when a job ends: it has Retry-After
 };
 
 /// Talks to one daemon. Every failure to reach it is ErrorCode::Io, with a sentence that names the address. Not thread
@@ -26,6 +27,9 @@ class HttpClient {
   [[nodiscard]] static Result<HttpClient> to(std::string_view server);
 
   [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept = "application/json");
+  /// The same once no job that may change it is queued or running any more; asks again until `stop` says so.
+  [[nodiscard]] Result<HttpReply> get_settled(const std::string& target, const std::string& accept,
+                                              const std::function<bool()>& stop);
   [[nodiscard]] Result<HttpReply> post(const std::string& target, const std::string& json);
   /// Streams a file; `sent` is called with the fraction sent.
   [[nodiscard]] Result<HttpReply> upload(const std::string& target, const std::filesystem::path& file,
@@ -34,6 +38,7 @@ class HttpClient {
   [[nodiscard]] Status follow(const std::string& target, const std::function<bool(std::string_view data)>& event);
 
  private:
+  [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept, int wait_s);
   HttpClient(std::string host, std::string port) : host_(std::move(host)), port_(std::move(port)) {}
   std::string host_;
   std::string port_;

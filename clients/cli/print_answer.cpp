@@ -12,7 +12,7 @@ Exit print_answer(const std::string& server, const std::string& target, const st
   if (!client) {
     return complain(client.error());
   }
-  auto reply = client->get(target, accept);
+  auto reply = client->get_settled(target, accept, [] { return interrupt_token().stop_requested(); });
   if (!reply) {
     return complain(reply.error(), Exit::ServerOrJob);
   }

@@ -7,7 +7,7 @@
 namespace driftlab::cli {
 
 /// Prints what the daemon answers to GET `target`, or complains in the words of its problem document: bad input where
-/// the request was at fault, else server.
+/// the request was at fault, else server. Recordings that are still being pooled are waited for.
 [[nodiscard]] Exit print_answer(const std::string& server, const std::string& target, const std::string& accept);
 
 }  // namespace driftlab::cli

@@ -1,6 +1,7 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/progress.hpp"
 #include "core/signal/number.hpp"
+#include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "schema/json/recording_spec.hpp"
 
@@ -107,6 +108,27 @@ tl::expected<Json, Failure> upload_all(HttpClient& client, const Inputs& inputs,
   return ids;
 }
 
+/// Returns when what the daemon has of these sensors is pooled, so that a table asked for next is final.
+tl::expected<void, Failure> await_pooling(HttpClient& client, const std::string& device, const Json& document) {
+  const auto sensors = sensors_of(document);
+  if (!sensors) {
+    return tl::unexpected(Failure{sensors.error(), Exit::ServerOrJob});
+  }
+  for (const SensorSources& sensor : *sensors) {
+    const auto quantity = parse_quantity(sensor.quantity);
+    if (!quantity || !is_axis_of(sensor.axis, *quantity)) {
+      continue;  // channels that nobody named by axis are not pooled
+    }
+    auto table = client.get_settled("/v1/parameter-tables?device=" + percent_encode(device) + "&sensor=" +
+                                        percent_encode(sensor_of(*quantity)) + "&axis=" + percent_encode(sensor.axis),
+                                    "application/json", [] { return interrupt_token().stop_requested(); });
+    if (!table) {
+      return unreachable(table.error());
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const CharacteriseOptions& options,
@@ -125,7 +147,14 @@ tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const Chara
     return tl::unexpected(wanted.error());
   }
   const Json request{{"kind", "characterise"}, {"inputs", *wanted}, {"parameters", to_json(options)}};
-  return run_job(*client, request, bar, kUploads);
+  auto document = run_job(*client, request, bar, kUploads);
+  if (document) {
+    bar.show("pool", 1.0);
+    if (auto waited = await_pooling(*client, inputs.device, *document); !waited) {
+      return tl::unexpected(waited.error());
+    }
+  }
+  return document;
 }
 
 }  // namespace driftlab::cli

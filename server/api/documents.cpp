@@ -3,7 +3,9 @@
 #include "core/signal/condition.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/http/problem.hpp"
+#include "server/jobs/stored_table.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 namespace driftlab::server {
@@ -121,6 +123,19 @@ IdempotentReply reply_to_remember(const std::string& key, const Request& request
     headers[name] = value;
   }
   return {key, request.method, request.target, body_sha256, response.status, to_text(headers), response.body, now};
+}
+
+Result<Response> refused_job(const Error& error) {
+  const auto pool = std::find_if(error.fields.begin(), error.fields.end(),
+                                 [](const ErrorField& field) { return field.name == kPendingPool; });
+  if (pool == error.fields.end()) {
+    return fail(error);
+  }
+  Response response = problem_response(HttpFault::PoolingPending, error.message);
+  response.headers.emplace_back("Retry-After", "1");
+  response.pending_job = pool->value;
+  response.undone = true;
+  return response;
 }
 
 Response json_response(int status, const Json& document) {

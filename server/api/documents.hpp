@@ -25,6 +25,10 @@ namespace driftlab::server {
                                                 const std::string& body_sha256, const Response& response,
                                                 UtcMicros now);
 
+/// The answer to a request for a job that could not be checked. Where its inputs are being pooled (server/jobs/
+/// stored_table.hpp) it is one that a waiting connection asks for again.
+[[nodiscard]] Result<Response> refused_job(const Error& error);
+
 [[nodiscard]] Response json_response(int status, const Json& document);
 
 /// A stored JSON text inside a document; null where it does not parse.

@@ -47,7 +47,7 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
   auto job = new_job(*kind, inputs != nullptr ? *inputs : Json::object(),
                      parameters != nullptr ? *parameters : Json::object(), job_context);
   if (!job) {
-    return fail(job.error());
+    return refused_job(job.error());
   }
   job->priority = priority;
   auto queued = context.store.enqueue(*job);

@@ -84,7 +84,7 @@ Result<Response> create(ApiContext& context, const Request& request) {
   JobContext job_context{context.store, context.blobs, context.clock};
   auto job = new_job(*find_job_kind(kKind), inputs, parameters, job_context);
   if (!job) {
-    return fail(located_in_body(job.error()));
+    return refused_job(located_in_body(job.error()));
   }
   job->priority = priority;
   auto queued = context.store.enqueue(*job);

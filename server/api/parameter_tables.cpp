@@ -10,8 +10,41 @@
 namespace driftlab::server {
 namespace {
 
+constexpr std::string_view kJobs = "/v1/jobs/";
+
+Json to_json(const AxisPooling& pooling) {
+  return Json{{"state", name_of(pooling.state)},
+              {"job", pooling.job.empty() ? Json(nullptr) : Json(std::string(kJobs) + pooling.job)},
+              {"reason", pooling.reason.empty() ? Json(nullptr) : Json(pooling.reason)}};
+}
+
+/// One line for people; empty where all is put together.
+std::string note_of(const AxisPooling& pooling) {
+  if (pooling.state == PoolingState::Pending) {
+    return "pooling pending: replicates are averaged until " + std::string(kJobs) + pooling.job +
+           " has fitted them jointly.\n";
+  }
+  if (pooling.state == PoolingState::Failed) {
+    return "pooling failed: replicates are averaged, for " + std::string(kJobs) + pooling.job +
+           " could not fit them jointly. " + pooling.reason + "\n";
+  }
+  return "";
+}
+
+/// The document with what is said about its pooling: an answer that changes when the job which pools has ended.
+Response pooled_response(Json document, const AxisPooling& pooling) {
+  document["pooling"] = to_json(pooling);
+  Response response = json_response(200, document);
+  if (pooling.state == PoolingState::Pending) {
+    response.pending_job = pooling.job;
+    response.headers.emplace_back("Retry-After", "1");
+  }
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
+}
+
 /// The table that a request asks for, from stored results alone.
-Result<ParameterTable> read_table(ApiContext& context, const Request& request) {
+Result<StoredTable> read_table(ApiContext& context, const Request& request) {
   const auto name = request.parameter("device");
   if (!name || name->empty()) {
     return fail(ErrorCode::InvalidArgument, "Name the device: ?device=…", {{"parameter", "device"}});
@@ -32,21 +65,22 @@ Result<Response> get_table(ApiContext& context, const Request& request) {
     return problem_response(HttpFault::NotAcceptable,
                             "Offered are application/json, text/csv, text/plain and text/markdown.");
   }
-  auto table = read_table(context, request);
-  if (!table) {
-    return fail(table.error());
+  const auto stored = read_table(context, request);
+  if (!stored) {
+    return fail(stored.error());
   }
-  Response response = json_response(200, to_json(*table));
-  response.headers.emplace_back("Vary", "Accept");
+  const auto& [table, pooling] = *stored;
+  const std::string note = note_of(pooling);
+  Response response = pooled_response(driftlab::to_json(table), pooling);
   if (*type == "text/csv") {
     response.content_type = "text/csv; charset=utf-8";
-    response.body = table_to_csv(*table);
+    response.body = table_to_csv(table);
   } else if (*type == "text/plain") {
     response.content_type = "text/plain; charset=utf-8";
-    response.body = table_to_text(*table);
+    response.body = table_to_text(table) + (note.empty() ? "" : "! " + note);
   } else if (*type == "text/markdown") {
     response.content_type = "text/markdown; charset=utf-8";
-    response.body = table_to_markdown(*table);
+    response.body = table_to_markdown(table) + (note.empty() ? "" : "\n" + note);
   }
   return response;
 }
@@ -56,16 +90,16 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
   if (!type) {
     return problem_response(HttpFault::NotAcceptable, "Offered are application/json and text/plain.");
   }
-  auto table = read_table(context, request);
-  if (!table) {
-    return fail(table.error());
+  const auto stored = read_table(context, request);
+  if (!stored) {
+    return fail(stored.error());
   }
-  const TrendTable trends = build_trends(*table);
-  Response response = json_response(200, to_json(trends));
-  response.headers.emplace_back("Vary", "Accept");
+  const TrendTable trends = build_trends(stored->table);
+  const std::string note = note_of(stored->pooling);
+  Response response = pooled_response(driftlab::to_json(trends), stored->pooling);
   if (*type == "text/plain") {
     response.content_type = "text/plain; charset=utf-8";
-    response.body = trends_to_text(trends);
+    response.body = trends_to_text(trends) + (note.empty() ? "" : "! " + note);
   }
   return response;
 }

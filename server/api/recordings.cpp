@@ -113,6 +113,7 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   if (!revised) {
     return fail(revised.error());
   }
+  context.wake_workers();  // what its results took part in is pooled anew
   return recording_response(context, 200, *revised);
 }
 
@@ -128,6 +129,7 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
   if (auto removed = context.store.remove_recording(recording->id, *revision); !removed) {
     return fail(removed.error());
   }
+  context.wake_workers();  // what its results took part in is pooled anew
   // The files stay: another device's recording may hold the same bytes, and an upload of them may be running. Without a
   // row the sweeper removes them after a day.
   if (const auto unused = context.store.remove_unused_blob(recording->blob_sha256); !unused) {

@@ -7,7 +7,6 @@
 #include <boost/beast/http/write.hpp>
 
 #include <algorithm>
-#include <charconv>
 
 namespace driftlab::server {
 
@@ -21,7 +20,7 @@ namespace {
 constexpr std::size_t kPiece = 256UL * 1024;
 constexpr double kSlowestBytesPerSecond = 64.0 * 1024.0;
 constexpr auto kBodyGrace = 30s;
-constexpr auto kLongestWait = 60s;
+constexpr auto kUnaskedWait = 20s;
 
 auto into(boost::system::error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
@@ -39,20 +38,15 @@ HeadView head_of(const http::request<http::buffer_body>& message) {
   return head;
 }
 
-/// Seconds of `Prefer: wait=n` (RFC 7240), at most a minute.
-std::chrono::seconds preferred_wait(const Request& request) {
-  const auto prefer = request.header("prefer");
-  if (!prefer) {
+/// How long to wait for another answer than this one. Only reading is repeated, and what was refused until the job has
+/// ended: another POST asked again could queue a second job. The refusal is avoided also for a client that says
+/// nothing.
+std::chrono::seconds patience_for(const Request& request, const Response& response) {
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (response.pending_job.empty() || !(reads || response.undone)) {
     return 0s;
   }
-  const std::size_t at = prefer->find("wait=");
-  if (at == std::string_view::npos) {
-    return 0s;
-  }
-  int seconds = 0;
-  const std::string_view digits = prefer->substr(at + 5);
-  std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
-  return std::clamp<std::chrono::seconds>(std::chrono::seconds(seconds), 0s, kLongestWait);
+  return preferred_wait(request).value_or(response.undone ? kUnaskedWait : 0s);
 }
 
 }  // namespace
@@ -243,19 +237,17 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
   }
   Response response =
       outcome ? std::move(*outcome) : problem_response(HttpFault::Busy, "Too many requests are waiting.");
-  // Only reading is repeated while it waits: a POST asked again could queue a second job.
-  const bool reads = request.method == "GET" || request.method == "HEAD";
-  if (reads && !response.pending_job.empty() && preferred_wait(request) > 0s) {
+  if (patience_for(request, response) > 0s) {
     response = co_await wait_for_job(route, request, std::move(response));
   }
   co_return co_await send(request, std::move(response), true);
 }
 
 asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const Request& request, Response response) {
-  const auto deadline = std::chrono::steady_clock::now() + preferred_wait(request);
+  const auto deadline = std::chrono::steady_clock::now() + patience_for(request, response);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(response.pending_job, executor);
-  while (!response.pending_job.empty() && !shared_.stopping) {
+  while (patience_for(request, response) > 0s && !shared_.stopping) {
     const auto left = deadline - std::chrono::steady_clock::now();
     if (left <= 0s) {
       break;
@@ -266,6 +258,9 @@ asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const
     if (outcome) {
       response = std::move(*outcome);
     }
+  }
+  if (const auto asked = preferred_wait(request)) {
+    response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(asked->count()));
   }
   co_return response;
 }

@@ -7,6 +7,7 @@
 #include <boost/url/pct_string_view.hpp>
 
 #include <algorithm>
+#include <charconv>
 
 namespace driftlab::server {
 namespace {
@@ -69,6 +70,20 @@ std::optional<std::string_view> Request::parameter(std::string_view name) const 
 bool Response::has_header(std::string_view name) const {
   return std::any_of(headers.begin(), headers.end(),
                      [&](const auto& header) { return boost::beast::iequals(header.first, name); });
+}
+
+std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
+  constexpr std::string_view kWait = "wait=";
+  constexpr int kLongest = 60;
+  const std::string_view prefer = request.header("prefer").value_or("");
+  const std::size_t at = prefer.find(kWait);
+  if (at == std::string_view::npos) {
+    return std::nullopt;
+  }
+  int seconds = 0;
+  const std::string_view digits = prefer.substr(at + kWait.size());
+  std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+  return std::chrono::seconds(std::clamp(seconds, 0, kLongest));
 }
 
 std::optional<std::string_view> negotiate(std::optional<std::string_view> accept,

@@ -33,9 +33,14 @@ struct Response {
   std::string body;
   /// A job whose next event may change this answer: a client that sent `Prefer: wait=` gets it then.
   std::string pending_job;
+  /// Refused until that job has ended: nothing was done, so a request of any method may be repeated.
+  bool undone = false;
 
   [[nodiscard]] bool has_header(std::string_view name) const;
 };
+
+/// Seconds of the preference `wait=n` in a Prefer header (RFC 7240), at most a minute; nothing where it has none.
+[[nodiscard]] std::optional<std::chrono::seconds> preferred_wait(const Request& request);
 
 /// The media type of `offered` that an Accept header likes best (RFC 9110 section 12.5.1); the first for no header;
 /// nothing if none is acceptable.

@@ -58,6 +58,8 @@ std::string_view slug_of(HttpFault fault) {
       return "busy";
     case HttpFault::NotReady:
       return "not-ready";
+    case HttpFault::PoolingPending:
+      return "pooling-pending";
   }
   return "internal";
 }
@@ -207,6 +209,10 @@ const std::vector<ProblemType>& problem_types() {
        "A request with this Idempotency-Key is running; ask again in a moment."},
       {"busy", 503, "Busy", true, "Too much is being asked at once. Retry-After says when to come back."},
       {"not-ready", 503, "Not ready", true, "The daemon is starting, stopping, or its store or disk does not answer."},
+      {"pooling-pending", 409, "Results are being pooled", true,
+       "What was asked for reads a parameter table whose recordings are being fitted jointly. The detail names the "
+       "job; "
+       "ask again when it has ended, or send Prefer: wait=SECONDS."},
   };
   return types;
 }
@@ -214,7 +220,7 @@ const std::vector<ProblemType>& problem_types() {
 const std::vector<HttpFault>& all_http_faults() {
   static const std::vector<HttpFault> all = [] {
     std::vector<HttpFault> faults;
-    for (int i = 0; i <= static_cast<int>(HttpFault::NotReady); ++i) {
+    for (int i = 0; i <= static_cast<int>(HttpFault::PoolingPending); ++i) {
       faults.push_back(static_cast<HttpFault>(i));
     }
     return faults;

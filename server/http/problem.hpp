@@ -43,6 +43,7 @@ enum class HttpFault {
   IdempotencyInFlight,
   Busy,
   NotReady,
+  PoolingPending,
 };
 
 [[nodiscard]] const std::vector<ProblemType>& problem_types();

@@ -147,13 +147,17 @@ void Attempt::fail(const Error& error) {
   if (lost_) {
     return;
   }
-  if (error.code == ErrorCode::Cancelled && cancel_requested_) {
-    announce(context_.store.acknowledge_cancel(lease_));
-    return;
-  }
-  if (error.code == ErrorCode::Cancelled && stopping_) {
-    announce(context_.store.release(lease_));
-    return;
+  if (error.code == ErrorCode::Cancelled) {
+    // The work may have learnt before the heartbeat did that nobody wants it any more; the store knows.
+    const Result<LeaseStatus> asked = context_.store.acknowledge_cancel(lease_);
+    if (asked && (asked->cancel_requested || !asked->held)) {
+      announce(asked);
+      return;
+    }
+    if (stopping_) {
+      announce(context_.store.release(lease_));
+      return;
+    }
   }
   AttemptFailure failure;
   failure.retryable = out_of_memory_ || error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull;

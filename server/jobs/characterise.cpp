@@ -7,8 +7,8 @@
 #include "schema/json/characterisation.hpp"
 #include "schema/json/characterise_recording.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/own_summary.hpp"
 #include "server/jobs/pinned_recording.hpp"
-#include "server/jobs/pool_results.hpp"
 #include "server/jobs/recording_calibration.hpp"
 
 namespace driftlab::server {
@@ -154,8 +154,8 @@ class Characterise final : public JobKind {
     last.progress = [&](std::string_view stage, double fraction) {
       control.report(stage, kRecordingsShare + (1.0 - kRecordingsShare) * fraction);
     };
-    if (auto pooled = pool_results(document, context, last, results); !pooled) {
-      return fail(pooled.error());
+    if (auto added = add_own_summary(document, context, last, results); !added) {
+      return fail(added.error());
     }
     results.document_json = to_text(document);
     return results;

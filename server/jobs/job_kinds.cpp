@@ -4,6 +4,7 @@
 // clang-format off
 #define DRIFTLAB_JOB_KINDS(KIND)       \
   KIND(make_characterise_kind)         \
+  KIND(make_pool_kind)                 \
   KIND(make_outage_evaluation_kind)    \
   KIND(make_investigate_kind)
 // clang-format on

@@ -62,7 +62,14 @@ Status resolve_table(Json& node, const std::string& pointer, JobContext& context
     faults.add(pointer + "/table", table.error());
     return {};
   }
-  const auto made = schedule_from_table(*table, options);
+  if (table->pooling.state == PoolingState::Pending) {
+    // An evaluation is kept for good: it must not depend on whether it was asked for before or after the joint fit.
+    return fail(ErrorCode::Conflict,
+                "The results behind the table of device '" + wanted.device + "' are being pooled by job " +
+                    table->pooling.job + "; ask again when it has ended.",
+                {{std::string(kPendingPool), table->pooling.job}});
+  }
+  const auto made = schedule_from_table(table->table, options);
   if (!made) {
     faults.add(pointer + "/table", made.error());
     return {};

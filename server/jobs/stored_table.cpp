@@ -1,7 +1,7 @@
 #include "server/jobs/stored_table.hpp"
 
 #include "schema/json/pooled_sensor.hpp"
-#include "schema/json/reported_channel.hpp"
+#include "server/jobs/axis_sources.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -28,6 +28,26 @@ Result<TableRequest> checked(const StoredTableRequest& wanted, const Device& dev
   return table;
 }
 
+std::string reason_of(const Job& job) {
+  if (job.state == JobState::Cancelled) {
+    return "The job was cancelled.";
+  }
+  const auto problem = parse_json(job.problem_json);
+  return problem && problem->is_object() ? problem->value("detail", std::string()) : std::string();
+}
+
+AxisPooling pooling_of(const AxisResults& results) {
+  if (!results.pool) {
+    return {};
+  }
+  const Job& job = *results.pool;
+  if (!is_terminal(job.state)) {
+    return {PoolingState::Pending, job.id, ""};
+  }
+  return job.state == JobState::Succeeded ? AxisPooling{PoolingState::Done, job.id, ""}
+                                          : AxisPooling{PoolingState::Failed, job.id, reason_of(job)};
+}
+
 /// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
 Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
   std::string present;
@@ -51,7 +71,19 @@ Status check_axis_named(Store& store, const Device& device, const TableRequest& 
 
 }  // namespace
 
-Result<ParameterTable> stored_table(Store& store, const StoredTableRequest& request) {
+std::string_view name_of(PoolingState state) {
+  switch (state) {
+    case PoolingState::Pending:
+      return "pending";
+    case PoolingState::Failed:
+      return "failed";
+    case PoolingState::Done:
+      break;
+  }
+  return "done";
+}
+
+Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request) {
   auto device = store.device(request.device);
   if (!device) {
     return fail(device.error());
@@ -60,36 +92,32 @@ Result<ParameterTable> stored_table(Store& store, const StoredTableRequest& requ
   if (!wanted) {
     return fail(wanted.error());
   }
-  const std::string_view quantity = driftlab::name_of(wanted->quantity);
-  auto rows = store.latest_channel_results(device->id, quantity, wanted->axis);
-  if (!rows) {
-    return fail(rows.error());
+  auto results = store.axis_results({device->id, std::string(driftlab::name_of(wanted->quantity)), wanted->axis});
+  if (!results) {
+    return fail(results.error());
   }
-  if (rows->empty() && wanted->axis.empty()) {
+  if (results->latest.empty() && wanted->axis.empty()) {
     if (auto named = check_axis_named(store, *device, *wanted); !named) {
       return fail(named.error());
     }
   }
-  auto pooled = store.pooled_result(device->id, quantity, wanted->axis);
-  if (!pooled) {
-    return fail(pooled.error());
+  const auto sources = sources_of(*results);
+  if (!sources) {
+    return fail(sources.error());
   }
-  std::vector<TableSource> sources;
-  for (const ChannelResult& row : *rows) {
-    auto channel = parse_json(row.document_json).and_then(reported_channel_from_json);
-    if (!channel) {
-      return fail(channel.error());
+  std::optional<PooledSensor> together;
+  if (!results->pooled_json.empty()) {
+    auto read = parse_json(results->pooled_json).and_then(pooled_sensor_from_json);
+    if (!read) {
+      return fail(read.error());
     }
-    sources.push_back({row.recording_id, row.condition, std::move(*channel), row.id});
+    together = std::move(*read);
   }
-  if (!pooled->has_value()) {
-    return build_parameter_table(*wanted, sources);
+  auto table = build_parameter_table(*wanted, *sources, together ? &*together : nullptr);
+  if (!table) {
+    return fail(table.error());
   }
-  const auto together = parse_json((*pooled)->document_json).and_then(pooled_sensor_from_json);
-  if (!together) {
-    return fail(together.error());
-  }
-  return build_parameter_table(*wanted, sources, &*together);
+  return StoredTable{std::move(*table), wanted->method == TableMethod::Gmwm ? pooling_of(*results) : AxisPooling{}};
 }
 
 }  // namespace driftlab::server

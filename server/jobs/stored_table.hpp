@@ -15,8 +15,32 @@ struct StoredTableRequest {
   std::string model;  ///< empty: the best over all rows
 };
 
+enum class PoolingState {
+  Done,     ///< also where there is nothing to pool
+  Pending,  ///< a job of kind `pool` is queued or runs: the table will change
+  Failed,
+};
+
+/// `done`, `pending`, `failed`.
+[[nodiscard]] std::string_view name_of(PoolingState state);
+
+/// How far the recordings of a sensor axis are put together.
+struct AxisPooling {
+  PoolingState state = PoolingState::Done;
+  std::string job;     ///< id of the job; empty where there is nothing to pool
+  std::string reason;  ///< why it failed
+};
+
+struct StoredTable {
+  ParameterTable table;
+  AxisPooling pooling;  ///< method av takes nothing from joint fits: always done
+};
+
+/// The field of an error that names the pool job to wait for.
+inline constexpr std::string_view kPendingPool = "pool_job";
+
 /// Errors: NotFound (device, or no result); InvalidArgument (a parameter, which the field "parameter" names; results in
 /// units that do not convert into each other); those of the store.
-[[nodiscard]] Result<ParameterTable> stored_table(Store& store, const StoredTableRequest& request);
+[[nodiscard]] Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request);
 
 }  // namespace driftlab::server

@@ -124,12 +124,18 @@ struct Fit {
   UtcMicros created_at = 0;
 };
 
-/// What all recordings of one sensor axis say together: the latest document per axis.
-struct PooledResult {
+/// One sensor axis of one device.
+struct SensorAxis {
   std::string device_id;
   std::string quantity;
   std::string axis;
-  std::string document_json;  ///< schema/json/pooled_sensor.hpp
+};
+
+/// One sensor axis as it stands, at one moment.
+struct AxisResults {
+  std::vector<ChannelResult> latest;  ///< as `latest_channel_results` gives them
+  std::optional<Job> pool;            ///< what pools exactly these; none for fewer than two, and without a named axis
+  std::string pooled_json = {};       ///< its result; empty until it has succeeded
 };
 
 /// A study as it was handed in: one device, some of its recordings.
@@ -180,8 +186,9 @@ struct JobResults {
   std::string document_json;  ///< the whole result, served as the job's result
   std::vector<ChannelResult> channels;
   std::vector<Fit> fits;
-  std::vector<PooledResult> pooled = {};  ///< each replaces the one of its axis
-  std::vector<Model> models = {};         ///< parents before children
+  /// The document is that of a pool job: where newer results came meanwhile the job ends cancelled and leaves nothing.
+  bool pooled = false;
+  std::vector<Model> models = {};  ///< parents before children
   std::vector<Investigation> investigations = {};
 };
 

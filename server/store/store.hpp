@@ -127,10 +127,12 @@ class Store {
   [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
-  /// New metadata, one revision higher, if the revision is still `expected_revision`. NotFound; Conflict.
+  /// New metadata, one revision higher, if the revision is still `expected_revision`. What its results took part in is
+  /// pooled anew without them. NotFound; Conflict.
   [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed,
                                                            std::int64_t expected_revision) = 0;
-  /// Removes a recording that no job is using; its results go with it. NotFound; Conflict (revision; running job).
+  /// Removes a recording that no job is using; its results go with it, and what they took part in is pooled anew
+  /// without them. NotFound; Conflict (revision; running job).
   [[nodiscard]] virtual Status remove_recording(std::string_view id, std::int64_t expected_revision) = 0;
   /// Hashes of all blob rows, for the sweeper.
   [[nodiscard]] virtual Result<std::vector<std::string>> blob_hashes() = 0;
@@ -146,7 +148,8 @@ class Store {
   [[nodiscard]] virtual Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
                                                             double progress) = 0;
-  /// Results and the finish in one transaction. `held` false: lease lost, nothing was written.
+  /// Results and the finish in one transaction, which also queues the pooling of every axis that has new results.
+  /// `held` false: lease lost, nothing was written.
   [[nodiscard]] virtual Result<LeaseStatus> succeed(const Lease& lease, const JobResults& results) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> fail_attempt(const Lease& lease, const AttemptFailure& failure) = 0;
   /// The worker of a job whose cancellation was requested has stopped.
@@ -166,15 +169,16 @@ class Store {
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
   [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
-  /// The latest result per (recording, channel) of the recording's current revision, in (condition, recording, channel)
-  /// order.
+  /// The latest result per (recording, channel) of the recording's current revision, by condition, content of the
+  /// recording (its blob's hash) and channel: the same order however and whenever the recordings came.
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                                   std::string_view quantity,
                                                                                   std::string_view axis) = 0;
-  /// The latest pooled document of an axis; it counts where it names the latest channel results.
-  [[nodiscard]] virtual Result<std::optional<PooledResult>> pooled_result(std::string_view device_id,
-                                                                          std::string_view quantity,
-                                                                          std::string_view axis) = 0;
+  /// The same with what pools them.
+  [[nodiscard]] virtual Result<AxisResults> axis_results(const SensorAxis& axis) = 0;
+  /// Queues the pooling of every axis whose latest results no job pools yet, for the start of a daemon: an earlier
+  /// release may have pooled otherwise. How many.
+  [[nodiscard]] virtual Result<int> queue_missing_pools() = 0;
 
   // ---- studies
   struct StudyOutcome {

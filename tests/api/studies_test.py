@@ -1,10 +1,13 @@
 """Studies over uploaded recordings: replicates fitted jointly, trends, and tables that read only what is stored."""
 from __future__ import annotations
 
+import threading
+import time
 import unittest
 from typing import Any
 
 import samples
+from outage_evaluations_test import SCENARIO
 from suite import DaemonTest
 
 TABLE = "/v1/parameter-tables?sensor=gyroscope&axis=z&method=gmwm&device="
@@ -45,15 +48,19 @@ class Studies(DaemonTest):
         self.assertIn(pooled["structure"]["verdict"], ("one_structure", "undecided"))
         self.assertEqual({t["method"] for t in document["trends"]}, {"av", "gmwm"})
 
-        table = self.expect(200, self.daemon.get(TABLE + "campaign")).json
+        table = self.expect(200, self.daemon.get(TABLE + "campaign", Prefer="wait=60")).json
         self.assertEqual([row["pooling"] for row in table["rows"]], ["joint"] * 3)
         for i, row in enumerate(table["rows"]):
             stored = pooled["conditions"][i]["fits"][0]["processes"][0]["params"]["N"]
-            self.assertEqual(row["values"]["white_noise.N"]["value"], stored["value"])
-            self.assertEqual(row["agreement"], pooled["conditions"][i]["agreement"])
+            # The job puts its recordings together in the order of its request, the table in one that does not depend on it.
+            self.assertAlmostEqual(row["values"]["white_noise.N"]["value"] / stored["value"], 1.0, places=12)
+            self.assertAlmostEqual(row["agreement"]["statistic"], pooled["conditions"][i]["agreement"]["statistic"], places=12)
+            self.assertEqual(row["agreement"]["agree"], pooled["conditions"][i]["agreement"]["agree"])
             # two recordings of 4000 samples give N = 6 deg/sqrt(h) times 1.5^i to 0.8 %
             self.assertAlmostEqual(stored["value"] / (6.0 * 1.5 ** i), 1.0, delta=0.04)
+        self.assertEqual(table["pooling"]["state"], "done")
         trends = self.expect(200, self.daemon.get(TRENDS + "campaign")).json
+        self.assertEqual(trends["pooling"], table["pooling"])
         [trend] = [t for t in trends["trends"] if t["parameter"] == "white_noise.N"]
         self.assertEqual(trend["monotone"]["direction"], "up")
         self.assertEqual([point["at"] for point in trend["points"]], [0, 9, 40])
@@ -64,22 +71,23 @@ class Studies(DaemonTest):
     def test_recordings_characterised_one_by_one_come_together(self) -> None:
         for id_ in self.campaign("one-by-one"):
             self.finished(recordings=[id_])
-        table = self.expect(200, self.daemon.get(TABLE + "one-by-one")).json
+        table = self.expect(200, self.daemon.get(TABLE + "one-by-one", Prefer="wait=60")).json
         self.assertEqual([row["pooling"] for row in table["rows"]], ["joint"] * 3)
 
     def test_a_table_forgets_what_a_removed_recording_said(self) -> None:
         first, second, third = (self.recording("removing", seed) for seed in (71, 72, 73))
         self.finished(recordings=[first, second, third])
         self.expect(204, self.daemon.request("DELETE", f"/v1/recordings/{third}", headers={"If-Match": "*"}))
-        [row] = self.expect(200, self.daemon.get(TABLE + "removing")).json["rows"]
-        self.assertEqual((row["pooling"], set(row["recordings"])), ("average", {first, second}))
-        self.finished(recordings=[first, second])
-        [row] = self.expect(200, self.daemon.get(TABLE + "removing")).json["rows"]
-        self.assertEqual(row["pooling"], "joint")
+        [row] = self.expect(200, self.daemon.get(TABLE + "removing", Prefer="wait=60")).json["rows"]
+        self.assertEqual((row["pooling"], set(row["recordings"])), ("joint", {first, second}))
+        self.expect(204, self.daemon.request("DELETE", f"/v1/recordings/{second}", headers={"If-Match": "*"}))
+        table = self.expect(200, self.daemon.get(TABLE + "removing")).json
+        self.assertEqual(table["pooling"], {"state": "done", "job": None, "reason": None})
+        self.assertEqual([row["pooling"] for row in table["rows"]], ["single"])
 
     def test_replicates_that_disagree_are_flagged(self) -> None:
         self.finished(recordings=[self.recording("torn", 81), self.recording("torn", 82, scale=1.3)])
-        [row] = self.expect(200, self.daemon.get(TABLE + "torn")).json["rows"]
+        [row] = self.expect(200, self.daemon.get(TABLE + "torn", Prefer="wait=60")).json["rows"]
         self.assertIs(row["agreement"]["agree"], False)
         self.assertIn("! static: its recordings disagree", self.expect(200, self.daemon.get(TABLE + "torn", Accept="text/plain")).text)
 
@@ -100,6 +108,73 @@ class Studies(DaemonTest):
         self.problem(404, "not_found", self.daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"study": "stu_" + "0" * 26}}))
         self.expect(400, self.daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"study": "stu_" + "0" * 26, "recordings": [mine]}}))
         self.expect(400, self.daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {}}))
+
+
+class WhilePooling(DaemonTest):
+    """One worker, kept from pooling by a long evaluation that was queued before."""
+
+    arguments = ("--workers", "1")
+
+    def test_a_table_says_that_it_waits_and_waits_if_asked(self) -> None:
+        ids = [self.expect(201, self.daemon.upload(samples.gyro_csv(20_000, seed=seed), condition=condition, rate_hz=100, columns=samples.GYRO_Z)).json["id"]
+               for seed, condition in ((1, "static"), (2, "static"), (3, "constant_rate:z:20:deg/s"))]
+        first = self.expect(202, self.daemon.characterise(*ids, models=["WN", "WN+RW"])).json["id"]
+        long = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 5000})).json["id"]
+        self.assertEqual(self.daemon.finished(first)["state"], "succeeded")
+
+        answer = self.expect(200, self.daemon.get(TABLE + "phone-07"))
+        pooling = answer.json["pooling"]
+        self.assertEqual((pooling["state"], pooling["reason"], answer.headers["retry-after"]), ("pending", None, "1"))
+        self.assertNotIn("preference-applied", answer.headers)
+        self.assertEqual([row["pooling"] for row in answer.json["rows"]], ["average", "single"])
+        self.assertEqual(self.expect(200, self.daemon.get(pooling["job"])).json["kind"], "pool")
+        self.assertEqual(self.expect(200, self.daemon.get(TRENDS + "phone-07")).json["pooling"], pooling)
+        for target, media in ((TABLE, "text/plain"), (TABLE, "text/markdown"), (TRENDS, "text/plain")):
+            text = self.expect(200, self.daemon.get(target + "phone-07", Accept=media)).text
+            self.assertIn(f"pooling pending: replicates are averaged until {pooling['job']}", text)
+        averages = self.expect(200, self.daemon.get(TABLE.replace("gmwm", "av") + "phone-07")).json
+        self.assertEqual(averages["pooling"]["state"], "done", "method av takes nothing from joint fits")
+        began = time.monotonic()
+        waited = self.expect(200, self.daemon.get(TABLE + "phone-07", Prefer="wait=1"))
+        self.assertGreaterEqual(time.monotonic() - began, 1.0)
+        self.assertEqual((waited.json["pooling"], waited.headers["preference-applied"]), (pooling, "wait=1"))
+
+        # An evaluation is kept for good, so it does not take the averages of a table that is about to change.
+        flat = {"processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}], "constant_bias_sd_deg_s": 0.05}
+        by_table = {"table": {"device": "phone-07", "axis": "z"}, "constant_bias_sd_deg_s": 0.05}
+        scenario = {**SCENARIO, "filters": [{"name": "by table", "gyro": {"x": flat, "y": flat, "z": by_table}}]}
+        for target, body in (("/v1/outage-evaluations", {"scenario": scenario, "runs": 2}),
+                             ("/v1/jobs", {"kind": "outage_evaluation", "inputs": {"scenario": scenario}, "parameters": {"runs": 2}})):
+            refused = self.daemon.post(target, body, {"Prefer": "wait=0"})
+            self.assertIn(pooling["job"].rpartition("/")[2], str(self.problem(409, "pooling_pending", refused)["detail"]))
+            self.assertEqual(refused.headers["retry-after"], "1")
+
+        self.daemon.post(pooling["job"] + "/cancel")
+        failed = self.expect(200, self.daemon.get(TABLE + "phone-07")).json["pooling"]
+        self.assertEqual(failed, {"state": "failed", "job": pooling["job"], "reason": "The job was cancelled."})
+        self.assertIn("! pooling failed", self.expect(200, self.daemon.get(TABLE + "phone-07", Accept="text/plain")).text)
+        asked = {"kind": "pool", "inputs": {"device": "phone-07", "sensor": "gyroscope", "axis": "z"}}
+        again = self.expect(202, self.daemon.post("/v1/jobs", asked)).json
+        self.assertEqual(self.expect(200, self.daemon.post("/v1/jobs", asked)).json["id"], again["id"])
+        self.assertEqual(self.expect(200, self.daemon.get(TABLE + "phone-07")).json["pooling"]["state"], "pending")
+
+        threading.Timer(0.5, lambda: self.daemon.post(f"/v1/jobs/{long}/cancel")).start()
+        evaluation = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": scenario, "runs": 2})).json
+        done = self.expect(200, self.daemon.get(TABLE + "phone-07", Prefer="wait=60")).json
+        self.assertEqual((done["pooling"]["state"], done["pooling"]["job"]), ("done", "/v1/jobs/" + again["id"]))
+        self.assertEqual([row["pooling"] for row in done["rows"]], ["joint", "single"])
+        used = self.daemon.get(f"/v1/jobs/{evaluation['id']}").json["request"]["inputs"]["scenario"]["filters"][0]["gyro"]["z"]
+        self.assertAlmostEqual(used["by_rate"]["processes"][0][0]["params"]["N"]["value"], done["rows"][0]["values"]["white_noise.N"]["value"], places=9)
+        pooled = self.expect(200, self.daemon.get(f"/v1/jobs/{again['id']}/result")).json
+        self.assertEqual(len(pooled["conditions"][0]["members"]), 2)
+
+    def test_what_cannot_be_pooled_is_refused(self) -> None:
+        self.expect(201, self.daemon.upload(samples.gyro_csv(300, seed=9), device="lonely", rate_hz=100, columns=samples.GYRO_Z))
+        for inputs, status, pointer in (({"device": "nobody", "axis": "z"}, 404, "/inputs/device"), ({"device": "lonely", "axis": "z"}, 404, "/inputs/axis"),
+                                        ({"device": "lonely", "axis": "w"}, 400, "/inputs/axis"), ({"device": "lonely", "axis": "z", "sensor": "nose"}, 400, "/inputs/sensor"),
+                                        ({"device": "lonely", "axis": "z", "members": []}, 400, "/inputs/members")):
+            answer = self.daemon.post("/v1/jobs", {"kind": "pool", "inputs": inputs})
+            self.assertEqual((answer.status, [error["pointer"] for error in answer.json["errors"]]), (status, [pointer]), answer.describe())
 
 
 if __name__ == "__main__":

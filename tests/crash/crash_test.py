@@ -71,7 +71,7 @@ class CrashTest(unittest.TestCase):
             self.assertIn(f"{sha256[:2]}/{sha256}.columns", daemon.files("columns"))
             if identity in told.recordings:
                 self.assertEqual(content, told.recordings[identity])
-        jobs = {job["id"]: job for job in daemon.items("/v1/jobs?limit=2")}
+        jobs = {job["id"]: job for job in daemon.items("/v1/jobs?limit=2&kind=characterise")}
         self.assertLessEqual(set(told.jobs), set(jobs), "an acknowledged job is lost")
         for job in jobs:  # queued again, or taken up where it was
             told.jobs.setdefault(job, jobs[job]["request"]["inputs"]["recordings"][0]["id"])
@@ -99,10 +99,14 @@ class CrashTest(unittest.TestCase):
         try:
             self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
             self.assertEqual(database.execute("PRAGMA foreign_key_check").fetchall(), [])
-            self.assertEqual(database.execute("SELECT count(*) FROM jobs WHERE state = 'succeeded'").fetchone(),
-                             database.execute("SELECT count(*) FROM job_results").fetchone())
-            self.assertEqual(database.execute("SELECT count(*) FROM fits").fetchone()[0],
-                             len(MODELS) * database.execute("SELECT count(*) FROM job_results").fetchone()[0])
+            [succeeded] = database.execute("SELECT count(*) FROM jobs WHERE state = 'succeeded' AND kind = 'characterise'").fetchone()
+            of_kind = "SELECT count(*) FROM job_results JOIN jobs ON jobs.id = job_id WHERE kind = ?"
+            self.assertEqual(database.execute(of_kind, ("characterise",)).fetchone(), (succeeded,))
+            self.assertEqual(database.execute("SELECT count(*) FROM fits").fetchone(), (len(MODELS) * succeeded,))
+            # One axis: its latest results are pooled by one job, and nothing of the sets before is left.
+            self.assertLessEqual(database.execute(of_kind, ("pool",)).fetchone()[0], 1)
+            live = "SELECT count(*) FROM pools JOIN jobs USING (unique_key) WHERE state IN ('queued', 'running', 'succeeded')"
+            self.assertEqual(database.execute(live).fetchone(), database.execute("SELECT count(*) FROM pools").fetchone())
         finally:
             database.close()
 
@@ -135,7 +139,7 @@ class NamedPoints(CrashTest):
                 self.assertEqual(daemon.get(f"/v1/recordings/{recording}").json["file"]["sha256"], hashlib.sha256(content).hexdigest())
                 told.finish(daemon, told.queue(daemon, recording))
                 self.assertEqual(len(daemon.items("/v1/recordings")), 2)
-                self.assertEqual(len(daemon.items("/v1/jobs")), 2, "the same job is one job, whatever crashed")
+                self.assertEqual(len(daemon.items("/v1/jobs?kind=characterise")), 2, "the same job is one job, whatever crashed")
                 self.check(daemon, told)
                 self.check_at_rest(daemon)
 

@@ -662,6 +662,14 @@ class JobRequestMember(TypedDict):
 class JobRequestMemberInputs(TypedDict):
     # The study that named the recordings.
     study: NotRequired[str]
+    # Of a pooling: the id of the device.
+    device: NotRequired[str]
+    # Of a pooling.
+    quantity: NotRequired[str]
+    # Of a pooling.
+    axis: NotRequired[str]
+    # Of a pooling: ids of the results that are put together, sorted.
+    members: NotRequired[list[str]]
     recordings: NotRequired[list[JobRequestMemberInputsRecording]]
     # Of an outage evaluation: a name, or the document.
     scenario: NotRequired[str | dict[str, Any]]
@@ -702,6 +710,27 @@ class JobRequestOutageEvaluationParameters(TypedDict):
     runs: NotRequired[int]
     seed: NotRequired[int]
     relative_precision: NotRequired[float]
+
+
+class JobRequestPool(TypedDict):
+    """The latest results of one sensor axis, put together. The daemon queues these by itself whenever such results
+    change; to ask for one is useful where one failed."""
+
+    kind: Literal['pool']
+    inputs: JobRequestPoolInputs
+    parameters: NotRequired[JobRequestPoolParameters]
+    priority: NotRequired[int]
+
+
+class JobRequestPoolInputs(TypedDict):
+    # Id or name.
+    device: str
+    sensor: NotRequired[Literal['gyroscope', 'accelerometer']]
+    axis: Literal['x', 'y', 'z']
+
+
+class JobRequestPoolParameters(TypedDict):
+    pass
 
 
 class JobResult(TypedDict):
@@ -1234,6 +1263,7 @@ class ParameterTable(TypedDict):
     method: Literal['av', 'gmwm']
     # The one model of all rows; null for method av.
     model: str | None
+    pooling: ParameterTablePooling
     columns: list[ParameterTableColumn]
     rows: list[ParameterTableRow]
 
@@ -1250,6 +1280,19 @@ class ParameterTableColumn(TypedDict):
     key: str
     # Also where no row identifies the parameter; null where the unit of the channel is not known.
     unit: str | None
+
+
+class ParameterTablePooling(TypedDict):
+    """Whether the recordings are put together as far as they go. A job of kind pool fits those of one condition
+    jointly; until it has ended their values are averaged."""
+
+    # pending: the table will change, and `Prefer: wait` waits for it. Method av takes nothing from joint fits and is
+    # always done.
+    state: Literal['done', 'pending', 'failed']
+    # null where there is nothing to pool.
+    job: str | None
+    # Why it failed; a job of kind pool asks for it again.
+    reason: str | None
 
 
 class ParameterTableRow(TypedDict):
@@ -1275,6 +1318,8 @@ class PooledSensor(TypedDict):
     """Pooled sensor axis. The recordings of one sensor axis put together: replicates fitted jointly, their agreement,
     and the model structure over all conditions."""
 
+    # Its id; of the result of a pool job.
+    device: NotRequired[str]
     quantity: str
     axis: str | None
     # The column name in the first recording.
@@ -1647,6 +1692,7 @@ class Trends(TypedDict):
     axis: str | None
     method: Literal['av', 'gmwm']
     model: str | None
+    pooling: NotRequired[ParameterTablePooling]
     trends: list[TrendsTrend]
 
 
@@ -1725,7 +1771,7 @@ Condition: TypeAlias = (
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
-JobRequest: TypeAlias = "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate"
+JobRequest: TypeAlias = "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool"
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"
 ModelChannels: TypeAlias = "dict[str, ModelChannel]"
 ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"
@@ -1782,7 +1828,7 @@ OPERATIONS: dict[str, Operation] = {
     'listJobs': Operation(
         'GET', '/v1/jobs', ('limit', 'cursor', 'kind', 'state'), (), ('application/json',)),
     'createJob': Operation(
-        'POST', '/v1/jobs', (), ('Idempotency-Key',), ('application/json',)),
+        'POST', '/v1/jobs', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getJob': Operation(
         'GET', '/v1/jobs/{id}', (), ('Prefer',), ('application/json',)),
     'getJobResult': Operation(
@@ -1800,9 +1846,11 @@ OPERATIONS: dict[str, Operation] = {
     'getParameterTable': Operation(
         'GET', '/v1/parameter-tables',
         ('device', 'sensor', 'axis', 'method', 'model'),
-        (), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
+        ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
     'getTrends': Operation(
-        'GET', '/v1/trends', ('device', 'sensor', 'axis', 'method', 'model'), (), ('application/json', 'text/plain')),
+        'GET', '/v1/trends',
+        ('device', 'sensor', 'axis', 'method', 'model'),
+        ('Prefer',), ('application/json', 'text/plain')),
     'listStudies': Operation(
         'GET', '/v1/studies', ('limit', 'cursor', 'device'), (), ('application/json',)),
     'createStudy': Operation(
@@ -1812,7 +1860,7 @@ OPERATIONS: dict[str, Operation] = {
     'listOutageEvaluations': Operation(
         'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'state'), (), ('application/json',)),
     'createOutageEvaluation': Operation(
-        'POST', '/v1/outage-evaluations', (), ('Idempotency-Key',), ('application/json',)),
+        'POST', '/v1/outage-evaluations', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getOutageEvaluation': Operation(
         'GET', '/v1/outage-evaluations/{id}', (), ('Prefer',), ('application/json',)),
     'listCalibrations': Operation(

@@ -159,6 +159,19 @@ Result<LeaseStatus> report_progress(Connection& connection, const Lease& lease, 
 }
 
 Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const JobResults& results, UtcMicros now) {
+  if (results.pooled) {
+    const Result<HeldJob> held = held_job(connection, lease);
+    if (!held) {
+      return not_held(held.error());
+    }
+    const Result<bool> latest = pools_latest(connection, lease.job_id);
+    if (!latest) {
+      return fail(latest.error());
+    }
+    if (!*latest) {
+      return moved(connection, connection.prepare(kCancel).bind(lease.job_id, now).run(), lease, true, now);
+    }
+  }
   LeaseStatus status;
   {
     Statement update = connection.prepare(kSucceed);
@@ -169,8 +182,12 @@ Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const Jo
     }
     status = *written;
   }
-  Result<LeaseStatus> finished =
-      moved(connection, insert_results(connection, lease.job_id, results, now), lease, status.cancel_requested, now);
+  Status written = insert_results(connection, lease.job_id, results, now);
+  if (written && !results.channels.empty()) {
+    const auto axes = axes_of_job(connection, lease.job_id);
+    written = axes ? refresh_pools(connection, *axes, now).map([](int) {}) : fail(axes.error());
+  }
+  Result<LeaseStatus> finished = moved(connection, std::move(written), lease, status.cancel_requested, now);
   crash_point("job.in_finish");
   return finished;
 }

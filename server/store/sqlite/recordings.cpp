@@ -33,11 +33,12 @@ constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
 /// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
 constexpr std::string_view kLiveJob =
     "SELECT id FROM jobs WHERE state IN ('queued', 'running') AND instr(request_json, ?) > 0 LIMIT 1";
-/// They speak of all recordings of the device together, the removed one among them.
-constexpr std::string_view kRemovePooled = "DELETE FROM pooled_results WHERE device_id = ?";
+/// Of jobs that made results of the recording, that name it, or that pooled its results.
 constexpr std::string_view kRemoveDocuments =
     "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?1"
-    " UNION SELECT id FROM jobs WHERE instr(request_json, ?1) > 0)";
+    " UNION SELECT id FROM jobs WHERE instr(request_json, ?1) > 0"
+    " UNION SELECT pool.id FROM jobs AS pool JOIN channel_results AS member ON instr(pool.request_json, member.id) > 0"
+    " WHERE pool.kind = 'pool' AND member.recording_id = ?1)";
 
 Blob read_blob(const Statement& row) {
   Blob blob;
@@ -175,13 +176,17 @@ Result<Recording> revise_recording(Connection& connection, const Recording& chan
                        .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json,
                              revised.revision, revised.updated_at)
                        .run();
+  if (updated) {
+    const auto axes = axes_of_recording(connection, revised.id);
+    updated = axes ? refresh_pools(connection, *axes, now).map([](int) {}) : fail(axes.error());
+  }
   if (!updated) {
     return fail(updated.error());
   }
   return revised;
 }
 
-Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision) {
+Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision, UtcMicros now) {
   const Result<Recording> found = recording(connection, id);
   if (!found) {
     return fail(found.error());
@@ -202,10 +207,14 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
   if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
     return removed;
   }
-  if (Status removed = connection.prepare(kRemovePooled).bind(found->device_id).run(); !removed) {
+  const auto axes = axes_of_recording(connection, id);
+  if (!axes) {
+    return fail(axes.error());
+  }
+  if (Status removed = connection.prepare(kRemove).bind(id).run(); !removed) {
     return removed;
   }
-  return connection.prepare(kRemove).bind(id).run();
+  return refresh_pools(connection, *axes, now).map([](int) {});
 }
 
 Result<std::vector<std::string>> blob_hashes(Connection& connection) {

@@ -11,14 +11,6 @@ constexpr std::string_view kInsertChannel =
 constexpr std::string_view kInsertFit =
     "INSERT INTO fits (id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
     "axis, condition, model, rank, document_json, created_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-constexpr std::string_view kInsertPooled =
-    "INSERT INTO pooled_results (device_id, quantity, axis, job_id, document_json, created_at) VALUES (?, ?, ?, ?, ?, "
-    "?) ON CONFLICT (device_id, quantity, axis) DO UPDATE SET job_id = excluded.job_id, "
-    "document_json = excluded.document_json, created_at = excluded.created_at";
-constexpr std::string_view kPooled =
-    "SELECT device_id, quantity, axis, document_json FROM pooled_results WHERE device_id = ? AND quantity = ? AND axis "
-    "= "
-    "?";
 constexpr std::string_view kDocument = "SELECT document_json FROM job_results WHERE job_id = ?";
 constexpr std::string_view kSelectFit =
     "SELECT id, channel_result_id, job_id, device_id, recording_id, recording_revision, channel, quantity, axis, "
@@ -31,14 +23,18 @@ constexpr std::string_view kFitIsLatest =
     "NOT EXISTS (SELECT 1 FROM channel_results AS mine JOIN channel_results AS later "
     "ON later.recording_id = mine.recording_id AND later.channel = mine.channel AND later.sequence > mine.sequence "
     "WHERE mine.id = fits.channel_result_id)";
+/// Constant text: what the latest results of an axis are, and in which order, is written once.
+#define DRIFTLAB_LATEST_RESULTS                                                                                     \
+  " FROM channel_results AS r "                                                                                     \
+  "JOIN recordings AS recording ON recording.id = r.recording_id AND recording.revision = r.recording_revision "    \
+  "WHERE r.device_id = ? AND r.quantity = ? AND r.axis = ? AND NOT EXISTS (SELECT 1 FROM channel_results AS later " \
+  "WHERE later.recording_id = r.recording_id AND later.channel = r.channel "                                        \
+  "AND later.recording_revision = r.recording_revision AND later.sequence > r.sequence) "                           \
+  "ORDER BY r.condition, recording.blob_sha256, r.channel"
 constexpr std::string_view kLatestChannels =
     "SELECT r.id, r.job_id, r.device_id, r.recording_id, r.recording_revision, r.channel, r.quantity, r.axis, "
-    "r.condition, r.document_json, r.settings_json, r.created_at FROM channel_results AS r "
-    "JOIN recordings AS recording ON recording.id = r.recording_id AND recording.revision = r.recording_revision "
-    "WHERE r.device_id = ? AND r.quantity = ? AND r.axis = ? AND NOT EXISTS (SELECT 1 FROM channel_results AS later "
-    "WHERE later.recording_id = r.recording_id AND later.channel = r.channel "
-    "AND later.recording_revision = r.recording_revision AND later.sequence > r.sequence) "
-    "ORDER BY r.condition, r.recording_id, r.channel";
+    "r.condition, r.document_json, r.settings_json, r.created_at" DRIFTLAB_LATEST_RESULTS;
+constexpr std::string_view kLatestIds = "SELECT r.id" DRIFTLAB_LATEST_RESULTS;
 
 std::string read_text(const Statement& row) { return row.text(0); }
 
@@ -78,8 +74,6 @@ ChannelResult read_channel(const Statement& row) {
   return channel;
 }
 
-PooledResult read_pooled(const Statement& row) { return {row.text(0), row.text(1), row.text(2), row.text(3)}; }
-
 Status insert_channel(Connection& connection, std::string_view job_id, const ChannelResult& channel, UtcMicros now) {
   return connection.prepare(kInsertChannel)
       .bind(channel.id, job_id, channel.device_id, channel.recording_id, channel.recording_revision, channel.channel,
@@ -105,19 +99,7 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
   for (auto fit = results.fits.begin(); inserted && fit != results.fits.end(); ++fit) {
     inserted = insert_fit(connection, job_id, *fit, now);
   }
-  for (auto pooled = results.pooled.begin(); inserted && pooled != results.pooled.end(); ++pooled) {
-    inserted = connection.prepare(kInsertPooled)
-                   .bind(pooled->device_id, pooled->quantity, pooled->axis, job_id, pooled->document_json, now)
-                   .run();
-  }
   return inserted ? insert_investigations(connection, job_id, results, now) : inserted;
-}
-
-Result<std::optional<PooledResult>> pooled_result(Connection& connection, std::string_view device_id,
-                                                  std::string_view quantity, std::string_view axis) {
-  Statement statement = connection.prepare(kPooled);
-  statement.bind(device_id, quantity, axis);
-  return first_row(statement, read_pooled);
 }
 
 Result<std::string> result_document(Connection& connection, std::string_view job_id) {
@@ -150,6 +132,12 @@ Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, c
     query.where(kFitIsLatest);
   }
   return query.read_page(connection, page, read_fit);
+}
+
+Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis) {
+  Statement statement = connection.prepare(kLatestIds);
+  statement.bind(axis.device_id, axis.quantity, axis.axis);
+  return all_rows(statement, read_text);
 }
 
 Result<std::vector<ChannelResult>> latest_channel_results(Connection& connection, std::string_view device_id,

@@ -65,7 +65,7 @@ class OpenedStore final : public SqliteStore {
     return writer_.write([&](Connection& c) { return tables::revise_recording(c, changed, expected_revision, now()); });
   }
   [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
-    return writer_.write([&](Connection& c) { return tables::remove_recording(c, id, expected_revision); });
+    return writer_.write([&](Connection& c) { return tables::remove_recording(c, id, expected_revision, now()); });
   }
   [[nodiscard]] Result<std::vector<std::string>> blob_hashes() override {
     return readers_->read([](Connection& c) { return tables::blob_hashes(c); });
@@ -136,10 +136,11 @@ class OpenedStore final : public SqliteStore {
                                                                           std::string_view axis) override {
     return readers_->read([&](Connection& c) { return tables::latest_channel_results(c, device_id, quantity, axis); });
   }
-
-  [[nodiscard]] Result<std::optional<PooledResult>> pooled_result(std::string_view device_id, std::string_view quantity,
-                                                                  std::string_view axis) override {
-    return readers_->read([&](Connection& c) { return tables::pooled_result(c, device_id, quantity, axis); });
+  [[nodiscard]] Result<AxisResults> axis_results(const SensorAxis& axis) override {
+    return readers_->read([&](Connection& c) { return tables::axis_results(c, axis); });
+  }
+  [[nodiscard]] Result<int> queue_missing_pools() override {
+    return writer_.write([&](Connection& c) { return tables::queue_missing_pools(c, now()); });
   }
 
   [[nodiscard]] Result<StudyOutcome> add_study(const Study& study) override {

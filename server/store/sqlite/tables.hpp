@@ -108,7 +108,8 @@ class FilteredQuery {
                                                         const Page& page);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
-[[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision);
+[[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,
+                                      UtcMicros now);
 [[nodiscard]] Result<std::vector<std::string>> blob_hashes(Connection& connection);
 [[nodiscard]] Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256);
 
@@ -147,8 +148,20 @@ class FilteredQuery {
                                                                         std::string_view device_id,
                                                                         std::string_view quantity,
                                                                         std::string_view axis);
-[[nodiscard]] Result<std::optional<PooledResult>> pooled_result(Connection& connection, std::string_view device_id,
-                                                                std::string_view quantity, std::string_view axis);
+/// Their ids alone.
+[[nodiscard]] Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis);
+
+// ---- pooling of the results of an axis
+/// Makes the row of each axis name its latest results: what pooled others is cancelled, a job for these queued. How
+/// many were queued.
+[[nodiscard]] Result<int> refresh_pools(Connection& connection, const std::vector<SensorAxis>& axes, UtcMicros now);
+[[nodiscard]] Result<int> queue_missing_pools(Connection& connection, UtcMicros now);
+/// Named axes that have results of one job, of one recording.
+[[nodiscard]] Result<std::vector<SensorAxis>> axes_of_job(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<std::vector<SensorAxis>> axes_of_recording(Connection& connection, std::string_view recording_id);
+/// Whether the results that the job was to pool are still the latest of their axis.
+[[nodiscard]] Result<bool> pools_latest(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis);
 
 // ---- studies
 [[nodiscard]] Result<Store::StudyOutcome> add_study(Connection& connection, const Study& study, UtcMicros now);

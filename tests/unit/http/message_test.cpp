@@ -67,6 +67,22 @@ TEST(Response, FindsHeadersWhateverTheirCase) {
   EXPECT_FALSE(response.has_header("eta"));
 }
 
+TEST(Prefer, SaysHowLongToWait) {
+  const auto wait = [](const char* value) {
+    Request request;
+    request.headers = {{"prefer", value}};
+    return preferred_wait(request);
+  };
+  EXPECT_EQ(wait("wait=20"), std::chrono::seconds(20));
+  EXPECT_EQ(wait("respond-async, wait=5"), std::chrono::seconds(5));
+  EXPECT_EQ(wait("wait=3600"), std::chrono::seconds(60));
+  EXPECT_EQ(wait("wait=0"), std::chrono::seconds(0)) << "not the same as saying nothing";
+  EXPECT_EQ(wait("wait=-3"), std::chrono::seconds(0));
+  EXPECT_EQ(wait("wait=soon"), std::chrono::seconds(0));
+  EXPECT_FALSE(wait("respond-async"));
+  EXPECT_FALSE(preferred_wait(Request{}));
+}
+
 TEST(Request, GivesFirstValues) {
   Request request;
   request.headers = {{"accept", "a"}, {"accept", "b"}};

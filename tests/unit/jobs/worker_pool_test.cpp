@@ -273,6 +273,21 @@ Result<JobResults> wait_for_stop(const RunControl& control) {
   return fail(ErrorCode::Cancelled, "Stopped on request.");
 }
 
+TEST(WorkerPool, WorkThatLearnsByItselfThatNobodyWantsItIsCancelled) {
+  // A pooling that found newer results before the heartbeat had told it was written down as failed.
+  ToyWorld* here = nullptr;
+  std::string id;
+  ToyWorld world([&](const RunControl&) -> Result<JobResults> {
+    EXPECT_TRUE(here->store->request_cancel(id));
+    return fail(ErrorCode::Cancelled, "Another job does this better.");
+  });
+  here = &world;
+  id = world.add_toy();
+  const auto pool = world.pool(ToyWorld::quiet());
+  pool->start();
+  EXPECT_EQ(world.wait_for(id, [](const Job& job) { return is_terminal(job.state); }).state, JobState::Cancelled);
+}
+
 TEST(WorkerPool, ACancelReachesARunningJobAtOnce) {
   ToyWorld world(wait_for_stop);
   const std::string id = world.add_toy();

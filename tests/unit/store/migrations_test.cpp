@@ -42,7 +42,6 @@ Device fill(Store& store) {
   add_job(store, "done");
   const Job done = claim_one(store);
   JobResults results = results_for(done, recording);
-  results.pooled.push_back({device.id, "angular_rate", "z", "{}"});
   Study study;
   study.device_id = device.id;
   study.unique_key = "study";
@@ -126,6 +125,41 @@ TEST(Migrations, FromEachReleasedSchemaWithRowsNothingIsLost) {
   EXPECT_EQ((*next)->facts().schema_before, released());
   EXPECT_EQ((*next)->facts().schema, released() + 1);
   expect_filled(**next, device);
+}
+
+TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
+  // Until schema 4 a characterise job pooled what it saw of its neighbours, so that figures depended on who ended
+  // first.
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  {
+    const auto old = Connection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    ASSERT_TRUE((*old)->execute(
+        "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+        "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
+        "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
+        "INSERT INTO job_results VALUES ('job_1', '{}', 0)"));
+    for (const char* const n : {"1", "2"}) {
+      const std::string rec = std::string("'rec_") + n + "', ";
+      ASSERT_TRUE((*old)->execute(
+          "INSERT INTO blobs VALUES ('" + hash_of(n) + "', 1, 'csv', 'none', 1, '[]', '[]', 0);" +
+          "INSERT INTO recordings VALUES (" + rec + "'dev_1', '" + hash_of(n) + "', 1, '{}', 'static', '{}', 0, 0);" +
+          "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
+          "axis, condition, document_json, settings_json, created_at) VALUES ('chr_" +
+          n + "', 'job_1', 'dev_1', " + rec + "1, 'gz', 'angular_rate', 'z', 'static', '{}', '{}', 0)"));
+    }
+    ASSERT_TRUE((*old)->execute(
+        "INSERT INTO pooled_results VALUES ('dev_1', 'angular_rate', 'z', 'job_1', '{\"of\":\"one of two\"}', 0)"));
+  }
+  const auto now = open_with(directory.path(), embedded_migrations());
+  ASSERT_TRUE(now) << now.error().message;
+  const SensorAxis axis{"dev_1", "angular_rate", "z"};
+  EXPECT_EQ((*now)->axis_results(axis)->pooled_json, "");
+  EXPECT_THAT((*now)->axis_results(axis)->latest, SizeIs(2));
+  EXPECT_EQ(*(*now)->queue_missing_pools(), 1);
+  EXPECT_EQ(*(*now)->queue_missing_pools(), 0) << "asked again, the same job";
+  EXPECT_EQ((*now)->axis_results(axis)->pool->state, JobState::Queued);
 }
 
 TEST(Migrations, ABackupIsMadeBeforeAndCanBeOpenedByTheOldRelease) {

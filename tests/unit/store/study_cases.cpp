@@ -59,34 +59,5 @@ TEST_P(StudyStore, CalibrationsAreKeptOnceAndListedByDevice) {
   EXPECT_EQ(store().calibrations(two.id, {})->size(), 1U);
 }
 
-TEST_P(StudyStore, AFinishReplacesThePooledDocumentOfItsAxis) {
-  const Recording recording = add_recording(store(), add_device(store()));
-  for (const char* const text : {"first", "second"}) {
-    add_job(store(), text);
-    const Job job = claim_one(store());
-    JobResults results = results_for(job, recording);
-    results.pooled.push_back({recording.device_id, "angular_rate", "z", text});
-    ASSERT_TRUE(store().succeed(lease_of(job), results)->held);
-    const auto pooled = store().pooled_result(recording.device_id, "angular_rate", "z");
-    ASSERT_TRUE(pooled && *pooled);
-    EXPECT_EQ((*pooled)->document_json, text);
-  }
-  EXPECT_FALSE(*store().pooled_result(recording.device_id, "angular_rate", "x"));
-}
-
-TEST_P(StudyStore, ARemovedRecordingTakesThePooledDocumentsOfItsDeviceAlong) {
-  const Device device = add_device(store());
-  const Recording stays = add_recording(store(), device, "a");
-  const Recording goes = add_recording(store(), device, "b");
-  add_job(store(), "key");
-  const Job job = claim_one(store());
-  JobResults results = results_for(job, stays);
-  results.pooled.push_back({device.id, "angular_rate", "z", "{}"});
-  ASSERT_TRUE(store().succeed(lease_of(job), results)->held);
-  ASSERT_TRUE(store().remove_recording(goes.id, 1));
-  EXPECT_FALSE(*store().pooled_result(device.id, "angular_rate", "z"));
-  EXPECT_EQ(store().latest_channel_results(device.id, "angular_rate", "z")->size(), 1U);
-}
-
 }  // namespace
 }  // namespace driftlab::server

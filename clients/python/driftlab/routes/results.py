@@ -37,7 +37,7 @@ class ResultRoutes(Routes):
                         model: str | None = None, wait_s: float | None = 30.0) -> ParameterTable:
         """Parameters of one sensor axis, a row per dynamic condition. Without `model`: the one that is best over all rows.
 
-        `wait_s` is how long the daemon may wait for work on the table to end, where it takes that wish.
+        `wait_s` is how long the daemon may wait until recordings of one condition are fitted jointly (`pooling` of the document).
         """
         query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
         return ParameterTable(cast(ParameterTableDocument, self._get("getParameterTable", None, query, wait_s)))
