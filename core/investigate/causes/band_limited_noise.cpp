@@ -8,6 +8,7 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/fullrate/whittle.hpp"
 #include "core/investigate/slow/profile.hpp"
+#include "core/investigate/study/measured_constants.hpp"
 
 #include <cmath>
 #include <functional>
@@ -21,9 +22,6 @@ struct Shape {
   double density = 0.0;
   double floor = 0.0;  ///< beyond that of rounding
 };
-
-/// A stop band filled by more than this share of the density is none: some other shape has been approximated.
-constexpr double kFilled = 0.2;
 
 /// Mean of a gain over a bin of the spectrum by Simpson's rule: at a steep edge the middle alone is off by its
 /// curvature.

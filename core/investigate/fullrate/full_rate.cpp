@@ -1,5 +1,7 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 
+#include "core/investigate/study/measured_constants.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -259,8 +261,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   }
   data.flat = spectra_fit(data);
   if (!data.flat && !data.given) {
-    constexpr double kRepeats = 0.006;
-    data.repeatability = 1.0 + 2.0 * steady / static_cast<double>(data.members()) * kRepeats * kRepeats;
+    data.repeatability = 1.0 + 2.0 * steady / static_cast<double>(data.members()) * kLevelRepeats * kLevelRepeats;
   }
   if (options.whiten_further) {
     whiten_further(data);

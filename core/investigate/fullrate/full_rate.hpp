@@ -32,8 +32,9 @@ struct FullRate {
   std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
   std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin
   bool flat = true;  ///< white + slow describes the spectra; false: compare recordings with each other instead
-  /// Recordings of a real sensor repeat their noise level to about 0.6 %, not to 1/sqrt(2 n): where no model describes
-  /// the spectra, gains of contrasts between recordings are divided by 1 + 2 n 0.006^2. 1 elsewhere.
+  /// Where no model describes the spectra, gains of contrasts between recordings of n samples are divided by
+  /// 1 + 2 n kLevelRepeats^2 (study/measured_constants.hpp): a sensor does not repeat its noise level to 1/sqrt(2 n).
+  /// 1 elsewhere.
   double repeatability = 1.0;
   double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
 

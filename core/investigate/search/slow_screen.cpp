@@ -3,17 +3,12 @@
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/slow/screening.hpp"
 #include "core/investigate/slow/step_scan.hpp"
+#include "core/investigate/study/measured_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace driftlab::investigate {
-namespace {
-
-constexpr double kLargestPart = 0.3;  ///< of the reference rate (MeanEffect::part_of_rate)
-
-}  // namespace
-
 std::vector<SlowModel> SlowSearch::screening_bases() const {
   std::vector<SlowModel> bases;
   for (const SlowFit& fit : orders_) {

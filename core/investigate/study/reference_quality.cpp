@@ -1,5 +1,7 @@
 #include "core/investigate/study/reference_quality.hpp"
 
+#include "core/investigate/study/measured_constants.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -61,10 +63,10 @@ double noise_of_third_differences(const std::vector<double>& values, std::size_t
 }
 
 bool stamps_are_loose(const ChannelGroup& group) {
-  constexpr double kLoose = 1.5;
   return std::any_of(group.members.begin(), group.members.end(), [](const ChannelGroup::Member& member) {
     const Stamps& stamps = member.recording->stamps;
-    return !member.channel->reference.empty() && stamps.present && stamps.scatter_s > kLoose * member.recording->dt_s;
+    return !member.channel->reference.empty() && stamps.present &&
+           stamps.scatter_s > kLooseStamps * member.recording->dt_s;
   });
 }
 
@@ -83,7 +85,6 @@ std::string reference_lacks(const ChannelGroup& group) {
 }
 
 std::string why_reference_misleads(const ChannelGroup& group) {
-  constexpr double kLeast = 0.85;
   constexpr double kBeyondNoise = 30.0;
   for (const ChannelGroup::Member& member : group.members) {
     const StudyRecording& recording = *member.recording;
@@ -102,7 +103,7 @@ std::string why_reference_misleads(const ChannelGroup& group) {
     }
     const double spread = std::sqrt(centred_product(means.measured, means.measured));
     const double correlation = spread > 0.0 ? centred_product(means.measured, means.reference) / (moved * spread) : 0.0;
-    if (correlation < kLeast) {
+    if (correlation < kLeastCorrelation) {
       char text[160];
       (void)std::snprintf(text, sizeof text, "it does not follow its reference in %s (correlation of 1 s means %.2f)",
                           recording.id.c_str(), correlation);

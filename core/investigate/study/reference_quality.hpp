@@ -16,8 +16,8 @@ namespace driftlab::investigate {
 /// motion out up to its third derivative and multiplies white variance by 20. 0 below eight samples.
 [[nodiscard]] double noise_of_third_differences(const std::vector<double>& values, std::size_t begin, std::size_t end);
 
-/// Time stamps of some recording with a reference scatter by more than 1.5 samples: the reference is read at other
-/// times than the channel's.
+/// Time stamps of some recording with a reference scatter by more than kLooseStamps samples (measured_constants.hpp):
+/// the reference is read at other times than the channel's.
 [[nodiscard]] bool stamps_are_loose(const ChannelGroup& group);
 inline constexpr std::string_view kTightStamps =
     "time stamps of the sampling itself, that scatter by less than a sample";
@@ -26,8 +26,8 @@ inline constexpr std::string_view kTightStamps =
 /// stamps are loose, or where its own white noise exceeds the channel's in some recording.
 [[nodiscard]] std::string reference_lacks(const ChannelGroup& group);
 
-/// What is wrong where means over a second of channel and reference do not go together (correlation below 0.85)
-/// although the reference moves far beyond the channel's noise; empty where nothing is.
+/// What is wrong where means over a second of channel and reference do not go together (correlation below
+/// kLeastCorrelation) although the reference moves far beyond the channel's noise; empty where nothing is.
 [[nodiscard]] std::string why_reference_misleads(const ChannelGroup& group);
 
 }  // namespace driftlab::investigate
