@@ -1,35 +1,15 @@
 #include "core/calibrate/known_positions.hpp"
 
+#include "core/signal/recording_columns.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace driftlab {
 namespace {
 
-constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
-
-std::optional<std::size_t> axis_index(const std::string& axis) {
-  const auto found = std::find(kAxes.begin(), kAxes.end(), axis);
-  return found == kAxes.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - kAxes.begin()));
-}
-
-/// The three channels of a sensor, over the rows they share; nothing where one is not there.
-std::optional<std::array<const ChannelView*, 3>> triad_of(const RecordingView& view, Quantity quantity) {
-  std::array<const ChannelView*, 3> triad{};
-  for (const ChannelView& channel : view.channels) {
-    const auto axis = axis_index(channel.role.axis);
-    if (channel.role.quantity == quantity && axis) {
-      triad[*axis] = &channel;
-    }
-  }
-  const bool complete =
-      std::all_of(triad.begin(), triad.end(), [](const ChannelView* channel) { return channel != nullptr; });
-  return complete ? std::optional(triad) : std::nullopt;
-}
-
 /// The mean of a triad in SI.
-Result<TriadMean> mean_of(const std::array<const ChannelView*, 3>& triad) {
+Result<TriadMean> mean_of(const Triad& triad) {
   const auto [first, count] = longest_shared_run(triad);
   if (count == 0) {
     return fail(ErrorCode::TooFewSamples, "The three axes of a triad share no sound samples.");
@@ -67,6 +47,19 @@ std::optional<Triple> truth_of(const Condition& condition, Quantity quantity, do
 }
 
 }  // namespace
+
+std::optional<Triad> triad_of(const RecordingView& view, Quantity quantity) {
+  Triad triad{};
+  for (const ChannelView& channel : view.channels) {
+    const auto axis = axis_index(channel.role.axis);
+    if (channel.role.quantity == quantity && axis) {
+      triad[*axis] = &channel;
+    }
+  }
+  const bool complete =
+      std::all_of(triad.begin(), triad.end(), [](const ChannelView* channel) { return channel != nullptr; });
+  return complete ? std::optional(triad) : std::nullopt;
+}
 
 Status add_positions(const RecordingSpec& spec, const RecordingView& view, double gravity_m_s2,
                      KnownPositions& positions) {

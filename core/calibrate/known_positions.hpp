@@ -6,10 +6,18 @@
 #include "core/calibrate/six_position.hpp"
 #include "core/signal/recording_view.hpp"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace driftlab {
+
+/// The channels of a sensor along x, y and z.
+using Triad = std::array<const ChannelView*, 3>;
+
+/// Nothing where one of the three is not there.
+[[nodiscard]] std::optional<Triad> triad_of(const RecordingView& view, Quantity quantity);
 
 struct KnownPositions {
   std::vector<KnownPosition> accelerometer;

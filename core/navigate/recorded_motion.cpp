@@ -1,9 +1,10 @@
 #include "core/navigate/recorded_motion.hpp"
 
+#include "core/signal/turns.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 namespace driftlab {
@@ -62,7 +63,7 @@ class RecordedMotion final : public Motion {
       for (const RecordedPose& pose : poses) {
         double value = numbers_of(pose)[k];
         if (k >= 3 && !y.empty()) {
-          value += 2.0 * std::numbers::pi * std::round((y.back() - value) / (2.0 * std::numbers::pi));
+          value = nearest_turn(value, y.back());
         }
         y.push_back(value);
       }

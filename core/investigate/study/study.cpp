@@ -1,6 +1,8 @@
 #include "core/investigate/study/study.hpp"
 
 #include "core/investigate/study/time_grid.hpp"
+#include "core/signal/recording_columns.hpp"
+#include "core/signal/turns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,34 +10,16 @@
 namespace driftlab::investigate {
 namespace {
 
-using Roles = std::vector<std::optional<ColumnRole>>;
-using Columns = std::function<std::span<const double>(std::size_t)>;
+constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
-std::optional<std::size_t> find_role(const Roles& roles, Quantity quantity, std::string_view axis) {
-  for (std::size_t i = 0; i < roles.size(); ++i) {
-    const auto& role = roles[i];
-    if (role && role->quantity == quantity && (axis.empty() || role->axis == axis)) {
-      return i;
-    }
-  }
-  return std::nullopt;
-}
-
-/// The stated unit of a column, else `otherwise`.
-Unit unit_of(const Roles& roles, std::size_t column, const Unit& otherwise = {}) {
-  const auto& role = roles[column];
-  return role && role->unit ? *role->unit : otherwise;
-}
-
-/// Rows put on the grid; places between rows are interpolated.
-std::vector<double> on_grid(std::span<const double> rows, const Unit& unit, const TimeGrid& grid) {
-  std::vector<double> values(grid.length);
+/// Values of the file's rows put on the grid; places between rows are interpolated.
+std::vector<double> on_grid(std::vector<double> rows, const TimeGrid& grid) {
   if (grid.place.empty()) {
-    std::transform(rows.begin(), rows.end(), values.begin(), [&](double v) { return unit.to_si(v); });
-    return values;
+    return rows;
   }
+  std::vector<double> values(grid.length);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    values[grid.place[i]] = unit.to_si(rows[i]);
+    values[grid.place[i]] = rows[i];
     if (i > 0) {
       const std::size_t from = grid.place[i - 1];
       const std::size_t to = grid.place[i];
@@ -48,27 +32,22 @@ std::vector<double> on_grid(std::span<const double> rows, const Unit& unit, cons
   return values;
 }
 
-std::vector<double> derivative(const std::vector<double>& x, double dt_s) {
-  std::vector<double> d(x.size(), 0.0);
-  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-    d[i] = i == 0 ? (x[1] - x[0]) / dt_s : (x[i + 1] - x[i - 1]) / (2.0 * dt_s);
+/// A reference column on the grid [SI]; of an angle the rate behind it.
+std::vector<double> reference_on_grid(const RecordingColumns& columns, const ReferenceColumn& source,
+                                      const TimeGrid& grid) {
+  std::vector<double> rows = columns.si(source.index);
+  if (!source.angle) {
+    return on_grid(std::move(rows), grid);
   }
-  if (x.size() > 1) {
-    d.back() = (x.back() - x[x.size() - 2]) / dt_s;
-  }
-  return d;
+  return rate_of_angle(on_grid(continuous_angle(rows, grid.place), grid), grid.dt_s);
 }
 
 /// The reference rate about each axis, from columns or from the condition; nothing for free motion without a column.
-void set_rotation(StudyRecording& recording, const Roles& roles, const Columns& column, const TimeGrid& grid) {
+void set_rotation(StudyRecording& recording, const RecordingColumns& columns, const TimeGrid& grid) {
   bool from_column = false;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::string axis(1, static_cast<char>('x' + k));
-    if (const auto index = find_role(roles, Quantity::ReferenceAngularRate, axis)) {
-      recording.rate[k] = on_grid(column(*index), unit_of(roles, *index), grid);
-      from_column = true;
-    } else if (const auto turn = find_role(roles, Quantity::ReferenceAngle, axis)) {
-      recording.rate[k] = derivative(on_grid(column(*turn), unit_of(roles, *turn), grid), grid.dt_s);
+    if (const auto source = columns.reference_of(Quantity::AngularRate, kAxes[k])) {
+      recording.rate[k] = reference_on_grid(columns, *source, grid);
       from_column = true;
     }
   }
@@ -81,7 +60,7 @@ void set_rotation(StudyRecording& recording, const Roles& roles, const Columns& 
   for (std::size_t k = 0; k < 3; ++k) {
     std::vector<double>& rate = recording.rate[k];
     if (!rate.empty()) {
-      recording.acceleration[k] = derivative(rate, recording.dt_s);
+      recording.acceleration[k] = slope(rate, recording.dt_s);
       continue;
     }
     rate.assign(recording.length, 0.0);
@@ -89,13 +68,11 @@ void set_rotation(StudyRecording& recording, const Roles& roles, const Columns& 
     if (turning != k || !condition.value) {
       continue;
     }
-    if (condition.kind == ConditionKind::ConstantRate) {
-      std::fill(rate.begin(), rate.end(), *condition.value);
-    } else if (condition.kind == ConditionKind::ConstantAngularAcceleration) {
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      rate[i] = stated_rate(condition, condition.axis, recording.time_s(i));
+    }
+    if (condition.kind == ConditionKind::ConstantAngularAcceleration) {
       std::fill(recording.acceleration[k].begin(), recording.acceleration[k].end(), *condition.value);
-      for (std::size_t i = 0; i < rate.size(); ++i) {
-        rate[i] = *condition.value * recording.time_s(i);
-      }
     }
   }
   // The angle is that about the axis that turns most.
@@ -121,8 +98,7 @@ void set_rotation(StudyRecording& recording, const Roles& roles, const Columns& 
 }
 
 /// The reference of a channel: a column, or what the condition says. Sets `error` where there is one.
-void set_error(StudyRecording& recording, Channel& channel, const Roles& roles, const Columns& column,
-               const TimeGrid& grid) {
+void set_error(StudyRecording& recording, Channel& channel, const RecordingColumns& columns, const TimeGrid& grid) {
   const Condition& condition = recording.condition;
   const auto axis = axis_index(channel.role.axis);
   channel.error = channel.measured;
@@ -133,8 +109,8 @@ void set_error(StudyRecording& recording, Channel& channel, const Roles& roles, 
     }
     channel.reference = recording.rate[*axis];
   } else if (channel.role.quantity == Quantity::SpecificForce) {
-    if (const auto index = find_role(roles, Quantity::ReferenceSpecificForce, channel.role.axis)) {
-      channel.reference = on_grid(column(*index), unit_of(roles, *index), grid);
+    if (const auto source = columns.reference_of(channel.role.quantity, channel.role.axis)) {
+      channel.reference = reference_on_grid(columns, *source, grid);
     } else if (condition.kind == ConditionKind::SixPosition && condition.up && condition.axis == channel.role.axis) {
       channel.reference.assign(recording.length, *condition.up ? kStandardGravity : -kStandardGravity);
       channel.input_only = true;  // until settle_channels knows whether a gyro is there
@@ -151,17 +127,15 @@ void set_error(StudyRecording& recording, Channel& channel, const Roles& roles, 
   }
 }
 
-Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Roles& roles, const Columns& column) {
+Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const RecordingColumns& columns) {
   if (rows < 16) {
     return fail(ErrorCode::TooFewSamples,
                 "The recording has " + std::to_string(rows) + " samples; an investigation needs at least 16.");
   }
-  if (const auto index = find_role(roles, Quantity::Time, "")) {
-    const Unit unit = unit_of(roles, *index, Unit{"s", Dimension::Time});
-    const std::span<const double> values = column(*index);
-    std::vector<double> stamps(values.size());
-    std::transform(values.begin(), values.end(), stamps.begin(),
-                   [&](double v) { return unit.to_si(v) - unit.to_si(values[0]); });
+  if (const auto index = columns.time()) {
+    std::vector<double> stamps = columns.si(*index, Unit{"s", Dimension::Time});
+    const double start = stamps[0];
+    std::transform(stamps.begin(), stamps.end(), stamps.begin(), [&](double t) { return t - start; });
     auto grid = fit_time_grid(stamps, spec.rate_hz);
     if (grid && spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > 0.01) {
       return fail(ErrorCode::InconsistentSampling, "The stated rate and the time column contradict each other.",
@@ -197,20 +171,16 @@ Status set_window(StudyRecording& recording, const Trim& trim) {
 
 }  // namespace
 
-std::optional<std::size_t> axis_index(std::string_view axis) {
-  if (axis.size() == 1 && axis[0] >= 'x' && axis[0] <= 'z') {
-    return static_cast<std::size_t>(axis[0] - 'x');
-  }
-  return std::nullopt;
-}
+std::optional<std::size_t> axis_index(std::string_view axis) { return driftlab::axis_index(axis); }
 
 Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
-                                            const Columns& column) {
-  auto roles = assign_roles(spec, names);
-  if (!roles) {
-    return fail(roles.error());
+                                            const RecordingColumns::Samples& column) {
+  auto read = RecordingColumns::read(spec, names, column);
+  if (!read) {
+    return fail(read.error());
   }
-  auto grid = grid_of(spec, rows, *roles, column);
+  const RecordingColumns& columns = *read;
+  auto grid = grid_of(spec, rows, columns);
   if (!grid) {
     return fail(grid.error());
   }
@@ -227,14 +197,17 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
     recording.notes.push_back("Its calibration '" + spec.calibration +
                               "' is not applied: what is examined are the readings as the sensor gave them.");
   }
-  set_rotation(recording, *roles, column, *grid);
-  if (const auto index = find_role(*roles, Quantity::Temperature, "")) {
-    recording.temperature = on_grid(column(*index), unit_of(*roles, *index), *grid);
+  if (std::string note = columns.note_of_time(); !note.empty()) {
+    recording.notes.push_back(std::move(note));
+  }
+  set_rotation(recording, columns, *grid);
+  if (const auto index = columns.find(Quantity::Temperature)) {
+    recording.temperature = on_grid(columns.si(*index), *grid);
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& role = (*roles)[i];
+    const auto& role = columns.role(i);
     if (!role) {
-      recording.notes.push_back("The column '" + names[i] + "' has no stated meaning and is ignored.");
+      recording.notes.push_back(columns.note_of_unnamed(i));
       continue;
     }
     if (!is_sensor(role->quantity)) {
@@ -247,14 +220,14 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
     if (!role->unit) {
       recording.notes.push_back("The unit of column '" + names[i] + "' is not stated; its unit is 1.");
     }
-    channel.rows = column(i);
+    channel.rows = columns.samples(i);
     for (std::size_t row = 0; row < channel.rows.size(); ++row) {
       if (!std::isfinite(channel.rows[row])) {
         return fail(ErrorCode::NonFinite, "The column '" + names[i] + "' holds a value that is not a finite number.",
                     {{"column", names[i]}, {"row", std::to_string(row + 1)}});
       }
     }
-    channel.measured = on_grid(channel.rows, channel.unit, *grid);
+    channel.measured = on_grid(columns.si(i), *grid);
     channel.valid.assign(grid->length, grid->place.empty() ? 1 : 0);
     for (const std::size_t place : grid->place) {
       channel.valid[place] = 1;
@@ -263,7 +236,7 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
     if (role->quantity == Quantity::SpecificForce && axis) {
       recording.force[*axis] = channel.measured;
     }
-    set_error(recording, channel, *roles, column, *grid);
+    set_error(recording, channel, columns, *grid);
     recording.channels.push_back(std::move(channel));
   }
   return recording;

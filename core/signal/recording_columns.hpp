@@ -1,0 +1,73 @@
+#pragma once
+/// The one loader of recordings: what each column of a file means, and what drove the sensors.
+///
+/// Variances (core/signal/recording_view.hpp), calibrations, investigations (core/investigate/study/study.hpp) and
+/// drives all ask here which column is the time, which the temperature and which the reference of a sensor, and what a
+/// condition says where there is no such column (spec/study.md). They differ only in the samples they then keep: a view
+/// takes the sound rows, a study puts every row on a grid.
+#include "core/signal/recording.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab {
+
+/// 0, 1, 2 for x, y, z; nothing for another label.
+[[nodiscard]] std::optional<std::size_t> axis_index(std::string_view axis);
+
+/// The column that a sensor's reference comes from.
+struct ReferenceColumn {
+  std::size_t index = 0;
+  bool angle = false;  ///< an angle, whose derivative is the reference (core/signal/turns.hpp)
+};
+
+/// A file's columns with their roles. Copies are cheap but for the names; samples stay where they are.
+class RecordingColumns {
+ public:
+  /// `column(i)` gives the samples of column i of the file in its own unit; they must outlive this object.
+  using Samples = std::function<std::span<const double>(std::size_t)>;
+
+  /// Errors: those of assign_roles.
+  [[nodiscard]] static Result<RecordingColumns> read(const RecordingSpec& spec, const ColumnNames& names,
+                                                     Samples column);
+
+  [[nodiscard]] std::size_t count() const { return names_.size(); }
+  [[nodiscard]] const std::string& name(std::size_t index) const { return names_[index]; }
+  /// Nothing for a column that nobody named.
+  [[nodiscard]] const std::optional<ColumnRole>& role(std::size_t index) const { return roles_[index]; }
+  [[nodiscard]] std::span<const double> samples(std::size_t index) const { return column_(index); }
+  /// The stated unit of a column, else `otherwise`.
+  [[nodiscard]] Unit unit(std::size_t index, const Unit& otherwise = {}) const;
+  /// The samples of a column in SI.
+  [[nodiscard]] std::vector<double> si(std::size_t index, const Unit& otherwise = {}) const;
+
+  /// The first column of a quantity along an axis (empty: a quantity without axes).
+  [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, std::string_view axis = "") const;
+  /// The time column. One that was only guessed from its name and holds text is none.
+  [[nodiscard]] std::optional<std::size_t> time() const;
+  /// The reference of a sensor along an axis: its own column, else for a rate the angle's.
+  [[nodiscard]] std::optional<ReferenceColumn> reference_of(Quantity sensor, std::string_view axis) const;
+
+  /// Sentences for the recording's notes: a column that would be the time but for its text (empty: none), and one that
+  /// nobody named.
+  [[nodiscard]] std::string note_of_time() const;
+  [[nodiscard]] std::string note_of_unnamed(std::size_t index) const;
+
+ private:
+  RecordingColumns(ColumnNames names, std::vector<std::optional<ColumnRole>> roles, Samples column, bool guessed);
+
+  ColumnNames names_;
+  std::vector<std::optional<ColumnRole>> roles_;
+  Samples column_;
+  bool guessed_;  ///< the roles come from names
+};
+
+/// The rate about `axis` [rad/s] that a condition states at `time_s` after the first sample of the file: the constant
+/// rate, the ramp from rest, else 0.
+[[nodiscard]] double stated_rate(const Condition& condition, std::string_view axis, double time_s);
+
+}  // namespace driftlab

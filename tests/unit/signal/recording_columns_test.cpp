@@ -1,0 +1,70 @@
+#include "core/signal/recording_columns.hpp"
+
+#include "core/signal/missing.hpp"
+
+#include <gtest/gtest.h>
+
+namespace driftlab {
+namespace {
+
+const std::vector<double> kBlank(4, 0.0);
+
+RecordingColumns columns_of(const std::map<std::string, ColumnRole>& roles,
+                            const std::vector<double>& samples = kBlank) {
+  RecordingSpec spec;
+  spec.columns = roles;
+  ColumnNames names;
+  for (const auto& [name, role] : roles) {
+    names.push_back(name);
+  }
+  return RecordingColumns::read(spec, names, [&](std::size_t) { return std::span<const double>(samples); }).value();
+}
+
+TEST(RecordingColumns, PreferAReferenceRateToAnAngle) {
+  const RecordingColumns both = columns_of({{"a", {Quantity::ReferenceAngle, "z", *parse_unit("deg")}},
+                                            {"g", {Quantity::AngularRate, "z", *parse_unit("deg/s")}},
+                                            {"r", {Quantity::ReferenceAngularRate, "z", *parse_unit("deg/s")}}});
+  const auto source = both.reference_of(Quantity::AngularRate, "z");
+  ASSERT_TRUE(source);
+  EXPECT_EQ(both.name(source->index), "r");
+  EXPECT_FALSE(source->angle);
+  EXPECT_FALSE(both.reference_of(Quantity::AngularRate, "x"));
+  EXPECT_FALSE(both.reference_of(Quantity::SpecificForce, "z"));
+  EXPECT_FALSE(both.reference_of(Quantity::Temperature, ""));
+}
+
+TEST(RecordingColumns, TakeTheAngleWhereThereIsNoRate) {
+  const std::vector<double> half_a_turn{180.0};
+  const RecordingColumns one = columns_of({{"a", {Quantity::ReferenceAngle, "z", *parse_unit("deg")}}}, half_a_turn);
+  const auto source = one.reference_of(Quantity::AngularRate, "z");
+  ASSERT_TRUE(source);
+  EXPECT_TRUE(source->angle);
+  EXPECT_DOUBLE_EQ(one.si(source->index)[0], 3.14159265358979323846);
+}
+
+TEST(RecordingColumns, TimeOfTextIsNoTimeUnlessItWasStated) {
+  const std::vector<double> text{missing_sample(Missing::Text, 1)};
+  const auto samples = [&](std::size_t) { return std::span<const double>(text); };
+  const auto guessed = RecordingColumns::read({}, {"time", "gz"}, samples);
+  ASSERT_TRUE(guessed);
+  EXPECT_FALSE(guessed->time());
+  EXPECT_NE(guessed->note_of_time().find("'time' holds text"), std::string::npos);
+  RecordingSpec spec;
+  spec.columns["time"] = {Quantity::Time, "", *parse_unit("s")};
+  const auto stated = RecordingColumns::read(spec, {"time"}, samples);
+  ASSERT_TRUE(stated);
+  EXPECT_TRUE(stated->time());
+  EXPECT_EQ(stated->note_of_time(), "");
+}
+
+TEST(StatedRate, IsTheConditionsOwn) {
+  EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
+  const Condition turning = *parse_condition("constant_rate:z:9:rad/s");
+  EXPECT_EQ(stated_rate(turning, "z", 5.0), 9.0);
+  EXPECT_EQ(stated_rate(turning, "x", 5.0), 0.0);
+  const Condition ramp = *parse_condition("constant_angular_acceleration:z:2:deg/s^2");
+  EXPECT_EQ(stated_rate(ramp, "z", 5.0), *ramp.value * 5.0);
+}
+
+}  // namespace
+}  // namespace driftlab
