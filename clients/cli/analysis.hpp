@@ -3,7 +3,7 @@
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
 #include "clients/cli/remote_job.hpp"
-#include "core/fit/characterise.hpp"
+#include "core/analysis/characterise.hpp"
 
 namespace driftlab::cli {
 

@@ -1,9 +1,10 @@
+#include "core/analysis/calibrate.hpp"
+
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
-#include "clients/cli/workspace.hpp"
-#include "core/read/format.hpp"
-#include "core/read/open_recording.hpp"
-#include "schema/json/calibrate_recordings.hpp"
+#include "clients/cli/local_files.hpp"
+#include "clients/cli/progress.hpp"
+#include "schema/json/calibration.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -20,42 +21,25 @@ struct Flags {
   bool json = false;
 };
 
-Result<CalibrationReport> calibrate(const Inputs& inputs, const CalibrateOptions& options) {
-  auto workspace = Workspace::make();
-  if (!workspace) {
-    return fail(workspace.error());
-  }
-  RecordingCalibrator calibrator(inputs.files.size(), options);
-  for (const InputFile& file : inputs.files) {
-    const auto name_it = [&](Error error) {
-      error.message = file.path.string() + ": " + error.message;
-      return error;
-    };
-    auto decoded = decode_file(file.path, workspace->file());
-    if (!decoded) {
-      return fail(name_it(decoded.error()));
-    }
-    auto opened = open_recording(workspace->file(), file.spec);
-    if (!opened) {
-      return fail(name_it(opened.error()));
-    }
-    if (auto added = calibrator.add(file.spec, opened->view); !added) {
-      return fail(name_it(added.error()));
-    }
-  }
-  return calibrator.finish();
-}
-
 Exit run(const Flags& flags) {
   auto inputs = read_inputs(flags.files, flags.file);
   if (!inputs) {
     return complain(inputs.error());
   }
-  auto report = calibrate(*inputs, flags.options);
-  if (!report) {
-    return complain(report.error());
+  auto recordings = LocalFiles::of(*inputs);
+  if (!recordings) {
+    return complain(recordings.error());
   }
-  const std::string text = flags.json ? report->document.dump(2) + "\n" : report->text;
+  Result<CalibrationReport> report;
+  {
+    ProgressBar bar;
+    const RunControl control{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }};
+    report = calibrate(**recordings, flags.options, control);
+  }
+  if (!report) {
+    return complain_of_work(report.error());
+  }
+  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : to_text(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }

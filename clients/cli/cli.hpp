@@ -19,6 +19,8 @@ enum class Exit : int { Success = 0, Negative = 1, BadInput = 2, ServerOrJob = 4
 /// Prints one sentence on standard error and says how the process ends.
 [[nodiscard]] Exit complain(const Error& error);
 [[nodiscard]] Exit complain(const Error& error, Exit exit);
+/// The same for what went wrong in this process: Interrupted where it was cancelled, else BadInput.
+[[nodiscard]] Exit complain_of_work(const Error& error);
 
 /// A command runs after parsing; its exit code is the process's.
 using Command = std::function<Exit()>;

@@ -1,7 +1,7 @@
 #pragma once
 /// What a user hands to a command: recording files with flags, or a study document (spec/study.md) with files beside
 /// it.
-#include "core/calibrate/sensor_calibration.hpp"
+#include "core/analysis/recording_source.hpp"
 #include "core/signal/recording.hpp"
 #include "schema/json/json.hpp"
 

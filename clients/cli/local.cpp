@@ -1,59 +1,31 @@
 #include "clients/cli/analysis.hpp"
+#include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
-#include "clients/cli/workspace.hpp"
-#include "core/read/format.hpp"
-#include "core/read/open_recording.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
-#include "schema/json/characterise_recording.hpp"
+#include "schema/json/characterise.hpp"
 #include "schema/text/parameter_table.hpp"
 #include "schema/text/trend_table.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace driftlab::cli {
-namespace {
-
-Result<Json> characterise_file(const InputFile& file, const CharacteriseOptions& options, const Workspace& workspace,
-                               const RunControl& control) {
-  const RunControl decoding{control.stop, [&](std::string_view stage, double f) { control.report(stage, 0.3 * f); }};
-  auto decoded = decode_file(file.path, workspace.file(), {}, decoding);
-  if (!decoded) {
-    return fail(decoded.error());
-  }
-  auto opened = open_recording(workspace.file(), file.spec);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  RecordingView& view = opened->view;
-  view.window.quality.notes.insert(view.window.quality.notes.end(), decoded->notes.begin(), decoded->notes.end());
-  const RunControl fitting{control.stop,
-                           [&](std::string_view stage, double f) { control.report(stage, 0.3 + 0.7 * f); }};
-  return characterise_recording(file.spec.id, file.spec, view, file.calibration, options, fitting);
-}
-
-}  // namespace
 
 tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options) {
-  auto workspace = Workspace::make();
-  if (!workspace) {
-    return tl::unexpected(Failure{workspace.error(), Exit::BadInput});
+  auto files = LocalFiles::of(inputs);
+  if (!files) {
+    return tl::unexpected(Failure{files.error(), Exit::BadInput});
   }
   ProgressBar bar;
+  const RunControl work{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, 0.9 * f); }};
+  const auto found = characterise(**files, options, work);
+  if (!found) {
+    const Exit exit = found.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
+    return tl::unexpected(Failure{found.error(), exit});
+  }
   std::vector<Json> recordings;
-  for (const InputFile& file : inputs.files) {
-    const auto done = static_cast<double>(recordings.size());
-    const RunControl control{interrupt_token(), [&](std::string_view stage, double fraction) {
-                               bar.show(stage, 0.9 * (done + fraction) / static_cast<double>(inputs.files.size()));
-                             }};
-    auto document = characterise_file(file, options, *workspace, control);
-    if (!document) {
-      Error error = document.error();
-      error.message = file.path.string() + ": " + error.message;
-      const Exit exit = error.code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
-      return tl::unexpected(Failure{std::move(error), exit});
-    }
-    recordings.push_back(std::move(*document));
+  for (const CharacterisedRecording& recording : *found) {
+    recordings.push_back(to_json(recording));
   }
   Json document = characterisation_document(std::move(recordings));
   document["study"] = inputs.study;

@@ -28,6 +28,10 @@ Exit complain(const Error& error, Exit exit) {
 
 Exit complain(const Error& error) { return complain(error, Exit::BadInput); }
 
+Exit complain_of_work(const Error& error) {
+  return complain(error, error.code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput);
+}
+
 }  // namespace driftlab::cli
 
 int main(int argc, char** argv) {

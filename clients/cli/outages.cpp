@@ -3,7 +3,6 @@
 #include "clients/cli/remote_job.hpp"
 #include "clients/cli/scenario_input.hpp"
 #include "schema/json/outage_evaluation.hpp"
-#include "schema/json/outage_scenario.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -69,18 +68,16 @@ Exit run(const Flags& flags) {
   RunControl control;
   control.stop = interrupt_token();
   control.threads.executor = &executor;
-  Result<OutageEvaluation> evaluation;
+  Result<OutageReport> report;
   {
     ProgressBar bar;
     control.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
-    evaluation = evaluate_outages(*scenario, options, control);
+    report = report_outages(*scenario, options, control);
   }
-  if (!evaluation) {
-    return complain(evaluation.error(),
-                    evaluation.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput);
+  if (!report) {
+    return complain_of_work(report.error());
   }
-  const std::string text =
-      flags.json ? to_json(*evaluation, to_json(*scenario)).dump(2) + "\n" : outage_text(*evaluation);
+  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : outage_text(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }

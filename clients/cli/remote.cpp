@@ -2,7 +2,7 @@
 #include "clients/cli/progress.hpp"
 #include "core/signal/number.hpp"
 #include "schema/json/campaign_summary.hpp"
-#include "schema/json/characterise_recording.hpp"
+#include "schema/json/characterise.hpp"
 #include "schema/json/recording_spec.hpp"
 
 namespace driftlab::cli {

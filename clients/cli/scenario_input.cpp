@@ -1,6 +1,5 @@
 #include "clients/cli/scenario_input.hpp"
 
-#include "core/navigate/paper_scenario.hpp"
 #include "schema/json/outage_scenario.hpp"
 
 #include <algorithm>

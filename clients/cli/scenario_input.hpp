@@ -1,6 +1,6 @@
 #pragma once
 /// Scenarios as the command line names them: by name, or as a file.
-#include "core/navigate/outage_scenario.hpp"
+#include "core/analysis/evaluate_outages.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab::cli {

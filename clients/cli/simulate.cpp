@@ -1,16 +1,17 @@
+#include "core/analysis/simulate.hpp"
+
 #include "clients/cli/cli.hpp"
 #include "clients/cli/scenario_input.hpp"
-#include "clients/cli/simulate_model.hpp"
 #include "clients/cli/table_file.hpp"
-#include "core/navigate/outage_runs.hpp"
-#include "core/process/published_models.hpp"
-#include "core/signal/angle.hpp"
 #include "core/signal/number.hpp"
-#include "core/signal/unit.hpp"
+#include "schema/json/simulation_model.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <cstdio>
+#include <fstream>
 #include <memory>
+#include <sstream>
 
 namespace driftlab::cli {
 namespace {
@@ -30,19 +31,6 @@ struct Flags {
   std::string truth;
 };
 
-/// What the sensor would read besides its error: 0, the constant rate, or the ramp from rest [rad/s].
-double reference(const Condition& condition, double t_s) {
-  const double value = condition.value.value_or(0.0);
-  switch (condition.kind) {
-    case ConditionKind::ConstantRate:
-      return value;
-    case ConditionKind::ConstantAngularAcceleration:
-      return value * t_s;
-    default:
-      return 0.0;
-  }
-}
-
 std::string provenance(const Flags& flags) {
   std::string text = "Simulated by driftlab " DRIFTLAB_VERSION ", ";
   if (!flags.scenario.empty()) {
@@ -59,138 +47,98 @@ std::string provenance(const Flags& flags) {
   return text.append("; see core/process/published_models.hpp");
 }
 
-/// One axis at one condition.
-Exit simulate_axis_file(const Flags& flags) {
+/// A model file: a model, an investigation's report (its extended model), a fit, or a list of processes.
+Result<investigate::Baseline> read_model(const std::string& path) {
+  const std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return fail(ErrorCode::NotFound, "There is no file '" + path + "'.");
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document) {
+    return fail(document.error());
+  }
+  if (document->is_array()) {
+    document = Json{{"processes", *document}};
+  } else if (document->is_object() && document->contains("extended_model")) {
+    document = Json((*document)["extended_model"]);
+  }
+  Faults faults;
+  investigate::Baseline model = simulation_model_from_json(*document, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  return model;
+}
+
+Result<AxisSimulation> axis_of(const Flags& flags) {
   auto condition = parse_condition(flags.condition);
   if (!condition) {
-    return complain(condition.error());
+    return fail(condition.error());
   }
-  auto model = published_model(flags.preset, *condition);
-  if (!model) {
-    return complain(model.error());
-  }
-  const double dt_s = 1.0 / flags.rate_hz;
-  Random random(flags.seed);
-  TableFile table;
-  table.comment = provenance(flags);
-  table.columns = {"gz [deg/s]"};
-  table.decimals = {6};
-  table.rows = static_cast<std::size_t>(flags.duration_s * flags.rate_hz);
-  const std::vector<double> error = simulate(*model, random, dt_s, table.rows);
-  const Unit unit = *parse_unit("deg/s");
-  table.cell = [&](std::size_t row, std::size_t) {
-    return unit.from_si(reference(*condition, static_cast<double>(row) * dt_s) + error[row]);
-  };
-  const Status written = write_table(flags.out, table);
+  return AxisSimulation{*condition, flags.rate_hz, flags.duration_s, flags.seed};
+}
+
+/// One axis at one condition.
+Exit write_preset(const Flags& flags) {
+  const auto wanted = axis_of(flags);
+  const auto table = wanted ? simulate_preset(flags.preset, *wanted) : fail(wanted.error());
+  const Status written = table ? write_table(flags.out, provenance(flags), *table) : fail(table.error());
   return written ? Exit::Success : complain(written.error());
 }
 
-Status write_imu(const Flags& flags, const Trajectory& truth, const ImuRun& run) {
-  TableFile table;
-  table.comment = provenance(flags) + "; each row is the mean over the interval that ends at t";
-  table.columns = {"t [s]", "gx [deg/s]", "gy [deg/s]", "gz [deg/s]", "fx [m/s^2]", "fy [m/s^2]", "fz [m/s^2]"};
-  table.decimals = {6, 9, 9, 9, 9, 9, 9};
-  table.rows = run.readings.size();
-  table.cell = [&](std::size_t row, std::size_t column) {
-    if (column == 0) {
-      return static_cast<double>(row + 1) * truth.dt_s;
-    }
-    const double value = run.readings[row][column - 1];
-    return column <= 3 ? value / kDegree : value;
-  };
-  return write_table(flags.out, table);
-}
-
-Status write_gnss(const Flags& flags, const std::vector<GnssFix>& fixes) {
-  TableFile table;
-  table.comment = provenance(flags) + "; fixes; t is when one arrives, validity the moment it describes";
-  table.columns = {"t [s]",    "validity [s]", "lat [deg]", "lon [deg]", "height [m]", "vn [m/s]",  "ve [m/s]",
-                   "vd [m/s]", "sn [m]",       "se [m]",    "sd [m]",    "svn [m/s]",  "sve [m/s]", "svd [m/s]"};
-  table.decimals = {6, 6, 10, 10, 4, 5, 5, 5, 3, 3, 3, 4, 4, 4};
-  table.rows = fixes.size();
-  table.cell = [&](std::size_t row, std::size_t column) {
-    const GnssFix& fix = fixes[row];
-    const Geodetic place = to_geodetic(fix.position_ecef_m);
-    const Vector3 v =
-        ned_axes(place.latitude_rad, place.longitude_rad).transpose() * fix.velocity_ecef_m_s.value_or(Vector3::Zero());
-    const double cells[] = {fix.arrival_s,
-                            fix.validity_s,
-                            place.latitude_rad / kDegree,
-                            place.longitude_rad / kDegree,
-                            place.height_m,
-                            v.x(),
-                            v.y(),
-                            v.z(),
-                            fix.position_sd_m.x(),
-                            fix.position_sd_m.y(),
-                            fix.position_sd_m.z(),
-                            fix.velocity_sd_m_s.x(),
-                            fix.velocity_sd_m_s.y(),
-                            fix.velocity_sd_m_s.z()};
-    return cells[column];
-  };
-  return write_table(flags.gnss, table);
-}
-
-Status write_truth(const Flags& flags, const Trajectory& truth) {
-  TableFile table;
-  table.comment = provenance(flags) + "; truth";
-  table.columns = {"t [s]",    "lat [deg]", "lon [deg]",  "height [m]",  "vn [m/s]",
-                   "ve [m/s]", "vd [m/s]",  "roll [deg]", "pitch [deg]", "yaw [deg]"};
-  table.decimals = {6, 11, 11, 5, 6, 6, 6, 7, 7, 7};
-  table.rows = truth.states.size();
-  table.cell = [&](std::size_t row, std::size_t column) {
-    const NavigationState& state = truth.states[row];
-    const Geodetic place = to_geodetic(state.position_ecef_m);
-    const Matrix3 axes = ned_axes(place.latitude_rad, place.longitude_rad);
-    const Vector3 v = axes.transpose() * state.velocity_ecef_m_s;
-    const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * state.attitude);
-    const double cells[] = {static_cast<double>(row) * truth.dt_s,
-                            place.latitude_rad / kDegree,
-                            place.longitude_rad / kDegree,
-                            place.height_m,
-                            v.x(),
-                            v.y(),
-                            v.z(),
-                            angles.roll_rad / kDegree,
-                            angles.pitch_rad / kDegree,
-                            angles.heading_rad / kDegree};
-    return cells[column];
-  };
-  return write_table(flags.truth, table);
+/// One channel of a simulation model. What cannot be brought about is named on standard error and in the file.
+Exit write_model(const Flags& flags) {
+  const auto model = read_model(flags.model);
+  if (!model) {
+    return complain(model.error());
+  }
+  const auto wanted = axis_of(flags);
+  const auto made = wanted ? simulate_model(*model, flags.channel, *wanted) : fail(wanted.error());
+  if (!made) {
+    return complain(made.error());
+  }
+  std::string comment = "Simulated by driftlab " DRIFTLAB_VERSION ", model " + flags.model + ", condition " +
+                        flags.condition + ", seed " + std::to_string(flags.seed) + ", " + to_text(flags.rate_hz) +
+                        " Hz";
+  for (const std::string& left : made->left_out) {
+    comment.append("; left out: ").append(left);
+    std::fprintf(stderr, "driftlab: left out: %s\n", left.c_str());
+  }
+  const Status written = write_table(flags.out, comment, made->table);
+  return written ? Exit::Success : complain(written.error());
 }
 
 /// All axes along a drive, with fixes and truth.
-Exit simulate_drive(const Flags& flags) {
+Exit write_drive(const Flags& flags) {
   auto scenario = read_scenario(flags.scenario);
   if (!scenario) {
     return complain(scenario.error());
   }
-  auto experiment = OutageExperiment::make(*scenario);
-  if (!experiment) {
-    return complain(experiment.error());
+  const auto drive =
+      simulate_drive({std::move(*scenario), flags.seed, flags.run, !flags.gnss.empty(), !flags.truth.empty()});
+  if (!drive) {
+    return complain(drive.error());
   }
-  const Trajectory& truth = experiment->truth();
-  Status written = write_imu(
-      flags, truth, simulate_imu(truth.imu, truth.dt_s, scenario->truth, scenario->hardware, flags.seed, flags.run));
-  if (written && !flags.gnss.empty()) {
-    written = write_gnss(flags, experiment->fixes(flags.seed, flags.run));
+  const std::string about = provenance(flags);
+  Status written =
+      write_table(flags.out, about + "; each row is the mean over the interval that ends at t", drive->imu);
+  if (written && drive->fixes) {
+    written = write_table(flags.gnss, about + "; fixes; t is when one arrives, validity the moment it describes",
+                          *drive->fixes);
   }
-  if (written && !flags.truth.empty()) {
-    written = write_truth(flags, truth);
+  if (written && drive->truth) {
+    written = write_table(flags.truth, about + "; truth", *drive->truth);
   }
   return written ? Exit::Success : complain(written.error());
 }
 
 Exit run(const Flags& flags) {
   if (!flags.scenario.empty()) {
-    return simulate_drive(flags);
+    return write_drive(flags);
   }
-  if (!flags.model.empty()) {
-    return simulate_model(
-        {flags.model, flags.channel, flags.condition, flags.rate_hz, flags.duration_s, flags.seed, flags.out});
-  }
-  return simulate_axis_file(flags);
+  return flags.model.empty() ? write_preset(flags) : write_model(flags);
 }
 
 }  // namespace

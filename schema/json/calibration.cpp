@@ -104,6 +104,21 @@ Json to_json(const MultiPositionCalibration& calibration, const Unit& reading) {
   return document;
 }
 
+Json to_json(const CalibrationReport& report) {
+  Json document = Json::object();
+  if (report.rests) {
+    document["accelerometer"] = to_json(report.rests->found, report.rests->reading);
+  }
+  if (report.accelerometer) {
+    document["accelerometer"] = to_json(report.accelerometer->found, *parse_unit("m/s^2"));
+  }
+  if (report.gyroscope) {
+    document["gyroscope"] = to_json(report.gyroscope->found, *parse_unit("rad/s"));
+  }
+  document["notes"] = report.notes;
+  return document;
+}
+
 Calibration calibration_from_json(const Json& document, const std::string& pointer, Faults& faults) {
   Calibration calibration;
   if (!document.is_object() || !(document.contains("accelerometer") || document.contains("gyroscope"))) {
@@ -160,6 +175,26 @@ std::string to_text(const MultiPositionCalibration& calibration) {
   text += line.data();
   for (const std::string& warning : calibration.warnings) {
     text += "  " + warning + "\n";
+  }
+  return text;
+}
+
+std::string to_text(const CalibrationReport& report) {
+  std::string text;
+  if (report.rests) {
+    text += "accelerometer, from " + std::to_string(report.rests->found.positions) + " positions at rest\n" +
+            to_text(report.rests->found);
+  }
+  const auto add = [&](const char* sensor, const std::optional<PositionCalibration>& one, std::string_view unit) {
+    if (one) {
+      text +=
+          std::string(sensor) + ", from " + std::to_string(one->positions) + " positions\n" + to_text(one->found, unit);
+    }
+  };
+  add("accelerometer", report.accelerometer, "m/s^2");
+  add("gyroscope", report.gyroscope, "rad/s");
+  for (const std::string& note : report.notes) {
+    text += note + "\n";
   }
   return text;
 }

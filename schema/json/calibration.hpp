@@ -1,5 +1,6 @@
 #pragma once
-/// The calibration of a triad as JSON.
+/// The calibration of a triad as JSON, and as lines for people.
+#include "core/analysis/calibrate.hpp"
 #include "core/calibrate/multi_position.hpp"
 #include "core/calibrate/sensor_calibration.hpp"
 #include "core/calibrate/six_position.hpp"
@@ -16,6 +17,9 @@ namespace driftlab {
 /// `reading`: the unit of the readings that were calibrated.
 [[nodiscard]] Json to_json(const MultiPositionCalibration& calibration, const Unit& reading);
 
+/// The whole document: `accelerometer`, `gyroscope`, `notes`.
+[[nodiscard]] Json to_json(const CalibrationReport& report);
+
 /// The `apply` of `accelerometer` and `gyroscope` of a calibration document; other members are not read. A document
 /// with neither is a fault.
 [[nodiscard]] Calibration calibration_from_json(const Json& document, const std::string& pointer, Faults& faults);
@@ -23,5 +27,7 @@ namespace driftlab {
 /// A few lines for people: each axis with bias and scale factor, +- half the interval.
 [[nodiscard]] std::string to_text(const TriadCalibration& calibration, std::string_view unit);
 [[nodiscard]] std::string to_text(const MultiPositionCalibration& calibration);
+/// Every sensor under a line that says what it was calibrated from, then the notes.
+[[nodiscard]] std::string to_text(const CalibrationReport& report);
 
 }  // namespace driftlab

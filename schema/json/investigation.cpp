@@ -138,4 +138,24 @@ Json to_json(const Report& report) {
               {"notes", report.notes}};
 }
 
+Json change_json(const Finding& finding) {
+  return Json{{"change", "added"},
+              {"cause", std::string(finding.evidence.cause->name)},
+              {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
+              {"channels", finding.channels},
+              {"why", finding.explanation},
+              {"log_score_per_sample", number(finding.gain.log_score_per_sample)}};
+}
+
+Json findings_summary(const Report& report) {
+  Json findings = Json::array();
+  for (const Finding& finding : report.findings) {
+    Json one = change_json(finding);
+    one.erase("change");
+    one.erase("why");
+    findings.push_back(std::move(one));
+  }
+  return findings;
+}
+
 }  // namespace driftlab

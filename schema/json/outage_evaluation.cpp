@@ -1,7 +1,7 @@
 #include "schema/json/outage_evaluation.hpp"
 
-#include "core/navigate/outage_claims.hpp"
 #include "core/signal/angle.hpp"
+#include "schema/json/outage_scenario.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,12 @@
 namespace driftlab {
 namespace {
 
-/// Axes of the ellipse that holds `fraction` of a normal distribution with these second moments.
 Json ellipse(const PlaneCovariance& p, double fraction) {
-  const double mean = 0.5 * (p.north + p.east);
-  const double half = 0.5 * (p.north - p.east);
-  const double root = std::hypot(half, p.north_east);
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - fraction));
-  return Json{{"fraction", fraction},
-              {"semi_major_m", number(radius * std::sqrt(mean + root))},
-              {"semi_minor_m", number(radius * std::sqrt(std::max(mean - root, 0.0)))},
-              {"major_axis_azimuth_deg", number(0.5 * std::atan2(p.north_east, half) / kDegree)}};
+  const ErrorEllipse axes = error_ellipse(p, fraction);
+  return Json{{"fraction", axes.fraction},
+              {"semi_major_m", number(axes.semi_major_m)},
+              {"semi_minor_m", number(axes.semi_minor_m)},
+              {"major_axis_azimuth_deg", number(axes.azimuth_rad / kDegree)}};
 }
 
 Json moments(const PlaneCovariance& p) {
@@ -98,7 +94,8 @@ Json pair_json(const PairedDifference& pair) {
 
 }  // namespace
 
-Json to_json(const OutageEvaluation& evaluation, Json scenario) {
+Json to_json(const OutageReport& report) {
+  const OutageEvaluation& evaluation = report.evaluation;
   Json filters = Json::array();
   for (const FilterEvaluation& filter : evaluation.filters) {
     filters.push_back(filter_json(filter));
@@ -108,7 +105,7 @@ Json to_json(const OutageEvaluation& evaluation, Json scenario) {
     paired.push_back(pair_json(pair));
   }
   Json attribution(nullptr);
-  if (const auto parts = attribute(evaluation)) {
+  if (const auto& parts = report.attribution) {
     attribution = Json{{"total", pair_json(parts->total)},
                        {"low_frequency_noise", pair_json(parts->low_frequency_noise)},
                        {"gauss_markov_states", pair_json(parts->gauss_markov_states)},
@@ -116,10 +113,10 @@ Json to_json(const OutageEvaluation& evaluation, Json scenario) {
                        {"switching_av", pair_json(parts->switching_av)}};
   }
   Json claims = Json::array();
-  for (const Claim& claim : judge_claims(evaluation)) {
+  for (const Claim& claim : report.claims) {
     claims.push_back(Json{{"claim", claim.claim}, {"supported", claim.supported}, {"because", claim.because}});
   }
-  return Json{{"scenario", std::move(scenario)},
+  return Json{{"scenario", to_json(report.scenario)},
               {"runs", evaluation.runs},
               {"seed", evaluation.seed},
               {"stopped_early", evaluation.stopped_early},

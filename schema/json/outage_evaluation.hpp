@@ -1,12 +1,13 @@
 #pragma once
 /// The outage evaluation as a document (spec/results.md; schema/outage-evaluation.schema.json), and as text.
-#include "core/navigate/outage_evaluation.hpp"
+#include "core/analysis/evaluate_outages.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab {
 
-/// `scenario` is what was asked for: a name or the scenario's document.
-[[nodiscard]] Json to_json(const OutageEvaluation& evaluation, Json scenario);
+/// The document: the scenario with every model spelled out, the filters, their differences, what that says of the
+/// claims.
+[[nodiscard]] Json to_json(const OutageReport& report);
 
 /// Options of a request: `runs`, `seed`, `relative_precision`. `threads` is not one of them: it changes no result.
 [[nodiscard]] OutageOptions outage_options_from_json(const Json& parameters, const std::string& pointer,
@@ -14,6 +15,6 @@ namespace driftlab {
 [[nodiscard]] Json to_json(const OutageOptions& options);
 
 /// The comparison as aligned plain text: filters, outages, paired differences, attribution, claims.
-[[nodiscard]] std::string outage_text(const OutageEvaluation& evaluation);
+[[nodiscard]] std::string outage_text(const OutageReport& report);
 
 }  // namespace driftlab

@@ -1,4 +1,3 @@
-#include "core/navigate/outage_claims.hpp"
 #include "schema/json/outage_evaluation.hpp"
 
 #include <algorithm>
@@ -73,7 +72,8 @@ void add_pair(Rows& rows, std::string title, const PairedDifference& pair) {
 
 }  // namespace
 
-std::string outage_text(const OutageEvaluation& evaluation) {
+std::string outage_text(const OutageReport& report) {
+  const OutageEvaluation& evaluation = report.evaluation;
   std::string text = "Scenario ";
   text.append(evaluation.scenario).append(", ").append(std::to_string(evaluation.runs)).append(" runs, seed ");
   text.append(std::to_string(evaluation.seed)).append(evaluation.stopped_early ? " (precise enough)" : "");
@@ -91,7 +91,7 @@ std::string outage_text(const OutageEvaluation& evaluation) {
   }
   text.append(aligned(rows));
 
-  if (const auto parts = attribute(evaluation)) {
+  if (const auto& parts = report.attribution) {
     text.append("\nWhere the gain of M_dyn(GMWM) over M_stat(AV) comes from\n");
     Rows split{{"part", "difference [m]", "relative [%]"}};
     add_pair(split, "low-frequency process noise (M_stat(Neq)+RW - M_stat(AV))", parts->low_frequency_noise);
@@ -101,11 +101,10 @@ std::string outage_text(const OutageEvaluation& evaluation) {
     add_pair(split, "switching of Allan-variance noise alone (M_dyn(AV) - M_stat(AV))", parts->switching_av);
     text.append(aligned(split));
   }
-  const auto claims = judge_claims(evaluation);
-  if (!claims.empty()) {
+  if (!report.claims.empty()) {
     text.append("\nThe paper's claims in this simulation\n");
   }
-  for (const Claim& claim : claims) {
+  for (const Claim& claim : report.claims) {
     text.append(claim.supported ? "  supported:     " : "  not supported: ").append(claim.claim).append("\n");
     text.append("                 ").append(claim.because).append("\n");
   }

@@ -1,9 +1,8 @@
-#include "core/read/open_recording.hpp"
-#include "schema/json/calibrate_recordings.hpp"
+#include "core/analysis/calibrate.hpp"
 #include "schema/json/calibration.hpp"
-#include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/jobs/stored_recordings.hpp"
 #include "server/store/digest.hpp"
 
 namespace driftlab::server {
@@ -87,43 +86,45 @@ Result<Wanted> read_wanted(const Request& request) {
   return faults.none() ? Result<Wanted>(std::move(wanted)) : fail(faults.error());
 }
 
-/// The error with its place in the request.
-tl::unexpected<Error> at(const std::string& pointer, const Error& error) {
-  return fail(Error(error).with(pointer, error.message));
-}
+/// The recordings of a POST, which must be the device's own; errors point into the request.
+class ListedRecordings final : public StoredRecordings {
+ public:
+  ListedRecordings(ApiContext& context, std::vector<StoredRecordingRequest> wanted, const Device& device)
+      : StoredRecordings(context.store, context.blobs, std::move(wanted)), device_(device) {}
+
+  [[nodiscard]] Error located(std::size_t index, Error error) const override {
+    const std::string sentence = error.message;
+    return std::move(error).with("/recordings/" + std::to_string(index), sentence);
+  }
+
+ protected:
+  [[nodiscard]] Status admit(const Recording& row) const override {
+    if (row.device_id != device_.id) {
+      return fail(ErrorCode::InvalidArgument,
+                  "The recording " + row.id + " belongs to another device than " + device_.name + ".");
+    }
+    return {};
+  }
+
+ private:
+  const Device& device_;
+};
 
 /// Calibrates from uploaded recordings; `used` gets each with its revision.
-Result<Json> calibrate(ApiContext& context, const Wanted& wanted, const Device& device, Json& used) {
-  RecordingCalibrator calibrator(wanted.recordings.size(), wanted.options);
-  for (std::size_t i = 0; i < wanted.recordings.size(); ++i) {
-    const std::string pointer = "/recordings/" + std::to_string(i);
-    const std::string& id = wanted.recordings[i];
-    auto recording = context.store.recording(id);
-    if (!recording) {
-      return at(pointer, recording.error());
-    }
-    if (recording->device_id != device.id) {
-      return at(pointer, {ErrorCode::InvalidArgument,
-                          "The recording " + id + " belongs to another device than " + device.name + ".",
-                          {}});
-    }
-    Faults faults;
-    const RecordingSpec spec = recording_spec_from_json(stored(recording->metadata_json), "", faults);
-    auto opened = faults.none() ? open_recording(context.blobs.columns_path(recording->blob_sha256), spec)
-                                : Result<OpenRecording>(fail(faults.error()));
-    if (!opened) {
-      return at(pointer, opened.error());
-    }
-    if (auto added = calibrator.add(spec, opened->view); !added) {
-      return at(pointer, added.error());
-    }
-    used.push_back(Json{{"id", id}, {"revision", recording->revision}});
+Result<Json> calibrate_stored(ApiContext& context, const Wanted& wanted, const Device& device, Json& used) {
+  std::vector<StoredRecordingRequest> list;
+  for (const std::string& id : wanted.recordings) {
+    list.push_back({id, std::nullopt, ""});
   }
-  auto report = calibrator.finish();
+  ListedRecordings recordings(context, std::move(list), device);
+  auto report = calibrate(recordings, wanted.options);
   if (!report) {
     return fail(report.error());
   }
-  return std::move(report->document);
+  for (std::size_t i = 0; i < recordings.count(); ++i) {
+    used.push_back(Json{{"id", recordings.row(i).id}, {"revision", recordings.row(i).revision}});
+  }
+  return driftlab::to_json(*report);
 }
 
 Result<Response> create_calibration(ApiContext& context, const Request& request) {
@@ -146,7 +147,7 @@ Result<Response> create_calibration(ApiContext& context, const Request& request)
   }
   Json document{{"recordings", Json::array()}, {"calibration", wanted->calibration}};
   if (!wanted->recordings.empty()) {
-    auto made = calibrate(context, *wanted, *device, document["recordings"]);
+    auto made = calibrate_stored(context, *wanted, *device, document["recordings"]);
     if (!made) {
       return fail(made.error());
     }

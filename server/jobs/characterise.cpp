@@ -3,13 +3,13 @@
 ///
 /// `inputs`: {"recordings": ["rec_..."]}, 1 to 100 of them, or {"study": "stu_..."}. `parameters`: {"models": ["WN",
 /// ...], "seed": 1}, both optional.
-#include "core/read/open_recording.hpp"
+#include "core/analysis/characterise.hpp"
+
 #include "schema/json/characterisation.hpp"
-#include "schema/json/characterise_recording.hpp"
+#include "schema/json/characterise.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/own_summary.hpp"
-#include "server/jobs/pinned_recording.hpp"
-#include "server/jobs/recording_calibration.hpp"
+#include "server/jobs/stored_recordings.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -131,29 +131,24 @@ class Characterise final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    const Json& inputs = request["inputs"]["recordings"];
+    std::vector<StoredRecordingRequest> wanted = recordings_from_request(request["inputs"]["recordings"]);
+    for (StoredRecordingRequest& one : wanted) {
+      one.name = one.id;
+    }
+    StoredRecordings recordings(context.store, context.blobs, std::move(wanted));
+    const auto found = characterise(recordings, options, part_of(control, 0.0, kRecordingsShare));
+    if (!found) {
+      return fail(found.error());
+    }
     JobResults results;
     std::vector<Json> documents;
-    for (const Json& input : inputs) {
-      const auto done = static_cast<double>(documents.size());
-      RunControl part;
-      part.stop = control.stop;
-      part.progress = [&](std::string_view stage, double fraction) {
-        control.report(stage, kRecordingsShare * (done + fraction) / static_cast<double>(inputs.size()));
-      };
-      auto document = run_one(input, options, context, part, results);
-      if (!document) {
-        return fail(Error(document.error()).with("recording", input["id"].get<std::string>()));
-      }
-      documents.push_back(std::move(*document));
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      documents.push_back(to_json((*found)[i]));
+      collect(recordings.row(i), documents.back(), options, context, results);
     }
     Json document = characterisation_document(std::move(documents));
     document["study"] = request["inputs"].value("study", Json());
-    RunControl last;
-    last.stop = control.stop;
-    last.progress = [&](std::string_view stage, double fraction) {
-      control.report(stage, kRecordingsShare + (1.0 - kRecordingsShare) * fraction);
-    };
+    const RunControl last = part_of(control, kRecordingsShare, 1.0);
     if (auto added = add_own_summary(document, context, last, results); !added) {
       return fail(added.error());
     }
@@ -162,28 +157,6 @@ class Characterise final : public JobKind {
   }
 
  private:
-  [[nodiscard]] static Result<Json> run_one(const Json& input, const CharacteriseOptions& options, JobContext& context,
-                                            const RunControl& control, JobResults& results) {
-    auto pinned = pinned_recording(input, context);
-    if (!pinned) {
-      return fail(pinned.error());
-    }
-    const auto& [recording, spec] = *pinned;
-    auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec);
-    if (!opened) {
-      return fail(opened.error());
-    }
-    auto calibration = calibration_of(context.store, spec, recording.device_id);
-    if (!calibration) {
-      return fail(calibration.error());
-    }
-    auto document = characterise_recording(recording.id, spec, opened->view, *calibration, options, control);
-    if (document) {
-      collect(recording, *document, options, context, results);
-    }
-    return document;
-  }
-
   /// Rows for the store: one per channel and one per fit.
   static void collect(const Recording& recording, const Json& document, const CharacteriseOptions& options,
                       JobContext& context, JobResults& results) {

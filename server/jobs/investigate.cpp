@@ -4,58 +4,16 @@
 /// `inputs`: {"study": "stu_..."}. `parameters`: {"baseline": {...}} in place of the study's own, optional. A baseline
 /// that names a stored model (`{"kind": "model", "id": "mod_..."}`) makes that the parent of the revision; any other is
 /// stored as a model first.
-#include "core/investigate/investigate.hpp"
+#include "core/analysis/investigate.hpp"
 
-#include "core/investigate/causes/cause.hpp"
-#include "core/investigate/report/explain.hpp"
-#include "core/read/column_file.hpp"
 #include "schema/json/investigation.hpp"
 #include "schema/json/simulation_model.hpp"
 #include "server/jobs/job_kind.hpp"
-#include "server/jobs/pinned_recording.hpp"
 #include "server/jobs/stored_baseline.hpp"
-
-#include <deque>
+#include "server/jobs/stored_recordings.hpp"
 
 namespace driftlab::server {
 namespace {
-
-/// Grows whenever the same study could give another report.
-constexpr int kInvestigationVersion = 2;
-/// Of the progress; the rest is the search.
-constexpr double kLoadShare = 0.1;
-
-/// The study with its decoded columns, which the recordings point into.
-struct LoadedStudy {
-  investigate::Study study;
-  std::deque<ColumnFile> columns;
-};
-
-/// A recording of the request: {"id", "revision", "name"}.
-Status load_recording(const Json& input, JobContext& context, LoadedStudy& loaded) {
-  auto pinned = pinned_recording(input, context);
-  if (!pinned) {
-    return fail(pinned.error());
-  }
-  RecordingSpec spec = std::move(pinned->spec);
-  spec.id = input["name"].get<std::string>();
-  auto columns = ColumnFile::open(context.blobs.columns_path(pinned->recording.blob_sha256));
-  if (!columns) {
-    return fail(columns.error());
-  }
-  loaded.columns.push_back(std::move(*columns));
-  const ColumnFile& table = loaded.columns.back();
-  auto made = investigate::make_study_recording(spec, table.names(), table.rows(),
-                                                [&](std::size_t i) { return table.column(i); });
-  if (!made) {
-    return fail(made.error());
-  }
-  for (const std::string& note : made->notes) {
-    loaded.study.notes.push_back(spec.id + ": " + note);
-  }
-  loaded.study.recordings.push_back(std::move(*made));
-  return {};
-}
 
 /// {"id", "revision", "name"} of every recording of a stored study.
 Result<Json> pinned_recordings(const Json& study, JobContext& context, Faults& faults) {
@@ -75,16 +33,6 @@ Result<Json> pinned_recordings(const Json& study, JobContext& context, Faults& f
   return pinned;
 }
 
-/// What one finding changes in the model, and why.
-Json change_of(const investigate::Finding& finding) {
-  return Json{{"change", "added"},
-              {"cause", std::string(finding.evidence.cause->name)},
-              {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
-              {"channels", finding.channels},
-              {"why", finding.explanation},
-              {"log_score_per_sample", number(finding.gain.log_score_per_sample)}};
-}
-
 /// The rows that a finished investigation leaves behind.
 class Rows {
  public:
@@ -99,15 +47,8 @@ class Rows {
     row.study_id = study_.id;
     row.baseline_id = baseline_model(report, results);
     row.model_id = report.findings.empty() ? row.baseline_id : extended_model(report, row.baseline_id, results);
-    Json findings = Json::array();
-    for (const auto& finding : report.findings) {
-      Json change = change_of(finding);
-      change.erase("change");
-      change.erase("why");
-      findings.push_back(std::move(change));
-    }
-    row.summary_json = to_text(findings);
-    row.page = investigate::markdown(report);
+    row.summary_json = to_text(findings_summary(report));
+    row.page = investigation_page(report);
     Json document = to_json(report);
     document["id"] = row.id;
     document["device"] = row.device_id;
@@ -159,7 +100,7 @@ class Rows {
     Json from = provenance("investigation");
     Json changes = Json::array();
     for (const auto& finding : report.findings) {
-      changes.push_back(change_of(finding));
+      changes.push_back(change_json(finding));
     }
     from["changes"] = std::move(changes);
     model.provenance_json = to_text(from);
@@ -227,48 +168,24 @@ class Investigate final : public JobKind {
     if (!row) {
       return fail(row.error());
     }
-    auto loaded = load(request, *row, context, control);
-    if (!loaded) {
-      return fail(loaded.error());
-    }
-    const RunControl search = control.reporting([&](std::string_view stage, double fraction) {
-      control.report(stage, kLoadShare + (1.0 - kLoadShare) * fraction);
-    });
-    auto report = investigate::investigate(loaded->study, {}, search);
-    if (!report) {
-      return fail(report.error());
-    }
-    return Rows(request, *row, context.clock.now()).of(*report);
-  }
-
- private:
-  [[nodiscard]] static Result<LoadedStudy> load(const Json& request, const Study& row, JobContext& context,
-                                                const RunControl& control) {
-    LoadedStudy loaded;
-    loaded.study.id = row.id;
-    loaded.study.device = row.device_id;
     Faults faults;
     auto baseline = stored_baseline(request["parameters"]["baseline"], context.store, "/parameters/baseline", faults);
     if (!baseline) {
       return fail(baseline.error());
     }
-    loaded.study.baseline = baseline_from_json(*baseline, "/parameters/baseline", faults);
+    InvestigationRequest wanted;
+    wanted.study = row->id;
+    wanted.device = row->device_id;
+    wanted.baseline = baseline_from_json(*baseline, "/parameters/baseline", faults);
     if (!faults.none()) {
       return fail(faults.error());
     }
-    const Json& recordings = request["inputs"]["recordings"];
-    for (const Json& input : recordings) {
-      if (control.stop.stop_requested()) {
-        return fail(ErrorCode::Cancelled, "The investigation was stopped.");
-      }
-      control.report("load",
-                     kLoadShare * static_cast<double>(loaded.columns.size()) / static_cast<double>(recordings.size()));
-      if (Status status = load_recording(input, context, loaded); !status) {
-        return fail(Error(status.error()).with("recording", input["id"].get<std::string>()));
-      }
+    StoredRecordings recordings(context.store, context.blobs, recordings_from_request(request["inputs"]["recordings"]));
+    auto report = investigate_study(wanted, recordings, control);
+    if (!report) {
+      return fail(report.error());
     }
-    investigate::settle_channels(loaded.study);
-    return loaded;
+    return Rows(request, *row, context.clock.now()).of(*report);
   }
 };
 

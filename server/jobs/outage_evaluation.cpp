@@ -164,12 +164,12 @@ class OutageEvaluationKind final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    auto evaluation = evaluate_outages(scenario, options, control);
-    if (!evaluation) {
-      return fail(evaluation.error());
+    auto report = report_outages(scenario, options, control);
+    if (!report) {
+      return fail(report.error());
     }
     JobResults results;
-    Json document = to_json(*evaluation, to_json(scenario));
+    Json document = to_json(*report);
     if (const Json& inputs = request["inputs"]; inputs.contains("left_out")) {
       document["left_out"] = inputs["left_out"];
     }

@@ -1,6 +1,6 @@
 #pragma once
 /// The calibration that a recording names in its metadata.
-#include "core/calibrate/sensor_calibration.hpp"
+#include "core/analysis/recording_source.hpp"
 #include "core/signal/recording.hpp"
 #include "server/store/store.hpp"
 

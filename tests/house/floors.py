@@ -16,7 +16,8 @@ CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
 INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "causes", "search", "report")]  # lowest first
 ANALYSIS = [*CORE, "core/campaign", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
-DOCUMENTS = [*USE_CASES, "schema/json", "schema/text", "schema"]
+# What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
+RESULTS = ["core/signal", "core/campaign", "core/analysis", "schema/json", "schema/text", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -37,11 +38,11 @@ FLOORS: dict[str, list[str]] = {
     "server/store": ["core/signal"],
     "server/observe": ["core/signal", "server/store", "schema/json"],
     "server/auth": SERVER,
-    "server/jobs": [*DOCUMENTS, *SERVER],
+    "server/jobs": [*RESULTS, "core/process", *SERVER],  # core/process: the units of parameters
     "server/http": [*SERVER, "server/auth", "schema/json"],
-    "server/api": [*DOCUMENTS, *SERVER, "server/auth", "server/jobs", "server/http"],
-    "server": [*DOCUMENTS, *SERVER, "server/auth", "server/jobs", "server/http", "server/api"],
-    "clients/cli": DOCUMENTS,
+    "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http"],
+    "server": [*RESULTS, *SERVER, "server/auth", "server/jobs", "server/http", "server/api"],
+    "clients/cli": [*RESULTS, "core/read"],
 }
 
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.

@@ -59,7 +59,11 @@ class Floors(Planted):
                     ("schema/json/a.hpp", "server/store/rows.hpp"), ("clients/cli/a.cpp", "server/api/problems.hpp"),
                     ("server/store/sqlite/a.cpp", "server/jobs/job_kind.hpp"), ("server/http/a.hpp", "server/jobs/job_kind.hpp"),
                     ("server/jobs/a.hpp", "server/http/request.hpp"), ("server/http/a.hpp", "server/api/routes.hpp"),
-                    ("server/api/a.hpp", "clients/cli/client.hpp")]
+                    ("server/api/a.hpp", "clients/cli/client.hpp"),
+                    ("server/jobs/a.cpp", "core/fit/gmwm.hpp"), ("server/jobs/a.cpp", "core/investigate/search/search.hpp"),
+                    ("server/jobs/a.cpp", "core/read/format.hpp"), ("server/api/a.cpp", "core/calibrate/triad.hpp"),
+                    ("clients/cli/a.cpp", "core/navigate/outage_runs.hpp"), ("clients/cli/a.cpp", "core/variance/allan.hpp"),
+                    ("clients/cli/a.cpp", "core/process/model.hpp"), ("core/analysis/a.cpp", "schema/json/json.hpp")]
         for source, included in climbing:
             with self.subTest(source=source, included=included):
                 path = self.plant(source, f'#pragma once\n#include "{included}"\n')

@@ -151,13 +151,13 @@ TEST(EvaluationDocument, HoldsEllipsesAndText) {
   scenario.imu_rate_hz = 20.0;
   OutageOptions options;
   options.runs = 3;
-  const OutageEvaluation evaluation = *evaluate_outages(scenario, options);
-  const Json document = to_json(evaluation, to_json(scenario));
+  const OutageReport report = *report_outages(scenario, options);
+  const Json document = to_json(report);
   const Json& outage = document["filters"][0]["outages"][0];
   EXPECT_EQ(outage["errors"]["north_m"].size(), 3U);
   EXPECT_GT(outage["predicted"]["ellipses"][1]["semi_major_m"], outage["predicted"]["ellipses"][0]["semi_major_m"]);
   EXPECT_EQ(document["claims"].size(), 6U);
-  const std::string text = outage_text(evaluation);
+  const std::string text = outage_text(report);
   for (const char* const word : {"M_stat(Neq)+RW", "switching", "NEES", "supported:"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word;
   }

@@ -1,9 +1,6 @@
-#include "schema/json/characterise_recording.hpp"
+#include "schema/json/characterise.hpp"
 
-#include "core/calibrate/aligned_reference.hpp"
 #include "schema/json/characterisation.hpp"
-
-#include <algorithm>
 
 namespace driftlab {
 namespace {
@@ -24,38 +21,17 @@ Json to_json(const ReferenceAlignment& alignment) {
 
 }  // namespace
 
-Result<Json> characterise_recording(const std::string& id, const RecordingSpec& spec, RecordingView& view,
-                                    const Calibration& calibration, const CharacteriseOptions& options,
-                                    const RunControl& control) {
-  if (auto applied = apply_calibration(calibration, view); !applied) {
-    return fail(applied.error());
-  }
-  const std::vector<ReferenceAlignment> alignments = align_references(view);
+Json to_json(const CharacterisedRecording& recording) {
   std::vector<Json> channels;
-  const auto count = static_cast<double>(view.channels.size());
-  for (const ChannelView& channel : view.channels) {
-    const auto done = static_cast<double>(channels.size());
-    RunControl part;
-    part.stop = control.stop;
-    part.progress = [&](std::string_view stage, double fraction) {
-      control.report(channel.column + ": " + std::string(stage), (done + fraction) / count);
-    };
-    const double factor = channel.role.unit ? channel.role.unit->factor : 1.0;
-    auto result = characterise_channel({channel.values, view.window.time.dt_s, factor, channel.gaps}, options, part);
-    if (!result) {
-      return fail(Error(result.error()).with("column", channel.column));
-    }
-    channels.push_back(to_json(ChannelIdentity{channel.column, channel.role}, *result));
-    const auto aligned = std::find_if(alignments.begin(), alignments.end(), [&](const ReferenceAlignment& alignment) {
-      return alignment.channel == channel.column;
-    });
-    if (aligned != alignments.end()) {
-      channels.back()["reference"] = to_json(*aligned);
+  for (const CharacterisedChannel& channel : recording.channels) {
+    channels.push_back(to_json(ChannelIdentity{channel.column, channel.role}, channel.result));
+    if (channel.reference) {
+      channels.back()["reference"] = to_json(*channel.reference);
     }
   }
-  Json document = recording_document(id, spec, view.window, std::move(channels));
-  if (!spec.calibration.empty()) {
-    document["calibration"] = spec.calibration;
+  Json document = recording_document(recording.spec.id, recording.spec, recording.window, std::move(channels));
+  if (!recording.spec.calibration.empty()) {
+    document["calibration"] = recording.spec.calibration;
   }
   return document;
 }

@@ -1,4 +1,4 @@
-#include "schema/json/characterise_recording.hpp"
+#include "schema/json/characterise.hpp"
 
 #include "core/process/model.hpp"
 #include "schema/json/calibration.hpp"
@@ -37,12 +37,13 @@ TEST(CharacteriseRecording, GapsCostOnlyWhatTouchesThem) {
     return std::span<const double>(i == 0 ? recorded.time : recorded.values);
   });
   ASSERT_TRUE(view) << view.error().message;
-  const auto document = characterise_recording("a", spec, *view, {}, {.models = {"WN+RW"}}, {});
-  ASSERT_TRUE(document) << document.error().message;
-  const Json& channel = (*document)["channels"][0];
+  const auto found = characterise_recording(spec, std::move(*view), {}, {.models = {"WN+RW"}}, {});
+  ASSERT_TRUE(found) << found.error().message;
+  const Json document = to_json(*found);
+  const Json& channel = document["channels"][0];
   EXPECT_EQ(channel["samples"], 19000);
   EXPECT_EQ(channel["missing"], 800);  // the last gap is the end of the recording
-  EXPECT_NEAR((*document)["duration_s"].get<double>(), 198.0, 1e-9);
+  EXPECT_NEAR(document["duration_s"].get<double>(), 198.0, 1e-9);
   // Scales to half of 19800 samples; the longest whole stretch, 3800 samples, would end at 2048.
   EXPECT_EQ(channel["haar"]["scale"].back(), 16384);
   EXPECT_EQ(channel["haar"]["efficiency_by_scale"].size(), channel["haar"]["scale"].size());

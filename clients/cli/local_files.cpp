@@ -1,0 +1,33 @@
+#include "clients/cli/local_files.hpp"
+
+#include "core/read/format.hpp"
+
+namespace driftlab::cli {
+
+Result<std::unique_ptr<LocalFiles>> LocalFiles::of(const Inputs& inputs) {
+  auto workspace = Workspace::make();
+  if (!workspace) {
+    return fail(workspace.error());
+  }
+  return std::unique_ptr<LocalFiles>(new LocalFiles(inputs, std::move(*workspace)));
+}
+
+Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& control) {
+  const InputFile& file = inputs_.files[index];
+  auto decoded = decode_file(file.path, workspace_.file(), {}, control);
+  if (!decoded) {
+    return fail(decoded.error());
+  }
+  auto columns = ColumnFile::open(workspace_.file());
+  if (!columns) {
+    return fail(columns.error());
+  }
+  return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes)};
+}
+
+Error LocalFiles::located(std::size_t index, Error error) const {
+  error.message = inputs_.files[index].path.string() + ": " + error.message;
+  return error;
+}
+
+}  // namespace driftlab::cli

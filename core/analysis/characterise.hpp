@@ -1,0 +1,44 @@
+#pragma once
+/// The use case "characterise": recordings in; variances, Allan coefficients and ranked error models of each of their
+/// channels out.
+///
+/// Per recording: readings are corrected by the calibration that it names, references are put in time
+/// (core/calibrate/aligned_reference.hpp) and subtracted, and each channel is characterised in file order
+/// (core/fit/characterise.hpp).
+#include "core/analysis/recording_source.hpp"
+#include "core/calibrate/aligned_reference.hpp"
+#include "core/fit/characterise.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab {
+
+struct CharacterisedChannel {
+  std::string column;
+  ColumnRole role;
+  ChannelCharacterisation result;
+  std::optional<ReferenceAlignment> reference;  ///< where the channel has a reference column
+};
+
+struct CharacterisedRecording {
+  RecordingSpec spec;
+  Window window;  ///< time base and quality
+  std::vector<CharacterisedChannel> channels;
+};
+
+/// One recording from its view. Progress runs over its channels. Errors: those of apply_calibration; those of
+/// characterise_channel, with field "column"; Cancelled.
+[[nodiscard]] Result<CharacterisedRecording> characterise_recording(const RecordingSpec& spec, RecordingView view,
+                                                                    const Calibration& calibration,
+                                                                    const CharacteriseOptions& options,
+                                                                    const RunControl& control);
+
+/// All of them, one after the other and none kept open. Errors, located: those of the source, of
+/// view_recording and of characterise_recording.
+[[nodiscard]] Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
+                                                                       const CharacteriseOptions& options,
+                                                                       const RunControl& control);
+
+}  // namespace driftlab

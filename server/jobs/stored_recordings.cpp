@@ -1,0 +1,64 @@
+#include "server/jobs/stored_recordings.hpp"
+
+#include "schema/json/recording_spec.hpp"
+#include "server/jobs/recording_calibration.hpp"
+
+#include <utility>
+
+namespace driftlab::server {
+
+std::vector<StoredRecordingRequest> recordings_from_request(const Json& list) {
+  std::vector<StoredRecordingRequest> wanted;
+  for (const Json& entry : list) {
+    wanted.push_back({entry.at("id").get<std::string>(), entry.at("revision").get<std::int64_t>(),
+                      entry.value("name", std::string())});
+  }
+  return wanted;
+}
+
+StoredRecordings::StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted)
+    : store_(store), blobs_(blobs), wanted_(std::move(wanted)), rows_(wanted_.size()), specs_(wanted_.size()) {}
+
+Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunControl& /*control*/) {
+  const StoredRecordingRequest& wanted = wanted_[index];
+  auto row = store_.recording(wanted.id);
+  if (!row) {
+    return fail(row.error());
+  }
+  if (const Status admitted = admit(*row); !admitted) {
+    return fail(admitted.error());
+  }
+  if (wanted.revision && row->revision != *wanted.revision) {
+    return fail(ErrorCode::Conflict,
+                "The recording " + row->id + " was revised after the job was queued; queue it again.");
+  }
+  auto metadata = parse_json(row->metadata_json);
+  if (!metadata) {
+    return fail(metadata.error());
+  }
+  Faults faults;
+  RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  auto columns = ColumnFile::open(blobs_.columns_path(row->blob_sha256));
+  if (!columns) {
+    return fail(columns.error());
+  }
+  specs_[index] = spec;
+  if (!wanted.name.empty()) {
+    spec.id = wanted.name;
+  }
+  rows_[index] = std::move(*row);
+  return SourceRecording{std::move(spec), std::move(*columns), {}};
+}
+
+Result<Calibration> StoredRecordings::calibration(std::size_t index) {
+  return calibration_of(store_, specs_[index], rows_[index].device_id);
+}
+
+Error StoredRecordings::located(std::size_t index, Error error) const {
+  return std::move(error).with("recording", wanted_[index].id);
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,52 @@
+#pragma once
+/// The recordings of a request from what the server has stored (core/analysis/recording_source.hpp).
+#include "core/analysis/recording_source.hpp"
+#include "server/jobs/job_kind.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::server {
+
+/// One recording of a request.
+struct StoredRecordingRequest {
+  std::string id;
+  std::optional<std::int64_t>
+      revision;      ///< the very revision that was there when the job was queued; nothing: the latest
+  std::string name;  ///< what the result calls it; empty: what its metadata call it
+};
+
+/// [{"id", "revision", "name"}] of a canonical request; `name` may be missing.
+[[nodiscard]] std::vector<StoredRecordingRequest> recordings_from_request(const Json& list);
+
+/// Rows from the store, columns mapped where the blob store keeps them. Not thread safe.
+class StoredRecordings : public RecordingSource {
+ public:
+  /// References must outlive this object.
+  StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted);
+
+  [[nodiscard]] std::size_t count() const override { return wanted_.size(); }
+  /// Errors: NotFound; Conflict where the recording was revised since; those of the store and of ColumnFile::open.
+  [[nodiscard]] Result<SourceRecording> open(std::size_t index, const RunControl& control) override;
+  /// Errors: InvalidArgument (no such calibration, or one of another device); those of the store.
+  [[nodiscard]] Result<Calibration> calibration(std::size_t index) override;
+  /// With the field "recording".
+  [[nodiscard]] Error located(std::size_t index, Error error) const override;
+
+  /// The row of a recording that was opened.
+  [[nodiscard]] const Recording& row(std::size_t index) const { return rows_[index]; }
+
+ protected:
+  /// Called for each row before it is opened; an error refuses it.
+  [[nodiscard]] virtual Status admit(const Recording& /*row*/) const { return {}; }
+
+ private:
+  Store& store_;
+  BlobStore& blobs_;
+  std::vector<StoredRecordingRequest> wanted_;
+  std::vector<Recording> rows_;
+  std::vector<RecordingSpec> specs_;  ///< the metadata of each that was opened
+};
+
+}  // namespace driftlab::server
