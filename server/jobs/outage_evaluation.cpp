@@ -104,8 +104,12 @@ Status resolve_stored(Json& node, const std::string& pointer, JobContext& contex
   return {};
 }
 
-/// Known biases of the truth's models as deterministic errors of the truth.
+/// Known biases of the truth's models as deterministic errors of the truth. A truth that is no object is left as it is,
+/// for the reader of scenarios to refuse.
 void add_biases(Json& scenario, const StoredSensors& sensors, const std::string& pointer, Faults& faults) {
+  if (!scenario.is_object() || !scenario.contains("truth") || !scenario["truth"].is_object()) {
+    return;
+  }
   for (const auto& [errors, bias] : sensors.truth_bias.items()) {
     Json& own = scenario["truth"][errors];
     if (!own.is_null() && (!own.is_object() || own.contains("bias"))) {

@@ -146,6 +146,13 @@ class OutageEvaluations(DaemonTest):
             answer = self.expect(status, self.daemon.post("/v1/outage-evaluations", {
                 "scenario": {**scenario, "truth": {**scenario["truth"], "gyro": sensor}}}))
             self.assertEqual([e["pointer"] for e in answer.json["errors"]], [pointer], answer.describe())
+        # A truth that is no object, beside a stored model with a bias, was answered with 500: the bias was written into it.
+        for truth in ([{"gyro": scenario["truth"]["gyro"]}], "paper"):
+            nested = {**scenario, "truth": truth, "filters": [{"name": "a", "truth": scenario["truth"]}]}
+            answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": nested}))
+            self.assertIn("/scenario/truth", [e["pointer"] for e in answer.json["errors"]], answer.describe())
+        answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": [{"truth": scenario["truth"]}]}))
+        self.assertIn("/scenario", [e["pointer"] for e in answer.json["errors"]], answer.describe())
         twice = {**scenario["truth"], "gyro_errors": {"bias": 1}}
         answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": {**scenario, "truth": twice}}))
         self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro_errors/bias"])
