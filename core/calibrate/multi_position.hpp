@@ -1,15 +1,17 @@
 #pragma once
-/// Calibration of an accelerometer triad from positions whose attitude nobody knows: at rest the corrected reading must
-/// be as long as gravity, whatever the attitude. Tedaldi, Pretto and Menegatti, "A robust and easy to implement method
-/// for IMU calibration without external equipments", ICRA 2014, section IV, without its gyroscope part.
+/// Calibration of an accelerometer triad from rest positions of unknown attitude: at rest the corrected reading must
+/// have the magnitude of gravity, whatever the attitude. Tedaldi, Pretto and Menegatti, "A robust and easy to implement
+/// method for IMU calibration without external equipments", ICRA 2014, section IV, without its gyroscope part.
 ///
-/// Model: x = A (y - b), A upper triangular with positive diagonal, |x| = g: nine numbers. The rotation of the triad as
-/// a whole cannot be seen, so A is triangular: its z axis is that of the sensor z, its y axis lies in the plane of
-/// sensors y and z. The readings y may be in any unit with any offset (counts of a converter); A then holds the unit.
+/// Model: x = A (y - b) with A upper triangular and its diagonal positive, and |x| = g: nine unknowns. A rotation of
+/// the triad as a whole cannot be observed, which is why A is triangular: its z axis is that of the z sensor, and its y
+/// axis lies in the plane of the y and z sensors. The readings y may be in any unit with any offset (counts of a
+/// converter); A then contains the unit.
 ///
-/// Estimated by least squares of |x_k| - g over the positions k, all weighted alike (Levenberg-Marquardt from the
-/// middle and half width of the readings). Intervals: linearised, with the scatter of the residuals and Student's t
-/// with n - 9 degrees of freedom. A constant error of g is a common scale of A and is not seen.
+/// The estimate minimises the sum of squares of |x_k| - g over the positions k with equal weights (Levenberg-Marquardt,
+/// started from the middle and half width of the readings). Intervals are linearised, with the scatter of the residuals
+/// and Student's t with n - 9 degrees of freedom. A constant error of g acts as a common scale of A and cannot be
+/// detected.
 #include "core/calibrate/triad.hpp"
 
 #include <string>

@@ -1,24 +1,24 @@
 #pragma once
 /// The six-position test: bias and scale factor of a triad from positions (or rates) whose true values are known.
 ///
-/// Accelerometers: each axis once up and once down, true value +-g along it. Gyroscopes: each axis turned at known
-/// rates both ways, true value +-rate. Seed paper, equations (9) and (10); Titterton and Weston, Strapdown Inertial
-/// Navigation Technology, 2nd ed., section 8.
+/// Accelerometers: each axis points once up and once down, and the true value along it is +-g. Gyroscopes: each axis is
+/// turned at known rates in both directions, and the true value is +-rate. Seed paper, equations (9) and (10);
+/// Titterton and Weston, Strapdown Inertial Navigation Technology, 2nd ed., section 8.
 ///
-/// Two forms of the law in core/calibrate/triad.hpp:
-///   per axis     b_i and S_i alone, from the positions whose true value lies along axis i (at least 90 % of its
-///   length). With
-///                one up u and one down d: b = (u + d)/2, S = (u - d)/(2 g) - 1. A tilt of the table of t rad costs
-///                t^2/2 of the scale factor and nothing of the bias: the positions across the axis, which it would
-///                reach to first order, are not used.
-///   with axes    all 12 numbers, by weighted least squares over every position and axis: 18 readings for 12 numbers in
-///   the
-///                plain test. Misalignments are against the axes in which the true values are given: a table that is
-///                not level is not told from sensors that are not square.
+/// The error model is that of core/calibrate/triad.hpp, in one of two forms.
 ///
-/// Intervals: 95 %, from the uncertainties of the means; where more readings than numbers scatter by more than those
-/// say (tilt, temperature), widened by sqrt(chi^2/dof) and Student's t. Per axis with two positions nothing is left to
-/// scatter.
+/// Per axis: only b_i and S_i are estimated, from the positions in which at least 90 % of the true value's length lies
+/// along axis i. With one reading up, u, and one down, d: b = (u + d)/2 and S = (u - d)/(2 g) - 1. A tilt of the table
+/// by t rad changes the scale factor by t^2/2 and the bias not at all. Positions across the axis, in which a tilt has a
+/// first-order effect, are not used.
+///
+/// With misalignment: all 12 parameters are estimated by weighted least squares over every position and axis; the plain
+/// test gives 18 readings for 12 parameters. Misalignments are relative to the axes in which the true values are given:
+/// a table that is not level cannot be told from sensor axes that are not orthogonal.
+///
+/// Intervals are 95 %, from the uncertainties of the means. If there are more readings than parameters and they scatter
+/// by more than those uncertainties allow (tilt, temperature), the intervals are widened by sqrt(chi^2/dof) with
+/// Student's t. Per axis with two positions no degree of freedom is left for that.
 #include "core/calibrate/triad.hpp"
 
 #include <optional>
@@ -47,9 +47,9 @@ struct TriadCalibration {
   double residual_after = 0.0;   ///< the same of corrected readings
 };
 
-/// An axis of which some uncertainty is 0 (unknown) is weighted evenly, and its interval taken from the scatter;
-/// without end where nothing is left to scatter. Errors: TooFewSamples (an axis lacks a position up or down; the 12
-/// numbers need 4 positions that are not in a plane), NonFinite. O(positions).
+/// If some uncertainty of an axis is 0 (unknown), its readings are weighted evenly and its interval comes from their
+/// scatter; the interval is infinite if no degree of freedom is left. Errors: TooFewSamples (an axis lacks a position
+/// up or down; the 12 parameters need 4 positions that are not in a plane), NonFinite. O(positions).
 [[nodiscard]] Result<TriadCalibration> calibrate_six_positions(std::span<const KnownPosition> positions,
                                                                const SixPositionOptions& options = {});
 

@@ -19,12 +19,12 @@ struct StillOptions {
   double margin_s = 0.25;   ///< left out at both ends of an interval
 };
 
-/// A block's variance is that of its three channels together; the stillest ones are represented by the 5 % quantile
-/// over all blocks, so at least some 5 % of the recording has to be still. Blocks in a row whose means agree within 6
-/// of their standard deviations (of a block's mean, from the stillest blocks) are one interval: two positions without
-/// motion seen between them stay apart. After Tedaldi, Pretto and Menegatti (ICRA 2014), section V, who take the
-/// threshold from a still start. Errors: ShapeMismatch, InvalidArgument (rate or options not positive), TooFewSamples
-/// (below 20 blocks). O(n).
+/// Finds the still intervals from blocks. The variance of a block is that of its three channels together. The level of
+/// the stillest blocks is the 5 % quantile over all blocks, so at least some 5 % of the recording has to be still.
+/// Adjacent still blocks form one interval as long as their means agree within 6 standard deviations (of a block's
+/// mean, from the stillest blocks), so that two positions stay apart even if no motion was seen between them. After
+/// Tedaldi, Pretto and Menegatti (ICRA 2014), section V, who take the threshold from a still start. Errors:
+/// ShapeMismatch, InvalidArgument (rate or options not positive), TooFewSamples (below 20 blocks). O(n).
 [[nodiscard]] Result<std::vector<StillInterval>> find_still_intervals(
     const std::array<std::span<const double>, 3>& channels, double rate_hz, const StillOptions& options = {});
 

@@ -1,18 +1,19 @@
 #pragma once
 /// The delay between a measured channel and its reference, to a fraction of a sample.
 ///
-/// Model: m(t) = a + k r(t - delay) + e(t), both series on one grid of interval dt. r is known between its samples by
-/// cubic convolution (Keys 1981, a = -1/2: exact for quadratics, error O(dt^3)); e is the error of the sensor, of any
-/// colour.
+/// Model: m(t) = a + k r(t - delay) + e(t), with both series on one grid of interval dt. Between its samples r is
+/// interpolated by cubic convolution (Keys 1981, a = -1/2: exact for quadratics, error O(dt^3)). e is the error of the
+/// sensor, with any spectrum.
 ///
-/// Estimated by least squares over (a, k, delay): the best whole number of samples within +-max_shift_s by correlation,
-/// then Gauss-Newton. Interval: 95 %, from the sandwich covariance with the long-run covariance of the scores
-/// (prewhitened by one coefficient, Bartlett weights over n^(1/3) lags: Andrews and Monahan 1992), so that correlated
-/// errors widen it. Only a reference that moves can be aligned: its information on the delay is sum (k r')^2.
+/// The estimate is by least squares over (a, k, delay): first the best whole number of samples within +-max_shift_s by
+/// correlation, then Gauss-Newton steps. The 95 % interval comes from the sandwich covariance with the long-run
+/// covariance of the scores (prewhitened by one coefficient, Bartlett weights over n^(1/3) lags: Andrews and Monahan
+/// 1992), so that correlated errors widen it. Only a moving reference can be aligned: its information on the delay is
+/// sum (k r')^2.
 ///
-/// A noisy reference pulls the estimate: interpolation smooths its noise most in the middle between samples, so the fit
-/// prefers or avoids fractions near a half. Where the noise of the reference is below a tenth of that of the sensor
-/// this is not seen.
+/// A noisy reference biases the estimate. Interpolation smooths its noise most halfway between samples, so the fit
+/// prefers or avoids fractions near a half. The effect is not noticeable if the noise of the reference is below a tenth
+/// of that of the sensor.
 #include "core/signal/estimate.hpp"
 #include "core/signal/result.hpp"
 

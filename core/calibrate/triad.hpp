@@ -1,14 +1,14 @@
 #pragma once
-/// A triad of sensors at rest, or turning evenly: its mean reading with its uncertainty, and the linear law of its
+/// A triad of sensors at rest or in steady rotation: its mean reading with its uncertainty, and the linear model of its
 /// errors.
 ///
-/// The law is that of the seed paper's equations (9) and (10), read as the errata say (the scale factor multiplies the
-/// true value), with the axes allowed to be askew:
+/// The model is that of the seed paper's equations (9) and (10), read as the errata say (the scale factor multiplies
+/// the true value), with axes that need not be orthogonal:
 ///
 ///   y = (I + diag(S) + M) x + b + noise
 ///
-/// y what the triad reads, x what an ideal one would, b the bias, S the scale-factor errors, M the misalignments (zero
-/// diagonal; M_ij: how much of the true value along j sensor i reads). All in SI.
+/// y is the reading of the triad, x the reading of an ideal one, b the bias, S the scale factor errors and M the
+/// misalignments (zero diagonal; M_ij is the fraction of the true value along axis j that sensor i reads). All in SI.
 #include "core/signal/estimate.hpp"
 #include "core/signal/result.hpp"
 
@@ -27,10 +27,10 @@ struct TriadMean {
   Triple sigma{};  ///< standard deviation of each mean, inflated for being estimated itself; 0: unknown
 };
 
-/// Means of batches of one twentieth give the uncertainty, so that noise correlated over less than that is accounted
-/// for; a drift over the whole stretch is not seen as one and counts as scatter. sigma = sd(batch means)/sqrt(20) *
-/// sqrt(19/17), which gives an interval of +-1.96 sigma the variance of Student's with 19 degrees of freedom. Errors:
-/// TooFewSamples (below 40), ShapeMismatch (channels of unequal length), NonFinite. O(n).
+/// The uncertainty comes from the means of 20 batches, so that noise correlated over less than a batch is accounted
+/// for. A drift over the whole stretch is not recognised as such and counts as scatter. sigma = sd(batch
+/// means)/sqrt(20) * sqrt(19/17); with it an interval of +-1.96 sigma has the variance of Student's t with 19 degrees
+/// of freedom. Errors: TooFewSamples (below 40), ShapeMismatch (channels of unequal length), NonFinite. O(n).
 [[nodiscard]] Result<TriadMean> triad_mean(const std::array<std::span<const double>, 3>& channels);
 
 /// y = matrix * x + bias, and back.

@@ -1,12 +1,12 @@
 #pragma once
-/// The wavelet variances of one channel in every form the characterisation needs: classical, robust, and those that
-/// models are fitted to.
+/// The wavelet variances of one channel in the three forms that its characterisation needs.
 ///
-/// Classical: of the samples; where some are missing, of series completed without regard to gross errors (the windows
-/// that touch a gap dropped where most do not), their degrees of freedom lowered by what the gaps cost. Robust:
-/// coefficient by coefficient while nothing is flagged; as soon as samples are, sample by sample
-/// (core/fit/sample_wise_variance.hpp). Fitted: the robust ones where the contamination test says `contaminated`, with
-/// a covariance raised by their lower efficiency.
+/// Classical: from the samples. Where some are missing, from series that are completed without regard to gross errors;
+/// at scales where most windows touch no gap, the windows that touch one are dropped instead. The degrees of freedom
+/// are lowered by what the gaps cost. Robust: from the wavelet coefficients while no sample is flagged as a gross
+/// error, and sample by sample (core/fit/sample_wise_variance.hpp) as soon as one is. Fitted, that is, those to which
+/// models are fitted: the robust ones if the verdict of the contamination test is `contaminated`, with a covariance
+/// raised by their lower efficiency; otherwise the classical ones.
 #include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
 #include "core/signal/gappy_samples.hpp"
@@ -35,14 +35,14 @@ struct ClassicalVariances {
   double unit_square = 1.0;        ///< the largest variance [sample unit^2]
 };
 
-/// `samples` without gaps: `rows`; with: `grid`. Errors: TooFewSamples where the gaps leave too
-/// little; Cancelled.
+/// `rows` are the samples of a channel without gaps, `grid` those of one with gaps. Errors: TooFewSamples if the gaps
+/// leave too little; Cancelled.
 [[nodiscard]] Result<ClassicalVariances> classical_variances(std::span<const double> rows, double mean,
                                                              const GappySamples& grid, double dt_s, std::uint64_t seed,
                                                              const RunControl& control = {});
 
-/// What clean noise of this channel looks like to the coefficient-wise estimator: that of a coarse lattice, of uniform
-/// quantization errors, or Gaussian. `intervals`: of the classical curve in units of `unit_square`.
+/// The shape that clean noise of this channel has for the coefficient-wise estimator: that of a coarse lattice, of
+/// uniform quantization errors, or Gaussian. `intervals` are those of the classical curve in units of `unit_square`.
 [[nodiscard]] RobustShape clean_shape(std::span<const double> samples, double unit_square,
                                       const VarianceIntervals& intervals, HaarCovariance& plan, std::uint64_t seed,
                                       const RunControl& control = {});
@@ -56,14 +56,14 @@ struct RobustVariances {
   std::vector<std::string> warnings;
 };
 
-/// Both robust estimators and the contamination test. `samples`: the record, or its completion where it has gaps.
-/// Without a value where `control.stop` asked.
+/// Both robust estimators and the contamination test. `samples` is the record, or its completion if it has gaps. The
+/// result holds no value if a stop was requested through `control.stop`.
 [[nodiscard]] RobustVariances robust_variances(std::span<const double> samples, double mean, const GappySamples& grid,
                                                const ClassicalVariances& classical, const VarianceIntervals& intervals,
                                                HaarCovariance& plan, std::uint64_t seed,
                                                const RunControl& control = {});
 
-/// What models are fitted to: moments, their standard deviations, and their covariance under a model.
+/// The data of a model fit: wavelet variances, their standard deviations, and their covariance under a model.
 struct FittedVariances {
   std::vector<double> variance;
   Eigen::VectorXd sd;
@@ -71,16 +71,17 @@ struct FittedVariances {
   NoiseShape shape;                ///< kurtosis of the noise; that of robust variances is Gaussian
   bool robust = false;
 
-  /// Covariance under a model: that of a whole Gaussian record, each standard deviation over the root of its
-  /// efficiency.
+  /// Covariance under a model: that of a complete Gaussian record, with each standard deviation divided by the square
+  /// root of its efficiency.
   [[nodiscard]] CovarianceLaw covariance(HaarCovariance& plan) const;
 };
 
-/// Robust where the channel is contaminated and every scale has a robust value.
+/// The robust variances if the channel is contaminated and every scale has a robust value; else the classical ones.
 [[nodiscard]] FittedVariances fitted_variances(const ClassicalVariances& classical, const VarianceIntervals& intervals,
                                                const RobustVariances& robust, HaarCovariance& plan);
 
-/// Degrees of freedom and intervals lowered by an efficiency per scale; empty: unchanged.
+/// Lowers the degrees of freedom by an efficiency per scale and widens the intervals accordingly. An empty `efficiency`
+/// changes nothing.
 void lower_degrees(const std::vector<double>& efficiency, const HaarVariance& curve, VarianceIntervals& intervals);
 
 }  // namespace driftlab

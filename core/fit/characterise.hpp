@@ -1,5 +1,5 @@
 #pragma once
-/// One channel in, its characterisation out: variances with intervals, Allan coefficients, ranked GMWM fits.
+/// Characterisation of one channel: variances with intervals, Allan coefficients, and ranked GMWM fits.
 #include "core/fit/characterisation.hpp"
 #include "core/signal/gappy_samples.hpp"
 #include "core/signal/progress.hpp"
@@ -12,7 +12,7 @@
 
 namespace driftlab {
 
-/// Changes whenever the same input and settings may give other numbers; stored with every result.
+/// This number is raised whenever the same input and settings may give other figures. It is stored with every result.
 inline constexpr int kAlgorithmVersion = 6;
 
 /// Which models are compared.
@@ -44,10 +44,10 @@ struct ChannelSamples {
 /// Checks a model name and every setting without data. Errors: InvalidArgument, naming the parameter.
 [[nodiscard]] Status check_options(const CharacteriseOptions& options);
 
-/// Errors: TooFewSamples (fewer than 8 samples; the models need as many scales as parameters, smaller models are fitted
-/// and larger ones left out with a warning), NonFinite (naming the row), OutOfRange (squares overflow),
-/// InvalidArgument, LimitExceeded (more missing than recorded), Cancelled. A constant channel is no error: zero
-/// variances, no fit, a warning. Deterministic; one thread.
+/// Errors: TooFewSamples (fewer than 8 samples), NonFinite (naming the row), OutOfRange (squares overflow),
+/// InvalidArgument, LimitExceeded (more samples missing than recorded), Cancelled. A model needs as many scales as it
+/// has parameters; candidates with more are left out with a warning. A constant channel is no error: it has zero
+/// variances, no fit and a warning. The result is deterministic; one thread is used.
 [[nodiscard]] Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel,
                                                                    const CharacteriseOptions& options = {},
                                                                    const RunControl& control = {});

@@ -1,5 +1,5 @@
 #pragma once
-/// From a candidate to the ModelFit that leaves the estimator: parameters in SI with intervals, or the reason for none.
+/// Conversion of a fitted candidate into a ModelFit: parameters in SI with intervals, or the reason why there is none.
 #include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
 
@@ -10,8 +10,9 @@ enum class IntervalMethod {
   Profile,  ///< profile of the quasi-likelihood: holds its promise, open where the data give no limit
 };
 
-/// Parameters of a candidate's processes in canonical order. `unit`: SI units in one unit of the candidate's moments.
-/// `rise`: how far L may rise inside a 95 % interval (3.84, more where the model is known not to fit).
+/// Parameters of a candidate's processes in canonical order. `unit` is the number of SI units in one unit of the
+/// candidate's moments. `rise` is how far L may exceed its minimum inside a 95 % interval: 3.84, or more if the model
+/// is known not to fit.
 [[nodiscard]] std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method,
                                                           double rise);
 
@@ -19,11 +20,11 @@ enum class IntervalMethod {
 [[nodiscard]] std::vector<FittedProcess> report_processes(Candidate& candidate, double unit,
                                                           const std::vector<double>& rises);
 
-/// The whole fit. `samples`: N of the criterion. `rises`: of a bootstrap, empty without one.
+/// The complete ModelFit. `samples` is the N of the criterion. `rises` are those of a bootstrap, empty without one.
 [[nodiscard]] ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalMethod method,
                                   const std::vector<double>& rises = {});
 
-/// Squared-distance rise of a 95 % interval of one parameter: chi-square(1) at 0.95.
+/// The rise of the squared distance L that bounds the 95 % interval of one parameter: chi-square(1) at 0.95.
 inline constexpr double kRise95 = 3.841458820694124;
 
 }  // namespace driftlab

@@ -1,11 +1,12 @@
 #pragma once
-/// Generalised method of wavelet moments: the model whose Haar wavelet variances lie nearest the estimated ones.
+/// Generalised method of wavelet moments (GMWM): the estimator that brings the wavelet variances implied by a model as
+/// close as possible to the estimated ones.
 ///
 /// theta^ = argmin (nu^ - nu(theta))' W (nu^ - nu(theta)) (Guerrier, Skaloud, Stebler, Molinari 2013; seed paper eq.
-/// 7). For given shapes (beta, frequency) the model is linear in the squared levels, so these are found exactly by
-/// enumerating which of them are positive; the shapes are found by a scan of their whole range and a
-/// Levenberg-Marquardt polish with analytic derivatives of the projected residual (Golub and Pereyra 1973; Kaufman
-/// 1975). No starting values, nothing random.
+/// 7). For given shape parameters (beta, frequency) the model is linear in the squared levels, so these are found
+/// exactly, by enumerating which of them are positive. The shape parameters are found by a scan of their whole range,
+/// followed by Levenberg-Marquardt iterations with analytic derivatives of the projected residual (Golub and Pereyra
+/// 1973; Kaufman 1975). No starting values are needed and nothing is random.
 #include "core/process/model.hpp"
 
 #include <Eigen/Core>
@@ -15,12 +16,12 @@
 
 namespace driftlab {
 
-/// The estimated wavelet variances and the grid they belong to: one recording's, or those of several stacked one below
-/// the other (core/campaign/replicates.hpp), which every estimator here takes alike.
+/// The estimated wavelet variances and the scales they belong to. They are those of one recording, or those of several
+/// recordings stacked one below the other (core/campaign/replicates.hpp); every estimator here treats both alike.
 struct WaveletMoments {
   Eigen::VectorXd nu;
   std::vector<double> half;           ///< half lengths m
-  double samples = 0.0;               ///< of the longest recording: what the search range of a shape is taken from
+  double samples = 0.0;               ///< of the longest recording; sets the search range of a shape parameter
   double dt_s = 0.0;                  ///< of the finest recording
   std::vector<double> row_dt_s = {};  ///< sample interval of each entry of a stack; empty: dt_s throughout
 
@@ -45,7 +46,7 @@ struct GmwmSolution {
   [[nodiscard]] Model active() const;
 };
 
-/// Cost: 48 points per shape; about 0.2 ms for one, 5 ms for two shapes at 20 scales.
+/// The cost is 48 points per shape parameter: at 20 scales about 0.2 ms for one shape and 5 ms for two.
 [[nodiscard]] GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& structure,
                                     const MomentWeights& weights);
 

@@ -1,11 +1,12 @@
 #pragma once
-/// A composite model as a few independent scalar states seen through one noisy sum: the form completion.hpp works in.
+/// A composite model as a few independent scalar states observed through one noisy sum, the form in which
+/// completion.hpp works.
 ///
 ///   x_{t+1} = T x_t + w_t,   y_t = z' x_t + e_t,   cov w = diag(noise), var e = white + error, T = diag(transition).
 ///
-/// The first state is the level (a constant bias of unknown value, or a random walk), then one per Gauss-Markov
-/// process, all with z = 1. Quantization noise e_t = a_t - a_{t-1} adds one state, the previous error a_{t-1} (T = 0,
-/// z = -1), and correlates noises: cov(w, e) = error for that state. White noise is e_t.
+/// The first state is the level (a constant bias of unknown value, or a random walk); one state per Gauss-Markov
+/// process follows; all have z = 1. Quantization noise e_t = a_t - a_{t-1} adds one state, the previous error a_{t-1}
+/// with T = 0 and z = -1, and makes the noises of that state correlated: cov(w, e) = error. White noise is part of e_t.
 #include "core/process/model.hpp"
 
 #include <array>
@@ -23,12 +24,13 @@ struct LinearStates {
   double white = 0.0;                 ///< at least 10^-6 of the other noises, so that densities exist
   double error = 0.0;                 ///< variance of a_t
 
-  /// Variance of a sample given all others of an endless record, 1/mean of 1/S(f): what a residual is measured in.
+  /// Variance of a sample given all other samples of an endless record, the reciprocal of the mean of 1/S(f). Residuals
+  /// are measured in this unit.
   [[nodiscard]] double leave_one_out_variance() const;
 };
 
-/// Nothing where a process has no such form (flicker, drift, sinusoid) or the states are more than kMost.
-/// `level_variance`: how far the level may lie from 0 at the start [unit^2].
+/// Nothing if a process has no such form (flicker noise, drift, sinusoid) or if there are more than kMost states.
+/// `level_variance` is the prior variance of the level about 0 at the start [unit^2].
 [[nodiscard]] std::optional<LinearStates> linear_states(const Model& model, double dt_s, double level_variance);
 
 }  // namespace driftlab

@@ -1,9 +1,10 @@
 #pragma once
-/// The law of one residual in a record that may hold gross errors: z = e/sqrt(V) is N(0, core) for a good sample and
-/// N(0, core + ratio_k) with probability weight_k for one that carries an additional error of that size.
+/// The distribution of one residual in a record that may hold gross errors. z = e/sqrt(V) is N(0, core) for a good
+/// sample, and N(0, core + ratio_k) with probability weight_k for a sample with an additional error of size k.
 ///
-/// Sizes 3, 6, 12, ... standard deviations, so that any scale mixture of Gaussians from 3 sd up is near; weights and
-/// core by EM on the histogram of the residuals (Dempster, Laird, Rubin 1977). A clean record gives weights near 0.
+/// The sizes are 3, 6, 12, ... standard deviations, so that any scale mixture of Gaussians from 3 sd upwards is well
+/// approximated. Weights and core are estimated by the EM algorithm from the histogram of the residuals (Dempster,
+/// Laird, Rubin 1977). A clean record gives weights near 0.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,11 +1,11 @@
 #pragma once
-/// A first look for gross errors, before there is any model: where to start completion.hpp from.
+/// Screening for gross errors without a model; it gives the starting point of completion.hpp.
 ///
-/// Residuals from five local predictors (mean of the two neighbours; medians of the four neighbours and of windows of
-/// 15, 63 and 251 samples); the one of the smallest median absolute deviation is used. A sample further out than 5
-/// robust standard deviations is suspect. A patch is a window of 8 or 20 samples whose mean clipped residual from the
-/// longest median is further out than 5.5 robust standard deviations of such means. Medians of w samples are taken at
-/// every w/4-th and interpolated between.
+/// Residuals are formed from five local predictors: the mean of the two neighbours, the median of the four neighbours,
+/// and the medians of windows of 15, 63 and 251 samples. The predictor with the smallest median absolute deviation is
+/// used. A sample further out than 5 robust standard deviations is suspect. A patch is a window of 8 or 20 samples
+/// whose mean clipped residual from the longest median is further out than 5.5 robust standard deviations of such
+/// means. Medians of w samples are computed at every w/4-th sample and interpolated between.
 #include "core/signal/progress.hpp"
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct OutlierScreen {
   double sd = 0.0;                  ///< robust standard deviation of the residuals; 0: more than half are equal
 };
 
-/// `samples`: at least 1; missing ones left out by the caller. O(N), about 100 ns a sample. No
-/// residuals where `control.stop` asked.
+/// `samples` holds at least 1 sample; the caller leaves missing ones out. O(N), about 100 ns a sample. The result has
+/// no residuals if a stop was requested through `control.stop`.
 [[nodiscard]] OutlierScreen screen_outliers(std::span<const double> samples, const RunControl& control = {});
 
 }  // namespace driftlab

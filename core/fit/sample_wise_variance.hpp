@@ -1,16 +1,18 @@
 #pragma once
 /// Haar wavelet variances of the good samples of a record that has gaps, gross errors, or both.
 ///
-/// (1) outlier_screen.hpp says where to start. (2) WN+RW, and QN and GM where these fit much better, is fitted to the
-/// wavelet variances of the provisional series. (3) Sweeps of completion.hpp, each followed by a new fit and new shares
-/// of gross errors, until both have settled; then the classical wavelet variances of several drawn series, averaged.
-/// Since a drawn series follows the law of the true one given the data, its variances are unbiased at every scale where
-/// the model is right; where few samples are replaced the model hardly matters. Where gaps are all there is, windows
-/// that touch one are dropped at scales at which three quarters of them are whole, which needs no model at all.
+/// (1) outlier_screen.hpp marks the suspect samples. (2) WN+RW, or WN+RW with QN and GM if these fit much better, is
+/// fitted to the wavelet variances of the provisional series. (3) Sweeps of completion.hpp follow, each with a new fit
+/// and new shares of gross errors, until both have settled. The result is the average of the classical wavelet
+/// variances of several drawn series. A drawn series follows the law of the true series given the data, so its
+/// variances are unbiased at every scale if the model is right; if few samples are replaced, the model hardly matters.
+/// If there are gaps but no gross errors, the windows that touch a gap are dropped at scales where three quarters of
+/// the windows are whole, which needs no model at all.
 ///
-/// Assumes that good samples are Gaussian around a model of these processes and that errors add to single samples,
-/// independently of the noise; patches of shifted samples are found by the screen and treated as gaps. More than 20 %
-/// of errors mean that the core is not Gaussian: there is then no truth to be robust for, and no result.
+/// Assumptions: good samples are Gaussian and follow a model of these processes; errors add to single samples
+/// independently of the noise; patches of shifted samples are found by the screen and treated as gaps. If more than 20
+/// % of the samples deviate, the core of the distribution is not Gaussian, no robust value is defined, and no result is
+/// given.
 #include "core/process/model.hpp"
 #include "core/signal/gappy_samples.hpp"
 #include "core/signal/progress.hpp"
@@ -39,8 +41,8 @@ struct SampleWiseOptions {
 struct SampleWiseVariance {
   SampleWiseOutcome outcome = SampleWiseOutcome::Estimated;
   HaarVariance curve;  ///< of the grid; mean over the draws
-  /// Var of the classical estimate on the true series over that of this one, per scale: what the draws scatter by
-  /// (Rubin 1987).
+  /// Per scale, the variance of the classical estimate on the true series over the variance of this estimate. It
+  /// follows from the scatter among the draws (Rubin 1987).
   std::vector<double> efficiency;
   std::vector<std::size_t> flagged;  ///< grid points whose error passes a false-discovery rate of 1 %, and patches
   double replaced_share = 0.0;       ///< recorded samples that a draw replaces, mean over draws

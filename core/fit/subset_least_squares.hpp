@@ -12,13 +12,13 @@ struct SubsetSolution {
   double squared_residual = 0.0;
 };
 
-/// argmin |A x - b|^2 over x >= 0, for at most 12 columns: 2^columns small solves. A subset whose columns depend on
-/// each other to 12 digits is passed over (a smaller one fits as well). The result is polished by QR, so it has the
-/// digits of b.
+/// argmin |A x - b|^2 over x >= 0, for at most 12 columns, by 2^columns small solves. A subset whose columns are
+/// linearly dependent to 12 digits is skipped, since a smaller one fits as well. The result is refined by QR, so that
+/// it is as accurate as b.
 [[nodiscard]] SubsetSolution subset_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& a,
                                                   const Eigen::Ref<const Eigen::VectorXd>& b);
 
-/// The same over many choices of columns of one matrix, from their inner products alone: what a scan over a grid needs.
+/// The same for many choices of columns of one matrix, from their inner products alone, as a scan over a grid needs it.
 class GramProblem {
  public:
   GramProblem(const Eigen::MatrixXd& columns, const Eigen::VectorXd& b);

@@ -1,8 +1,8 @@
 #pragma once
-/// Attitudes as unit quaternions. q_ab rotates what is written in b into a: v_a = q_ab * v_b.
+/// Attitudes as unit quaternions. q_ab transforms the components of a vector from frame b to frame a: v_a = q_ab * v_b.
 ///
-/// Euler angles are roll, pitch, heading of the body in n, rotated in the order heading, pitch, roll (aerospace
-/// convention); at pitch +-90 deg roll and heading are not unique and heading takes it all.
+/// Euler angles are roll, pitch and heading of the body relative to n, applied in the order heading, pitch, roll
+/// (aerospace convention). At a pitch of +-90 deg roll and heading are not unique; roll is then set to 0.
 #include "core/navigate/earth.hpp"
 
 #include <Eigen/Geometry>

@@ -1,15 +1,15 @@
 #pragma once
-/// How the error of one sensing axis moves over a step of several samples, exactly, for every process with a state
+/// Propagation of the error of one sensor axis over a step of several samples, exact for every process that has a state
 /// space.
 ///
-/// The axis has a constant bias (where its standard deviation is not 0) and the states of its processes. Besides them a
-/// step carries three integrals of the error y over its samples, each sample held constant as an integrating unit gives
-/// it:
-///   I1 = int y,  I2 = int int y,  I3 = int int int y,
-/// because angle, velocity and position errors of a filter are rotations of these. One sample is linear,
+/// The axis has a constant bias (if its standard deviation is not 0) and the states of its processes. In addition a
+/// step carries three integrals of the error y over its samples, with each sample held constant, as an integrating
+/// sensor outputs it:
+///   I1 = int y,  I2 = int int y,  I3 = int int int y.
+/// The angle, velocity and position errors of a filter are rotations of these integrals. One sample is the linear step
 ///   z' = M z + noise,  z = (states, I1, I2, I3),
-/// with M and its noise from StateSpace (core/process/state_space.hpp); a step of L samples is M^L and the noise summed
-/// through it: exact for any L, no series in L dt.
+/// with M and the noise from StateSpace (core/process/state_space.hpp). A step of L samples is M^L with the noise
+/// accumulated through it. This is exact for any L; no series in L dt is involved.
 #include "core/navigate/imu_model.hpp"
 
 #include <Eigen/Core>

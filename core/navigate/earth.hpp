@@ -1,11 +1,13 @@
 #pragma once
-/// The Earth as the World Geodetic System 1984 has it: ellipsoid, rotation, normal gravity.
+/// The Earth model of the World Geodetic System 1984: ellipsoid, rotation, normal gravity.
 ///
-/// Frames: e is Earth-centred and Earth-fixed (x through the equator at longitude 0, z along the axis), n is
-/// north-east-down at a place on the ellipsoid, b is the body, forward-right-down. Mechanisation and filter work in e,
-/// where no trigonometric function of latitude is needed and nothing is singular at the poles; people read n.
+/// Frames: e is Earth-centred and Earth-fixed (x through the equator at longitude 0, z along the axis); n is
+/// north-east-down at a place on the ellipsoid; b is the body, forward-right-down. Mechanisation and filter work in e,
+/// where no trigonometric function of latitude is needed and the poles are not singular. Results for people are given
+/// in n.
 ///
-/// Geodetic latitude is meant throughout. Conversions are those of GeographicLib (Karney 2011), good to nanometres.
+/// Latitude always means geodetic latitude. Conversions are those of GeographicLib (Karney 2011), accurate to
+/// nanometres.
 #include <Eigen/Core>
 
 namespace driftlab {
@@ -42,8 +44,8 @@ struct Geodetic {
 
 /// Normal gravity [m/s^2] in e: attraction of the level ellipsoid plus the centrifugal acceleration.
 ///
-/// Zonal harmonics J2, J4, J6 of the normal field (Heiskanen and Moritz 1967, eq. 2-92); what is left out is below
-/// 2e-8 m/s^2 up to 20 km of height. Fifty multiplications, no trigonometric function.
+/// It uses the zonal harmonics J2, J4, J6 of the normal field (Heiskanen and Moritz 1967, eq. 2-92); the neglected
+/// terms are below 2e-8 m/s^2 up to 20 km of height. It takes fifty multiplications and no trigonometric function.
 [[nodiscard]] Vector3 normal_gravity(const Vector3& ecef_m);
 
 /// d gravity / d position [1/s^2], symmetric: that of a point mass plus the centrifugal part, right to 1.5 %. The

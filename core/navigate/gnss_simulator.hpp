@@ -42,9 +42,9 @@ struct Outage {
 /// Errors: InvalidArgument naming the member.
 [[nodiscard]] Status check(const GnssModel& model);
 
-/// Fixes at every whole period after time 0, those of outages left out; between two samples of the trajectory the state
-/// is taken from the nearer one, advanced with its velocity. Draws are made for lost fixes too: an outage changes no
-/// other fix.
+/// Fixes at every whole period after time 0, without those in outages. Between two samples of the trajectory the state
+/// is taken from the nearer one and extrapolated with its velocity. Random numbers are drawn for lost fixes too, so
+/// that an outage changes no other fix.
 [[nodiscard]] std::vector<GnssFix> simulate_gnss(const Trajectory& trajectory, const GnssModel& model,
                                                  const std::vector<Outage>& outages, Random& random);
 

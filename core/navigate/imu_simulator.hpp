@@ -1,15 +1,15 @@
 #pragma once
-/// An inertial unit that errs as its model says.
+/// Simulation of an inertial unit whose errors follow its error model.
 ///
-/// reading = quantize(clip(low-pass(M s) + b + eps)), with s the ideal output, and per axis (seed paper eq. 9 and 10,
-/// the scale factor on the true value)
+/// reading = quantize(clip(low-pass(M s) + b + eps)), where s is the ideal output, and per axis (seed paper eq. 9 and
+/// 10, with the scale factor on the true value)
 ///   M = I + misalignment + diag(scale factor)   deterministic, per sensor triad,
 ///   b = given bias + a draw N(0, bias_sd^2)     constant over the run,
-///   eps                                          the sum of the model's processes.
-/// The low-pass (second-order Butterworth, bilinear) acts on the motion only: noise models describe noise as it is
-/// read. Under a schedule of several bands eps follows the true rate: white noise, Gauss-Markov and random-walk
-/// processes keep their state while their parameters change; any other process switches between paths that share their
-/// draws.
+///   eps                                         the sum of the model's processes.
+/// The low-pass (second-order Butterworth, bilinear) acts on the motion only, because noise models describe the noise
+/// of the readings. Under a schedule of several bands eps follows the true rate. White noise, Gauss-Markov and
+/// random-walk processes keep their state while their parameters change; any other process switches between paths that
+/// share their random draws.
 #include "core/navigate/imu_model.hpp"
 #include "core/process/random.hpp"
 

@@ -1,13 +1,14 @@
 #pragma once
-/// Which error model holds under which angular rate.
+/// Error models that depend on the angular rate.
 ///
 /// Radi, Nassar and El-Sheimy (2017) fit one model per dynamic condition and switch between them by the gyro's own
-/// reading (their Table 5). A schedule is that table: ascending bounds of |rate| and one model per band. A band is left
-/// only when the reading is outside it by more than `hysteresis`, so that noise at a bound does not make the schedule
-/// flutter. Trends over the rate, continuous in the parameters, are the same thing with narrow bands (`interpolated`).
+/// reading (their Table 5). A schedule is such a table: ascending bounds of |rate| and one model per band. A band is
+/// left only when the reading is outside it by more than `hysteresis`, so that noise near a bound does not cause
+/// repeated switching. Trends over the rate, in which the parameters are continuous, are schedules with narrow bands
+/// (`interpolated`).
 ///
-/// All models of a schedule hold the same kinds of processes in the same order: a Kalman filter keeps its states when
-/// the parameters change.
+/// All models of a schedule consist of the same kinds of processes in the same order, so that a Kalman filter keeps its
+/// states when the parameters change.
 #include "core/process/model.hpp"
 
 #include <cstddef>
@@ -30,10 +31,10 @@ class ModelSchedule {
   [[nodiscard]] static Result<ModelSchedule> by_rate(std::vector<double> bounds_rad_s, std::vector<Model> models,
                                                      double hysteresis_rad_s);
 
-  /// Parameters as functions of |rate|: straight lines between the given rates (of the logarithm where a parameter is
-  /// positive by its declaration and its values are), constant beyond the ends, tabulated in bands of `step_rad_s`.
-  /// Bands need no hysteresis: neighbours differ by little. Errors: InvalidArgument (rates not ascending from 0 or
-  /// above, models of different structure, more than 4096 bands).
+  /// Parameters as functions of |rate|: linear between the given rates and constant beyond the ends, tabulated in bands
+  /// of `step_rad_s`. The logarithm is interpolated if a parameter is positive by its declaration and in its values.
+  /// Neighbouring bands differ so little that no hysteresis is needed. Errors: InvalidArgument (rates not ascending
+  /// from 0 or above, models of different structure, more than 4096 bands).
   [[nodiscard]] static Result<ModelSchedule> interpolated(const std::vector<double>& rates_rad_s,
                                                           const std::vector<Model>& models, double step_rad_s);
 
@@ -45,9 +46,9 @@ class ModelSchedule {
   [[nodiscard]] const std::vector<double>& bounds_rad_s() const { return bounds_; }
   [[nodiscard]] double hysteresis_rad_s() const { return hysteresis_; }
 
-  /// The band of |rate| by the bounds alone: what truth does.
+  /// The band of |rate| by the bounds alone, as the true errors use it.
   [[nodiscard]] std::size_t band(double rate_rad_s) const;
-  /// The band a filter goes to that is in `current` and reads `rate_rad_s`.
+  /// The band that a filter in band `current` selects when it reads `rate_rad_s`.
   [[nodiscard]] std::size_t next_band(std::size_t current, double rate_rad_s) const;
 
  private:

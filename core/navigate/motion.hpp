@@ -1,8 +1,9 @@
 #pragma once
-/// What a vehicle does, before any sensor looks at it: velocity and attitude in n as smooth functions of time.
+/// The true motion of a vehicle: velocity and attitude in n as smooth functions of time.
 ///
-/// Position follows by integration (core/navigate/trajectory.hpp), so velocity and its derivative, and attitude and its
-/// derivative, are all a motion has to give; specific force and angular rate then follow without differencing.
+/// Position follows by integration (core/navigate/trajectory.hpp). A motion therefore provides only velocity and
+/// attitude with their derivatives, from which specific force and angular rate follow without numerical
+/// differentiation.
 #include "core/navigate/attitude.hpp"
 
 namespace driftlab {

@@ -1,18 +1,18 @@
 #pragma once
-/// What a comparison says about the paper's claims, in words.
+/// What a comparison of filters says about the claims of the seed paper, in words.
 ///
-/// Attribution walks from M_stat(AV) to M_dyn(GMWM) over the controls, one change at a time; the parts add up to the
-/// whole:
-///   low-frequency process noise   M_stat(Neq)+RW  against  M_stat(AV)        the low-frequency noise told, no new
-///   states Gauss-Markov states           M_stat(GMWM)    against  M_stat(Neq)+RW    the same noise, now estimated
-///   switching                     M_dyn(GMWM)     against  M_stat(GMWM)      parameters that follow the rate
-/// and, for Allan variance alone, switching is M_dyn(AV) against M_stat(AV). Negative differences are gains.
+/// The attribution goes from M_stat(AV) to M_dyn(GMWM) through the control filters, one change at a time, and the parts
+/// add up to the whole:
+///   low-frequency process noise: M_stat(Neq)+RW against M_stat(AV); low-frequency noise is modelled, no new states;
+///   Gauss-Markov states: M_stat(GMWM) against M_stat(Neq)+RW; the same noise is now estimated;
+///   switching: M_dyn(GMWM) against M_stat(GMWM); the parameters follow the rate.
+/// For the Allan variance alone, switching is M_dyn(AV) against M_stat(AV). Negative differences are gains.
 ///
-/// A claim that one filter is better is supported where the whole 95 % interval of the paired difference is below 0 and
-/// the gain is at least kPracticalSize: common random numbers make differences significant that nobody would notice,
-/// and those are said to be of no practical size. A claim of a size is supported where the interval of the relative
-/// difference holds it. The gain comes from the switching where there is a gain, the interval of the switching's part
-/// is below 0, and that part is more than half of the whole.
+/// The claim that one filter is better is supported if the whole 95 % interval of the paired difference is below 0 and
+/// the gain is at least kPracticalSize. Common random numbers make differences significant that nobody would notice;
+/// such differences are reported as being of no practical size. A claim of a size is supported if the interval of the
+/// relative difference contains it. The gain is attributed to the switching if there is a gain, the interval of the
+/// switching's part is below 0, and that part is more than half of the whole.
 #include "core/navigate/outage_evaluation.hpp"
 
 namespace driftlab {

@@ -1,17 +1,18 @@
 #pragma once
-/// What an error model is worth in navigation: filters compared through GNSS outages by Monte Carlo.
+/// The value of an error model in navigation: filters compared through GNSS outages by Monte Carlo simulation.
 ///
-/// Every run draws one set of sensor errors, fixes and initial errors, and every filter sees that same set (common
-/// random numbers), so differences between filters are far better known than the errors themselves. Scored at the end
-/// of each outage, before the first returning fix: the horizontal position error, its normalised square e^T P^-1 e
-/// (NEES, expected 2 where the filter's covariance P is right), whether the 50 and 95 % ellipses of P hold the truth,
-/// heading and tilt.
+/// Every run draws one set of sensor errors, fixes and initial errors, and every filter receives that same set (common
+/// random numbers). Differences between filters are therefore known far better than the errors themselves. At the end
+/// of each outage, before the first returning fix, four things are scored: the horizontal position error; its
+/// normalised square e^T P^-1 e (NEES, expected 2 if the filter's covariance P is right); whether the 50 and 95 %
+/// ellipses of P contain the truth; heading and tilt errors.
 ///
-/// Intervals are 95 %, over runs (outages of one run are correlated and averaged first), by Student's t. Differences
-/// are paired by run; the relative difference (a - b)/b has its interval by the delta method on the pairs.
+/// Intervals are 95 % over runs by Student's t; the outages of one run are correlated and are averaged first.
+/// Differences are paired by run; the interval of the relative difference (a - b)/b is by the delta method on the
+/// pairs.
 ///
-/// Deterministic: run r depends on (scenario, seed, r) alone, and sums are taken in order of r, whatever the number of
-/// threads. A run of 8 minutes at 100 Hz costs about 20 ms for each filter.
+/// The result is deterministic: run r depends on (scenario, seed, r) alone, and sums are taken in order of r, whatever
+/// the number of threads. A run of 8 minutes at 100 Hz costs about 20 ms for each filter.
 #include "core/navigate/outage_scenario.hpp"
 #include "core/signal/estimate.hpp"
 #include "core/signal/progress.hpp"

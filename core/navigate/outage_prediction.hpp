@@ -1,18 +1,18 @@
 #pragma once
-/// What a better error model says about navigation: the position error after outages, as a baseline and as an extended
-/// model predict it.
+/// The effect of a better error model on navigation: the position error after outages as predicted by a baseline model
+/// and by an extended model.
 ///
-/// Three mean horizontal errors at the end of the scenario's outages, by Monte Carlo:
-///   baseline   data by the baseline model, a filter that believes it: what was promised;
-///   extended   data by the extended model, the same filter: what the field will show where the extended model is
-///   right; adopted    data by the extended model, a filter that believes it: what adopting the model leaves.
-/// `extended` and `adopted` see the same data (common random numbers), so their difference is known far better than
+/// Three mean horizontal errors at the end of the scenario's outages are computed by Monte Carlo simulation:
+///   baseline   data from the baseline model, filter designed for it: the performance that was promised;
+///   extended   data from the extended model, same filter: the performance in the field if the extended model is right;
+///   adopted    data from the extended model, filter designed for it: the performance once it is adopted.
+/// `extended` and `adopted` use the same data (common random numbers), so their difference is known far better than
 /// either. `baseline` uses the same fixes, first estimates and random numbers with the other parameters.
 ///
-/// A model is given for the channels that were studied; every other channel keeps the scenario's own error model.
-/// Processes without a state space (`left_out`) are in the data and missing in the filters. What a study's effects
-/// amount to beyond processes goes into `hardware` (bias, scale factor, misalignment, quantization, clipping,
-/// bandwidth): in the data alone, for a filter estimates a constant bias at most.
+/// A model is given for the channels that were studied; every other channel keeps the error model of the scenario.
+/// Processes without a state space (`left_out`) are in the data but not in the filters. Effects of a study that are not
+/// processes (bias, scale factor, misalignment, quantization, clipping, bandwidth) go into `hardware`. They are in the
+/// data alone, because a filter estimates at most a constant bias.
 #include "core/navigate/outage_evaluation.hpp"
 
 #include <array>
@@ -46,9 +46,10 @@ struct OutagePrediction {
 /// at 20 Hz: 3.5 minutes, of which a filter takes some milliseconds.
 [[nodiscard]] OutageScenario prediction_scenario();
 
-/// `scenario`: its filters are not used; receiver, drive, outages, first estimate and the models of channels that are
-/// not given are. One run costs three filters over the drive: with `prediction_scenario` 40 runs take about half a
-/// second. Deterministic for any number of threads. Errors: those of evaluate_outages; Cancelled.
+/// From `scenario` the receiver, the drive, the outages, the first estimate and the models of channels that are not
+/// given are used; its filters are not. One run costs three filters over the drive; with `prediction_scenario` 40 runs
+/// take about half a second. The result is the same for any number of threads. Errors: those of evaluate_outages;
+/// Cancelled.
 [[nodiscard]] Result<OutagePrediction> predict_outage_errors(const SensorErrorModel& baseline,
                                                              const SensorErrorModel& extended,
                                                              const OutageScenario& scenario = prediction_scenario(),

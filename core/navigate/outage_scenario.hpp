@@ -21,8 +21,8 @@ struct OutageScenario {
   std::string name;
   std::string about;
   SegmentPlan drive;
-  /// Where it is not empty the vehicle follows these poses instead of the segments of `drive`, from the place where
-  /// `drive` starts, and to their end; `drive.duration_s` is then at most theirs.
+  /// If it is not empty, the vehicle follows these poses instead of the segments of `drive`. It begins at the place
+  /// where `drive` starts and goes on to the last pose; `drive.duration_s` must not exceed the duration of the poses.
   std::vector<RecordedPose> recorded;
   double imu_rate_hz = 100.0;
   ImuModel truth;
@@ -39,8 +39,8 @@ struct OutageScenario {
 [[nodiscard]] Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario);
 
 /// Errors: InvalidArgument (no filter or two of one name, no outage, outages that overlap, begin before the first fix
-/// or end after the drive), LimitExceeded (more than 10 million samples), and those of the parts: of make_motion, with
-/// field "segment" where it is one's, and of FilterDesign::check, with field "filter".
+/// or end after the drive), LimitExceeded (more than 10 million samples), and those of the parts. An error of
+/// make_motion has the field "segment" if it concerns a segment; one of FilterDesign::check has the field "filter".
 [[nodiscard]] Status check(const OutageScenario& scenario);
 
 }  // namespace driftlab

@@ -1,12 +1,13 @@
 #pragma once
-/// The filter on recorded data: a real inertial unit and real fixes, artificial outages, a reference to score against.
+/// The navigation filter on recorded data: a real inertial unit, real fixes, artificial outages, and a reference for
+/// scoring.
 ///
-/// Fixes inside an outage are withheld. At its end the estimate is compared with the reference (straight line between
-/// its two neighbours in time) before the first returning fix, next to the simplest rival: the position and velocity of
-/// the filter at the outage's start, carried on in a straight line.
+/// Fixes inside an outage are withheld. At its end, before the first returning fix, the estimate is compared with the
+/// reference, which is interpolated linearly in time. The same is done for the simplest alternative: the filter's
+/// position and velocity at the start of the outage, extrapolated in a straight line.
 ///
-/// Readings and fixes must share one clock. A unit that is seconds off costs metres after an outage and shows as a NEES
-/// far above 2; core/calibrate/time_alignment.hpp finds the delay from the turns of both.
+/// Readings and fixes must share one clock. A clock offset of seconds causes errors of metres after an outage and shows
+/// as a NEES far above 2; core/calibrate/time_alignment.hpp finds the delay from the turns in both.
 #include "core/navigate/navigation_filter.hpp"
 
 #include <vector>
@@ -32,8 +33,8 @@ struct RecordedOutage {
   double north_m = 0.0, east_m = 0.0;  ///< estimate minus reference
   double nees = 0.0;                   ///< two dimensions; counts the reference's own error too
   double error_m = 0.0;
-  double start_error_m = 0.0;          ///< what was there before the outage
-  double straight_line_error_m = 0.0;  ///< of the rival
+  double start_error_m = 0.0;          ///< of the estimate at the start of the outage
+  double straight_line_error_m = 0.0;  ///< of the straight-line extrapolation
 };
 
 /// Errors: TooFewSamples (no readings, fixes or reference), NonMonotonicTime (fixes or reference), InvalidArgument (an
@@ -43,8 +44,8 @@ struct RecordedOutage {
                                                                     const NavigationState& start,
                                                                     const std::vector<Outage>& outages);
 
-/// Attitude of a unit at rest or in even motion: roll and pitch from the direction of the mean specific force of
-/// `readings`, heading as given. Tilt is wrong by acceleration over gravity.
+/// Attitude of a unit at rest or in uniform motion: roll and pitch from the direction of the mean specific force of
+/// `readings`, heading as given. The tilt error is the acceleration of the vehicle over gravity.
 [[nodiscard]] Quaternion level_attitude(std::span<const ImuSample> readings, const Vector3& position_ecef_m,
                                         double heading_rad);
 

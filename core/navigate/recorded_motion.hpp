@@ -1,9 +1,9 @@
 #pragma once
-/// A recorded trajectory as a motion: velocities and attitude angles through natural cubic splines.
+/// A recorded trajectory as a motion: velocities and attitude angles interpolated by natural cubic splines.
 ///
-/// Between its samples a recording says nothing; the spline is the twice differentiable curve of least curvature
-/// through them, so specific force and rates are continuous. Angles are unwrapped first. Position is integrated from
-/// the velocities and therefore follows the recording's velocities, not its positions.
+/// The spline is the twice differentiable curve of least curvature through the samples, so specific force and angular
+/// rates are continuous; between its samples the recording gives no information. Angles are unwrapped first. Position
+/// is integrated from the velocities, and therefore follows the recorded velocities, not the recorded positions.
 #include "core/navigate/motion.hpp"
 #include "core/signal/result.hpp"
 

@@ -1,10 +1,10 @@
 #pragma once
-/// A road vehicle's motion from segments: horizontal, heading along the velocity, rates continuous.
+/// The motion of a road vehicle from segments: horizontal, with the heading along the velocity and continuous rates.
 ///
-/// Every manoeuvre is a pulse of heading rate or of acceleration: it rises over `ramp_s` as a cubic smoothstep, holds,
-/// and falls again, so that rate and acceleration have continuous derivatives, and its integral is exactly value times
-/// duration: a turn of 9 deg/s for 10 s turns by 90 deg and is over 10 s + ramp after its start. Pulses add, so
-/// turns may overlap; changes of speed, which have targets, may not.
+/// Every manoeuvre is a pulse of heading rate or of acceleration. The pulse rises over `ramp_s` as a cubic smoothstep,
+/// holds its value and falls again, so that rate and acceleration have continuous derivatives. Its integral is exactly
+/// value times duration: a turn of 9 deg/s for 10 s turns by 90 deg and ends 10 s + ramp after its start. Pulses add,
+/// so turns may overlap. Changes of speed have targets and may not overlap.
 #include "core/navigate/motion.hpp"
 #include "core/signal/result.hpp"
 

@@ -1,13 +1,13 @@
 #pragma once
-/// A motion on the rotating Earth: true position, velocity, attitude, and what an ideal inertial unit would output.
+/// A motion on the rotating Earth: true position, velocity and attitude, and the output of an ideal inertial unit.
 ///
 /// Position: d latitude/dt = v_N/(M + h), d longitude/dt = v_E/((N + h) cos latitude), d height/dt = -v_D, by the
 /// classical Runge-Kutta method at the output rate (error below 1e-9 m over minutes). With C the attitude b -> e,
 ///   f_b     = C^T (dv_e/dt + 2 w_ie x v_e - g(r)),
 ///   w_ib,b  = w_nb,b + C_bn (w_ie + w_en)        (Titterton and Weston 2004, ch. 3),
-/// where dv_e/dt = C_en (dv_n/dt + w_en x v_n): no differences of positions or attitudes anywhere. The ideal output of
-/// a sample is the mean of both over the interval that ends with it (Gauss-Legendre, three points, error of order
-/// dt^6), as an integrating unit gives it.
+/// where dv_e/dt = C_en (dv_n/dt + w_en x v_n). Positions and attitudes are never differenced. The ideal output of a
+/// sample is the mean of both over the interval that ends with it (Gauss-Legendre quadrature with three points, error
+/// of order dt^6), as an integrating unit outputs it.
 #include "core/navigate/motion.hpp"
 #include "core/signal/result.hpp"
 
@@ -36,11 +36,11 @@ struct Trajectory {
   std::vector<ImuSample> imu;
 };
 
-/// Errors: InvalidArgument (rate not positive), LimitExceeded (more than 10 million samples), OutOfRange (the way leads
-/// over a pole). 100 000 samples take a fifth of a second.
+/// Errors: InvalidArgument (rate not positive), LimitExceeded (more than 10 million samples), OutOfRange (the path
+/// crosses a pole). 100 000 samples take a fifth of a second.
 [[nodiscard]] Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz);
 
-/// Angular rate and specific force in the body axes at one moment; the place is that of the body then.
+/// Angular rate and specific force in the body axes at one moment, for a body at `place`.
 [[nodiscard]] ImuSample ideal_imu(const MotionState& state, const Geodetic& place);
 
 }  // namespace driftlab

@@ -1,8 +1,8 @@
 #pragma once
 /// Flicker noise (bias instability): two-sided density B^2/(2 pi |f|) up to the Nyquist frequency, without aliasing.
 ///
-/// Allan deviation floor sqrt(2 ln 2/pi) B = 0.664 B. Only its increments are stationary; it has no finite state space
-/// (the one given is a sum of 16 Gauss-Markov processes, approximate with its stated error).
+/// The floor of its Allan deviation is sqrt(2 ln 2/pi) B = 0.664 B. Only its increments are stationary. It has no
+/// finite state space; the one given is a sum of 16 Gauss-Markov processes, an approximation whose error is stated.
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
@@ -33,10 +33,11 @@ struct FlickerNoise {
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
-  /// Approximate: 16 Gauss-Markov states of stationary variances between 0.1 and 0.9 B^2, correlation times from 0.4 to
-  /// 1.3e7 samples at two a decade, fitted to the density in relative least squares over 10^-7 .. 1/2 cycles a sample.
-  /// Within 1.6 % below 1/20 of the sampling rate, 17 % at the Nyquist frequency, where an autoregression must be flat.
-  /// Below 10^-7 cycles a sample it levels off, so that it is stationary: its constant part is not that of the process.
+  /// Approximate. It has 16 Gauss-Markov states with stationary variances between 0.1 and 0.9 B^2 and correlation times
+  /// from 0.4 to 1.3e7 samples, two per decade, fitted to the density in relative least squares over 10^-7 .. 1/2
+  /// cycles a sample. The error is within 1.6 % below 1/20 of the sampling rate, and 17 % at the Nyquist frequency,
+  /// where the spectrum of an autoregression must be flat. Below 10^-7 cycles a sample the density levels off, so the
+  /// approximation is stationary; its constant part is not that of the process.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Circulant embedding of the stationary increments (Davies and Harte 1987; Wood and Chan 1994), started at 0:
   /// exact second moments of all differences. O(n log n) time, 4 n complex numbers.

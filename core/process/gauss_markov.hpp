@@ -1,10 +1,10 @@
 #pragma once
-/// First-order Gauss-Markov process: bias that wanders and is pulled back with the rate beta.
+/// First-order Gauss-Markov process: a bias that varies randomly and reverts to its mean at the rate beta.
 ///
-/// Point samples of dX = -beta X dt + sqrt(2 beta) sigma dW: an AR(1) with phi = exp(-beta dt) and stationary variance
-/// sigma^2. As beta -> 0 with 2 beta sigma^2 fixed it becomes a random walk; as beta -> infinity, white noise. The
-/// closed forms below keep 15 digits over x = beta dt from 1e-14 to 700 and scales to 2^30, where the usual form loses
-/// them all.
+/// It consists of point samples of dX = -beta X dt + sqrt(2 beta) sigma dW, an AR(1) process with phi = exp(-beta dt)
+/// and stationary variance sigma^2. As beta -> 0 with 2 beta sigma^2 fixed it becomes a random walk; as beta ->
+/// infinity, white noise. The closed forms below keep 15 digits for x = beta dt from 1e-14 to 700 and scales up to
+/// 2^30, where the usual form loses all of them.
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
@@ -42,8 +42,8 @@ struct GaussMarkov {
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Starts in the stationary distribution.
   void add_path(Random& random, double dt_s, std::span<double> out) const;
-  /// Correlation times from 1/8 of a sample to a thousand records: beyond either end the process is white noise or a
-  /// random walk to nine digits.
+  /// Correlation times from 1/8 of a sample to a thousand times the length of the record. Beyond either end the process
+  /// equals white noise or a random walk to nine digits.
   [[nodiscard]] static std::pair<double, double> shape_range(double dt_s, double samples) {
     return {1e-3 / (samples * dt_s), 8.0 / dt_s};
   }

@@ -1,14 +1,14 @@
 #pragma once
-/// Second differences of a lag function: how a Haar filter sees a process (estimator-notes of the design; Percival
-/// 1995).
+/// Second differences of a lag function, which give the covariance of the Haar wavelet coefficients of a process
+/// (Percival 1995).
 #include <cmath>
 
 namespace driftlab {
 
-/// -D_mi D_mj K(h) / (4 mi mj), with D_m f(h) = f(h + m) - 2 f(h) + f(h - m): the covariance of the Haar wavelet
-/// coefficients of half lengths mi and mj whose filter centres are h samples apart, for a process whose lag function K
-/// has second difference (autocovariance) gamma, or K = -V/2 summed twice for a process with stationary increments
-/// only.
+/// -D_mi D_mj K(h) / (4 mi mj), with D_m f(h) = f(h + m) - 2 f(h) + f(h - m). This is the covariance of the Haar
+/// wavelet coefficients of half lengths mi and mj whose filter centres are h samples apart. K is the lag function of
+/// the process: the second difference of K is the autocovariance gamma, or, for a process that has stationary
+/// increments only, K is minus half the variogram summed twice.
 template <class LagFunction>
 [[nodiscard]] double haar_cross_of(double mi, double mj, double h, const LagFunction& k) {
   if (mi == mj) {

@@ -1,8 +1,9 @@
 #pragma once
-/// A stochastic process as the rest of driftlab sees it: a kind from the registry and the values of its parameters.
+/// A stochastic process as all of driftlab uses it: a kind from the registry, and the values of its parameters.
 ///
-/// Every law is per channel unit: a `Process` with level 1 in rad/s gives variances in (rad/s)^2. `half` is the half
-/// length m of a Haar filter in samples (scale n = 2m, Allan tau = m dt), any whole number up to 2^40 held in a double.
+/// All laws are in the unit of the channel: a `Process` with level 1 in rad/s gives variances in (rad/s)^2. `half` is
+/// the half length m of a Haar filter in samples (scale n = 2m, Allan tau = m dt). It may be any whole number up to
+/// 2^40, held in a double.
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"

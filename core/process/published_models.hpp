@@ -1,11 +1,11 @@
 #pragma once
-/// Error models read off publications, for simulating recordings that may be shipped and for checking fits.
+/// Error models from publications, for simulating recordings that may be distributed and for checking fits.
 ///
-/// `iphone5s-z`: the z gyroscope of an iPhone 5S on a rate table, Table 4 of Radi, Nassar and El-Sheimy (2017),
-/// "Stochastic Error Modeling of Smartphone Inertial Sensors for Navigation in Varying Dynamic Conditions" (model 6,
-/// WN+2GM; model 2 under angular acceleration, where the second process is not there). N is in deg/sqrt(h); sigma^2 is
-/// read as (deg/sqrt(h))^2 with sigma [deg/s] = sqrt(value)/60, the reading under which it agrees with the bias
-/// instability of the paper's Table 2.
+/// `iphone5s-z` is the z gyroscope of an iPhone 5S on a rate table, from Table 4 of Radi, Nassar and El-Sheimy (2017),
+/// "Stochastic Error Modeling of Smartphone Inertial Sensors for Navigation in Varying Dynamic Conditions": model 6,
+/// WN+2GM, and under angular acceleration, where the second Gauss-Markov process is absent, model 2. N is in
+/// deg/sqrt(h). sigma^2 is read as (deg/sqrt(h))^2 with sigma [deg/s] = sqrt(value)/60, since this reading agrees with
+/// the bias instability of the paper's Table 2.
 #include "core/process/model.hpp"
 #include "core/signal/condition.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Random numbers whose bits are driftlab's own: std::normal_distribution may differ between standard libraries, so the
-/// transforms are written here. The engine is std::mt19937_64, whose output the C++ standard fixes.
+/// Random numbers that have the same bits everywhere. std::normal_distribution may differ between standard libraries,
+/// so the transforms are written here. The engine is std::mt19937_64, whose output the C++ standard defines.
 #include <cstdint>
 #include <random>
 

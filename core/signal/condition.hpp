@@ -1,5 +1,6 @@
 #pragma once
-/// The dynamic condition under which a recording was made (spec/study.md): what the sensor *should* have read.
+/// The dynamic condition under which a recording was made (spec/study.md). It defines the true value of the measured
+/// quantity.
 #include "core/signal/result.hpp"
 #include "core/signal/unit.hpp"
 

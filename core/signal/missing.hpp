@@ -1,10 +1,11 @@
 #pragma once
-/// A sample that is not there, and why.
+/// The representation of a missing sample and of the reason why it is missing.
 ///
-/// A table of numbers has no hole, so a missing sample is a quiet NaN whose payload (IEEE 754-2008, 6.2.1) says what
-/// stood in the file instead, and in which row. Decoders put it where a cell is no number; whoever uses the column
-/// decides whether that is a fault (view_recording refuses text in a sensor channel, by its line) or a fact to report
-/// (an empty cell). The payload survives storage and copies, not arithmetic: it is read from decoded columns only.
+/// A column of numbers has no empty places, so a missing sample is a quiet NaN. Its payload (IEEE 754-2008, 6.2.1) says
+/// what stood in the file instead, and in which row. Decoders write it where a cell holds no number. The user of the
+/// column decides whether that is an error (view_recording refuses text in a sensor channel and names the line) or a
+/// fact to report (an empty cell). The payload survives storage and copies but not arithmetic; it is read from decoded
+/// columns only.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -37,7 +38,7 @@ inline constexpr unsigned kMissingRowBits = 44;
   return std::bit_cast<double>(kQuietNan | (static_cast<std::uint64_t>(why) << kMissingRowBits) | (row & kRowMask));
 }
 
-/// What `value`, which is a NaN, says of itself.
+/// The reason and the row that the NaN `value` carries.
 [[nodiscard]] inline MissingSample why_missing(double value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const auto why = static_cast<unsigned>((bits >> kMissingRowBits) & 7U);

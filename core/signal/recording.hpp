@@ -1,8 +1,8 @@
 #pragma once
-/// A recording: what was measured, with what meaning, under which dynamic condition.
+/// A recording: the meaning of its columns and the dynamic condition under which it was made.
 ///
-/// The samples themselves live in a column table (core/read/column_file.hpp maps one from disk) in the file's own
-/// units; this header holds their *meaning*. One `RecordingSpec` is one member of `recordings` in spec/study.md.
+/// The samples themselves are in a column table in the file's own units (core/read/column_file.hpp maps one from disk);
+/// this header holds their *meaning*. One `RecordingSpec` is one member of `recordings` in spec/study.md.
 #include "core/signal/condition.hpp"
 #include "core/signal/gappy_samples.hpp"
 #include "core/signal/quantity.hpp"
@@ -34,12 +34,12 @@ struct Trim {
   friend bool operator==(const Trim&, const Trim&) = default;
 };
 
-/// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0".
-/// Rates that a sensor can have: from a sample in twelve days to a gigahertz. Times and frequencies made of them stay
-/// finite.
+/// Sampling rates that a sensor can have: from one sample in twelve days to a gigahertz. Times and frequencies computed
+/// from them stay finite.
 [[nodiscard]] constexpr bool is_sampling_rate(double rate_hz) { return rate_hz >= 1e-6 && rate_hz <= 1e9; }
 
-/// Empty `columns`: meaning is inferred from header names and units where they state it (core/signal/infer_role.hpp).
+/// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0". If
+/// it is empty, the roles are inferred from names and units in the header (core/signal/infer_role.hpp).
 struct RecordingSpec {
   std::string id;                 ///< the user's name for the recording; may be empty
   std::optional<double> rate_hz;  ///< nominal rate; needed where there is no time column
@@ -57,11 +57,11 @@ struct RecordingSpec {
 /// A file's columns by name, without their samples.
 using ColumnNames = std::vector<std::string>;
 
-/// A role per column of the file, in file order; nothing for a column that nobody needs.
-/// With `spec.columns`: names must exist, no two columns may be the same (quantity, axis), each role must check.
-/// Without: names such as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood, other
-/// columns become unspecified channels in unit `1`.
-/// Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names the column.
+/// A role for each column of the file, in file order; nothing for a column that is not needed. With `spec.columns`: the
+/// names must exist, no two columns may have the same (quantity, axis), and each role must check. Without: names such
+/// as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood; other columns become
+/// unspecified channels in unit `1`. Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names
+/// the column.
 [[nodiscard]] Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec,
                                                                           const ColumnNames& names);
 
@@ -117,14 +117,15 @@ struct Window {
   Quality quality;
 };
 
-/// Reads the time column (in `time_unit`; empty span: none), the stated rate and the trims, and decides which rows are
-/// analysed: where the time column has gaps, one stretch with them (core/signal/stretch.hpp); where it steps back, the
-/// part before or after. A note in `quality` says what is left out. How many samples a gap lacks is counted on the grid
-/// of the sample interval from the rows on both sides, so that a late stamp which the next ones make up for lacks none.
-/// Stamps in bursts (more than 2 % of the steps look like gaps) are read as those of evenly spaced samples.
-/// Errors: InconsistentSampling (neither rate nor time column; they differ by more than 1 %), NonMonotonicTime (one row
-/// in a thousand steps back, or more; naming the first), NonFinite, TooFewSamples (naming the parameter when a trim
-/// leaves nothing), InvalidArgument. O(rows) time, O(rows) memory for the median step.
+/// Decides which rows are analysed and on which time base, from the time column (in `time_unit`; an empty span: none),
+/// the stated rate and the trims. If the time column has gaps, the rows analysed are one stretch with gaps
+/// (core/signal/stretch.hpp); if it steps back, the part before or after the step. A note in `quality` says what is
+/// left out. The number of samples missing in a gap is counted on the grid of the sample interval from the rows on both
+/// sides, so that a late stamp which the next ones make up for counts as none. Stamps in bursts (more than 2 % of the
+/// steps look like gaps) are replaced by those of evenly spaced samples. Errors: InconsistentSampling (neither rate nor
+/// time column, or they differ by more than 1 %), NonMonotonicTime (one row in a thousand or more steps back; names the
+/// first), NonFinite, TooFewSamples (names the parameter if a trim leaves nothing), InvalidArgument. O(rows) time, and
+/// O(rows) memory for the median step.
 [[nodiscard]] Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows,
                                          std::span<const double> time_column, const Unit& time_unit);
 

@@ -1,10 +1,11 @@
 #pragma once
-/// A recording ready for analysis: which rows, which channels, and the error series of each.
+/// A recording prepared for analysis: the rows used, the channels, and the error series of each channel.
 ///
-/// The error of a channel is measured minus reference (spec/study.md). A constant reference (static, constant rate,
-/// +-g) does not change any variance and is left in, so that the samples are used where they lie in the mapped file.
-/// Under a constant angular acceleration the reference on the rotation axis is the ramp from rest at the first sample
-/// of the file; where a reference column of the same axis exists, it is the reference. Both need a copy of the channel.
+/// The error of a channel is the measured value minus the reference (spec/study.md). A constant reference (static,
+/// constant rate, +-g) changes no variance and is not subtracted, so that the samples are used where they lie in the
+/// mapped file. Under a constant angular acceleration the reference on the rotation axis is the ramp from rest at the
+/// first sample of the file. A reference column of the same axis takes precedence. In both cases a copy of the channel
+/// is needed.
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/stretch.hpp"
@@ -18,9 +19,9 @@
 
 namespace driftlab {
 
-/// One sensor channel: the sound samples of the analysed window (core/signal/channel_survey.hpp), so that no value is
-/// missing, implausible or frozen, with the places where samples are missing between them. What is left out stands in
-/// `window.quality`.
+/// One sensor channel: the sound samples of the analysed window (core/signal/channel_survey.hpp), none of them missing,
+/// implausible or frozen, and the places at which samples are missing between them. `window.quality` says what is left
+/// out.
 struct ChannelView {
   std::string column;
   ColumnRole role;                 ///< unit `1` where none is stated
@@ -41,7 +42,7 @@ struct RecordingView {
   std::vector<ChannelView> channels;  ///< sensors in file order
 };
 
-/// The rows that every one of `channels` has without a gap, at their longest: the first, and how many (0: none).
+/// The longest run of rows that all of `channels` have without a gap: its first row and the number of rows (0: none).
 [[nodiscard]] std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelView* const> channels);
 
 /// What a view is made for.

@@ -1,11 +1,11 @@
 #pragma once
-/// Which rows are analysed where some are missing.
+/// The choice of the rows to analyse when some samples are missing.
 ///
-/// Between two rows of a recording samples may be missing: lost on the way (a jump of the time column), or rows that
-/// hold no measurement. They are neither bridged by interpolation nor a reason to drop the rest: what is analysed is
-/// one stretch with gaps, in which only what touches a gap is lost (core/signal/gappy_samples.hpp). A stretch may miss
-/// up to a fifth of its grid; where more is missing it is split at its largest gap, and the part with more rows goes
-/// on.
+/// Samples may be missing between two rows of a recording, either lost in transmission (a jump of the time column) or
+/// because rows hold no measurement. They are not bridged by interpolation, nor is the rest discarded: one stretch with
+/// gaps is analysed, in which only what touches a gap is lost (core/signal/gappy_samples.hpp). Up to a fifth of the
+/// grid of a stretch may be missing. If more is missing, the stretch is split at its largest gap and the part with more
+/// rows is kept.
 #include "core/signal/gappy_samples.hpp"
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace driftlab {
 
-/// Of the grid points of an analysed stretch at most this share is missing.
+/// The largest share of the grid points of an analysed stretch that may be missing.
 inline constexpr double kMostMissing = 0.2;
 
 /// Rows [first, first + count) without a gap, and what is missing before them.
@@ -32,24 +32,24 @@ struct Stretch {
 
   [[nodiscard]] std::size_t rows() const;
   [[nodiscard]] std::size_t missing() const;  ///< between the runs
-  /// The gaps of the series that the runs make when laid end to end: rows count from its first.
+  /// The gaps of the series formed by the runs laid end to end; rows are counted from its first.
   [[nodiscard]] std::vector<Gap> gaps() const;
   /// The run with the most rows, the earliest of equals; empty without runs.
   [[nodiscard]] RowRun longest() const;
 };
 
-/// The stretch of consecutive `runs` to analyse; never fewer rows than the longest run. O(runs^2) at worst.
+/// The stretch of consecutive `runs` to analyse. It never has fewer rows than the longest run. O(runs^2) at worst.
 [[nodiscard]] Stretch choose_stretch(std::span<const RowRun> runs);
 
 /// The rows [first, last) cut into runs at every gap inside (rows of the file, rising).
 [[nodiscard]] std::vector<RowRun> cut_at_gaps(std::size_t first, std::size_t last, std::span<const Gap> gaps);
 
-/// What is left of `runs` without the rows `removed` (rising) and [block.first, block.second); these count as missing
-/// where rows on both sides are left.
+/// `runs` without the rows `removed` (ascending) and without [block.first, block.second). The removed rows count as
+/// missing where rows on both sides remain.
 [[nodiscard]] std::vector<RowRun> without_rows(std::span<const RowRun> runs, std::span<const std::size_t> removed,
                                                std::pair<std::size_t, std::size_t> block = {0, 0});
 
-/// The rows that are in both, cut where either is; what lies between two of them on the grid of `a` counts as missing.
+/// The rows common to both, cut where either has a gap. Grid points of `a` between two common rows count as missing.
 [[nodiscard]] std::vector<RowRun> shared_runs(std::span<const RowRun> a, std::span<const RowRun> b);
 
 }  // namespace driftlab

@@ -1,5 +1,5 @@
 #pragma once
-/// Two small operations on text that every door of driftlab needs.
+/// Two small operations on text: splitting and trimming.
 #include <string_view>
 #include <vector>
 

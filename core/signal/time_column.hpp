@@ -18,10 +18,10 @@ struct TimeColumn {
   [[nodiscard]] double advanced_s() const;  ///< sum of the steps forward
 };
 
-/// Reads the column. A counter of 16 or 32 bits (of ticks, or scaled to seconds from ms or us) that starts again is
-/// continued: the step across the wrap must then be at most 5 median steps. Any other step back splits the recording
-/// there, if fewer than one row in a thousand has one; more is a column that is no clock. Errors: NonFinite (a stamp is
-/// missing), NonMonotonicTime; both name the row. O(rows) time and memory.
+/// Reads the time column. A counter of 16 or 32 bits (of ticks, or scaled to seconds from ms or us) that starts again
+/// is continued, provided that the step across the wrap is at most 5 median steps. Any other step back splits the
+/// recording there. If one row in a thousand or more has such a step, the column is no clock and is refused. Errors:
+/// NonFinite (a stamp is missing), NonMonotonicTime; both name the row. O(rows) time and memory.
 [[nodiscard]] Result<TimeColumn> read_time_column(std::span<const double> column, const Unit& unit);
 
 }  // namespace driftlab

@@ -1,9 +1,9 @@
 #pragma once
-/// Physical units at the doors of driftlab. Inside, every number is SI (rad/s, m/s^2, s, rad, m, K).
+/// Physical units of inputs and outputs. Inside driftlab every number is SI (rad/s, m/s^2, s, rad, m, K).
 ///
 /// A `Unit` is an affine map to SI: si = value * factor + offset. Only degC has an offset. Known symbols
 /// (spec/study.md): s ms us ns; deg/s rad/s deg/h; m/s^2 g mg; degC K; deg rad; m; m/s; uT; and `1` for a column whose
-/// unit nobody stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
+/// unit is not stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
 #include "core/signal/result.hpp"
 
 #include <string>

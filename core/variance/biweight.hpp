@@ -1,8 +1,9 @@
 #pragma once
-/// The bounded square behind the robust wavelet variance: chi(r) = r^2 (1 - (r/c)^2)^4 inside |r| < c, 0 outside.
+/// The bounded square behind the robust wavelet variance: chi(r) = r^2 (1 - (r/c)^2)^4 for |r| < c, and 0 otherwise.
 ///
-/// Expanded in Hermite polynomials normalised under the Gaussian, chi = sum a_k h_k: a_0 is its mean, a_2 carries the
-/// scale, and the even a_k above 2 are what robustness costs (Mondal and Percival 2012 use the same expansion).
+/// chi is expanded in Hermite polynomials that are normalised under the standard Gaussian distribution, chi = sum a_k
+/// h_k. Then a_0 is the mean of chi, a_2 is its response to the scale of the data, and the even coefficients above a_2
+/// are the variance that robustness costs. Mondal and Percival (2012) use the same expansion.
 #include "core/variance/haar_covariance.hpp"
 
 #include <array>
@@ -18,14 +19,14 @@ struct Biweight {
   /// Expansion for a given c, by quadrature.
   [[nodiscard]] static Biweight with(double c);
 
-  /// Efficiency against the classical variance, a_2^2 S_2 / sum_k a_k^2 S_k, for coefficients whose correlation sums
-  /// are S.
+  /// Efficiency relative to the classical variance, a_2^2 S_2 / sum_k a_k^2 S_k. `sums` are the correlation sums S_k of
+  /// the coefficients (HaarCovariance::correlation_sums).
   [[nodiscard]] double efficiency(const std::array<double, HaarCovariance::kEvenPowers>& sums) const;
 };
 
-/// The biweight whose efficiency is `target` for coefficients with these correlation sums; c between 2 and 12. What is
-/// right for independent data (c = 4.40 for 0.6) is not right for overlapping coefficients: 3.69 for white noise at
-/// long scales.
+/// The biweight whose efficiency is `target` for coefficients with these correlation sums; c lies between 2 and 12. The
+/// constant for independent data (c = 4.40 for an efficiency of 0.6) does not suit overlapping wavelet coefficients,
+/// which are correlated: for white noise at long scales it is 3.69.
 [[nodiscard]] Biweight tune_biweight(const std::array<double, HaarCovariance::kEvenPowers>& sums, double target = 0.6);
 
 }  // namespace driftlab

@@ -1,13 +1,16 @@
 #pragma once
-/// Do gross errors move the wavelet variances? A test of the robust against the classical estimate over all scales at
-/// once.
+/// A test of whether gross errors move the wavelet variances. It compares the robust with the classical estimate at all
+/// scales together.
 ///
-/// d_j = ln(robust_j/classical_j). The classical estimate is the k = 2 Hermite term of the robust one, so d is
-/// orthogonal to it and Cov(d_i, d_j) = 2/(a2_i a2_j) sum_{k>=4 even} a_ki a_kj S_k^ij is exact for Gaussian data; d'
-/// V^-1 d is chi-square over the scales with at least 90 equivalent degrees of freedom. Size at 5 %: 4-7 %. Judging
-/// scale by scale whether one estimate lies outside the interval of the other errs in 11-19 % of clean records.
-/// Noise of another shape than Gaussian (heavy tails throughout, uniform quantization errors) is rejected as well; it
-/// is told from gross errors by asking whether few coefficients of the first scale carry the excess.
+/// The statistic is built from d_j = ln(robust_j/classical_j). The classical estimate is the k = 2 Hermite term of the
+/// robust one, so d is orthogonal to it, and for Gaussian data
+///   Cov(d_i, d_j) = 2/(a2_i a2_j) sum_{k>=4 even} a_ki a_kj S_k^ij
+/// holds exactly. d' V^-1 d is then chi-square over the scales with at least 90 equivalent degrees of freedom. At a
+/// nominal 5 % the test rejects 4-7 % of clean records. The simpler rule, which asks scale by scale whether one
+/// estimate lies outside the interval of the other, rejects 11-19 % of them.
+///
+/// Clean noise that is not Gaussian (heavy tails throughout, uniform quantization errors) is rejected as well. It is
+/// distinguished from gross errors by whether a small share of the coefficients of the first scale carries the excess.
 #include "core/variance/robust_variance.hpp"
 
 #include <span>
@@ -35,10 +38,11 @@ struct ContaminationTest {
   std::vector<std::size_t> undefined_scales;  ///< scales n of many degrees of freedom without a robust value
 };
 
-/// Contaminated: p < 0.01 (or no robust value at a scale of many degrees of freedom), robust below classical, and at
-/// most 10 % of the first scale's coefficients carry at least 40 % of the excess. Clean: p >= 0.05. Undecided: between,
-/// another shape, or no scale with 90 degrees of freedom. `samples`: those of the curve, whose variances are in units
-/// of `unit_square`.
+/// The verdict is `Contaminated` if p < 0.01 (or no robust value exists at a scale of many degrees of freedom), the
+/// robust variance is below the classical one, and at most 10 % of the first scale's coefficients carry at least 40 %
+/// of the excess. It is `Clean` if p >= 0.05. It is `Undecided` if p lies between, if the noise has another shape than
+/// Gaussian, or if no scale has 90 degrees of freedom. `samples` are those from which `curve` was computed; the
+/// variances are in units of `unit_square`.
 [[nodiscard]] ContaminationTest test_contamination(std::span<const double> samples, double unit_square,
                                                    const HaarVariance& curve, const VarianceIntervals& classical,
                                                    const RobustVariance& robust, HaarCovariance& plan);

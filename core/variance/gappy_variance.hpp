@@ -1,12 +1,13 @@
 #pragma once
-/// Haar wavelet variances of a record with missing samples, without a model.
+/// Haar wavelet variances of a record with missing samples, estimated without a model.
 ///
-/// Two unbiased estimators. Whole windows: the mean of W^2 over the filters that touch no gap; efficient while most
-/// windows are whole, impossible once none is. Pairs (Mondal and Percival 2010, the estimator for processes with
-/// stationary increments): every filter is written as -1/2 sum_{l,l'} h_l h_l' (x_{t-l} - x_{t-l'})^2, each pair's term
-/// divided by how often pairs at that lag are both there; any scale, but its scatter grows with the share of gaps and
-/// it may come out negative. It serves as a check of what a model says (core/fit/sample_wise_variance.hpp).
-/// Both assume that samples are missing independently of their values.
+/// Two unbiased estimators are given. Whole windows: the mean of W^2 over the filter positions that touch no gap. It is
+/// efficient while most windows are whole, and impossible once none is. Pairs (Mondal and Percival 2010, the estimator
+/// for processes with stationary increments): every squared filter output is written as -1/2 sum_{l,l'} h_l h_l'
+/// (x_{t-l} - x_{t-l'})^2, and the term of each pair is divided by the relative frequency with which both samples at
+/// that lag are present. It works at any scale, but its scatter grows with the share of missing samples and it may come
+/// out negative. It serves as a check of the model-based estimate (core/fit/sample_wise_variance.hpp). Both assume that
+/// samples are missing independently of their values.
 #include "core/signal/gappy_samples.hpp"
 
 #include <cstddef>

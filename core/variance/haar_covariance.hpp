@@ -1,14 +1,17 @@
 #pragma once
 /// Covariance of the estimated Haar wavelet variances across scales, under a Gaussian model, at finite N.
 ///
-/// For filters of half lengths mi <= mj, with gamma_ij(h) the covariance of their coefficients h samples apart and
-/// n_ij(h) the number of pairs that far apart,
+/// For filters of half lengths mi <= mj, let gamma_ij(h) be the covariance of their coefficients h samples apart and
+/// n_ij(h) the number of pairs that far apart. Then
 ///   Cov(nu_i, nu_j) = 2/(Mi Mj) sum_h n_ij(h) gamma_ij(h)^2 + 4 mu_i mu_j/(Mi Mj) sum_h n_ij(h) gamma_ij(h),
-/// mu the mean of the coefficients under a trend (exact for Gaussian data; Percival 1995, Greenhall and Riley 2003).
-/// gamma^2 n is smooth between the lags 0, m_i, m_j - m_i, m_j, m_i + m_j, so the sum is taken there by rules of six
-/// lags (Gauss-Legendre's nodes, rounded to whole lags, with the weights that are exact for polynomials over whole
-/// lags) on stretches that are m_i/2 long near these lags and grow fourfold in distance: some 100 lags for a pair, and
-/// an error below 0.1 % of sqrt(C_ii C_jj) for every process (0.3 % for flicker noise).
+/// where mu is the mean of the coefficients under a trend. This is exact for Gaussian data (Percival 1995, Greenhall
+/// and Riley 2003).
+///
+/// gamma^2 n is smooth between the lags 0, m_i, m_j - m_i, m_j and m_i + m_j, so the sum is evaluated by quadrature on
+/// stretches between these lags. The stretches are m_i/2 long near these lags and grow fourfold with distance; each
+/// uses six lags (the Gauss-Legendre nodes rounded to whole lags, with weights that are exact for polynomials over
+/// whole lags). This takes some 100 lags for a pair of scales, and the error is below 0.1 % of sqrt(C_ii C_jj) for
+/// every process (0.3 % for flicker noise).
 #include "core/process/model.hpp"
 
 #include <Eigen/Core>
@@ -23,11 +26,11 @@
 
 namespace driftlab {
 
-/// The lags, and everything about them that does not depend on a model's parameters, kept for repeated use.
-/// Not thread safe (it remembers the kinds it has seen): one per call.
+/// The quadrature lags, and everything about them that does not depend on a model's parameters, kept for repeated use.
+/// Not thread safe, because it caches the kinds of processes it has met: use one object per call.
 class HaarCovariance {
  public:
-  /// `half`: half lengths in samples, rising; each 2 m <= samples.
+  /// `half` holds the half lengths in samples, in ascending order; each must satisfy 2 m <= samples.
   HaarCovariance(std::span<const std::size_t> half, std::size_t samples, double dt_s);
   ~HaarCovariance();
   HaarCovariance(HaarCovariance&& other) noexcept;
@@ -35,20 +38,21 @@ class HaarCovariance {
   HaarCovariance(const HaarCovariance&) = delete;
   HaarCovariance& operator=(const HaarCovariance&) = delete;
 
-  /// Covariance matrix of the estimated variances [unit^4], scales x scales.
-  /// Positive even for a deterministic model: 10^-16 of the squared variance stands for rounding.
+  /// Covariance matrix of the estimated variances [unit^4], scales x scales. It is positive definite even for a
+  /// deterministic model: 10^-16 of the squared variance is added for rounding.
   [[nodiscard]] Eigen::MatrixXd matrix(const Model& model);
 
-  /// Its diagonal only: O(scales) instead of O(scales^2). Remembers every shape it is given, for models made of a fixed
-  /// set of processes.
+  /// The diagonal of matrix() alone, in O(scales) instead of O(scales^2). It caches every shape parameter it is given,
+  /// and is meant for models made of a fixed set of processes.
   [[nodiscard]] Eigen::VectorXd diagonal(const Model& model);
 
-  /// S_k = 1/(Mi Mj) sum_h n_ij(h) rho_ij(h)^k for k = 2, 4, ..., 2 * kEvenPowers: what the scatter of the mean of any
-  /// even function of the coefficients is made of. rho is the correlation of the coefficients under the model.
+  /// S_k = 1/(Mi Mj) sum_h n_ij(h) rho_ij(h)^k for k = 2, 4, ..., 2 * kEvenPowers, where rho is the correlation of the
+  /// coefficients under the model. The variance of the mean of any even function of the coefficients is a combination
+  /// of these sums.
   static constexpr std::size_t kEvenPowers = 8;
   [[nodiscard]] std::array<double, kEvenPowers> correlation_sums(std::size_t i, std::size_t j, const Model& model);
-  /// S_k of scale j where only every `stride`-th coefficient is used: rho^k is summed at those lags alone, up to 4 m
-  /// (its corner at lag 0 is so seen the coarser, the higher k).
+  /// S_k of scale j if only every `stride`-th coefficient is used. rho^k is then summed at those lags alone, up to 4 m.
+  /// The peak of rho^k at lag 0 is resolved more coarsely the higher k is.
   [[nodiscard]] std::array<double, kEvenPowers> thinned_sums(std::size_t j, std::size_t stride, const Model& model);
 
   [[nodiscard]] double dt_s() const { return dt_s_; }
@@ -66,7 +70,7 @@ class HaarCovariance {
   Pair& pair(std::size_t i, std::size_t j);
   /// Leaves gamma_ij at the plan's lags in scratch_.
   void fill(Pair& plan, std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
-  /// What scratch_ holds, as correlations, in sums of even powers.
+  /// The correlations in scratch_, summed in even powers.
   [[nodiscard]] std::array<double, kEvenPowers> sums_of(const Pair& plan, std::size_t i, std::size_t j,
                                                         const Model& model) const;
   double entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);

@@ -1,9 +1,9 @@
 #pragma once
-/// The inner loops of the variances, in the widest instruction set the processor has.
+/// The inner loops of the variances, in the widest instruction set that the processor has.
 ///
-/// All versions are one source (kernels_body.inc): sums run in lanes (sixteen or eight) whose order of additions is
-/// fixed, without fused multiply-add, so the bits are the same in every version; the portable one is what other
-/// processors and compilers use.
+/// All versions are compiled from one source (kernels_body.inc). Sums run in sixteen or eight lanes whose order of
+/// additions is fixed, without fused multiply-add, so every version gives the same bits. The portable version serves
+/// other processors and compilers.
 #include <cstddef>
 
 namespace driftlab {

@@ -1,14 +1,16 @@
 #pragma once
-/// Samples on a coarse lattice: what rounding to multiples of a step does to a robust variance, and its cure.
+/// Samples on a coarse lattice: how rounding to multiples of a step biases the robust variance, and its correction.
 ///
-/// Of rounded white noise the biweight finds the variance of the rounded values within 1 % while the noise has a
-/// standard deviation of 0.6 steps or more, 0-10 % too little at 0.5, nearly nothing at 0.4, and no root at 0.3: nearly
-/// all coefficients are then one of three values. The cure simulates the rounded model (standard deviation before
-/// rounding and position on the lattice by probit regression on how often each value occurs: z of the share of samples
-/// at or below a value is linear in it, with slope 1/sd; the slow part from the fitted mixture) and replaces E chi of
-/// the estimating equation by its mean over the simulated records, with a wider biweight; what is left of
-/// ln(robust/classical), and how much more that scatters, is taken from them too. Below 0.35 steps all hangs on the
-/// position: refused.
+/// For rounded white noise the biweight estimates the variance of the rounded values within 1 % as long as the noise
+/// has a standard deviation of 0.6 steps or more. At 0.5 steps it is 0-10 % too small, at 0.4 it is close to zero, and
+/// at 0.3 the estimating equation has no root, because nearly all coefficients then take one of three values.
+///
+/// The correction simulates the rounded model and replaces E chi in the estimating equation by its mean over the
+/// simulated records, with a wider biweight. The remaining bias of ln(robust/classical), and its additional scatter,
+/// are taken from the same simulations. The model is obtained as follows. The standard deviation before rounding and
+/// the position on the lattice follow from a probit regression on how often each value occurs: the normal quantile z of
+/// the share of samples at or below a value is linear in that value, with slope 1/sd. The slow part is that of the
+/// fitted mixture. Below 0.35 steps the result depends almost entirely on the position, so no robust value is given.
 #include "core/variance/robust_shape.hpp"
 #include "core/variance/variance_intervals.hpp"
 
@@ -18,8 +20,8 @@
 
 namespace driftlab {
 
-/// The step of which at least 98 % of the differences between successive samples are multiples, if there is one that
-/// shows: most of the steps taken are a few units. O(N).
+/// The lattice step: the number of which at least 98 % of the differences between successive samples are multiples.
+/// Nothing if there is none, or if it does not show because most differences are more than a few steps. O(N).
 [[nodiscard]] std::optional<double> lattice_step(std::span<const double> samples);
 
 /// Position and spread of the noise before rounding, in steps.
@@ -29,20 +31,21 @@ struct LatticeNoise {
   bool fixed = false;   ///< the level stays within a tenth of a step over the record
 };
 
-/// Probit regression with one slope and one offset per stretch of `stretch` samples. Nothing where no stretch holds
-/// three values in usable numbers. Gross errors should be left out. O(N). Nothing where `control.stop` asked, polled
-/// per stretch.
+/// Probit regression with one slope, and one offset per stretch of `stretch` samples. Gross errors should be left out
+/// of `samples`. Nothing if no stretch holds three values in usable numbers, or if a stop was requested through
+/// `control.stop`, which is polled once per stretch. O(N).
 [[nodiscard]] std::optional<LatticeNoise> lattice_noise(std::span<const double> samples, double step,
                                                         std::size_t stretch, const RunControl& control = {});
 
-/// Coarser than this (standard deviation over step) a shape is simulated; coarser than the second it is refused.
+/// Limits on the standard deviation of the noise in steps. Below the first the shape is obtained by simulation; below
+/// the second no robust value is given.
 inline constexpr double kCoarseLattice = 0.8;
 inline constexpr double kTooCoarseLattice = 0.35;
 
-/// The shape of a record on a lattice: empty where it is on none or the lattice is fine. 32 records of at most 16,384
-/// samples are simulated. `intervals`, `plan`: of the record's classical curve in the units of the samples times
-/// 1/`unit_square`. Same seed, same bits. Empty
-/// where `control.stop` asked.
+/// The shape of a record on a lattice; empty if the record lies on no lattice or on a fine one. 32 records of at most
+/// 16,384 samples are simulated. `intervals` and `plan` belong to the record's classical curve, whose variances are in
+/// units of `unit_square` (samples squared). The same seed gives the same bits. Empty if a stop was requested through
+/// `control.stop`.
 [[nodiscard]] RobustShape lattice_shape(std::span<const double> samples, double unit_square,
                                         const VarianceIntervals& intervals, HaarCovariance& plan, std::uint64_t seed,
                                         const RunControl& control = {});

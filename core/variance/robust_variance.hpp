@@ -1,14 +1,18 @@
 #pragma once
-/// Haar wavelet variance that a few gross errors do not move: coefficient by coefficient, with a bounded square.
+/// Haar wavelet variance that a few gross errors do not move, from wavelet coefficients and a bounded square.
 ///
-/// nu solves mean chi(W_t/sqrt nu) = E chi(Z), chi of biweight.hpp tuned per scale to an efficiency of 0.6 for the
-/// overlap of the coefficients under the model-free mixture. The equation is redescending: the upper root is taken, and
-/// a scale without one is undefined (once most windows hold an outlier there is none: 1 % of gross errors, from n = 32
-/// on). Every m/8-th coefficient is used (1.5 % more variance);
-/// all of them where quantization noise makes up a fiftieth of the scale, for its coefficients are independent one
-/// sample apart. Consistent for Gaussian noise, and for the two other clean shapes that robust_shape.hpp knows (uniform
-/// quantization errors, a coarse lattice) where told of them; for noise of yet another shape it estimates the scale of
-/// its core, which differs from the variance without anything being wrong.
+/// nu solves mean chi(W_t/sqrt nu) = E chi(Z), where chi is the biweight of biweight.hpp. At each scale it is tuned to
+/// an efficiency of 0.6, given the correlation of the overlapping coefficients under the model-free mixture. The
+/// equation is redescending and may have several roots: the largest is taken, and a scale without a root is undefined.
+/// There is no root once most windows hold an outlier, which with 1 % of gross errors happens from n = 32 on.
+///
+/// Every m/8-th coefficient is used, which raises the variance of the estimate by 1.5 %. All of them are used where
+/// quantization noise makes up a fiftieth of the scale's variance, because its coefficients are independent one sample
+/// apart.
+///
+/// The estimate is consistent for Gaussian noise, and for the two other clean shapes of robust_shape.hpp (uniform
+/// quantization errors, a coarse lattice) when it is told of them. For noise of any other shape it estimates the scale
+/// of the core of the distribution, which differs from the variance although nothing is wrong with the data.
 #include "core/signal/progress.hpp"
 #include "core/variance/biweight.hpp"
 #include "core/variance/haar_variance.hpp"
@@ -31,14 +35,15 @@ struct RobustVariance {
   RobustShape shape;                ///< what was corrected for
 };
 
-/// `samples`, `pivot`: as for haar_variance(). A refused shape leaves every scale undefined. O(N) time per scale up to
-/// n = 16, less above; N doubles of memory. `control.stop` is polled before every look at the data; a stopped call
-/// gives an estimate without scales.
+/// `samples` and `pivot` are as for haar_variance(). A refused shape leaves every scale undefined. The cost is O(N)
+/// time per scale up to n = 16 and less above, and N doubles of memory. `control.stop` is polled before every pass over
+/// the data; a stopped call gives an estimate without scales.
 [[nodiscard]] RobustVariance robust_variance(std::span<const double> samples, double pivot, const HaarVariance& curve,
                                              const VarianceIntervals& classical, HaarCovariance& plan,
                                              RobustShape shape = {}, const RunControl& control = {});
 
-/// One scale: the largest root of mean chi = `expected`, if there is one, beside the mean square it stands against.
+/// The result at one scale: the largest root of mean chi = `expected`, if there is one, and the mean square that it
+/// replaces.
 struct RobustRoot {
   std::optional<double> variance;
   double mean_square = 0.0;

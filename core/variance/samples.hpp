@@ -1,5 +1,5 @@
 #pragma once
-/// What must hold of a series before any variance is formed, and its mean without loss of digits.
+/// Conditions that a series must meet before any variance is formed, and its mean without loss of digits.
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
@@ -17,9 +17,9 @@ struct SampleSummary {
 /// Largest magnitude accepted: the square of a sum over 10^12 such samples is still a double.
 inline constexpr double kLargestSample = 1e140;
 
-/// One read of the array. The mean is summed block by block relative to the first sample, so that a bias costs no
-/// digits. Errors: NonFinite and OutOfRange, naming the row (field `row`, counted from 1); Cancelled,
-/// the token being polled every million samples.
+/// The array is read once. The mean is summed block by block relative to the first sample, so that a bias costs no
+/// digits. Errors: NonFinite and OutOfRange, naming the row (field `row`, counted from 1); Cancelled, since the token
+/// is polled every million samples.
 [[nodiscard]] Result<SampleSummary> summarise(std::span<const double> samples, const RunControl& control = {});
 
 }  // namespace driftlab

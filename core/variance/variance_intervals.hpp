@@ -1,12 +1,13 @@
 #pragma once
-/// 95 % intervals of Allan and wavelet variances whose noise model nobody knows.
+/// 95 % intervals of Allan and wavelet variances when the noise model is not known.
 ///
-/// nu^ eta/nu ~ chi-square(eta) with eta = 2 nu^2/Var(nu^) (Percival 1995). Var needs a noise model; reading it off the
-/// slope of one realisation misleads, so the whole curve is fitted by non-negative least squares with a dictionary of
-/// processes (quantization, white, flicker, random walk, Gauss-Markov of beta dt = 2, 1/2, 1/8, ... 0.5/N), weights
-/// from the fitted variance, four rounds, and eta is that of the fitted mixture. A drift enters only where the deviance
-/// falls by more than 20: a pure random walk looks like one otherwise. Assumes Gaussian noise. Measured
-/// coverage 93.5-98 % (tests/ACCURACY.md).
+/// The estimate scaled as eta nu^/nu is approximately chi-square with eta = 2 nu^2/Var(nu^) equivalent degrees of
+/// freedom (Percival 1995). Var(nu^) requires a noise model, and a model read off the slope of one realisation is
+/// misleading. Therefore the whole curve is fitted by non-negative least squares with a dictionary of processes:
+/// quantization, white and flicker noise, random walk, and Gauss-Markov processes of beta dt = 2, 1/2, 1/8, ... 0.5/N.
+/// The weights come from the fitted variance, in four rounds, and eta is that of the fitted mixture. A drift is
+/// admitted only if it lowers the deviance by more than 20, because otherwise a pure random walk is taken for one. The
+/// noise is assumed to be Gaussian. The measured coverage is 93.5-98 % (tests/ACCURACY.md).
 #include "core/process/model.hpp"
 #include "core/signal/estimate.hpp"
 #include "core/variance/excess_kurtosis.hpp"
@@ -28,12 +29,12 @@ struct VarianceIntervals {
   Model mixture;                      ///< the dictionary processes with a positive level
   Eigen::VectorXd modelled;           ///< wavelet variance of the mixture
   Eigen::VectorXd estimate_variance;  ///< Var(nu^_j) under the mixture
-  NoiseShape shape;                   ///< what the excess kurtosis was laid on
+  NoiseShape shape;                   ///< the part to which the excess kurtosis was assigned
 };
 
-/// `plan` must be that of the curve's scales. Needs at least one positive variance. `excess`:
-/// difference_excess_kurtosis of the samples, 0 for Gaussian noise; its share of the scatter is laid on the part of the
-/// mixture (rough or smooth) that makes up most of the first scale.
+/// `plan` must be that of the curve's scales. At least one variance must be positive. `excess` is
+/// difference_excess_kurtosis of the samples, or 0 for Gaussian noise; the additional scatter it causes is assigned to
+/// the part of the mixture (rough or smooth) that makes up most of the first scale.
 [[nodiscard]] VarianceIntervals variance_intervals(const HaarVariance& curve, HaarCovariance& plan,
                                                    double excess = 0.0);
 

@@ -1,14 +1,14 @@
 #pragma once
-/// A cause: one way in which a simulation can be wrong (spec/causes.md), as a value.
+/// A cause, as a value: one way in which a simulation can differ from the recordings (spec/causes.md).
 ///
-/// Each cause is one file of this folder that defines one function returning a `Cause`, and one line in registry.cpp.
-/// Everything that is special to the cause stands in that file: its family (family.hpp) with what that must declare,
-/// how it is put into a simulated recording, what it means to an inertial unit, and how tests show it (showing.hpp). No
-/// other code knows it by name; tests/house/causes.py refuses the name anywhere else.
+/// Each cause is one file of this folder, which defines one function returning a `Cause`, and one line in registry.cpp.
+/// All that is specific to the cause is in that file: its family (family.hpp) and what the family requires, its
+/// injection into a simulated recording, its meaning for an inertial unit, and the study in which tests show it
+/// (showing.hpp). No other code knows it by name; tests/house/causes.py refuses the name anywhere else.
 ///
-/// All evidence is one currency: `score` = twice the gain in log likelihood over the best model without the cause,
-/// minus what its freedom is worth (1 per amplitude, more where a shape or time was searched, 2 ln of the scopes
-/// tried).
+/// All evidence is measured on one scale, the score: twice the gain in log likelihood over the best model without the
+/// cause, minus a penalty for its freedom. The penalty is 1 per amplitude, more if a shape or a time was searched for,
+/// and 2 ln of the number of scopes that were tried.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/causes/family.hpp"
 #include "core/investigate/causes/showing.hpp"
@@ -45,25 +45,25 @@ struct Cause {
   std::string_view process = {};
   /// Why the cause cannot be examined in this group; empty: it can.
   std::string (*lacks)(const Study& study, const ChannelGroup& group) = nullptr;
-  /// Puts the effect into a simulated recording (draft.hpp); `values` in the order of `parameters`, SI. Null for a mean
-  /// effect, whose template is added, and for a slow process.
+  /// Puts the effect into a simulated recording (draft.hpp), with `values` in the order of `parameters`, SI. Null for a
+  /// mean effect, whose template is added, and for a slow process.
   void (*inject)(Draft& draft, std::span<const double> values, Random& random) = nullptr;
-  /// Makes what was found part of a simulated inertial unit (unit_axis.hpp); false where its values do not fit. Null: a
-  /// cause that is a process is added to the axis as that, and any other cannot be held by a navigation simulation. At
-  /// least one parameter has been found.
+  /// Adds the finding to the model of a simulated inertial unit (unit_axis.hpp); false if its values do not fit. If it
+  /// is null, a cause that is a process is added to the axis as that process, and any other cause cannot be part of a
+  /// navigation simulation. Precondition: at least one parameter has been found.
   bool (*in_unit)(const Evidence& found, UnitAxis& axis) = nullptr;
   Showing showing = {};  ///< how tests show it
 
-  /// What the cause declares where it belongs to family F, else null.
+  /// The declarations of the cause for family F; null if it belongs to another family.
   template <class F>
   [[nodiscard]] const F* as() const {
     return std::get_if<F>(&family);
   }
-  /// Mean effects and slow noise: they explain the same slow misfit.
+  /// True for mean effects and slow noise, which explain the same slow misfit.
   [[nodiscard]] bool is_slow() const { return as<MeanEffect>() != nullptr || as<SlowNoise>() != nullptr; }
 };
 
-/// How a cause that is seen at full rate is sought there; null for the others.
+/// The function that looks for a cause at full rate; null for causes that are not looked for there.
 using Examine = std::vector<Evidence> (*)(const FullRate& data);
 [[nodiscard]] Examine examine_of(const Cause& cause);
 
@@ -73,7 +73,7 @@ using Examine = std::vector<Evidence> (*)(const FullRate& data);
 /// Every cause once.
 [[nodiscard]] const std::vector<Cause>& cause_registry();
 [[nodiscard]] const Cause* find_cause(std::string_view name);
-/// The cause that is one more of a registered process.
+/// The cause that adds a registered process to the model.
 [[nodiscard]] const Cause* cause_of_process(std::string_view process);
 
 }  // namespace driftlab::investigate

@@ -1,8 +1,10 @@
 #pragma once
-/// A simulated recording in the making, into which causes put their effects: what tests hide and the simulator shows.
+/// A simulated recording under construction, into which causes put their effects. The hidden tests and the simulator
+/// use it.
 ///
-/// One channel: white part, slow part and mean are kept apart until finish(), for effects act on one of them. A cause
-/// with a template or a slow process needs no code of its own here; the others have `Cause::inject`.
+/// It describes one channel. The white part, the slow part and the mean are kept apart until finish(), because effects
+/// act on one of them. A cause with a template or a slow process needs no code of its own here; the others have
+/// `Cause::inject`.
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/random.hpp"
 

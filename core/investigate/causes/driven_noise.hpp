@@ -1,7 +1,7 @@
 #pragma once
-/// White noise that grows with a driver u, the reference rate or acceleration about the channel's axis (for
-/// accelerometers: about z): N(u) = N0 (1 + k |u|). Innovations have variance c [1 + rho ((1 + k u)^2 - 1)], rho the
-/// share of their variance that the white part drives.
+/// White noise that grows with a driver u: N(u) = N0 (1 + k |u|). The driver is the reference rate or acceleration
+/// about the channel's axis (for accelerometers: about z). The innovations have the variance c [1 + rho ((1 + k u)^2 -
+/// 1)], where rho is the share of their variance that the white part causes.
 #include "core/investigate/causes/cause.hpp"
 
 #include <array>
@@ -21,8 +21,8 @@ void driven_deviation(const FullRate& data, const Evidence& found, std::size_t r
                       std::vector<double>& sd);
 void inject_driven(Draft& draft, double k, Driver driver);
 
-/// k that is seen at z standard deviations (Showing::values): the information on it is 2 sum u^2, u about its mean
-/// where the level is free.
+/// The value of k that would be detected at z standard deviations (Showing::values). The information on k is 2 sum u^2,
+/// with u taken about its mean if the noise level is free.
 [[nodiscard]] double shown_driven(const Stage& stage, Driver driver);
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 #pragma once
-/// What speaks for a cause: where it acts, how strongly the data ask for it, and its parameters.
+/// The evidence for a cause: where it acts, how much the log likelihood gains by it, and its parameters.
 #include "core/signal/estimate.hpp"
 #include "core/signal/unit.hpp"
 

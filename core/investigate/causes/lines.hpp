@@ -1,13 +1,14 @@
 #pragma once
-/// Sinusoids in the innovations.
+/// Detection of sinusoids in the innovations.
 ///
-/// With Z(f) the transform of n whitened samples, X = 2 |Z|^2 / (n local mean) is chi-square with two degrees of
-/// freedom at every frequency where there is no line; the local mean (the larger of a wide and a narrow neighbourhood)
-/// keeps a hump of the spectrum from passing for a line. Over R recordings with one amplitude and free phases
-///   T = (sum sqrt(n_r X_r))^2 / sum n_r,  P(T > s^2) ~ prod(a_r) s^{R-1} (2 pi)^{(R-1)/2} exp(-s^2/2), a_r = sqrt(n_r
-///   / sum n),
-/// the tail of a weighted sum of Rayleigh variables. The score is -2 ln of that probability times the number of
-/// independent frequencies. Several other peaks near by are narrow-band noise, not a line.
+/// Let Z(f) be the Fourier transform of n whitened samples. X = 2 |Z|^2 / (n local mean) is chi-square with two degrees
+/// of freedom at every frequency without a line. The local mean is the larger of those of a wide and a narrow
+/// neighbourhood, so that a broad maximum of the spectrum is not mistaken for a line. For R recordings with one
+/// amplitude and free phases,
+///   T = (sum sqrt(n_r X_r))^2 / sum n_r,
+///   P(T > s^2) ~ prod(a_r) s^{R-1} (2 pi)^{(R-1)/2} exp(-s^2/2), a_r = sqrt(n_r / sum n),
+/// which is the tail of a weighted sum of Rayleigh variables. The score is -2 ln of that probability times the number
+/// of independent frequencies. Several other peaks close to a line mean narrow-band noise and not a line.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 

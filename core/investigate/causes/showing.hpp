@@ -1,10 +1,11 @@
 #pragma once
-/// How a cause is shown: the simulated study in which a test can hide it, the size at which it can be seen there, and
-/// the law that its injection obeys.
+/// How tests show a cause: the simulated study in which it is hidden, the size at which it can be detected there, and
+/// the equation that its injection obeys.
 ///
-/// The hidden tests walk the registry: each cause is hidden in its scenario and must be named, and what its injection
-/// puts into a recording must obey its law. The law is the equation of the effect (spec/causes.md) written once more,
-/// apart from the template or the process that the search uses, so that no sign and no unit can be wrong in both.
+/// The hidden tests go through the registry. Each cause is hidden in its scenario and must be named, and the change
+/// that its injection makes to a recording must obey its law. The law is the equation of the effect (spec/causes.md),
+/// written independently of the template or process that the search uses, so that the same error of sign or unit cannot
+/// be in both.
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
@@ -36,10 +37,10 @@ enum class Scenario {
 
 enum class Acting { Everywhere, SecondAlone, AllButFirst };  ///< in which recordings of the scenario
 
-/// What is known of the study when the size of an effect is chosen.
+/// The facts about the study that are known when the size of an effect is chosen.
 struct Stage {
   const Study& study;  ///< simulated without any effect
-  double z;            ///< standard deviations at which one who knows base and template would see the effect
+  double z;            ///< size of the effect in standard deviations, for known base and template
   bool given;          ///< the baseline is given
   double density;      ///< N of the white noise [SI sqrt(s)]
   double rate_hz;
@@ -60,8 +61,8 @@ struct Figure {
   double tolerance = 0.0;
 };
 
-/// What the injection of `values` must have made of the recording `before`: figures that the right equation gives, and
-/// that neither half, twice nor the negative of the values would give.
+/// Compares the recording before and after the injection of `values`. Its figures must be such that the right equation
+/// gives them, and that half, twice or the negative of the values would not.
 using Law = std::vector<Figure> (*)(const Draft& before, const Draft& after, std::span<const double> values);
 
 struct Showing {

@@ -1,5 +1,5 @@
 #pragma once
-/// What a finding means to a simulated inertial unit (Cause::in_unit).
+/// The effect of findings on a simulated inertial unit (Cause::in_unit).
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/model.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace driftlab::investigate {
 
-/// One studied axis of the unit while findings are added to it. Properties that nothing was found of are empty.
+/// One studied axis of the unit, to which findings are added. Properties for which there is no finding are empty.
 struct UnitAxis {
   std::size_t channel = 0;  ///< x, y, z of the gyroscopes, then of the accelerometers
   Model model;              ///< its noise

@@ -1,5 +1,5 @@
 #pragma once
-/// One more density in some recordings, against what the others show.
+/// An additional spectral density in some recordings, estimated relative to the others.
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/signal/estimate.hpp"
 
@@ -11,9 +11,10 @@ struct AddedDensity {
   double gain = 0.0;  ///< twice the log likelihood gained
 };
 
-/// Level of `shape(f, dt)` in the recordings of the scope. Where white + slow describes the spectra (data.flat),
-/// against that, N^2 free with an automatic baseline; else against a spectrum that is free in every bin and common to
-/// all recordings of the same length, which needs one of these outside the scope.
+/// Level of the density `shape(f, dt)` in the recordings of the scope. If white noise and the slow part describe the
+/// spectra (data.flat), the comparison is with these, and N^2 is free under an automatic baseline. Otherwise it is with
+/// a spectrum that is free in every bin and common to all recordings of the same length; at least one of these must be
+/// outside the scope.
 [[nodiscard]] AddedDensity fit_added_density(const FullRate& data, const std::vector<std::size_t>& scope,
                                              double (*shape)(double f_hz, double dt_s));
 

@@ -1,11 +1,12 @@
 #pragma once
-/// A channel group at full rate under the present model: residuals, their innovations, their spectra.
+/// A channel group at full rate under the present model: residuals, their innovations, and their spectra.
 ///
-/// Residuals are the error minus the mean effects found so far. Innovations are what the Kalman filter of the model
-/// (white part and slow states, at single samples) cannot foresee, divided by their standard deviation: independent
-/// standard normal under a right model, so that effects on the variance and on the distribution are statements about
-/// them. With an automatic baseline they are whitened once more by an autoregression fitted to themselves: recorded
-/// noise is never exactly a model's, and an unexplained colour must not pass for a change of its level.
+/// The residuals are the error minus the mean effects found so far. The innovations are the one-step prediction errors
+/// of the model's Kalman filter (white part and slow states, sample by sample), divided by their standard deviation.
+/// Under a right model they are independent and standard normal, so effects on the variance and on the distribution can
+/// be read off them. Under an automatic baseline they are whitened once more by an autoregression fitted to themselves,
+/// because recorded noise never follows a model exactly, and remaining correlation must not be mistaken for a change of
+/// the noise level.
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
@@ -39,7 +40,7 @@ struct FullRate {
   double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
-  /// A band limit has been found: the colour at the top of the band is no news.
+  /// True if a band limit has been found, which explains the lower density at the top of the band.
   [[nodiscard]] bool band_limited() const { return corner_hz > 0.0; }
 };
 
@@ -62,13 +63,13 @@ void set_spectrum(FullRate& data, std::size_t r);
 /// The same for a member that has a spectrum already.
 void renew_spectrum(FullRate& data, std::size_t r);
 
-/// Recordings of a group by scope: which ones move; members where `select` holds.
+/// Recordings of a group by scope: all members, and those that move.
 [[nodiscard]] std::vector<std::size_t> all_members(const ChannelGroup& group);
 [[nodiscard]] std::vector<std::size_t> moving_members(const ChannelGroup& group);
 
-/// The scopes in which an effect on the noise may act: all recordings (a given baseline only), the moving ones, each
-/// single one. An automatic baseline is that of the recordings at rest: where one alone rests, it is not that one that
-/// differs from all the others.
+/// The scopes in which an effect on the noise may act: all recordings (under a given baseline only), those that move,
+/// and each single one. An automatic baseline describes the recordings at rest. If only one recording is at rest, that
+/// one is not a scope of its own, since it is not the one that differs from the others.
 [[nodiscard]] std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bool given);
 
 }  // namespace driftlab::investigate

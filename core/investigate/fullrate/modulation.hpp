@@ -1,5 +1,6 @@
 #pragma once
-/// Innovations whose variance follows a driver: levels of the driver, and one parameter fitted to them.
+/// Innovations whose variance depends on a driver: their squares by level of the driver, and a one-parameter model
+/// fitted to them.
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/signal/estimate.hpp"
 
@@ -31,8 +32,8 @@ struct ModulationFit {
   double scale = 1.0;  ///< c at the fit; 1 where it is not free
 };
 
-/// Maximum likelihood of x in variance c ratio(u, x), ratio(u, 0) = 1; c profiled out unless `scale_known`. `unit` is a
-/// typical size of x from which the search starts.
+/// Maximum likelihood estimate of x in the variance c ratio(u, x), where ratio(u, 0) = 1. c is profiled out unless
+/// `scale_known`. `unit` is a typical size of x, from which the search starts.
 [[nodiscard]] ModulationFit fit_modulation(const Modulation& levels, bool scale_known, double unit,
                                            const std::function<double(double u, double x)>& ratio);
 

@@ -38,8 +38,8 @@ struct MixtureFit {
 [[nodiscard]] double mixture_gain(const InnovationHistogram& histogram, double fraction, double magnitude,
                                   bool scale_known);
 
-/// Innovations become the normal quantiles of their places in a symmetric distribution, given by the chance beyond e >=
-/// 0 on one side: standard normal where that distribution is right.
+/// Replaces each innovation by the normal quantile of its place in a symmetric distribution, which is given by the
+/// probability of exceeding e >= 0 on one side. The results are standard normal if that distribution is right.
 void to_normal_scores(FullRate& data, const std::function<double(double)>& tail);
 
 }  // namespace driftlab::investigate

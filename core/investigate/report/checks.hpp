@@ -1,20 +1,22 @@
 #pragma once
-/// The battery of checks: what a right baseline would show, and what the recordings show.
+/// The checks of the baseline: statistics as a right baseline would show them, and as the recordings show them.
 ///
-/// General checks per recording, on block innovations (whiteness, Ljung and Box 1978) and on innovations at full rate
-/// (variance over sixteen segments, spectrum in sixteen bands, wavelet variance per scale, kurtosis): chi-square or
-/// normal under the model, with as many degrees of freedom as segments, lags, bands or coefficients were in use.
+/// General checks are made per recording. They use the innovations of block means (whiteness, Ljung and Box 1978) and
+/// the innovations at full rate (variance over sixteen segments, spectrum in sixteen bands, wavelet variance per scale,
+/// kurtosis). They are chi-square or normal under the model, with as many degrees of freedom as segments, lags, bands
+/// or coefficients were used.
 ///
-/// One check per cause and channel that was examined: its likelihood ratio. The search pays in each score for the
-/// places that it looked at, and its threshold is set so that at most 5 % of studies without any effect reach it with
-/// any cause (search/thresholds.hpp); among `c` such checks of a study the probability of one is therefore taken to be
+/// There is one check per cause and channel that was examined: its likelihood ratio. Each score includes a penalty for
+/// the places that the search tried, and the threshold is set so that at most 5 % of studies without any effect reach
+/// it with any cause (search/thresholds.hpp). Among `c` such checks of a study the probability of one is therefore
+/// taken to be
 ///   p = 0.05 exp(-(score - threshold)/2) / c.
-/// What the file itself shows (a lattice, runs of one value, absent samples) is certain and has p = 0.
+/// Facts that the file itself shows (a lattice, runs of one value, absent samples) are certain and have p = 0.
 ///
-/// Holm's correction (1979) runs over all checks of the study together, general ones and causes of every recording and
-/// channel alike: the chance that any of them fails without reason is at most 5 %. A finding is reported by its
-/// score; one that only just passes the threshold may stand beside a check that does not fail. The general checks
-/// under the extended model are a family of their own.
+/// Holm's correction (1979) is applied to all checks of the study together, the general ones and those of causes for
+/// every recording and channel: the probability that any of them fails without reason is at most 5 %. A finding is
+/// reported by its score, so one that only just passes the threshold may stand beside a check that does not fail. The
+/// general checks under the extended model are a family of their own.
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/group_search.hpp"
 

@@ -55,19 +55,19 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
                   : list_of(finding.channels.size() <= 6
                                 ? finding.channels
                                 : std::vector<std::string>{finding.channels.front(), "others"}));
-  text.append(". ");
+  text.append(".");
   if (evidence.cause->as<FileFact>() != nullptr) {
-    text.append("The file itself shows it. ").append(evidence.note).append(evidence.note.empty() ? "" : " ");
+    text.append(" The file itself shows it.").append(evidence.note.empty() ? "" : " ").append(evidence.note);
   } else {
-    text.append("Adding it to the model raises twice the log likelihood by ");
-    text.append(short_text(evidence.gain, 3)).append(". ");
+    text.append(" Adding it to the model raises twice the log likelihood by ");
+    text.append(short_text(evidence.gain, 3)).append(".");
   }
   if (evidence.ambiguous) {
     std::vector<std::string> names;
     for (const Evidence& rival : evidence.rivals) {
       names.emplace_back(rival.cause->title);
     }
-    text.append("These data cannot tell it from ").append(list_of(names)).append(".");
+    text.append(" These data cannot tell it from ").append(list_of(names)).append(".");
   }
   return text;
 }

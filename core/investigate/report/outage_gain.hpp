@@ -1,12 +1,12 @@
 #pragma once
-/// What the findings of an investigation mean in navigation: the position error after outages that the baseline
-/// predicts, and the one that the extended model does.
+/// The effect of an investigation's findings on navigation: the position error after outages predicted by the baseline,
+/// and the one predicted by the extended model.
 ///
-/// Each studied axis gets its model of the report; what a navigation simulation can hold of the findings is added: slow
-/// processes, drift, quantization, lines and white noise as processes; scale factor, misalignment, clipping, output
-/// step and band limit as properties of the unit; a turn-on bias as a wider constant bias. Every other finding is left
-/// out and named. Axes that were not studied, the drive and the receiver are those of `prediction_scenario`
-/// (core/navigate/outage_prediction.hpp).
+/// Each studied axis has its model of the report, and those findings are added that a navigation simulation can
+/// represent: slow processes, drift, quantization, lines and white noise as processes; scale factor, misalignment,
+/// clipping, output step and band limit as properties of the unit; a turn-on bias as a wider constant bias. Every other
+/// finding is left out and named. Axes that were not studied, the drive and the receiver are those of
+/// `prediction_scenario` (core/navigate/outage_prediction.hpp).
 #include "core/investigate/report/report.hpp"
 #include "core/navigate/outage_prediction.hpp"
 
@@ -20,7 +20,8 @@ struct SensorModels {
 };
 
 /// `scenario` gives the constant biases, which an investigation does not judge, and the rate of the simulation. A
-/// column is an axis of the unit by its quantity and axis; of two columns of one axis the first counts.
+/// column is assigned to an axis of the unit by its quantity and axis; if two columns belong to one axis, the first is
+/// used.
 [[nodiscard]] SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>& groups,
                                          const OutageScenario& scenario);
 

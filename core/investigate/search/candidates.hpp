@@ -1,5 +1,6 @@
 #pragma once
-/// The candidates of one look at a channel group: which is taken, and what cannot be told from it.
+/// The candidates of one round of the search in a channel group: the choice among them, and the rivals that the data
+/// cannot distinguish from it.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
@@ -14,9 +15,9 @@ namespace driftlab::investigate {
 /// Keeps in `examined` the best evidence of every cause.
 void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh);
 
-/// The strongest candidate beyond kThreshold, with its declared rivals that come within kMargin. Those seen at full
-/// rate are tried on samples they were not fitted to and go where they are worse than nothing there; slow ones are held
-/// out once the search has ended.
+/// The strongest candidate beyond kThreshold, with those of its declared rivals that come within kMargin. Candidates
+/// found at full rate are evaluated on samples to which they were not fitted, and dropped if they are worse than
+/// nothing there. Slow ones are held out once the search has ended.
 [[nodiscard]] std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates);
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 #pragma once
-/// What the search leaves of a channel: its noise without the effects that were found.
+/// The noise model of a channel after the search, without the effects that were found.
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 

@@ -1,11 +1,11 @@
 #pragma once
-/// A given model as the search takes it: taken at its word, never refitted.
+/// A given model as the search uses it: it is taken as true and never refitted.
 ///
-/// Processes become the noise model; drifts and mean effects with fixed shape are taken off the error before anything
-/// is looked at; slow effects become processes; a `white_noise_level` or `quantization_noise` replaces or joins the
-/// level of the processes. What cannot be taken off a recording (sinusoids, tails, band limits, facts of the file)
-/// stays in it: found again with parameters that agree with the model, it is no finding but a confirmation. The
-/// constant bias stays free: one number per channel, never a finding (spec/causes.md).
+/// Its processes become the noise model. Drifts and mean effects with fixed shape are subtracted from the error before
+/// anything is examined. Slow effects become processes; a `white_noise_level` or `quantization_noise` replaces or joins
+/// the level of the processes. Effects that cannot be subtracted from a recording (sinusoids, tails, band limits, facts
+/// of the file) stay in it; if one is found again with parameters that agree with the model, this is a confirmation and
+/// not a finding. The constant bias stays free: it is one number per channel and never a finding (spec/causes.md).
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/slow/slow_model.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// The whole search in one channel group: facts, forward selection, full-rate effects.
+/// The complete search in one channel group: facts of the file, forward selection, effects at full rate.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/search/channel_model.hpp"

@@ -1,12 +1,13 @@
 #pragma once
-/// What an effect gains on samples it was not fitted to.
+/// The gain of an effect on samples to which it was not fitted.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
 namespace driftlab::investigate {
 
-/// Two folds of alternating segments (for spectra and lines: the halves of each recording). The cause is fitted to one
-/// and its log likelihood gain counted on the other, and the other way round; sets the held-out members of `found`.
+/// Sets the held-out members of `found`. The data are divided into two folds of alternating segments (for spectra and
+/// lines, into the halves of each recording). The cause is fitted to one fold, its gain in log likelihood is counted on
+/// the other, and then the folds change roles.
 void hold_out(const FullRate& data, Evidence& found);
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,5 @@
 #pragma once
-/// One value that moves several axes is one finding.
+/// Findings on several axes that have one common value are joined into one finding.
 #include "core/investigate/causes/evidence.hpp"
 
 #include <vector>

@@ -1,12 +1,12 @@
 #pragma once
-/// The search among mean effects and slow noise, which explain the same slow misfit of one channel group.
+/// The search for mean effects and slow noise, which can explain the same slow misfit of a channel group.
 ///
-/// A wrong baseline hides effects: fitted to a recording with a step it grows a random walk that "explains" the step.
-/// Every effect is therefore (1) screened at several base models (each order fitted to all recordings, and fits to
-/// single ones where the effect may be absent), and (2) the most promising are fitted again jointly with the base from
-/// several starts. Scores are comparable: twice the joint log likelihood minus what base and effect cost, minus that of
-/// the best base alone. The base may be white noise + up to two Gauss-Markov processes + a random walk; 6 per
-/// Gauss-Markov process, 3 per random walk.
+/// A wrong base model hides effects: fitted to a recording with a step, it acquires a random walk that "explains" the
+/// step. Every effect is therefore (1) screened under several base models (each order fitted to all recordings, and
+/// fits to single recordings in which the effect may be absent), and (2) the most promising ones are fitted again
+/// jointly with the base from several starting points. Scores are comparable: twice the joint log likelihood minus the
+/// costs of base and effect, minus the same for the best base alone. The base may be white noise + up to two
+/// Gauss-Markov processes + a random walk; a Gauss-Markov process costs 6 and a random walk 3.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
 #include "core/signal/progress.hpp"

@@ -1,10 +1,10 @@
 #pragma once
-/// When a cause is reported, and how surely.
+/// The thresholds at which a cause is reported and called identified.
 ///
-/// A cause is reported where its score exceeds kThreshold. The choice among scopes, shapes and times is paid for in
-/// each score, so that one threshold stands for all: it was set so that at most 5 % of simulated studies without any
-/// effect have a finding (tests/hidden/RESULTS.md). It is `identified` where no declared rival comes within kMargin of
-/// its score, else `ambiguous`.
+/// A cause is reported if its score exceeds kThreshold. Each score includes a penalty for the choice among scopes,
+/// shapes and times, so one threshold serves all causes. It was set so that at most 5 % of simulated studies without
+/// any effect have a finding (tests/hidden/RESULTS.md). The cause is `identified` if no declared rival comes within
+/// kMargin of its score, and `ambiguous` otherwise.
 
 namespace driftlab::investigate {
 

@@ -1,8 +1,8 @@
 #pragma once
-/// A channel group averaged over short blocks: everything slow, at a fraction of the samples.
+/// A channel group averaged over short blocks, which describes everything slow with a fraction of the samples.
 ///
-/// Mean effects (drift, steps, scale factors, temperature, ...) and slow noise live below a few Hz. Averages over
-/// blocks of L samples keep all that is known about them; the white part of a block has variance N^2 / (samples dt).
+/// Mean effects (drift, steps, scale factors, temperature, ...) and slow noise are below a few Hz. Averages over blocks
+/// of L samples retain all information about them; the white part of a block has the variance N^2 / (samples dt).
 #include "core/investigate/study/study.hpp"
 
 #include <cstddef>

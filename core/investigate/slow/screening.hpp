@@ -1,9 +1,10 @@
 #pragma once
 /// Gains of regressors at a fixed noise model, in every scope at once.
 ///
-/// Whitened recordings are independent, so inner products over a scope are sums over its recordings. With z the
-/// whitened data, B the whitened regressors that are already in, x the new one restricted to a scope, the gain in twice
-/// the log likelihood is (x'Mz)^2 / x'Mx, M = I - B (B'B)^-1 B' (for two columns the matrix form).
+/// Whitened recordings are independent, so inner products over a scope are sums over its recordings. Let z be the
+/// whitened data, B the whitened regressors that are already included, and x the new regressor restricted to a scope.
+/// The gain in twice the log likelihood is (x'Mz)^2 / x'Mx with M = I - B (B'B)^-1 B', or its matrix form for two
+/// columns.
 #include "core/investigate/slow/slow_model.hpp"
 
 #include <Eigen/Core>

@@ -1,13 +1,13 @@
 #pragma once
-/// Maximum likelihood of the slow part: amplitudes of mean effects and parameters of the noise, together.
+/// Maximum likelihood estimation of the slow part: amplitudes of mean effects and parameters of the noise together.
 ///
-/// With W the whitening of a noise model (slow_model.hpp), the amplitudes a of the regressors X follow by generalised
-/// least squares, a = (X'W'WX)^-1 X'W'Wy, and the noise parameters theta (logarithms of levels and betas) by Fisher
+/// Let W be the whitening of a noise model (slow_model.hpp). The amplitudes a of the regressors X follow by generalised
+/// least squares, a = (X'W'WX)^-1 X'W'Wy. The noise parameters theta (logarithms of levels and betas) follow by Fisher
 /// scoring on the profile likelihood. With innovations v_b and variances S_b,
-///   score_i = -1/2 sum [ dS_i/S + 2 v dv_i/S - v^2 dS_i/S^2 ],  information_ij = sum [ dv_i dv_j/S + dS_i dS_j/(2 S^2)
-///   ]
+///   score_i = -1/2 sum [ dS_i/S + 2 v dv_i/S - v^2 dS_i/S^2 ],
+///   information_ij = sum [ dv_i dv_j/S + dS_i dS_j/(2 S^2) ]
 /// (Harvey 1989, eqs. 3.4.69 and 3.4.71). Mean and noise parameters are orthogonal in the information of a Gaussian, so
-/// cov(a) = (X'W'WX)^-1 to first order; `profile_interval` is the exact counterpart that lets the noise follow.
+/// cov(a) = (X'W'WX)^-1 to first order. `profile_interval` is the exact counterpart, in which the noise is refitted.
 #include "core/investigate/slow/profile.hpp"
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/signal/estimate.hpp"

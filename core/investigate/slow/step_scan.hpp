@@ -1,15 +1,18 @@
 #pragma once
-/// Steps of the mean at every block of a recording, at a fixed noise model, and what the choice among them costs.
+/// Scan for a step of the mean at every block of a recording, at a fixed noise model, and the penalty for having
+/// searched.
 ///
-/// Z(t), the standardised amplitude of a step at t, is standard normal at each t where there is none; its neighbours
-/// are correlated by rho(t), and how fast it forgets depends on the noise: within 1/beta of a Gauss-Markov process that
-/// rises above the white noise, never in white noise alone. The largest of many is beyond u with probability
+/// Z(t), the standardised amplitude of a step at t, is standard normal at every t if there is no step. Neighbouring
+/// values have the correlation rho(t). How fast the correlation decays depends on the noise: within 1/beta of a
+/// Gauss-Markov process that stands out above the white noise, and never in white noise alone. The largest of many
+/// values exceeds u with probability
 ///   P ~ 2 u phi(u) sum over t of (1 - rho) nu(sqrt(2 u^2 (1 - rho))),
-/// nu the correction for a grid (Siegmund and Yakir, The Statistics of Gene Mapping, 2007, with their closed
-/// approximation of it). A single look at a gain g = v^2 has P ~ 2 phi(v) / v: equal chances make the search worth
-///   u^2 - v^2 ~ 2 ln(u v sum (1 - rho) nu),
-/// for five minutes in blocks of 1/5 s: 5 for white noise, 8 to 10 with Gauss-Markov processes or a random walk
-/// (tests/unit/investigate/step_scan_test.cpp measures the chances).
+/// where nu is the correction for a grid (Siegmund and Yakir, The Statistics of Gene Mapping, 2007, with their closed
+/// approximation of it). A gain g = v^2 at one given place has P ~ 2 phi(v) / v. With equal probabilities the search
+/// costs
+///   u^2 - v^2 ~ 2 ln(u v sum (1 - rho) nu).
+/// For five minutes in blocks of 1/5 s that is 5 for white noise, and 8 to 10 with Gauss-Markov processes or a random
+/// walk (tests/unit/investigate/step_scan_test.cpp measures the probabilities).
 #include "core/investigate/slow/slow_model.hpp"
 
 #include <Eigen/Core>
@@ -43,7 +46,8 @@ class StepScan {
   std::vector<std::vector<std::vector<double>>> tail_sum_;  ///< recording, column (0: residual), block
 };
 
-/// 2 ln of how much likelier a gain is by the best of all places than by one of them; 0 or more.
+/// 2 ln of the ratio of the probability that the best of all places has this gain to the probability that one given
+/// place has it; 0 or more.
 [[nodiscard]] double cost_of_search(const std::vector<double>& turnover, double gain);
 
 /// The series and the model of one recording alone.

@@ -1,5 +1,5 @@
 #pragma once
-/// What drives effects: rates, slopes, specific force; shared by the causes that need them.
+/// The inputs that drive effects (rates, their derivatives, specific force), for the causes that need them.
 #include "core/investigate/study/study.hpp"
 
 #include <functional>

@@ -1,10 +1,10 @@
 #pragma once
-/// Whether a reference column can be taken for the truth.
+/// Whether a reference column is good enough to stand for the true value.
 ///
-/// error = measured - reference holds the reference's own errors too. A regression of the error on a reference of noise
-/// variance s^2 is pulled by -s^2 / var(reference) (errors in variables; Fuller 1987, section 1.1): a noisy reference
-/// shows a scale factor that is not there. And a reference that does not follow the motion at all, by a wrong clock,
-/// axis or sign, makes everything that is seen in the error an untruth.
+/// error = measured - reference contains the errors of the reference too. A regression of the error on a reference with
+/// noise variance s^2 is biased by -s^2 / var(reference) (errors in variables; Fuller 1987, section 1.1), so a noisy
+/// reference produces an apparent scale factor error. If the reference does not follow the motion at all, because of a
+/// wrong clock, axis or sign, nothing that is seen in the error can be attributed to the sensor.
 #include "core/investigate/study/study.hpp"
 
 #include <string>
@@ -22,12 +22,12 @@ namespace driftlab::investigate {
 inline constexpr std::string_view kTightStamps =
     "time stamps of the sampling itself, that scatter by less than a sample";
 
-/// What a reference would need before the error may be regressed on it; empty where it is good enough. It is not where
-/// stamps are loose, or where its own white noise exceeds the channel's in some recording.
+/// What a reference would need before the error may be regressed on it; empty if it is good enough. It is not good
+/// enough if stamps are loose, or if its own white noise exceeds that of the channel in some recording.
 [[nodiscard]] std::string reference_lacks(const ChannelGroup& group);
 
-/// What is wrong where means over a second of channel and reference do not go together (correlation below
-/// kLeastCorrelation) although the reference moves far beyond the channel's noise; empty where nothing is.
+/// What is wrong if one-second means of channel and reference are poorly correlated (below kLeastCorrelation) although
+/// the reference moves far beyond the channel's noise; empty if nothing is.
 [[nodiscard]] std::string why_reference_misleads(const ChannelGroup& group);
 
 }  // namespace driftlab::investigate

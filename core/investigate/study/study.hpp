@@ -1,5 +1,5 @@
 #pragma once
-/// A study as numbers: recordings on their time grids, what drove each of them, and the error of every criticised
+/// A study in numbers: recordings on their time grids, the inputs that acted on each, and the error of every examined
 /// channel (spec/study.md). Everything is SI; only `Channel::rows` keeps the file's own numbers, for its lattice.
 #include "core/signal/recording.hpp"
 #include "core/signal/result.hpp"

@@ -14,9 +14,10 @@ struct TimeGrid {
   Stamps stamps;
 };
 
-/// Stamps [s] of consecutive rows, not falling. The interval starts as 1/`rate_hz` where one is stated (else the median
-/// step) and is then fitted. Where stamps scatter so much that two rows would share a place, rows are taken as
-/// uniform: their number says more than their stamps.
+/// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. The sample interval starts as
+/// 1/`rate_hz` if a rate is stated, else as the median step, and is then fitted. If stamps scatter so much that two
+/// rows would share a place, the rows are taken as evenly spaced, because their number is then more reliable than their
+/// stamps.
 [[nodiscard]] Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz);
 
 }  // namespace driftlab::investigate
