@@ -130,15 +130,20 @@ struct Kernel {
     }
   }
 
+  /// out = h^T x for nine rows.
+  static void weighted(const Eigen::Matrix<double, 9, 1>& h, const double* __restrict x, double* __restrict out) {
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j < S; ++j) {
+        out[j] += h(i) * x[i * S + j];
+      }
+    }
+  }
+
   static void update(const ScalarMeasurement& m, Matrix9& nn, double* __restrict ns, double* __restrict ss,
                      double* __restrict state) {
     const Eigen::Matrix<double, 9, 1> pn = nn * m.h;
     alignas(32) double ps[S] = {};
-    for (int i = 0; i < 9; ++i) {
-      for (int j = 0; j < S; ++j) {
-        ps[j] += m.h(i) * ns[i * S + j];
-      }
-    }
+    weighted(m.h, ns, ps);
     const double s = m.h.dot(pn) + m.variance;
     double expected = 0.0;
     for (int i = 0; i < 9; ++i) {
@@ -154,18 +159,32 @@ struct Kernel {
       ks[j] = ps[j] / s;
       state[9 + j] += rest * ks[j];
     }
-    // Joseph's form written out: P - k (P h)^T - (P h) k^T + s k k^T.
+    // Joseph's form for one measurement (Bierman 1977): M = P - k (P h)^T, then M - (M h) k^T + R k k^T, with M h
+    // summed from M as it was rounded. Products of two vectors are means of both orders, so that P stays symmetric.
     for (int i = 0; i < 9; ++i) {
       for (int j = 0; j < 9; ++j) {
-        nn(i, j) += s * (kn(i) * kn(j)) - (kn(i) * pn(j) + pn(i) * kn(j));
+        nn(i, j) -= 0.5 * (kn(i) * pn(j) + pn(i) * kn(j));
       }
       for (int j = 0; j < S; ++j) {
-        ns[i * S + j] += s * (kn(i) * ks[j]) - (kn(i) * ps[j] + pn(i) * ks[j]);
+        ns[i * S + j] -= 0.5 * (kn(i) * ps[j] + pn(i) * ks[j]);
+      }
+    }
+    const Eigen::Matrix<double, 9, 1> mn = nn * m.h;
+    alignas(32) double ms[S] = {};
+    weighted(m.h, ns, ms);
+    const double r = m.variance;
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j < 9; ++j) {
+        nn(i, j) = (nn(i, j) - 0.5 * (mn(i) * kn(j) + kn(i) * mn(j))) + r * (kn(i) * kn(j));
+      }
+      for (int j = 0; j < S; ++j) {
+        ns[i * S + j] = (ns[i * S + j] - 0.5 * (mn(i) * ks[j] + kn(i) * ms[j])) + r * (kn(i) * ks[j]);
       }
     }
     for (int i = 0; i < S; ++i) {
       for (int j = 0; j < S; ++j) {
-        ss[i * S + j] += s * (ks[i] * ks[j]) - (ks[i] * ps[j] + ps[i] * ks[j]);
+        const double once = ss[i * S + j] - 0.5 * (ks[i] * ps[j] + ps[i] * ks[j]);
+        ss[i * S + j] = (once - 0.5 * (ms[i] * ks[j] + ks[i] * ms[j])) + r * (ks[i] * ks[j]);
       }
     }
   }

@@ -6,7 +6,11 @@
 /// with D block diagonal (one block per axis, mostly a diagonal), F nearly the identity, and B filled. P is kept as the
 /// blocks P_nn (9 x 9), P_ns (9 x m) and P_ss (m x m); a step costs about 9 m^2 + 100 m multiplications instead of the
 /// 2 n^3 of the textbook. Every entry and its mirror image are computed by the same operations, so P stays symmetric to
-/// the bit; updates are scalar and in Joseph's form, which keeps P positive definite under rounding.
+/// the bit. Updates are scalar and in Joseph's form, (I - k h^T) P (I - k h^T)^T + R k k^T, computed as the two updates
+/// of rank one that it amounts to (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977): what
+/// rounding leaves of P along a measurement far better than P is R, and no eigenvalue falls below zero by more than
+/// rounding. Multiplied out, as P - k (P h)^T - (P h) k^T + s k k^T, the form loses both
+/// (tests/unit/navigate/error_covariance_test.cpp).
 #include "core/navigate/earth.hpp"
 
 #include <array>
@@ -67,8 +71,8 @@ class ErrorCovariance {
   /// Adds the noise of the navigation states and its covariance with the sensor states.
   void add_noise(const SensorTransition& sensors);
 
-  /// Scalar Kalman update; the correction is added to `state`, which holds what earlier measurements of this moment
-  /// gave.
+  /// Scalar Kalman update in Joseph's form; the correction is added to `state`, which holds what earlier measurements
+  /// of this moment gave.
   void update(const ScalarMeasurement& measurement, State& state);
 
  private:

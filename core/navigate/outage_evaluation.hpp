@@ -22,7 +22,7 @@
 namespace driftlab {
 
 /// Changes whenever the same scenario and seed may give other numbers; stored with every result.
-inline constexpr int kOutageAlgorithmVersion = 2;
+inline constexpr int kOutageAlgorithmVersion = 3;
 
 struct OutageOptions {
   int runs = 400;  ///< at most; 2 to 100 000

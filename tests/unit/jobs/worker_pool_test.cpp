@@ -482,7 +482,11 @@ TEST(WorkerPool, AResultThatHasNoRoomOnDiskIsARetryableFailure) {
 
 TEST(WorkerPool, APoolThatNeverStartedStops) {
   ToyWorld world(succeed_at_once);
-  world.pool(ToyWorld::quiet())->stop();
+  const std::string id = world.add_toy();
+  const auto pool = world.pool(ToyWorld::quiet());
+  pool->stop();
+  EXPECT_EQ(pool->busy(), 0);
+  EXPECT_EQ(world.store->job(id)->state, JobState::Queued);
 }
 
 /// kill -9 at every point of a job's life, then a restart: the job is still there and its result appears once.
