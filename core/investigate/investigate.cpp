@@ -94,6 +94,9 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   if (study.recordings.empty()) {
     return fail(ErrorCode::TooFewSamples, "The study holds no recording.");
   }
+  if (const Status known = check_processes(study.baseline); !known) {
+    return fail(known.error());
+  }
   Report report;
   report.study = study.id;
   report.automatic = study.baseline.automatic;

@@ -1,6 +1,7 @@
 #include "core/process/flicker_noise.hpp"
 
 #include "core/process/dense.hpp"
+#include "core/process/gauss_markov.hpp"
 #include "core/process/haar_differences.hpp"
 
 #include <unsupported/Eigen/FFT>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <vector>
 
 namespace driftlab {
@@ -309,6 +311,22 @@ void FlickerNoise::add_path(Random& random, double /*dt_s*/, std::span<double> o
     out[t] += level;
     level += row[t].real();
   }
+}
+
+void FlickerNoise::add_block_states(double square, double /*shape*/, const Blocks& blocks, BlockStates& states) {
+  constexpr int kStates = 6;
+  const double low = std::log(2.0 * blocks.dt_s / std::numbers::pi);
+  const double high = std::log(2.0 * blocks.longest_s);
+  const double step = (high - low) / kStates;
+  for (int i = 0; i < kStates; ++i) {
+    GaussMarkov::add_block_states(square * step / std::numbers::pi, std::exp(-(low + (i + 0.5) * step)), blocks,
+                                  states);
+  }
+}
+
+double FlickerNoise::expected_periodogram(double square, double /*shape*/, double f_hz, double /*dt_s*/,
+                                          double /*samples*/) {
+  return square / (2.0 * std::numbers::pi * f_hz);
 }
 
 }  // namespace driftlab

@@ -7,6 +7,7 @@
 /// 2^30, where the usual form loses all of them.
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
+#include "core/process/slow_law.hpp"
 #include "core/process/state_space.hpp"
 
 #include <array>
@@ -42,6 +43,14 @@ struct GaussMarkov {
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Starts in the stationary distribution.
   void add_path(Random& random, double dt_s, std::span<double> out) const;
+  /// Means over L samples with phi = exp(-beta dt) have autocovariance
+  ///   lag 0: s^2/L^2 [L + 2 sum_{k=1}^{L-1} (L-k) phi^k],  lag j >= 1: A phi^{L j},
+  ///   A = s^2 phi^{1-L} [(1-phi^L)/(L(1-phi))]^2:
+  /// a first-order autoregression of variance A and a white remainder, lag 0 minus A, not positive.
+  static void add_block_states(double square, double beta, const Blocks& blocks, BlockStates& states);
+  /// s^2 dt (2 Re[1/(1-z) - z (1-phi^n)/(n (1-z)^2)] - 1), z = phi exp(-i w).
+  [[nodiscard]] static double expected_periodogram(double square, double beta, double f_hz, double dt_s,
+                                                   double samples);
   /// Correlation times from 1/8 of a sample to a thousand times the length of the record. Beyond either end the process
   /// equals white noise or a random walk to nine digits.
   [[nodiscard]] static std::pair<double, double> shape_range(double dt_s, double samples) {

@@ -47,6 +47,7 @@ struct LinearDrift {
       out[t] += r * dt_s * static_cast<double>(t);
     }
   }
+  [[nodiscard]] double slope() const { return r; }
 };
 
 }  // namespace driftlab

@@ -6,8 +6,10 @@
 /// 2^40, held in a double.
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
+#include "core/process/slow_law.hpp"
 #include "core/process/state_space.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -39,13 +41,34 @@ struct ProcessKind {
   /// Where a record of `samples` can tell the shape parameter; {0, 0} for kinds without one.
   std::pair<double, double> (*shape_range)(double dt_s, double samples) = nullptr;
 
+  /// Optional laws, null where the kind declares none: what an investigation can do with the process where a model that
+  /// is taken at its word holds it. A kind with none of them is simulated, and stays in a recording.
+  double (*white_square)(std::span<const double> p) = nullptr;        ///< N^2 of a density equal at all frequencies
+  double (*differenced_square)(std::span<const double> p) = nullptr;  ///< Q^2 of differences of a white error
+  double (*slope)(std::span<const double> p) = nullptr;               ///< of a mean R t [unit/s]
+  AddBlockStates add_block_states = nullptr;                          ///< a slow process (slow_law.hpp)
+  ExpectedPeriodogram expected_periodogram = nullptr;
+
   [[nodiscard]] bool has_shape() const { return parameters.size() > 1; }
+  [[nodiscard]] bool is_slow() const { return add_block_states != nullptr; }
+  /// Can be taken off a recording or out of its innovations.
+  [[nodiscard]] bool can_be_taken_out() const {
+    return is_slow() || white_square != nullptr || differenced_square != nullptr || slope != nullptr;
+  }
 };
+
+/// A process has a level, and at most one shape after it: fits, covariances and searches hold the two by themselves.
+inline constexpr std::size_t kMostParameters = 2;
 
 /// A kind with values: a value type, cheap to copy.
 struct Process {
   const ProcessKind* kind = nullptr;
   std::vector<double> parameters;  ///< SI, as declared by kind->parameters
+
+  /// The square of the level, to which every second moment is proportional.
+  [[nodiscard]] double square() const { return parameters[0] * parameters[0]; }
+  /// The parameter after the level; 0 for kinds without one.
+  [[nodiscard]] double shape() const { return kind->has_shape() ? parameters[1] : 0.0; }
 
   /// Haar MODWT wavelet variance at scale 2 `half` [unit^2].
   [[nodiscard]] double haar_variance(double half, double dt_s) const {

@@ -1,9 +1,11 @@
 #pragma once
 /// Turns a value type such as GaussMarkov into a ProcessKind. A value type is an aggregate of doubles, one per declared
 /// parameter and in that order, with the functions of white_noise.hpp; `static shape_range(dt_s, samples)` where it has
-/// a shape.
+/// a shape; and those of the optional laws of ProcessKind that it has, `add_block_states` and `expected_periodogram` as
+/// static functions of slow_law.hpp's form.
 #include "core/process/process.hpp"
 
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -18,6 +20,7 @@ T from_values(std::span<const double> p, std::index_sequence<I...> /*indices*/) 
 
 template <class T>
 T from_values(std::span<const double> p) {
+  assert(p.size() == T::kParameters.size());
   return from_values<T>(p, std::make_index_sequence<T::kParameters.size()>{});
 }
 
@@ -26,6 +29,8 @@ T from_values(std::span<const double> p) {
 template <class T>
 [[nodiscard]] ProcessKind kind_of() {
   using Values = std::span<const double>;
+  static_assert(!T::kParameters.empty() && T::kParameters.size() <= kMostParameters,
+                "a process has a level and at most one shape");
   ProcessKind kind;
   kind.name = T::kName;
   kind.symbol = T::kSymbol;
@@ -65,6 +70,21 @@ template <class T>
     kind.shape_range = [](double dt_s, double samples) { return T::shape_range(dt_s, samples); };
   } else {
     kind.shape_range = [](double, double) { return std::pair{0.0, 0.0}; };
+  }
+  if constexpr (requires(const T process) { process.white_square(); }) {
+    kind.white_square = [](Values p) { return detail::from_values<T>(p).white_square(); };
+  }
+  if constexpr (requires(const T process) { process.differenced_square(); }) {
+    kind.differenced_square = [](Values p) { return detail::from_values<T>(p).differenced_square(); };
+  }
+  if constexpr (requires(const T process) { process.slope(); }) {
+    kind.slope = [](Values p) { return detail::from_values<T>(p).slope(); };
+  }
+  if constexpr (requires { &T::add_block_states; }) {
+    kind.add_block_states = T::add_block_states;
+  }
+  if constexpr (requires { &T::expected_periodogram; }) {
+    kind.expected_periodogram = T::expected_periodogram;
   }
   return kind;
 }

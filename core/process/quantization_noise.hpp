@@ -70,6 +70,7 @@ struct QuantizationNoise {
       previous = error;
     }
   }
+  [[nodiscard]] double differenced_square() const { return q * q; }
 
   [[nodiscard]] double error_variance(double dt_s) const { return (q / dt_s) * (q / dt_s); }
 };

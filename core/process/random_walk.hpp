@@ -5,10 +5,12 @@
 #include "core/process/haar_differences.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
+#include "core/process/slow_law.hpp"
 #include "core/process/state_space.hpp"
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -64,6 +66,23 @@ struct RandomWalk {
       value += level;
       level += sd * random.normal();
     }
+  }
+  /// Means over L samples have increments of variance q (2/3 + 1/(3 L^2)) and lag-one covariance q (1/6 - 1/(6 L^2)),
+  /// q = K^2 L dt: a walk of step variance q and a white remainder -q (1 - 1/L^2)/6. Zero at the first sample of the
+  /// file.
+  static void add_block_states(double square, double /*shape*/, const Blocks& blocks, BlockStates& states) {
+    const auto block = static_cast<double>(blocks.block);
+    const double q = square * blocks.block_s();
+    states.phi.push_back(1.0);
+    states.q.push_back(q);
+    states.p0.push_back(square * (blocks.start_s + 0.5 * blocks.block_s()));
+    states.remainder -= q * (1.0 - 1.0 / (block * block)) / 6.0;
+  }
+  /// 2 K^2 dt^2 / |1 - exp(-i w)|^2, twice the density, for the ends of the record do not meet.
+  [[nodiscard]] static double expected_periodogram(double square, double /*shape*/, double f_hz, double dt_s,
+                                                   double /*samples*/) {
+    const double s = 2.0 * std::sin(std::numbers::pi * f_hz * dt_s);
+    return 2.0 * square * dt_s * dt_s / (s * s);
   }
 };
 

@@ -13,6 +13,13 @@ namespace driftlab {
 /// By registry name (`white_noise`) or symbol (`WN`); null where there is none.
 [[nodiscard]] const ProcessKind* find_process(std::string_view name_or_symbol);
 
+/// The registered kind of a value type: registered<GaussMarkov>().
+template <class T>
+[[nodiscard]] const ProcessKind& registered() {
+  static const ProcessKind& kind = *find_process(T::kName);
+  return kind;
+}
+
 /// Position in the registry, which is the canonical order.
 [[nodiscard]] std::size_t registry_index(const ProcessKind* kind);
 

@@ -56,6 +56,7 @@ struct WhiteNoise {
       value += sd * random.normal();
     }
   }
+  [[nodiscard]] double white_square() const { return n * n; }
 
   [[nodiscard]] double sample_variance(double dt_s) const { return n * n / dt_s; }
 };

@@ -6,65 +6,110 @@
 namespace driftlab {
 namespace {
 
-Process process_from_json(const Json& document, Dimension channel, const std::string& pointer, Faults& faults) {
+/// The dimension of a level's channel by its unit: an angle or a length, else none.
+Dimension channel_of(const ParameterUnitValue& unit) {
+  return unit.angle == 2 ? Dimension::AngularRate : unit.length == 2 ? Dimension::SpecificForce : Dimension::One;
+}
+
+/// The SI value of one parameter. An interval beside it, as a stored estimate has one, is let be.
+std::optional<double> parameter_from_json(const Json& document, const ParameterSpec& spec,
+                                          std::optional<Dimension>& channel, const std::string& pointer,
+                                          Faults& faults) {
+  if (document.is_number() && channel) {
+    return document.get<double>();
+  }
+  if (!document.is_object()) {
+    faults.add(pointer, ErrorCode::InvalidArgument, "A parameter has a value and a unit.");
+    return std::nullopt;
+  }
+  ObjectReader reader(document, pointer, faults);
+  const auto value = reader.real("value");
+  const auto symbol = reader.text("unit");
+  (void)reader.member("ci95");
+  reader.reject_unknown();
+  if (!value || !symbol) {
+    faults.add(pointer, ErrorCode::InvalidArgument, "A parameter has a value and a unit.");
+    return std::nullopt;
+  }
+  const auto unit = parse_parameter_unit(*symbol);
+  const Dimension said = unit ? channel_of(*unit) : Dimension::One;
+  const auto factor = parameter_factor(*symbol, channel.value_or(said), spec);
+  if (!factor) {
+    faults.add(pointer + "/unit", factor.error());
+    return std::nullopt;
+  }
+  if (spec.channel_power == 1 && !channel) {
+    channel = said;
+  }
+  return *value * *factor;
+}
+
+std::optional<Process> process_from_json(const Json& document, std::optional<Dimension>& channel,
+                                         const std::string& pointer, Faults& faults) {
   ObjectReader reader(document, pointer, faults);
   const std::string name = reader.required_text("process");
   const Json* const params = reader.member("params");
+  (void)reader.member("reasons");  // of a stored fit
+  reader.reject_unknown();
   const ProcessKind* const kind = find_process(name);
-  if (kind == nullptr || params == nullptr || !params->is_object()) {
-    faults.add(pointer, ErrorCode::InvalidArgument, "A process has a known name and an object of params.");
-    return {};
+  if (kind == nullptr) {
+    faults.add(pointer + "/process", ErrorCode::InvalidArgument, "There is no process called '" + name + "'.");
+    return std::nullopt;
   }
+  if (params == nullptr || !params->is_object()) {
+    faults.add(pointer + "/params", ErrorCode::InvalidArgument, "A process has an object of params.");
+    return std::nullopt;
+  }
+  ObjectReader named(*params, pointer + "/params", faults);
   std::vector<double> values;
   for (const ParameterSpec& spec : kind->parameters) {
-    const std::string where = pointer + "/params/" + std::string(spec.name);
-    const auto found = params->find(std::string(spec.name));
-    if (found == params->end()) {
-      faults.add(where, ErrorCode::InvalidArgument, "The parameter " + std::string(spec.name) + " is missing.");
-      return {};
+    const std::string where = named.pointer(spec.name);
+    const Json* const given = named.member(spec.name);
+    if (given == nullptr) {
+      faults.add(where, ErrorCode::InvalidArgument,
+                 "The parameter " + std::string(spec.name) + " of " + name + " is missing.");
+    } else if (const auto value = parameter_from_json(*given, spec, channel, where, faults)) {
+      values.push_back(*value);
     }
-    if (found->is_number()) {
-      values.push_back(found->get<double>());
-      continue;
-    }
-    const bool whole = found->is_object() && found->contains("value") && (*found)["value"].is_number() &&
-                       found->contains("unit") && (*found)["unit"].is_string();
-    if (!whole) {
-      faults.add(where, ErrorCode::InvalidArgument, "A parameter has a value and a unit.");
-      return {};
-    }
-    const auto factor = parameter_factor((*found)["unit"].get<std::string>(), channel, spec);
-    if (!factor) {
-      faults.add(where + "/unit", factor.error());
-      return {};
-    }
-    values.push_back((*found)["value"].get<double>() * *factor);
+  }
+  named.reject_unknown();
+  if (values.size() < kind->parameters.size()) {
+    return std::nullopt;
   }
   auto process = make_process(name, std::move(values));
   if (!process) {
     faults.add(pointer, process.error());
-    return {};
+    return std::nullopt;
   }
-  return std::move(*process);
+  return *std::move(process);
 }
 
 }  // namespace
 
-Model model_from_json(const Json& processes, Dimension channel, const std::string& pointer, Faults& faults) {
+Model model_from_json(const Json& processes, std::optional<Dimension>& channel, const std::string& pointer,
+                      Faults& faults) {
   Model model;
-  if (!processes.is_array() || processes.size() > kMaxModelProcesses) {
-    faults.add(pointer, ErrorCode::InvalidArgument, "The processes are a list of at most 8.");
+  if (!processes.is_array()) {
+    faults.add(pointer, ErrorCode::InvalidArgument, "The processes are a list.");
     return model;
   }
   for (std::size_t i = 0; i < processes.size(); ++i) {
     std::string where = pointer;
     where.append("/").append(std::to_string(i));
-    Process process = process_from_json(processes[i], channel, where, faults);
-    if (process.kind != nullptr) {
-      model.push_back(std::move(process));
+    if (auto process = process_from_json(processes[i], channel, where, faults)) {
+      model.push_back(*std::move(process));
     }
   }
   return model;
+}
+
+Model model_from_json(const Json& processes, Dimension channel, const std::string& pointer, Faults& faults) {
+  if (processes.is_array() && processes.size() > kMaxModelProcesses) {
+    faults.add(pointer, ErrorCode::InvalidArgument, "The processes are a list of at most 8.");
+    return {};
+  }
+  std::optional known(channel);
+  return model_from_json(processes, known, pointer, faults);
 }
 
 Json to_json(const Model& model, Dimension channel) {

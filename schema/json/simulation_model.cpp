@@ -3,7 +3,7 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/process/parameter_unit.hpp"
-#include "core/process/registry.hpp"
+#include "schema/json/error_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,7 @@ using investigate::CauseParameter;
 using investigate::ChannelModel;
 using investigate::Finding;
 using investigate::GivenEffect;
-using investigate::GivenProcess;
 using investigate::Report;
-using investigate::SlowComponent;
-using investigate::SlowKind;
 
 /// A number with its unit; an interval beside it (a stored estimate has one) is let be.
 struct Measured {
@@ -36,67 +33,24 @@ Measured read_measured(const Json& document, const std::string& pointer, Faults&
   return measured;
 }
 
-/// One parameter of a given process, its unit checked against the process and the quantity it implies.
-double read_parameter(const Json& document, const ParameterSpec& spec, const std::string& pointer, Quantity& quantity,
-                      Faults& faults) {
-  const Measured measured = read_measured(document, pointer, faults);
-  auto unit = parse_parameter_unit(measured.unit);
-  if (!unit) {
-    faults.add(pointer + "/unit", unit.error());
-    return 0.0;
-  }
-  const bool gyro = unit->angle == 2;
-  const bool accelerometer = unit->length == 2;
-  const int second = unit->second + (spec.channel_power == 0 ? 0 : gyro ? 2 : accelerometer ? 4 : 0);
-  if (second != spec.second_power_halves || (spec.channel_power == 0 && (unit->angle != 0 || unit->length != 0))) {
-    faults.add(pointer + "/unit", ErrorCode::UnitMismatch,
-               "The unit " + measured.unit + " does not measure the parameter " + std::string(spec.name) + ".");
-  }
-  if (spec.channel_power == 1) {
-    quantity = gyro ? Quantity::AngularRate : accelerometer ? Quantity::SpecificForce : Quantity::Unspecified;
-  }
-  if (!(measured.value >= 0.0) && spec.lower >= 0.0) {
-    faults.add(pointer + "/value", ErrorCode::InvalidArgument, "A level or rate of a process is not negative.");
-  }
-  return measured.value * unit->factor;
+Quantity quantity_of(Dimension channel) {
+  return channel == Dimension::AngularRate     ? Quantity::AngularRate
+         : channel == Dimension::SpecificForce ? Quantity::SpecificForce
+                                               : Quantity::Unspecified;
 }
 
-std::vector<GivenProcess> read_processes(const Json& list, const std::string& pointer, Quantity& quantity,
-                                         Faults& faults) {
-  std::vector<GivenProcess> processes;
-  if (!list.is_array()) {
-    faults.add(pointer, ErrorCode::ParseError, "Processes are a list.");
-    return processes;
-  }
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string here = pointer + "/" + std::to_string(i);
-    ObjectReader reader(list[i], here, faults);
-    const std::string name = reader.required_text("process");
-    const Json* const params = reader.member("params");
+/// Columns that have processes of their own.
+void read_channels(const Json& channels, const std::string& pointer, Baseline& model, Faults& faults) {
+  for (const auto& [column, own] : channels.items()) {
+    std::string here = pointer;
+    here.append("/").append(column);
+    ObjectReader reader(own, here, faults);
+    const Json* const processes = reader.member("processes");
     reader.reject_unknown();
-    const ProcessKind* const kind = find_process(name);
-    if (kind == nullptr || params == nullptr || !params->is_object()) {
-      faults.add(here + "/process", ErrorCode::InvalidArgument, "There is no process called '" + name + "'.");
-      continue;
-    }
-    GivenProcess process{std::string(kind->name), {}};
-    ObjectReader values(*params, here + "/params", faults);
-    for (const ParameterSpec& spec : kind->parameters) {
-      const Json* const value = values.member(spec.name);
-      if (value == nullptr) {
-        faults.add(here + "/params", ErrorCode::InvalidArgument,
-                   "The parameter " + std::string(spec.name) + " of " + name + " is missing.");
-        break;
-      }
-      process.parameters.push_back(
-          read_parameter(*value, spec, here + "/params/" + std::string(spec.name), quantity, faults));
-    }
-    values.reject_unknown();
-    if (process.parameters.size() == kind->parameters.size()) {
-      processes.push_back(std::move(process));
-    }
+    std::optional<Dimension> channel;
+    model.by_channel[column] =
+        model_from_json(processes != nullptr ? *processes : Json(), channel, here + "/processes", faults);
   }
-  return processes;
 }
 
 /// The SI value of a cause's parameter: in the unit in which reports write it for one kind of sensor or another, or in
@@ -207,26 +161,6 @@ Json value_json(double si, double per_si, const std::string& unit) {
   return Json{{"value", number(si * per_si)}, {"unit", unit}};
 }
 
-Json process_json(const GivenProcess& process, Dimension channel) {
-  const ProcessKind* const kind = find_process(process.process);
-  Json params = Json::object();
-  for (std::size_t k = 0; kind != nullptr && k < kind->parameters.size() && k < process.parameters.size(); ++k) {
-    const ParameterSpec& spec = kind->parameters[k];
-    const bool rate = spec.channel_power == 0;
-    const ParameterUnit unit = rate ? ParameterUnit{"1/s", 1.0} : lab_unit(channel, spec.second_power_halves);
-    params[std::string(spec.name)] = value_json(process.parameters[k], unit.per_si, unit.symbol);
-  }
-  return Json{{"process", process.process}, {"params", std::move(params)}};
-}
-
-Json processes_json(const std::vector<GivenProcess>& processes, Dimension channel) {
-  Json list = Json::array();
-  for (const GivenProcess& process : processes) {
-    list.push_back(process_json(process, channel));
-  }
-  return list;
-}
-
 /// The effects of a given baseline, in the units of their channels.
 Json given_effects_json(const Baseline& baseline, const Unit& channel) {
   Json list = Json::array();
@@ -300,14 +234,11 @@ Baseline simulation_model_from_json(const Json& document, const std::string& poi
     faults.add(pointer + "/processes", ErrorCode::InvalidArgument, "A model has at least one process.");
     return model;
   }
-  model.processes = read_processes(*processes, pointer + "/processes", model.quantity, faults);
+  std::optional<Dimension> channel;
+  model.processes = model_from_json(*processes, channel, pointer + "/processes", faults);
+  model.quantity = quantity_of(channel.value_or(Dimension::AngularRate));
   if (channels != nullptr && channels->is_object()) {
-    for (const auto& [column, own] : channels->items()) {
-      std::string here = pointer;
-      here.append("/channels/").append(column).append("/processes");
-      Quantity quantity = model.quantity;
-      model.by_channel[column] = read_processes(own.value("processes", Json()), here, quantity, faults);
-    }
+    read_channels(*channels, pointer + "/channels", model, faults);
   } else {
     model.channels = texts(channels);
   }
@@ -351,7 +282,7 @@ Json baseline_json(const Report& report) {
   Json channels = Json::object();
   for (const ChannelModel& model : report.models) {
     const Dimension dimension = model.unit.dimension;
-    const Json processes = processes_json(noise_processes(model), dimension);
+    const Json processes = to_json(noise_processes(model), dimension);
     if (channels.empty()) {
       document["processes"] = processes;
     }

@@ -3,19 +3,6 @@
 namespace driftlab::server {
 namespace {
 
-/// The processes of a fit, without what the fit says about them.
-Json processes_of(const Json& fit) {
-  Json processes = Json::array();
-  for (const Json& process : fit.value("processes", Json::array())) {
-    Json params = Json::object();
-    for (const auto& [name, value] : process.at("params").items()) {
-      params[name] = value;
-    }
-    processes.push_back(Json{{"process", process.at("process")}, {"params", std::move(params)}});
-  }
-  return processes;
-}
-
 Result<Json> look_up(std::string_view kind, const std::string& id, Store& store) {
   if (kind == "model") {
     auto model = store.model(id);
@@ -29,7 +16,7 @@ Result<Json> look_up(std::string_view kind, const std::string& id, Store& store)
   if (!document) {
     return fail(document.error());
   }
-  return Json{{"processes", processes_of(*document)}};
+  return Json{{"processes", document->value("processes", Json::array())}};
 }
 
 }  // namespace

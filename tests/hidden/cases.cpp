@@ -44,13 +44,13 @@ double oracle_deviation(const SimulatedStudy& clean, const Cause& cause, double 
 
 /// Level of a slow process that an oracle sees at z: 2 E log(p1/p0) = z^2, which for Gaussian series is the sum of
 /// 2 (r - 1 - ln r) over the Fourier frequencies of all recordings, r the ratio of the densities with it and without.
-double oracle_level(const SimulatedStudy& clean, SlowKind kind, double beta, double z) {
+double oracle_level(const SimulatedStudy& clean, const ProcessKind& kind, double beta, double z) {
   const StudyRecording& recording = clean.study.recordings.front();
   SlowModel base;
   base.white = clean.base.n * clean.base.n;
   base.components = clean.base.slow;
   SlowModel unit;
-  unit.components.push_back({kind, 1.0, beta, {}});
+  unit.components.push_back({&kind, 1.0, beta, {}});
   const auto n = static_cast<double>(recording.count());
   std::vector<double> ratio;  // of the added density at level 1 to the base
   for (double k = 1.0; k < 0.5 * n; k += 1.0) {
@@ -79,7 +79,7 @@ std::vector<double> oracle_values(const Cause& cause, const SimulatedStudy& clea
                                   Random& random) {
   const double shape = cause.showing.shape != nullptr ? cause.showing.shape(stage, random) : 0.0;
   if (const SlowNoise* const slow = cause.as<SlowNoise>()) {
-    std::vector<double> values{std::sqrt(oracle_level(clean, slow->kind, shape, stage.z))};
+    std::vector<double> values{std::sqrt(oracle_level(clean, *slow->kind, shape, stage.z))};
     if (cause.parameters.size() > 1) {
       values.push_back(shape);
     }

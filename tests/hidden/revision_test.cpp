@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Causes, Revision,
 Baseline model_with(const std::string& cause, std::vector<double> values) {
   Baseline model;
   model.automatic = false;
-  model.processes = {{"white_noise", {1e-4}}, {"gauss_markov", {1e-4, 0.1}}};
+  model.processes = {*make_process("white_noise", {1e-4}), *make_process("gauss_markov", {1e-4, 0.1})};
   model.bias["gz"] = 0.5;
   model.effects.push_back({cause, {"gz"}, {}, std::move(values)});
   return model;

@@ -1,6 +1,9 @@
 #include "tests/hidden/simulated_study.hpp"
 
 #include "core/investigate/slow/slow_fit.hpp"
+#include "core/process/gauss_markov.hpp"
+#include "core/process/random_walk.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +16,6 @@ namespace {
 using investigate::ChannelGroup;
 using investigate::Draft;
 using investigate::SlowComponent;
-using investigate::SlowKind;
 using investigate::StudyRecording;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -216,21 +218,21 @@ BaseModel draw_base(Random& random, bool accelerometer) {
   const auto kinds = random.below(5);
   base.name = "WN";
   if (kinds >= 1) {
-    base.slow.push_back({SlowKind::GaussMarkov,
+    base.slow.push_back({&registered<GaussMarkov>(),
                          std::pow((0.02 + 0.02 * random.uniform()) * unit, 2.0),
                          0.02 * std::pow(80.0, random.uniform()),
                          {}});
     base.name += "+GM";
   }
   if (kinds >= 3) {
-    base.slow.push_back({SlowKind::GaussMarkov,
+    base.slow.push_back({&registered<GaussMarkov>(),
                          std::pow((0.02 + 0.02 * random.uniform()) * unit, 2.0),
                          0.01 + 0.02 * random.uniform(),
                          {}});
     base.name = "WN+2GM";
   }
   if (kinds == 2 || kinds == 4) {
-    base.slow.push_back({SlowKind::RandomWalk, std::pow((2e-4 + 6e-4 * random.uniform()) * unit, 2.0), 0.0, {}});
+    base.slow.push_back({&registered<RandomWalk>(), std::pow((2e-4 + 6e-4 * random.uniform()) * unit, 2.0), 0.0, {}});
     base.name += "+RW";
   }
   return base;
@@ -273,7 +275,7 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
         v = result.base.n / std::sqrt(dt) * random.normal();
       }
       for (const SlowComponent& component : result.base.slow) {
-        investigate::add_slow(component.kind, component.level, component.beta, dt, random, draft.slow);
+        component.process().add_path(random, dt, draft.slow);
       }
       for (const Hidden& effect : effects) {
         const bool here = effect.recordings.empty() ||
@@ -311,13 +313,9 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
     result.study.baseline.automatic = false;
     result.study.baseline.quantity = accelerometer ? Quantity::SpecificForce : Quantity::AngularRate;
     auto& processes = result.study.baseline.processes;
-    processes.push_back({"white_noise", {result.base.n}});
+    processes.push_back(*make_process("white_noise", {result.base.n}));
     for (const SlowComponent& component : result.base.slow) {
-      if (component.kind == SlowKind::GaussMarkov) {
-        processes.push_back({"gauss_markov", {std::sqrt(component.level), component.beta}});
-      } else {
-        processes.push_back({"random_walk", {std::sqrt(component.level)}});
-      }
+      processes.push_back(component.process());
     }
   }
   investigate::settle_channels(result.study);

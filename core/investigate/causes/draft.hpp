@@ -30,7 +30,4 @@ struct Draft {
 /// parameters the draft stays as it is.
 void inject(const Cause& cause, Draft& draft, std::span<const double> values, Random& random);
 
-/// Adds one realisation of a slow process to `out`.
-void add_slow(SlowKind kind, double level, double beta, double dt_s, Random& random, std::vector<double>& out);
-
 }  // namespace driftlab::investigate

@@ -49,7 +49,7 @@ struct MeanEffect {
 /// One more slow process in the noise. The slow search fits its level with the rest of the model; each half of the
 /// recordings is held out in turn.
 struct SlowNoise {
-  SlowKind kind;
+  const ProcessKind* kind;
 };
 
 /// White noise whose level differs between samples or recordings. Sought in the innovations at full rate and held out

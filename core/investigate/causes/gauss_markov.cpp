@@ -1,8 +1,11 @@
 /// gauss_markov: one more slow Gauss-Markov process.
+#include "core/process/gauss_markov.hpp"
+
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
 #include "core/process/random.hpp"
+#include "core/process/registry.hpp"
 
 namespace driftlab::investigate {
 namespace {
@@ -14,7 +17,7 @@ double shown_beta(const Stage& /*stage*/, Random& random) { return 0.2 + 0.3 * r
 Cause gauss_markov() {
   return {.name = "gauss_markov",
           .title = "one more slow Gauss-Markov process",
-          .family = SlowNoise{SlowKind::GaussMarkov},
+          .family = SlowNoise{&registered<GaussMarkov>()},
           .rivals = {"random_walk", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step", "turn_on_bias"},
           .needs = "a baseline that does not already hold it",
           .separates = "a recording many correlation times long",

@@ -3,6 +3,7 @@
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/constant_offset.hpp"
 
 #include <cmath>
 
@@ -21,7 +22,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause turn_on_bias() {
   return {.name = "turn_on_bias",
           .title = "a bias that differs from recording to recording",
-          .family = SlowNoise{SlowKind::Offset},
+          .family = SlowNoise{&constant_offset()},
           .rivals = {"scale_factor_error", "scale_factor_asymmetry", "scale_factor_nonlinearity", "gauss_markov",
                      "axis_misalignment", "g_sensitivity", "lever_arm", "vibration_rectification"},
           .needs = "several recordings",

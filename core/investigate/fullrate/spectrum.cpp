@@ -11,16 +11,6 @@ namespace {
 
 constexpr double kBinRatio = 1.025;
 
-double gauss_markov_periodogram(double level, double beta, double f_hz, double dt_s, double samples) {
-  const double w = 2.0 * std::numbers::pi * f_hz * dt_s;
-  const double phi = std::exp(-beta * dt_s);
-  const std::complex<double> z = std::polar(phi, -w);
-  const std::complex<double> one_minus = 1.0 - z;
-  const double decay = -std::expm1(-beta * dt_s * samples);
-  const std::complex<double> sum = 1.0 / one_minus - z * decay / (samples * one_minus * one_minus);
-  return level * dt_s * (2.0 * sum.real() - 1.0);
-}
-
 }  // namespace
 
 std::size_t fast_length(std::size_t n) {
@@ -86,23 +76,8 @@ double slow_density(const SlowModel& model, const BlockSeries& series, std::size
                     double samples) {
   double sum = 0.0;
   for (const SlowComponent& component : model.components) {
-    if (!component.acts_in(r)) {
-      continue;
-    }
-    switch (component.kind) {
-      case SlowKind::GaussMarkov:
-        sum += gauss_markov_periodogram(component.level, component.beta, f_hz, dt_s, samples);
-        break;
-      case SlowKind::RandomWalk: {
-        const double s = 2.0 * std::sin(std::numbers::pi * f_hz * dt_s);
-        sum += 2.0 * component.level * dt_s * dt_s / (s * s);
-        break;
-      }
-      case SlowKind::Flicker:
-        sum += component.level / (2.0 * std::numbers::pi * f_hz);
-        break;
-      case SlowKind::Offset:
-        break;
+    if (component.acts_in(r) && component.kind->expected_periodogram != nullptr) {
+      sum += component.kind->expected_periodogram(component.level, component.beta, f_hz, dt_s, samples);
     }
   }
   (void)series;

@@ -3,9 +3,8 @@
 ///
 /// P(f_k) = dt/n |sum e_t exp(-i 2 pi k t/n)|^2 is averaged over bins of 2.5 % in frequency (at least one ordinate);
 /// with m ordinates in a bin, P/E is near a Gamma(m)/m and the log likelihood of a density E is - sum m [ln E + P/E]
-/// (Whittle 1953). E is the *expected* periodogram of a finite record: a Gauss-Markov process leaks by
-///   s^2 dt (2 Re[1/(1-z) - z (1-phi^n)/(n (1-z)^2)] - 1), z = phi exp(-i w),
-/// and a random walk shows 2 K^2 dt^2 / |1 - exp(-i w)|^2, twice its density, for its ends do not meet.
+/// (Whittle 1953). E is the *expected* periodogram of a finite record, a law of each slow process
+/// (core/process/slow_law.hpp): a Gauss-Markov process leaks, and a random walk shows twice its density.
 #include "core/investigate/slow/slow_model.hpp"
 
 #include <complex>

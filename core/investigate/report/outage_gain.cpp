@@ -3,7 +3,8 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/unit_axis.hpp"
 #include "core/investigate/search/given_model.hpp"
-#include "core/process/model.hpp"
+#include "core/process/linear_drift.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 
@@ -23,17 +24,9 @@ std::optional<std::size_t> imu_channel(const ColumnRole& role) {
 }
 
 Model base_model(const ChannelModel& channel) {
-  Model model;
-  const auto add = [&](std::string_view name, std::vector<double> values) {  // a value of zero is no process
-    if (auto process = make_process(name, std::move(values))) {
-      model.push_back(*std::move(process));
-    }
-  };
-  for (const GivenProcess& process : noise_processes(channel)) {
-    add(process.process, process.parameters);
-  }
+  Model model = noise_processes(channel);
   if (!channel.given && channel.drift != 0.0) {
-    add("linear_drift", {channel.drift});
+    model.push_back({&registered<LinearDrift>(), {channel.drift}});
   }
   return model;
 }

@@ -1,10 +1,8 @@
 #include "core/investigate/report/series.hpp"
 
-#include "core/investigate/causes/cause.hpp"
 #include "core/process/distributions.hpp"
-#include "core/process/registry.hpp"
+#include "core/process/white_noise.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace driftlab::investigate {
@@ -12,28 +10,11 @@ namespace {
 
 constexpr std::size_t kStretches = 200;
 
-/// Haar wavelet variance of the model at half length `half`: registry laws of each part.
+/// Haar wavelet variance of the model at half length `half`.
 double model_variance(const SlowModel& model, double half, double dt_s) {
-  const auto law = [&](std::string_view name, std::array<double, 2> p) {
-    const ProcessKind* const kind = find_process(name);
-    return kind->haar_variance(std::span<const double>(p).first(kind->parameters.size()), half, dt_s);
-  };
-  double sum = law("white_noise", {std::sqrt(model.white), 0.0});
+  double sum = WhiteNoise{std::sqrt(model.white)}.haar_variance(half, dt_s);
   for (const SlowComponent& component : model.components) {
-    const double level = std::sqrt(component.level);
-    switch (component.kind) {
-      case SlowKind::GaussMarkov:
-        sum += law("gauss_markov", {level, component.beta});
-        break;
-      case SlowKind::RandomWalk:
-        sum += law("random_walk", {level, 0.0});
-        break;
-      case SlowKind::Flicker:
-        sum += law("flicker_noise", {level, 0.0});
-        break;
-      case SlowKind::Offset:
-        break;  // constant within a recording
-    }
+    sum += component.process().haar_variance(half, dt_s);
   }
   return sum;
 }

@@ -17,7 +17,7 @@ struct ChannelModel {
   double drift = 0.0;  ///< [SI/s], of an automatic baseline
   double bias = 0.0;   ///< [SI]
   bool given = false;
-  std::vector<GivenProcess> given_processes;  ///< of a given baseline, as they came
+  Model given_processes;  ///< of a given baseline, as they came
 };
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,9 @@
 #include "core/investigate/search/given_model.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/process/constant_offset.hpp"
+#include "core/process/registry.hpp"
+#include "core/process/white_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,21 +21,14 @@ bool everywhere(const GivenEffect& effect, const ChannelGroup& group) {
                      [&](const auto& member) { return holds(effect.recordings, member.recording->id); });
 }
 
-void add_process(const GivenProcess& process, SlowModel& model) {
-  const auto& p = process.parameters;
-  if (process.process == "white_noise") {
-    model.white += p[0] * p[0];
-  } else if (process.process == "gauss_markov") {
-    model.components.push_back({SlowKind::GaussMarkov, p[0] * p[0], p[1], {}});
-  } else if (process.process == "random_walk") {
-    model.components.push_back({SlowKind::RandomWalk, p[0] * p[0], 0.0, {}});
-  } else if (process.process == "flicker_noise") {
-    model.components.push_back({SlowKind::Flicker, p[0] * p[0], 0.0, {}});
+void add_process(const Process& process, SlowModel& model) {
+  const ProcessKind& kind = *process.kind;
+  if (kind.white_square != nullptr) {
+    model.white += kind.white_square(process.parameters);
+  } else if (kind.is_slow()) {
+    model.components.push_back({&kind, process.square(), process.shape(), {}});
   }
 }
-
-/// A process that nothing takes off the recordings: what is found again with its parameters confirms it.
-bool stays(const GivenProcess& process) { return process.process == "sinusoid"; }
 
 /// Every value within the interval of what was found.
 bool agree(const std::vector<double>& values, const Evidence& evidence) {
@@ -48,8 +44,8 @@ bool agree(const std::vector<double>& values, const Evidence& evidence) {
   return true;
 }
 
-void add_slow_effect(const GivenEffect& effect, SlowKind kind, const ChannelGroup& group, SlowModel& model) {
-  SlowComponent component{kind, effect.values[0] * effect.values[0], 0.0, {}};
+void add_slow_effect(const GivenEffect& effect, const ProcessKind& kind, const ChannelGroup& group, SlowModel& model) {
+  SlowComponent component{&kind, effect.values[0] * effect.values[0], 0.0, {}};
   component.beta = effect.values.size() > 1 ? effect.values[1] : 0.0;
   if (!everywhere(effect, group)) {
     for (const auto& member : group.members) {
@@ -71,7 +67,7 @@ bool applies(const Baseline& baseline, const ChannelGroup& group) {
   return baseline.quantity == group.role.quantity && holds(baseline.channels, group.column);
 }
 
-const std::vector<GivenProcess>& processes_of(const Baseline& baseline, const ChannelGroup& group) {
+const Model& processes_of(const Baseline& baseline, const ChannelGroup& group) {
   const auto own = baseline.by_channel.find(group.column);
   return own != baseline.by_channel.end() ? own->second : baseline.processes;
 }
@@ -94,14 +90,14 @@ std::vector<const GivenEffect*> effects_on(const Baseline& baseline, const Chann
 
 SlowModel given_model(const Baseline& baseline, const ChannelGroup& group) {
   SlowModel model;
-  for (const GivenProcess& process : processes_of(baseline, group)) {
+  for (const Process& process : processes_of(baseline, group)) {
     add_process(process, model);
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
     const Cause& cause = *find_cause(effect->cause);
     const NoiseLevel* const level = cause.as<NoiseLevel>();
     if (const SlowNoise* const slow = cause.as<SlowNoise>()) {
-      add_slow_effect(*effect, slow->kind, group, model);
+      add_slow_effect(*effect, *slow->kind, group, model);
     } else if (level != nullptr && level->replaces_white && everywhere(*effect, group)) {
       model.white = effect->values[0] * effect->values[0];
     }
@@ -114,10 +110,9 @@ SlowModel given_model(const Baseline& baseline, const ChannelGroup& group) {
 
 double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
   double sum = 0.0;
-  for (const GivenProcess& process : processes_of(baseline, group)) {
-    const Cause* const cause = cause_of_process(process.process);
-    const bool differenced = cause != nullptr && cause->as<DifferencedNoise>() != nullptr;
-    sum += differenced ? process.parameters[0] * process.parameters[0] : 0.0;
+  for (const Process& process : processes_of(baseline, group)) {
+    const auto law = process.kind->differenced_square;
+    sum += law != nullptr ? law(process.parameters) : 0.0;
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
     if (find_cause(effect->cause)->as<DifferencedNoise>() != nullptr && everywhere(*effect, group)) {
@@ -129,8 +124,9 @@ double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
 
 void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error) {
   double drift = 0.0;
-  for (const GivenProcess& process : processes_of(baseline, group)) {
-    drift += process.process == "linear_drift" ? process.parameters[0] : 0.0;
+  for (const Process& process : processes_of(baseline, group)) {
+    const auto law = process.kind->slope;
+    drift += law != nullptr ? law(process.parameters) : 0.0;
   }
   const auto own = baseline.drift.find(group.column);
   drift += own != baseline.drift.end() ? own->second : 0.0;
@@ -170,31 +166,41 @@ bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Eviden
   if (!applies(baseline, group)) {
     return false;
   }
-  const std::vector<GivenProcess>& processes = processes_of(baseline, group);
-  return std::any_of(processes.begin(), processes.end(), [&](const GivenProcess& process) {
-    return stays(process) && process.process == evidence.cause->process && agree(process.parameters, evidence);
+  const Model& processes = processes_of(baseline, group);
+  return std::any_of(processes.begin(), processes.end(), [&](const Process& process) {
+    return !process.kind->can_be_taken_out() && process.kind->name == evidence.cause->process &&
+           agree(process.parameters, evidence);
   });
 }
 
-std::vector<GivenProcess> noise_processes(const ChannelModel& model) {
+Status check_processes(const Baseline& baseline) {
+  const auto check = [](const Model& processes) -> Status {
+    for (const Process& process : processes) {
+      const auto names = [&](const Cause& cause) { return cause.process == process.kind->name; };
+      if (!process.kind->can_be_taken_out() && std::none_of(cause_registry().begin(), cause_registry().end(), names)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "The baseline holds the process " + std::string(process.kind->name) +
+                        ", which an investigation can neither take out of a recording nor find again in it.",
+                    {{"parameter", "baseline"}, {"value", std::string(process.kind->name)}});
+      }
+    }
+    return {};
+  };
+  Status status = check(baseline.processes);
+  for (auto own = baseline.by_channel.begin(); status && own != baseline.by_channel.end(); ++own) {
+    status = check(own->second);
+  }
+  return status;
+}
+
+Model noise_processes(const ChannelModel& model) {
   if (model.given) {
     return model.given_processes;
   }
-  std::vector<GivenProcess> list{{"white_noise", {std::sqrt(model.base.white)}}};
+  Model list{{&registered<WhiteNoise>(), {std::sqrt(model.base.white)}}};
   for (const SlowComponent& component : model.base.components) {
-    const double level = std::sqrt(component.level);
-    switch (component.kind) {
-      case SlowKind::GaussMarkov:
-        list.push_back({"gauss_markov", {level, component.beta}});
-        break;
-      case SlowKind::RandomWalk:
-        list.push_back({"random_walk", {level}});
-        break;
-      case SlowKind::Flicker:
-        list.push_back({"flicker_noise", {level}});
-        break;
-      case SlowKind::Offset:
-        break;
+    if (component.kind != &constant_offset()) {
+      list.push_back(component.process());
     }
   }
   return list;

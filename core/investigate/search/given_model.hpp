@@ -1,11 +1,12 @@
 #pragma once
 /// A given model as the search uses it: it is taken as true and never refitted.
 ///
-/// Its processes become the noise model. Drifts and mean effects with fixed shape are subtracted from the error before
-/// anything is examined. Slow effects become processes; a `white_noise_level` or `quantization_noise` replaces or joins
-/// the level of the processes. Effects that cannot be subtracted from a recording (sinusoids, tails, band limits, facts
-/// of the file) stay in it; if one is found again with parameters that agree with the model, this is a confirmation and
-/// not a finding. The constant bias stays free: it is one number per channel and never a finding (spec/causes.md).
+/// Its processes become the noise model, by the laws that their kinds declare. Drifts and mean effects with fixed shape
+/// are subtracted from the error before anything is examined. Slow effects become processes; a `white_noise_level` or
+/// `quantization_noise` replaces or joins the level of the processes. Effects that cannot be subtracted from a
+/// recording (sinusoids, tails, band limits, facts of the file) stay in it; if one is found again with parameters that
+/// agree with the model, this is a confirmation and not a finding. The constant bias stays free: it is one number per
+/// channel and never a finding (spec/causes.md).
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/slow/slow_model.hpp"
@@ -16,11 +17,15 @@
 
 namespace driftlab::investigate {
 
+/// Errors: InvalidArgument where a process of the baseline has no law by which it could be taken out of a recording
+/// (core/process/process.hpp), and no cause is that process, so that it cannot be found again either.
+[[nodiscard]] Status check_processes(const Baseline& baseline);
+
 /// True where the baseline is given and speaks of this group.
 [[nodiscard]] bool applies(const Baseline& baseline, const ChannelGroup& group);
 
 /// The processes of the group's column: its own where it has some, else those of the whole model.
-[[nodiscard]] const std::vector<GivenProcess>& processes_of(const Baseline& baseline, const ChannelGroup& group);
+[[nodiscard]] const Model& processes_of(const Baseline& baseline, const ChannelGroup& group);
 
 /// The effects that act on the group's column.
 [[nodiscard]] std::vector<const GivenEffect*> effects_on(const Baseline& baseline, const ChannelGroup& group);
@@ -35,10 +40,10 @@ namespace driftlab::investigate {
 void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error);
 
 /// True where the baseline says what was found: an effect of the same cause in a recording of the finding, or a process
-/// that stays in the recordings (a sinusoid) and is what the cause adds, every value within its interval.
+/// that no law takes out (a sinusoid) and is what the cause adds, every value within its interval.
 [[nodiscard]] bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence);
 
 /// The processes of a channel's noise: as they were given, or as they were fitted. Constant offsets are none of them.
-[[nodiscard]] std::vector<GivenProcess> noise_processes(const ChannelModel& model);
+[[nodiscard]] Model noise_processes(const ChannelModel& model);
 
 }  // namespace driftlab::investigate

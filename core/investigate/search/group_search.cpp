@@ -10,6 +10,8 @@
 #include "core/investigate/search/thresholds.hpp"
 #include "core/investigate/study/lattice.hpp"
 #include "core/investigate/study/reference_quality.hpp"
+#include "core/process/gauss_markov.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -262,7 +264,7 @@ class GroupSearch {
       outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
     }
     model.given = given_.has_value();
-    model.given_processes = given_ ? processes_of(study_.baseline, group_) : std::vector<GivenProcess>{};
+    model.given_processes = given_ ? processes_of(study_.baseline, group_) : Model{};
     model.base = search.base();
     model.base.white = outcome_.after.model.white;
     model.bias = search.null_fit().amplitude[0];
@@ -348,7 +350,7 @@ class GroupSearch {
   /// it goes, and its density is white noise again.
   void drop_fast_process(FullRate& data, const BandLimit& limit) {
     constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
-    const auto fast = [](const SlowComponent& c) { return c.kind == SlowKind::GaussMarkov && c.beta > kFast; };
+    const auto fast = [](const SlowComponent& c) { return c.kind == &registered<GaussMarkov>() && c.beta > kFast; };
     SlowModel plain = data.model;
     for (const SlowComponent& component : plain.components) {
       plain.white += fast(component) ? 2.0 * component.level / component.beta : 0.0;

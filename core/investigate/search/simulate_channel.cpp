@@ -2,6 +2,8 @@
 
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/search/given_model.hpp"
+#include "core/process/linear_drift.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,26 +11,13 @@
 namespace driftlab::investigate {
 namespace {
 
-void add_process(const GivenProcess& process, Draft& draft, Random& random) {
+/// What is slow is kept apart from what is new in each sample, and both from what has no density: effects on the noise
+/// leave that alone.
+void add_process(const Process& process, Draft& draft, Random& random) {
   const double dt_s = draft.recording->dt_s;
-  const auto& p = process.parameters;
-  if (process.process == "white_noise") {
-    for (double& v : draft.white) {
-      v += p[0] / std::sqrt(dt_s) * random.normal();
-    }
-  } else if (process.process == "gauss_markov") {
-    add_slow(SlowKind::GaussMarkov, p[0] * p[0], p[1], dt_s, random, draft.slow);
-  } else if (process.process == "random_walk") {
-    add_slow(SlowKind::RandomWalk, p[0] * p[0], 0.0, dt_s, random, draft.slow);
-  } else if (process.process == "flicker_noise") {
-    add_slow(SlowKind::Flicker, p[0] * p[0], 0.0, dt_s, random, draft.slow);
-  } else if (process.process == "linear_drift") {
-    for (std::size_t i = 0; i < draft.mean.size(); ++i) {
-      draft.mean[i] += p[0] * draft.recording->time_s(i);
-    }
-  } else if (const Cause* const twin = cause_of_process(process.process)) {
-    inject(*twin, draft, p, random);
-  }
+  const bool noise = process.kind->spectral_density(process.parameters, 0.25 / dt_s, dt_s).has_value();
+  std::vector<double>& part = process.kind->is_slow() ? draft.slow : noise ? draft.white : draft.mean;
+  process.add_path(random, dt_s, part);
 }
 
 /// Why an effect cannot act in the recording; empty: it can.
@@ -73,8 +62,8 @@ SimulatedChannel simulate_channel(const Baseline& model, StudyRecording recordin
     return found != terms.end() ? found->second : 0.0;
   };
   draft.mean.assign(recording.length, term(model.bias));
-  add_process({"linear_drift", {term(model.drift)}}, draft, random);
-  for (const GivenProcess& process : processes_of(model, group)) {
+  add_process({&registered<LinearDrift>(), {term(model.drift)}}, draft, random);
+  for (const Process& process : processes_of(model, group)) {
     add_process(process, draft, random);
   }
   draft.shared.resize(recording.length);

@@ -3,6 +3,8 @@
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/slow/step_scan.hpp"
 #include "core/process/distributions.hpp"
+#include "core/process/random_walk.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +30,12 @@ SlowModel SlowSearch::widest_base(const BlockColumns& columns) const {
   const auto richer = [](const SlowFit& a, const SlowFit& b) { return a.log_likelihood < b.log_likelihood; };
   model = std::max_element(orders_.begin(), orders_.end(), richer)->model;
   const double level = model.white / series_.block_s();
-  if (model.count(SlowKind::RandomWalk) == 0) {
-    model.components.push_back({SlowKind::RandomWalk, 0.0, 0.0, {}});
+  const ProcessKind& walk = registered<RandomWalk>();
+  if (model.count(walk) == 0) {
+    model.components.push_back({&walk, 0.0, 0.0, {}});
   }
   for (SlowComponent& component : model.components) {
-    const bool walk = component.kind == SlowKind::RandomWalk;
-    component.level = std::max(component.level, walk ? 0.003 * level / series_.longest_s() : 0.003 * level);
+    component.level = std::max(component.level, at_record_length(*component.kind, 0.003 * level, series_.longest_s()));
   }
   return fit_slow(series_, columns, model, freedom()).model;
 }
@@ -181,7 +183,7 @@ void SlowSearch::describe_slow(Evidence& evidence) const {
   evidence.parameters = {{std::string(cause.parameters[0].name),
                           {std::sqrt(extra.level), {std::sqrt(level.low), std::sqrt(level.high)}},
                           cause.parameters[0].unit(group_.unit)}};
-  if (extra.kind == SlowKind::GaussMarkov) {
+  if (extra.kind->has_shape()) {
     const Interval beta = profile_parameter(series_, columns, null_, {component, true}, freedom());
     evidence.parameters.push_back(
         {std::string(cause.parameters[1].name), {extra.beta, beta}, cause.parameters[1].unit(group_.unit)});

@@ -2,6 +2,7 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/slow/screening.hpp"
+#include "core/process/constant_offset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ std::vector<unsigned char> membership(const std::vector<std::size_t>& members, s
 
 }  // namespace
 
-SlowFit SlowSearch::fit_extra(SlowKind kind, const std::vector<std::size_t>& scope, const SlowModel& base,
+SlowFit SlowSearch::fit_extra(const ProcessKind& kind, const std::vector<std::size_t>& scope, const SlowModel& base,
                               const BlockColumns& columns) const {
   const double level = base.white / series_.block_s();
   std::vector<unsigned char> in;
@@ -31,7 +32,7 @@ SlowFit SlowSearch::fit_extra(SlowKind kind, const std::vector<std::size_t>& sco
     in = membership(scope, group_.members.size());
   }
   std::vector<double> betas{0.0};
-  if (kind == SlowKind::GaussMarkov) {
+  if (kind.has_shape()) {
     betas = {3.0 / series_.longest_s(), 0.03, 0.15, 0.6, 2.0};
   }
   SlowModel best = base;
@@ -39,8 +40,7 @@ SlowFit SlowSearch::fit_extra(SlowKind kind, const std::vector<std::size_t>& sco
   for (const double beta : betas) {
     for (const double share : {0.003, 0.03, 0.3}) {
       SlowModel trial = base;
-      const double first = kind == SlowKind::RandomWalk ? share * 0.3 * level / series_.longest_s() : share * level;
-      trial.components.push_back({kind, first, beta, in});
+      trial.components.push_back({&kind, first_level(kind, share, 0.3, level), beta, in});
       const double l = evaluate_slow(series_, columns, trial).log_likelihood;
       if (l > top) {
         top = l;
@@ -77,7 +77,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
       continue;
     }
     std::vector<std::vector<std::size_t>> scopes;
-    if (cause.as<SlowNoise>()->kind == SlowKind::Offset) {
+    if (cause.as<SlowNoise>()->kind == &constant_offset()) {
       if (group_.members.size() > 2) {
         scopes.push_back(everyone);
       }
@@ -106,7 +106,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
   std::vector<Evidence> results(jobs.size());
   parallel_for(threads_, jobs.size(), [&](std::size_t i) {
     const Job& job = jobs[i];
-    const SlowKind kind = job.cause->as<SlowNoise>()->kind;
+    const ProcessKind& kind = *job.cause->as<SlowNoise>()->kind;
     const SlowFit fit = fit_extra(kind, job.scope, job.base, columns);
     SlowModel base = fit.model;
     const SlowComponent extra = base.components.back();
@@ -114,10 +114,9 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
     Evidence& evidence = results[i];
     evidence.cause = job.cause;
     evidence.members = job.scope;
-    evidence.freedom = kind == SlowKind::GaussMarkov ? 2.0 : 1.0;
+    evidence.freedom = kind.has_shape() ? 2.0 : 1.0;
     evidence.gain = 2.0 * fit.log_likelihood - cost(base) - null_score_;
-    evidence.score = evidence.gain - (kind == SlowKind::GaussMarkov ? kGaussMarkovCost : kRandomWalkCost) -
-                     choice_penalty(static_cast<double>(job.scopes));
+    evidence.score = evidence.gain - cost_of(kind) - choice_penalty(static_cast<double>(job.scopes));
     evidence.shape = extra.beta;
   });
   std::vector<Evidence> found;

@@ -2,6 +2,9 @@
 
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/study/inputs.hpp"
+#include "core/process/gauss_markov.hpp"
+#include "core/process/random_walk.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,9 +83,14 @@ double SlowSearch::cost(const SlowModel& model) const {
   }
   double sum = 0.0;
   for (std::size_t i = 0; i + extra_.size() < model.components.size(); ++i) {
-    sum += model.components[i].kind == SlowKind::GaussMarkov ? kGaussMarkovCost : kRandomWalkCost;
+    sum += cost_of(*model.components[i].kind);
   }
   return sum;
+}
+
+double SlowSearch::first_level(const ProcessKind& kind, double share, double gathered, double level) const {
+  const bool gathers = kind.parameters[0].second_power_halves < 0;
+  return at_record_length(kind, gathers ? share * gathered * level : share * level, series_.longest_s());
 }
 
 SlowFreedom SlowSearch::freedom() const {
@@ -201,18 +209,17 @@ std::vector<SlowModel> SlowSearch::starting_orders(const BlockColumns& columns) 
   white.white = std::max(square / std::max(1.0, count), 1e-300) * series_.block_s();
   white.white_scale = white_scale_;
   const double level = white.white / series_.block_s();
-  const auto add_best = [&](const SlowModel& base, SlowKind kind) {
+  const auto add_best = [&](const SlowModel& base, const ProcessKind& kind) {
     SlowModel best = base;
     double top = -std::numeric_limits<double>::infinity();
     std::vector<double> betas{0.0};
-    if (kind == SlowKind::GaussMarkov) {
+    if (kind.has_shape()) {
       betas = {2.5 / series_.longest_s(), 0.02, 0.1, 0.4, 1.5};
     }
     for (const double beta : betas) {
       for (const double share : {0.01, 0.1, 1.0}) {
         SlowModel trial = base;
-        const double first = kind == SlowKind::RandomWalk ? share * 0.1 * level / series_.longest_s() : share * level;
-        trial.components.push_back({kind, first, beta, {}});
+        trial.components.push_back({&kind, first_level(kind, share, 0.1, level), beta, {}});
         const double l = evaluate_slow(series_, columns, trial).log_likelihood;
         if (l > top) {
           top = l;
@@ -222,13 +229,15 @@ std::vector<SlowModel> SlowSearch::starting_orders(const BlockColumns& columns) 
     }
     return best;
   };
+  const ProcessKind& gauss_markov = registered<GaussMarkov>();
+  const ProcessKind& walk = registered<RandomWalk>();
   std::vector<SlowModel> starts{white};
-  const SlowFit one = fit_slow(series_, columns, add_best(white, SlowKind::GaussMarkov), freedom());
-  const SlowFit walk = fit_slow(series_, columns, add_best(white, SlowKind::RandomWalk), freedom());
+  const SlowFit one = fit_slow(series_, columns, add_best(white, gauss_markov), freedom());
+  const SlowFit wandering = fit_slow(series_, columns, add_best(white, walk), freedom());
   starts.push_back(one.model);
-  starts.push_back(walk.model);
-  starts.push_back(add_best(one.model, SlowKind::RandomWalk));
-  starts.push_back(add_best(one.model, SlowKind::GaussMarkov));
+  starts.push_back(wandering.model);
+  starts.push_back(add_best(one.model, walk));
+  starts.push_back(add_best(one.model, gauss_markov));
   return starts;
 }
 
@@ -250,10 +259,10 @@ const SlowFit& SlowSearch::fit_null() {
     parallel_for(threads_, starts.size(),
                  [&](std::size_t i) { orders_[i] = fit_slow(series_, columns, starts[i], freedom()); });
     // One order above the best two.
-    if (orders_.back().log_likelihood - orders_[1].log_likelihood > 0.5 * kGaussMarkovCost) {
+    if (orders_.back().log_likelihood - orders_[1].log_likelihood > 0.5 * cost_of(registered<GaussMarkov>())) {
       SlowModel more = orders_.back().model;
       more.components.push_back(
-          {SlowKind::RandomWalk, 0.02 * more.white / series_.block_s() / series_.longest_s(), 0.0, {}});
+          {&registered<RandomWalk>(), 0.02 * more.white / series_.block_s() / series_.longest_s(), 0.0, {}});
       orders_.push_back(fit_slow(series_, columns, more, freedom()));
     }
   }
@@ -290,7 +299,7 @@ void SlowSearch::accept(const Evidence& evidence) {
   const BlockColumns columns = columns_with(accepted_);
   SlowFit best;
   for (const SlowFit& order : orders_) {
-    SlowFit fit = fit_extra(evidence.cause->as<SlowNoise>()->kind, evidence.members, order.model, columns);
+    SlowFit fit = fit_extra(*evidence.cause->as<SlowNoise>()->kind, evidence.members, order.model, columns);
     SlowModel base = fit.model;
     base.components.pop_back();
     SlowModel best_base = best.model;

@@ -6,7 +6,7 @@
 /// fits to single recordings in which the effect may be absent), and (2) the most promising ones are fitted again
 /// jointly with the base from several starting points. Scores are comparable: twice the joint log likelihood minus the
 /// costs of base and effect, minus the same for the best base alone. The base may be white noise + up to two
-/// Gauss-Markov processes + a random walk; a Gauss-Markov process costs 6 and a random walk 3.
+/// Gauss-Markov processes + a random walk; each parameter of a process costs 3.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
 #include "core/signal/progress.hpp"
@@ -18,8 +18,9 @@
 namespace driftlab::investigate {
 
 /// What a process of the base costs, in twice the log likelihood.
-inline constexpr double kGaussMarkovCost = 6.0;
-inline constexpr double kRandomWalkCost = 3.0;
+[[nodiscard]] inline double cost_of(const ProcessKind& kind) {
+  return 3.0 * static_cast<double>(kind.parameters.size());
+}
 
 /// A mean effect as regressors on the blocks.
 struct Regressor {
@@ -108,7 +109,10 @@ class SlowSearch {
   [[nodiscard]] std::vector<Evidence> examine_slow() const;
   /// Whether a process of the cause is in the null already, throughout the scope.
   [[nodiscard]] bool has_extra(const Cause& cause, const std::vector<std::size_t>& scope) const;
-  [[nodiscard]] SlowFit fit_extra(SlowKind kind, const std::vector<std::size_t>& scope, const SlowModel& base,
+  /// Where a fit of one more process starts: a share of the block means' white variance, or of what the process has
+  /// gathered by the end of the longest record where its level is per root second.
+  [[nodiscard]] double first_level(const ProcessKind& kind, double share, double gathered, double level) const;
+  [[nodiscard]] SlowFit fit_extra(const ProcessKind& kind, const std::vector<std::size_t>& scope, const SlowModel& base,
                                   const BlockColumns& columns) const;
   [[nodiscard]] double cost(const SlowModel& model) const;
   [[nodiscard]] SlowFreedom freedom() const;

@@ -24,7 +24,7 @@ std::vector<SlowParameter> free_parameters(const SlowModel& model, const SlowFre
   }
   for (std::size_t i = freedom.first_free; i < model.components.size(); ++i) {
     parameters.push_back({i, false});
-    if (model.components[i].kind == SlowKind::GaussMarkov) {
+    if (model.components[i].kind->has_shape()) {
       parameters.push_back({i, true});
     }
   }
@@ -41,8 +41,7 @@ Interval bounds_of(const BlockSeries& series, const SlowModel& model, const Slow
   if (parameter.beta) {
     return {1.5 / long_s, 1.5 / series.block_s()};
   }
-  const double walk = model.components[parameter.component].kind == SlowKind::RandomWalk ? 1.0 / long_s : 1.0;
-  return {1e-7 * white * walk, 1e9 * white};
+  return {1e-7 * white * at_record_length(*model.components[parameter.component].kind, 1.0, long_s), 1e9 * white};
 }
 
 /// The likelihood of residuals e = y - X a under a model, and its whitened form.
@@ -237,8 +236,8 @@ Interval profile_amplitude(const BlockSeries& series, const BlockColumns& column
   // What rests at zero cannot be moved by its logarithm: it starts where it costs next to nothing.
   const double level = 0.003 * warm.white / series.block_s();
   for (std::size_t i = freedom.first_free; i < warm.components.size(); ++i) {
-    const bool walk = warm.components[i].kind == SlowKind::RandomWalk;
-    warm.components[i].level = std::max(warm.components[i].level, walk ? level / series.longest_s() : level);
+    SlowComponent& component = warm.components[i];
+    component.level = std::max(component.level, at_record_length(*component.kind, level, series.longest_s()));
   }
   const auto at = [&](double amplitude) {
     BlockColumns reduced;

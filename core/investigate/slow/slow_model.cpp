@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 namespace driftlab::investigate {
 namespace {
-
-constexpr int kFlickerStates = 6;
 
 /// Kalman gains over the blocks of one pattern; the last entry holds for all blocks after it where `steady`.
 struct Gains {
@@ -18,38 +15,6 @@ struct Gains {
   std::vector<double> variance;  ///< S
   [[nodiscard]] std::size_t at(std::size_t b) const { return std::min(b, inv_sd.size() - 1); }
 };
-
-void add_gauss_markov(BlockStates& states, double level, double beta, const BlockSeries& series) {
-  const double block = static_cast<double>(series.block);
-  const double x = beta * series.dt_s;
-  const double phi_block = std::exp(-x * block);
-  if (series.block == 1) {
-    states.phi.push_back(phi_block);
-    states.q.push_back(level * -std::expm1(-2.0 * x));
-    states.p0.push_back(level);
-    return;
-  }
-  const double phi = std::exp(-x);
-  const double mean = std::expm1(-x * block) / (block * std::expm1(-x));  // (1-phi^L)/(L(1-phi))
-  const double ar = level * std::exp(x * (block - 1.0)) * mean * mean;
-  // lag 0: (1+phi)/(1-phi)/L - 2 phi (1-phi^L)/(L^2 (1-phi)^2); for small x by the series L - ... both agree to 1e-9
-  double total = 0.0;
-  if (x * block < 0.02) {
-    double power = 1.0;
-    total = block;
-    for (double k = 1.0; k < block; ++k) {
-      power *= phi;
-      total += 2.0 * (block - k) * power;
-    }
-    total *= level / (block * block);
-  } else {
-    total = level * ((1.0 + phi) / (-std::expm1(-x)) / block - 2.0 * phi * mean / (block * -std::expm1(-x)));
-  }
-  states.phi.push_back(phi_block);
-  states.q.push_back(ar * -std::expm1(-2.0 * x * block));
-  states.p0.push_back(ar);
-  states.remainder += total - ar;
-}
 
 Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
   const std::size_t m = states.phi.size();
@@ -111,9 +76,25 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
 
 }  // namespace
 
-std::size_t SlowModel::count(SlowKind kind) const {
+Process SlowComponent::process() const {
+  Process process{kind, {std::sqrt(level)}};
+  if (kind->has_shape()) {
+    process.parameters.push_back(beta);
+  }
+  return process;
+}
+
+double at_record_length(const ProcessKind& kind, double variance, double longest_s) {
+  double square = variance;
+  for (int halves = kind.parameters[0].second_power_halves; halves < 0; ++halves) {
+    square /= longest_s;
+  }
+  return square;
+}
+
+std::size_t SlowModel::count(const ProcessKind& kind) const {
   return static_cast<std::size_t>(
-      std::count_if(components.begin(), components.end(), [&](const SlowComponent& c) { return c.kind == kind; }));
+      std::count_if(components.begin(), components.end(), [&](const SlowComponent& c) { return c.kind == &kind; }));
 }
 
 BlockColumns BlockColumns::zeros(const BlockSeries& series, std::size_t width) {
@@ -136,40 +117,10 @@ Eigen::MatrixXd gram_of(const BlockColumns& columns, std::size_t r) {
 BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r) {
   BlockStates states;
   states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / series.block_s();
-  const double block = static_cast<double>(series.block);
+  const Blocks blocks{series.dt_s, series.block, series.recordings[r].start_s, series.longest_s()};
   for (const SlowComponent& component : model.components) {
-    if (!component.acts_in(r) || !(component.level > 0.0)) {
-      continue;
-    }
-    switch (component.kind) {
-      case SlowKind::GaussMarkov:
-        add_gauss_markov(states, component.level, component.beta, series);
-        break;
-      case SlowKind::RandomWalk: {
-        const double q = component.level * series.block_s();
-        states.phi.push_back(1.0);
-        states.q.push_back(q);
-        states.p0.push_back(component.level * (series.recordings[r].start_s + 0.5 * series.block_s()));
-        states.remainder -= q * (1.0 - 1.0 / (block * block)) / 6.0;
-        break;
-      }
-      case SlowKind::Flicker: {
-        // int over ln(tau) of Gauss-Markov densities gives 1/f: sigma_i^2 = B^2 ln(ratio)/pi, tau from two samples to
-        // twice the longest record.
-        const double low = std::log(2.0 * series.dt_s / std::numbers::pi);
-        const double high = std::log(2.0 * series.longest_s());
-        const double step = (high - low) / kFlickerStates;
-        for (int i = 0; i < kFlickerStates; ++i) {
-          add_gauss_markov(states, component.level * step / std::numbers::pi, std::exp(-(low + (i + 0.5) * step)),
-                           series);
-        }
-        break;
-      }
-      case SlowKind::Offset:
-        states.phi.push_back(1.0);
-        states.q.push_back(0.0);
-        states.p0.push_back(component.level);
-        break;
+    if (component.acts_in(r) && component.level > 0.0) {
+      component.kind->add_block_states(component.level, component.beta, blocks, states);
     }
   }
   return states;

@@ -1,14 +1,11 @@
 #pragma once
 /// The slow stochastic part of a channel as independent states of one dimension each, and its exact whitening.
 ///
-/// Block means of L point samples of a Gauss-Markov process with phi = exp(-beta dt) have autocovariance
-///   lag 0: s^2/L^2 [L + 2 sum_{k=1}^{L-1} (L-k) phi^k],   lag j >= 1: A phi^{L j},  A = s^2 phi^{1-L}
-///   [(1-phi^L)/(L(1-phi))]^2:
-/// an AR(1) of variance A and a white remainder (lag 0 minus A, not positive) that the white part absorbs. Block means
-/// of a random walk have increments of variance q (2/3 + 1/(3 L^2)) and lag-one covariance q (1/6 - 1/(6 L^2)), q = K^2
-/// L dt: a walk of step variance q and a white remainder -q (1 - 1/L^2)/6. Both are exact and reduce to the process at
-/// L = 1. Flicker noise is six Gauss-Markov processes with correlation times spaced evenly in the logarithm.
+/// The states of a process at block length are a law of its kind (core/process/slow_law.hpp): exact for Gauss-Markov
+/// processes and random walks, six Gauss-Markov processes for flicker noise.
 #include "core/investigate/slow/block_series.hpp"
+#include "core/process/process.hpp"
+#include "core/process/slow_law.hpp"
 
 #include <Eigen/Core>
 
@@ -18,27 +15,27 @@
 
 namespace driftlab::investigate {
 
-enum class SlowKind {
-  GaussMarkov,  ///< level = sigma^2, beta
-  RandomWalk,   ///< level = K^2; zero at the first sample of the file
-  Flicker,      ///< level = B^2
-  Offset,       ///< level = sigma^2 of a constant drawn per recording
+/// A slow process of a model that is being fitted, by the square of its level, which is what the fit walks.
+struct SlowComponent {
+  const ProcessKind* kind = nullptr;  ///< with `add_block_states`
+  double level = 0.0;                 ///< square of the process's level: sigma^2, K^2, B^2
+  double beta = 0.0;                  ///< its shape [1/s]; 0 for kinds without one
+  std::vector<unsigned char> in;      ///< recordings it acts in; empty: all
+
+  [[nodiscard]] bool acts_in(std::size_t r) const { return in.empty() || in[r] != 0; }
+  [[nodiscard]] Process process() const;
 };
 
-struct SlowComponent {
-  SlowKind kind = SlowKind::GaussMarkov;
-  double level = 0.0;
-  double beta = 0.0;              ///< [1/s]; Gauss-Markov only
-  std::vector<unsigned char> in;  ///< recordings it acts in; empty: all
-  [[nodiscard]] bool acts_in(std::size_t r) const { return in.empty() || in[r] != 0; }
-};
+/// The square of a kind's level at which the process has about the variance `variance` by the end of a record: the
+/// variance itself for what is stationary, variance / longest_s for a random walk, whose level is per root second.
+[[nodiscard]] double at_record_length(const ProcessKind& kind, double variance, double longest_s);
 
 struct SlowModel {
   double white = 0.0;               ///< N^2 [SI^2 s]
   std::vector<double> white_scale;  ///< factor of N^2 per recording; empty: 1
   std::vector<SlowComponent> components;
 
-  [[nodiscard]] std::size_t count(SlowKind kind) const;
+  [[nodiscard]] std::size_t count(const ProcessKind& kind) const;
 };
 
 /// Columns on the blocks of a series: one row-major matrix (blocks x columns) per recording.
@@ -71,12 +68,7 @@ struct Whitened {
 [[nodiscard]] std::vector<double> whiten_transposed(const BlockSeries& series, const SlowModel& model, std::size_t r,
                                                     std::span<const double> whitened);
 
-/// The states of a model at block length: transition, step variance, first variance, white remainder.
-struct BlockStates {
-  std::vector<double> phi, q, p0;
-  double white = 0.0;  ///< N^2 / (L dt)
-  double remainder = 0.0;
-};
+/// The states of recording r at block length.
 [[nodiscard]] BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r);
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,7 @@
 #pragma once
 /// A study in numbers: recordings on their time grids, the inputs that acted on each, and the error of every examined
 /// channel (spec/study.md). Everything is SI; only `Channel::rows` keeps the file's own numbers, for its lattice.
+#include "core/process/model.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/result.hpp"
 
@@ -60,12 +61,6 @@ struct StudyRecording {
   [[nodiscard]] double time_s(std::size_t i) const { return static_cast<double>(i) * dt_s; }
 };
 
-/// A process of the baseline by its registry name, its parameters in SI in declared order.
-struct GivenProcess {
-  std::string process;
-  std::vector<double> parameters;
-};
-
 /// An effect that a given model holds besides its processes: a cause with its parameters.
 struct GivenEffect {
   std::string cause;
@@ -77,12 +72,12 @@ struct GivenEffect {
 /// A simulation model: the one that is criticised, or the one that is simulated.
 struct Baseline {
   bool automatic = true;
-  std::vector<GivenProcess> processes;  ///< given baselines only
+  Model processes;  ///< given baselines only
   Quantity quantity = Quantity::AngularRate;
-  std::vector<std::string> channels;                            ///< columns it applies to; empty: all of its quantity
-  std::map<std::string, std::vector<GivenProcess>> by_channel;  ///< where columns have processes of their own
-  std::map<std::string, double> drift;                          ///< by column [SI/s]
-  std::map<std::string, double> bias;                           ///< by column [SI]; for simulations
+  std::vector<std::string> channels;        ///< columns it applies to; empty: all of its quantity
+  std::map<std::string, Model> by_channel;  ///< where columns have processes of their own
+  std::map<std::string, double> drift;      ///< by column [SI/s]
+  std::map<std::string, double> bias;       ///< by column [SI]; for simulations
   std::vector<GivenEffect> effects;
 };
 

@@ -3,7 +3,9 @@
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/investigate.hpp"
 #include "core/investigate/search/simulate_channel.hpp"
+#include "core/process/process_kind.hpp"
 #include "core/process/random.hpp"
+#include "core/process/sinusoid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +41,7 @@ Study study_of(const std::vector<double>& rate) {
       *make_study_recording(spec, {"gz"}, rate.size(), [&](std::size_t) { return std::span<const double>(rate); }));
   settle_channels(study);
   study.baseline.automatic = false;
-  study.baseline.processes = {{"white_noise", {0.1 * kDegree / std::sqrt(kRateHz)}}};
+  study.baseline.processes = {*make_process("white_noise", {0.1 * kDegree / std::sqrt(kRateHz)})};
   return study;
 }
 
@@ -52,7 +54,7 @@ TEST(GivenBaseline, KnowsItsSinusoids) {
   ASSERT_TRUE(without);
   ASSERT_EQ(without->findings.size(), 1U);
   EXPECT_EQ(without->findings[0].evidence.cause->name, "periodic_disturbance");
-  study.baseline.processes.push_back({"sinusoid", {0.04 * kDegree, 3.0}});
+  study.baseline.processes.push_back(*make_process("sinusoid", {0.04 * kDegree, 3.0}));
   const auto with = investigate(study);
   ASSERT_TRUE(with);
   EXPECT_TRUE(with->findings.empty());
@@ -64,11 +66,31 @@ TEST(GivenBaseline, FindsALineThatItsSinusoidIsNot) {
   const std::vector<double> rate = with_line();
   for (const std::vector<double>& other : {std::vector{0.04 * kDegree, 3.1}, std::vector{0.09 * kDegree, 3.0}}) {
     Study study = study_of(rate);
-    study.baseline.processes.push_back({"sinusoid", other});
+    study.baseline.processes.push_back(*make_process("sinusoid", other));
     const auto report = investigate(study);
     ASSERT_TRUE(report);
     ASSERT_EQ(report->findings.size(), 1U);
     EXPECT_EQ(report->findings[0].evidence.cause->name, "periodic_disturbance");
+  }
+}
+
+/// A process that is simulated and has no law by which it could be taken out of a recording.
+struct Hum : Sinusoid {
+  static constexpr std::string_view kName = "hum";
+};
+
+TEST(GivenBaseline, SaysWhichProcessItCannotHold) {
+  static const ProcessKind hum = kind_of<Hum>();
+  const std::vector<double> rate = with_line();
+  for (const bool of_column : {false, true}) {
+    Study study = study_of(rate);
+    (of_column ? study.baseline.by_channel["gz"] : study.baseline.processes).push_back({&hum, {0.04 * kDegree, 3.0}});
+    const auto report = investigate(study);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::InvalidArgument);
+    EXPECT_NE(report.error().message.find("the process hum, which an investigation can neither take out"),
+              std::string::npos)
+        << report.error().message;
   }
 }
 

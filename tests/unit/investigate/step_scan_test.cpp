@@ -1,7 +1,10 @@
 /// What the choice of a step's time is worth: the search's false alarms against those of a single look.
 #include "core/investigate/slow/step_scan.hpp"
 
+#include "core/process/gauss_markov.hpp"
 #include "core/process/random.hpp"
+#include "core/process/random_walk.hpp"
+#include "core/process/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,14 +29,14 @@ void draw(const SlowModel& model, double dt_s, Random& random, std::vector<doubl
   std::vector<double> state(model.components.size());
   for (std::size_t c = 0; c < state.size(); ++c) {
     const SlowComponent& component = model.components[c];
-    state[c] = component.kind == SlowKind::GaussMarkov ? std::sqrt(component.level) * random.normal() : 0.0;
+    state[c] = component.kind == &registered<GaussMarkov>() ? std::sqrt(component.level) * random.normal() : 0.0;
   }
   for (double& v : mean) {
     v = std::sqrt(model.white / dt_s) * random.normal();
     for (std::size_t c = 0; c < state.size(); ++c) {
       const SlowComponent& component = model.components[c];
       v += state[c];
-      if (component.kind == SlowKind::GaussMarkov) {
+      if (component.kind == &registered<GaussMarkov>()) {
         const double phi = std::exp(-component.beta * dt_s);
         state[c] = phi * state[c] + std::sqrt(component.level * (1.0 - phi * phi)) * random.normal();
       } else {
@@ -53,9 +56,9 @@ std::vector<Noise> noises() {
   for (Noise& noise : all) {
     noise.model.white = 1.0;
   }
-  all[1].model.components = {{SlowKind::GaussMarkov, 2.0, 0.03, {}}};
-  all[2].model.components = {{SlowKind::GaussMarkov, 3.0, 1.0, {}}};
-  all[3].model.components = {{SlowKind::RandomWalk, 0.01, 0.0, {}}};
+  all[1].model.components = {{&registered<GaussMarkov>(), 2.0, 0.03, {}}};
+  all[2].model.components = {{&registered<GaussMarkov>(), 3.0, 1.0, {}}};
+  all[3].model.components = {{&registered<RandomWalk>(), 0.01, 0.0, {}}};
   return all;
 }
 
