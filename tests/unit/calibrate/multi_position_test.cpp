@@ -3,6 +3,7 @@
 #include "core/calibrate/still_intervals.hpp"
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
+#include "tests/shared_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -114,15 +115,8 @@ TEST(StillIntervals, AreFoundBetweenMotions) {
 }
 
 std::optional<std::filesystem::path> shared_data() {
-  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): before any thread
-  const std::filesystem::path shared =
-      stated != nullptr ? std::filesystem::path(stated)
-                        : std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / ".." / "shared";
-  if (std::filesystem::exists(shared / "data")) {
-    return shared / "data";
-  }
-  std::cerr << "SKIPPED, NOT PASSED: no recordings at " << shared << "; set DRIFTLAB_SHARED to the shared folder\n";
-  return std::nullopt;
+  const auto shared = shared_folder();
+  return shared ? std::optional(*shared / "data") : std::nullopt;
 }
 
 /// Calibrates the accelerometer in three columns of a file from the rests in it.

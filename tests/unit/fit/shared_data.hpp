@@ -1,6 +1,8 @@
 #pragma once
 /// Recordings and reference values that are not part of the repository: found through DRIFTLAB_SHARED, default
 /// ../shared.
+#include "tests/shared_folder.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -17,20 +19,8 @@
 
 namespace driftlab::shared_data {
 
-/// The folder, or nothing, said loudly: a skipped test is not a passed one.
-inline std::optional<std::filesystem::path> folder() {
-  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): tests run one thread
-  std::filesystem::path path = stated != nullptr ? stated : "";
-  if (path.empty()) {
-    const std::filesystem::path here = std::filesystem::path(__FILE__).parent_path();
-    path = here / ".." / ".." / ".." / ".." / "shared";
-  }
-  if (std::filesystem::exists(path / "data")) {
-    return path;
-  }
-  std::cerr << "SKIPPED, NOT PASSED: no recordings at " << path << "; set DRIFTLAB_SHARED to the shared folder\n";
-  return std::nullopt;
-}
+/// The folder, or nothing, said loudly.
+inline std::optional<std::filesystem::path> folder() { return shared_folder(); }
 
 /// Columns of an xz-compressed NumPy file of little-endian doubles in C order.
 inline std::vector<std::vector<double>> read_npy_xz(const std::filesystem::path& path, std::size_t columns) {

@@ -3,13 +3,12 @@
 #include "core/navigate/paper_scenario.hpp"
 #include "schema/json/error_model.hpp"
 #include "schema/json/outage_evaluation.hpp"
+#include "tests/shared_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <numbers>
 #include <sstream>
 
@@ -71,15 +70,11 @@ TEST(ScenarioDocument, SurvivesTheWayThroughJson) {
 }
 
 TEST(ScenarioDocument, TheSharedPaperScenarioIsTheOneByName) {
-  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): tests run one thread
-  const std::filesystem::path folder =
-      stated != nullptr ? std::filesystem::path(stated)
-                        : std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / ".." / "shared";
-  std::ifstream file(folder / "spec" / "scenario-paper.json");
-  if (!file) {
-    std::cerr << "SKIPPED, NOT PASSED: no scenario under " << folder << "; set DRIFTLAB_SHARED to the shared folder\n";
+  const auto folder = shared_folder("spec");
+  if (!folder) {
     GTEST_SKIP() << "SKIPPED: no scenario; set DRIFTLAB_SHARED to the directory that holds spec/";
   }
+  const std::ifstream file(*folder / "spec" / "scenario-paper.json");
   std::ostringstream text;
   text << file.rdbuf();
   Faults faults;

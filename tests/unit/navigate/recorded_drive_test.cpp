@@ -4,13 +4,13 @@
 #include "core/calibrate/time_alignment.hpp"
 #include "core/navigate/outage_prediction.hpp"
 #include "core/signal/unit.hpp"
+#include "tests/shared_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -26,15 +26,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMilliG = 1e-3 * kStandardGravity;
 
 std::optional<std::filesystem::path> data_folder() {
-  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): tests run one thread
-  const std::filesystem::path path =
-      stated != nullptr ? std::filesystem::path(stated)
-                        : std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / ".." / "shared";
-  if (std::filesystem::exists(path / "data")) {
-    return path / "data";
-  }
-  std::cerr << "SKIPPED, NOT PASSED: no recordings at " << path << "; set DRIFTLAB_SHARED to the shared folder\n";
-  return std::nullopt;
+  const auto shared = shared_folder();
+  return shared ? std::optional(*shared / "data") : std::nullopt;
 }
 
 /// Rows of an NPY file of little-endian doubles, C or Fortran order, one or two dimensions.

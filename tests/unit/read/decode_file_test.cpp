@@ -1,4 +1,5 @@
 #include "core/read/column_file.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -119,11 +120,8 @@ TEST(Unknown, IsNamedByWhatItLooksLike) {
 
 /// Where the recordings lie that may be used but not distributed; empty without them.
 std::filesystem::path shared_data() {
-  const char* const stated = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): before any thread
-  const std::filesystem::path shared =
-      stated != nullptr ? std::filesystem::path(stated)
-                        : std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / ".." / "shared";
-  return std::filesystem::exists(shared / "data") ? shared / "data" : std::filesystem::path();
+  const auto shared = shared_folder();
+  return shared ? *shared / "data" : std::filesystem::path();
 }
 
 TEST(RealRecordings, DecodeToTheirKnownShapeAndValues) {
