@@ -280,6 +280,8 @@ class Tables(JobTest):
         daemon.finished(daemon.characterise(*recordings, models=["WN", "WN+GM"]).json["id"])
         cls.recordings = recordings
         cls.target = "/v1/parameter-tables?" + urllib.parse.urlencode({"device": 'phone, "07"', "sensor": "gyroscope", "axis": "z"})
+        pooling = daemon.get(cls.target, Prefer="wait=60").json["pooling"]
+        assert pooling["state"] == "done", pooling
 
     def test_rows_are_conditions_and_replicates_share_one(self) -> None:
         table = self.expect(200, self.daemon.get(self.target)).json
@@ -350,7 +352,8 @@ class Tables(JobTest):
         self.assertIn(conflict, document["replicates"][0]["reason"])
         self.assertEqual(document["trends"], [])
         for method in ("av", "gmwm"):
-            refused = self.problem(400, "invalid_argument", self.daemon.get(f"/v1/parameter-tables?device=mixed&axis=z&method={method}"))
+            answer = self.daemon.get(f"/v1/parameter-tables?device=mixed&axis=z&method={method}", Prefer="wait=60")
+            refused = self.problem(400, "invalid_argument", answer)
             self.assertIn(conflict, str(refused["detail"]))
 
     def test_faults_name_the_parameter(self) -> None:

@@ -87,7 +87,7 @@ class OutageEvaluations(DaemonTest):
                                                           rate_hz=100, columns=samples.GYRO_Z)).json["id"]
                       for seed, condition in ((31, "static"), (32, "constant_rate:z:20:deg/s"))]
         self.daemon.finished(self.daemon.characterise(*recordings, models=["WN"]).json["id"])
-        table = self.expect(200, self.daemon.get("/v1/parameter-tables?device=table&axis=z")).json
+        table = self.expect(200, self.daemon.get("/v1/parameter-tables?device=table&axis=z", Prefer="wait=60")).json
         scenario = copy.deepcopy(SCENARIO)
         flat = {"processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}], "constant_bias_sd_deg_s": 0.05}
         for schedule, bands in (("switched", 2), ("continuous", 21)):
