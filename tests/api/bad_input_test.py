@@ -186,8 +186,9 @@ class Refused(DaemonTest):
         self.assertLess(time.monotonic() - started, 60)
 
     def test_foreign_formats_are_named(self) -> None:
-        for content in (b"\x89PNG\r\n\x1a\n" + bytes(99), b"PK\x03\x04" + bytes(99), b"\x7fELF" + bytes(99), b"SQLite format 3\0" + bytes(99)):
+        for content in (b"\x89PNG\r\n\x1a\n" + bytes(99), b"PK\x03\x04" + bytes(99), b"\x7fELF" + bytes(99)):
             self.refused(content, 415, "unsupported_format")
+        self.refused(b"SQLite format 3\0" + bytes(99), 422, "shape_mismatch")  # read as a ROS 2 bag, which it is not
         self.assertGreaterEqual(self.daemon.upload(os.urandom(4096), device="never-seen", rate_hz=100).status, 400)
         self.assertGreaterEqual(self.daemon.upload(b"hello\nworld\n", device="never-seen", rate_hz=100).status, 400)
 
