@@ -48,7 +48,7 @@ ReportedFit reported(const ModelFit& fit, const Unit& unit) {
   told_fit.model = fit.model;
   told_fit.robust = fit.robust;
   for (const FittedProcess& process : fit.processes) {
-    ReportedProcess told_process{process.process, {}};
+    ReportedProcess told_process{std::string(process.kind->name), {}};
     for (const FittedParameter& parameter : process.parameters) {
       const Dimension dimension = parameter.channel_power == 0 ? Dimension::One : unit.dimension;
       told_process.parameters.emplace_back(

@@ -63,8 +63,8 @@ ReportedValues model_cells(const ReportedFit& fit, const std::string& channel_un
   for (const ReportedProcess& process : fit.processes) {
     const std::string& kind = process.process;
     const int index = ++seen[kind];
-    // Gauss-Markov processes and sinusoids may occur any number of times, so they always carry a number.
-    const bool numbered = kind == "gauss_markov" || kind == "sinusoid";
+    const ProcessKind* const known = find_process(kind);
+    const bool numbered = known != nullptr && known->repeats;  // may occur any number of times: always carries a number
     const std::string prefix = kind + (numbered ? "_" + std::to_string(index) : "") + ".";
     for (const auto& [name, value] : process.parameters) {
       cells.emplace_back(prefix + name, with_unit(value, declared_unit(channel_unit, kind, name)));

@@ -2,6 +2,7 @@
 /// The characterisation of one channel: everything driftlab says about the stochastic errors of one sensor axis in one
 /// recording. Values only; `characterise_channel` (core/fit/characterise.hpp) makes it, schema/json writes it down
 /// (spec/results.md), the parameter table reads it. All numbers are SI: a channel of angular rate is in rad/s.
+#include "core/process/process.hpp"
 #include "core/signal/estimate.hpp"
 
 #include <cstddef>
@@ -60,9 +61,10 @@ struct FittedParameter {
   double upper_limit = std::numeric_limits<double>::infinity();
 };
 
+/// A process with estimates in the place of values (core/process/process.hpp).
 struct FittedProcess {
-  std::string process;  ///< registry name: `white_noise`, `gauss_markov`, ...
-  std::vector<FittedParameter> parameters;
+  const ProcessKind* kind = nullptr;
+  std::vector<FittedParameter> parameters;  ///< as declared by kind->parameters
 };
 
 /// Over-identification test of a fit: statistic ~ chi-square(dof) where the model is right (Hansen 1982); dof is the

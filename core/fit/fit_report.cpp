@@ -99,7 +99,7 @@ std::vector<FittedProcess> report_with(Candidate& candidate, double unit, Interv
   std::size_t active_index = 0;
   for (const Process& process : candidate.fit.model) {
     FittedProcess fitted;
-    fitted.process = process.kind->name;
+    fitted.kind = process.kind;
     const bool alive = process.parameters[0] > 0.0;
     bool level_known = alive;
     for (std::size_t k = 0; k < process.parameters.size(); ++k) {
@@ -192,7 +192,8 @@ ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalM
     for (const FittedParameter& parameter : fit.processes[p].parameters) {
       if (!parameter.estimate) {
         unidentified = true;
-        fit.warnings.push_back(fit.processes[p].process + "." + parameter.name + ": " + parameter.reason);
+        fit.warnings.push_back(std::string(fit.processes[p].kind->name) + "." + parameter.name + ": " +
+                               parameter.reason);
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include "core/campaign/reported_channel.hpp"
 #include "core/fit/noise_equivalents.hpp"
+#include "core/process/registry.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 
@@ -95,8 +96,8 @@ Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimensio
   Json document = Json::object();
   for (const FittedProcess& process : channel.fits[channel.best].processes) {
     const FittedParameter& level = process.parameters.front();
-    const bool white = process.process == "white_noise";
-    if (!level.estimate || (!white && process.process != "random_walk")) {
+    const bool white = process.kind->white_square != nullptr;
+    if (!level.estimate || (!white && process.kind != find_process("random_walk"))) {
       continue;
     }
     Json all = Json::array();

@@ -1,6 +1,7 @@
 #include "core/analysis/simulate.hpp"
 
 #include "core/analysis/evaluate_outages.hpp"
+#include "core/process/model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ TEST(SimulatePreset, NamesWhatIsNotThere) {
 TEST(SimulateModel, LeavesOutAbsentSamplesAndNeverStepsBack) {
   investigate::Baseline model;
   model.automatic = false;
-  model.processes = {{"white_noise", {1e-3}}};
+  model.processes = {make_process("white_noise", {1e-3}).value()};
   const auto whole = simulate_model(model, "", at("static"));
   ASSERT_TRUE(whole) << whole.error().message;
   EXPECT_EQ(whole->table.columns, (std::vector<std::string>{"t [s]", "gz [deg/s]"}));
@@ -62,7 +63,7 @@ TEST(SimulateModel, SaysWhatItCannotBringAbout) {
 
 TEST(SimulateModel, RefusesAChannelThatTheModelDoesNotHave) {
   investigate::Baseline model;
-  model.by_channel["gx"] = {{"white_noise", {1e-3}}};
+  model.by_channel["gx"] = {make_process("white_noise", {1e-3}).value()};
   const auto none = simulate_model(model, "gy", at("static"));
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::NotFound);
