@@ -61,7 +61,8 @@ class Local(unittest.TestCase):
 
     def test_what_the_program_says_beside_its_result_is_a_warning(self) -> None:
         model = {"processes": [{"process": "white_noise", "params": {"N": {"value": 0.01, "unit": "deg/sqrt(s)"}}}],
-                 "effects": [{"cause": "temperature_bias", "params": {"coefficient": {"value": 1, "unit": "deg/s/degC"}, "lag_s": {"value": 0, "unit": "s"}}}]}
+                 "effects": [{"cause": "temperature_bias", "params": {"coefficient": {"value": 1, "unit": "deg/s/degC"},
+                                                                      "lag_s": {"value": 0, "unit": "s"}}}]}
         with self.assertWarnsRegex(local.DriftlabWarning, "temperature_bias"):
             local.simulate(model={"extended_model": model}, duration_s=100)
         with warnings.catch_warnings():
