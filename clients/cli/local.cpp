@@ -31,8 +31,7 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
   document["study"] = inputs.study;
   const RunControl control{interrupt_token(),
                            [&](std::string_view stage, double f) { bar.show(stage, 0.9 + 0.1 * f); }};
-  const auto sensors = sensors_of(document);
-  const auto summary = sensors ? summarise_campaign(inputs.device, *sensors, control) : fail(sensors.error());
+  const auto summary = summarise_campaign(inputs.device, sensors_of(*found), control);
   if (!summary) {
     const Exit exit = summary.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
     return tl::unexpected(Failure{summary.error(), exit});

@@ -68,4 +68,15 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
   return found;
 }
 
+std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings) {
+  std::vector<SensorSources> sensors;
+  for (const CharacterisedRecording& recording : recordings) {
+    for (const CharacterisedChannel& channel : recording.channels) {
+      add_source(sensors, {recording.spec.id, to_text(recording.spec.condition),
+                           reported(channel.column, channel.role, channel.result)});
+    }
+  }
+  return sensors;
+}
+
 }  // namespace driftlab

@@ -7,6 +7,7 @@
 /// (core/fit/characterise.hpp).
 #include "core/analysis/recording_source.hpp"
 #include "core/calibrate/aligned_reference.hpp"
+#include "core/campaign/sensor_sources.hpp"
 #include "core/fit/characterise.hpp"
 
 #include <optional>
@@ -40,5 +41,9 @@ struct CharacterisedRecording {
 [[nodiscard]] Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
                                                                        const CharacteriseOptions& options,
                                                                        const RunControl& control);
+
+/// Their channels by sensor axis, in order of appearance: what a campaign's summary is made of
+/// (core/campaign/campaign_summary.hpp).
+[[nodiscard]] std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings);
 
 }  // namespace driftlab

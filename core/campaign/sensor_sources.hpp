@@ -27,6 +27,10 @@ struct SensorSources {
   std::vector<TableSource> sources;
 };
 
+/// Puts a source to those of its sensor axis, which is added where it is not there yet. Channels that nobody named by
+/// axis stand each for themselves, under their column name.
+void add_source(std::vector<SensorSources>& sensors, TableSource source);
+
 /// Why the channels cannot be put together: a sentence that names two units which do not convert into each other. Empty
 /// where all units are of one dimension.
 [[nodiscard]] std::string unit_conflict(const std::vector<TableSource>& sources);

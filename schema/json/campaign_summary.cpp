@@ -5,23 +5,8 @@
 #include "schema/json/reported_channel.hpp"
 #include "schema/json/trend_table.hpp"
 
-#include <algorithm>
-
 namespace driftlab {
 namespace {
-
-void add_source(std::vector<SensorSources>& sensors, TableSource source) {
-  const ReportedChannel& channel = source.channel;
-  const std::string& quantity = channel.quantity;
-  const std::string& axis = channel.axis.empty() ? channel.channel : channel.axis;
-  auto sensor = std::find_if(sensors.begin(), sensors.end(),
-                             [&](const SensorSources& s) { return s.quantity == quantity && s.axis == axis; });
-  if (sensor == sensors.end()) {
-    sensors.push_back({quantity, axis, {}});
-    sensor = sensors.end() - 1;
-  }
-  sensor->sources.push_back(std::move(source));
-}
 
 Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
   std::vector<SensorSources> sensors;

@@ -149,7 +149,7 @@ class Characterise final : public JobKind {
     Json document = characterisation_document(std::move(documents));
     document["study"] = request["inputs"].value("study", Json());
     const RunControl last = part_of(control, kRecordingsShare, 1.0);
-    if (auto added = add_own_summary(document, context, last, results); !added) {
+    if (auto added = add_own_summary(document, *found, context, last, results); !added) {
       return fail(added.error());
     }
     results.document_json = to_text(document);

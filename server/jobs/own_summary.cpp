@@ -8,12 +8,10 @@ namespace driftlab::server {
 namespace {
 
 /// The job's own sources with the ids under which they will be stored.
-Result<std::vector<SensorSources>> own_sensors(const Json& document, const JobResults& results) {
-  auto sensors = sensors_of(document);
-  if (!sensors) {
-    return sensors;
-  }
-  for (SensorSources& sensor : *sensors) {
+std::vector<SensorSources> own_sensors(const std::vector<CharacterisedRecording>& recordings,
+                                       const JobResults& results) {
+  std::vector<SensorSources> sensors = sensors_of(recordings);
+  for (SensorSources& sensor : sensors) {
     for (TableSource& source : sensor.sources) {
       const auto row = std::find_if(results.channels.begin(), results.channels.end(), [&](const ChannelResult& r) {
         return r.recording_id == source.recording_id && r.channel == source.channel.channel;
@@ -26,7 +24,8 @@ Result<std::vector<SensorSources>> own_sensors(const Json& document, const JobRe
 
 }  // namespace
 
-Status add_own_summary(Json& document, JobContext& context, const RunControl& control, const JobResults& results) {
+Status add_own_summary(Json& document, const std::vector<CharacterisedRecording>& recordings, JobContext& context,
+                       const RunControl& control, const JobResults& results) {
   const bool one_device = std::all_of(results.channels.begin(), results.channels.end(), [&](const ChannelResult& r) {
     return r.device_id == results.channels.front().device_id;
   });
@@ -39,8 +38,7 @@ Status add_own_summary(Json& document, JobContext& context, const RunControl& co
   if (!device) {
     return fail(device.error());
   }
-  const auto sensors = own_sensors(document, results);
-  const auto summary = sensors ? summarise_campaign(device->name, *sensors, control) : fail(sensors.error());
+  const auto summary = summarise_campaign(device->name, own_sensors(recordings, results), control);
   if (!summary) {
     return fail(summary.error());
   }
