@@ -50,7 +50,7 @@ ReportedValues allan_cells(const ReportedChannel& channel) {
   ReportedValues cells;
   for (const auto& [name, halves] : kSecondPowerHalves) {
     const auto found = std::find_if(channel.allan.begin(), channel.allan.end(),
-                                    [name = name](const auto& parameter) { return parameter.first == name; });
+                                    [wanted = name](const auto& parameter) { return parameter.first == wanted; });
     ReportedValue cell = found == channel.allan.end() ? ReportedValue{} : found->second;
     cells.emplace_back(name, with_unit(std::move(cell), declared_unit(channel.unit, 1, halves)));
   }
