@@ -1,6 +1,7 @@
 /// Decoding speed from memory on one core: bytes per second of text, without the disk.
 #include "core/read/decimal.hpp"
 #include "core/read/format.hpp"
+#include "tests/bench/dropping_sink.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -12,24 +13,7 @@
 
 namespace {
 
-using driftlab::ColumnLayout;
-using driftlab::ColumnSink;
-using driftlab::Status;
-
-/// Takes every value and keeps none.
-class DroppingSink final : public ColumnSink {
- public:
-  Status begin(const ColumnLayout&) override { return {}; }
-  Status rows(std::span<const double> values) override {
-    benchmark::DoNotOptimize(values.data());
-    return {};
-  }
-  Status column(std::size_t, std::span<const double> values) override {
-    benchmark::DoNotOptimize(values.data());
-    return {};
-  }
-  void note(std::string) override {}
-};
+using driftlab::testing::DroppingSink;
 
 /// A six-axis recording with a time column, each value with `digits` significant digits in the notation of `format`.
 std::string make_csv(std::chars_format format, int precision) {

@@ -1,6 +1,7 @@
 /// Decoding speed of the binary recordings from memory on one core, in bytes of the file a second: made logs of 100 000
 /// samples, and where DRIFTLAB_SHARED names the folder of real recordings, those.
 #include "core/read/format.hpp"
+#include "tests/bench/dropping_sink.hpp"
 #include "tests/unit/read/inertial_samples.hpp"
 #include "tests/unit/read/ros_samples.hpp"
 
@@ -18,21 +19,6 @@ using namespace driftlab;
 using namespace driftlab::testing;
 
 constexpr std::size_t kRows = 100'000;
-
-/// Takes every value and keeps none.
-class DroppingSink final : public ColumnSink {
- public:
-  Status begin(const ColumnLayout&) override { return {}; }
-  Status rows(std::span<const double> values) override {
-    benchmark::DoNotOptimize(values.data());
-    return {};
-  }
-  Status column(std::size_t, std::span<const double> values) override {
-    benchmark::DoNotOptimize(values.data());
-    return {};
-  }
-  void note(std::string) override {}
-};
 
 void decode(benchmark::State& state, const std::string& bytes) {
   for (auto _ : state) {
