@@ -1,5 +1,5 @@
 #pragma once
-/// Recordings and reference values that are not part of the repository: where they lie, or that they do not.
+/// Recordings that are not part of the repository: where they lie, or that they do not.
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>

@@ -15,7 +15,7 @@ from suite import SKIPPED, DaemonTest
 
 SHARED = Path(os.environ.get("DRIFTLAB_SHARED") or Path(__file__).resolve().parents[3] / "shared")
 RECORDING = SHARED / "data/adis_16405_imu1.npy.xz"
-REFERENCE = SHARED / "reference/adis_16405_imu1.oadev.json"
+REFERENCE = Path(__file__).resolve().parents[1] / "data/reference/adis_16405_imu1.oadev.json"
 AXES = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
 
 
@@ -50,7 +50,7 @@ class Adis16405(DaemonTest):
 
 
 if __name__ == "__main__":
-    if not (RECORDING.is_file() and REFERENCE.is_file()):
+    if not RECORDING.is_file():
         print(f"SKIPPED: the real recording adis_16405_imu1, for it is not in {SHARED} (set DRIFTLAB_SHARED)")
         sys.exit(SKIPPED)
     unittest.main()

@@ -1,6 +1,6 @@
 // Theoretical wavelet variances against tables made in 60-digit arithmetic (values stored as numbers).
 #include "core/process/model.hpp"
-#include "tests/unit/fit/shared_data.hpp"
+#include "tests/reference_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,11 +30,7 @@ Process process_of(const std::string& name, const nlohmann::json& params) {
 }
 
 TEST(ReferenceClosedForms, TenDigitsAtEveryScaleOfEveryTable) {
-  const auto shared = shared_data::folder();
-  if (!shared) {
-    GTEST_SKIP() << "SKIPPED: no reference values; set DRIFTLAB_SHARED to the directory that holds reference/";
-  }
-  const auto file = shared_data::read_json(*shared / "reference/theoretical_haar_wv.json");
+  const auto file = reference_values("theoretical_haar_wv.json");
   int compared = 0;
   for (const auto& table : file["tables"]) {
     const std::string name = table["process"];

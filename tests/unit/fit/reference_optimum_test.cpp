@@ -1,7 +1,7 @@
 // The optimiser against the best objective anybody found on 19 real channels (values stored as numbers): same wavelet
 // variances, same weights, same models.
 #include "core/fit/gmwm.hpp"
-#include "tests/unit/fit/shared_data.hpp"
+#include "tests/reference_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,13 +51,9 @@ Problem problem_of(const nlohmann::json& axis, double samples) {
 }
 
 TEST(ReferenceOptimum, NoObjectiveAboveTheBestKnownAndNoLargerModelWorse) {
-  const auto shared = shared_data::folder();
-  if (!shared) {
-    GTEST_SKIP() << "SKIPPED: no reference values; set DRIFTLAB_SHARED to the directory that holds reference/";
-  }
   int fits = 0;
   for (const char* recording : {"adis_16405_imu1", "adis_16405_imu2", "adis_16405_imu3", "cont.imu1"}) {
-    const auto file = shared_data::read_json(*shared / ("reference/" + std::string(recording) + ".smac.json"));
+    const auto file = reference_values(std::string(recording) + ".smac.json");
     for (const auto& [axis_name, axis] : file["axes"].items()) {
       const Problem problem = problem_of(axis, file["n"].get<double>());
       std::map<std::string, double> found;

@@ -1,9 +1,6 @@
 #pragma once
-/// Recordings and reference values that are not part of the repository: found through DRIFTLAB_SHARED, default
-/// ../shared.
+/// Recordings that are not part of the repository: found through DRIFTLAB_SHARED, default ../shared.
 #include "tests/shared_folder.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <cstdio>
@@ -44,11 +41,6 @@ inline std::vector<std::vector<double>> read_npy_xz(const std::filesystem::path&
     }
   }
   return split;
-}
-
-inline nlohmann::json read_json(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return nlohmann::json::parse(file);
 }
 
 inline const std::vector<std::string>& adis_axes() {
