@@ -1,0 +1,202 @@
+#pragma once
+/// Simulated regression runs: six axes whose sessions scatter by the law that the comparison assumes, with a scale of
+/// the rig's own, ln k ~ N(0, 0.5), and Student's t5 over the sessions (spec/regression.md, section 10).
+#include "core/campaign/regression/verdict.hpp"
+#include "core/process/distributions.hpp"
+#include "core/process/model.hpp"
+#include "core/variance/haar_covariance.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace driftlab::accuracy {
+
+/// One axis of the simulated device: white noise and a random walk, 100 Hz.
+class Rig {
+ public:
+  static constexpr double kDt = 0.01;
+  static constexpr std::size_t kAxes = 6;
+
+  explicit Rig(double duration_s, double rig_factor_sd = 0.5) : factor_sd_(rig_factor_sd) {
+    model_ = {*make_process("white_noise", {1.0}), *make_process("flicker_noise", {0.8}),
+              *make_process("random_walk", {0.02})};
+    const auto samples = static_cast<std::size_t>(duration_s / kDt);
+    std::vector<std::size_t> half;
+    for (std::size_t m = 1; 2 * m <= samples; m *= 2) {
+      half.push_back(m);
+    }
+    covariance_ = relative_covariance(half, samples);
+    std::size_t scales = 0;
+    while (scales < half.size() &&
+           2.0 / covariance_(static_cast<Eigen::Index>(scales), static_cast<Eigen::Index>(scales)) >= 10.0) {
+      ++scales;
+    }
+    const auto rows = static_cast<Eigen::Index>(scales);
+    const Eigen::MatrixXd sampling = 0.25 * covariance_.topLeftCorner(rows, rows);
+    root_ = Eigen::LLT<Eigen::MatrixXd>(sampling).matrixL();
+    sampling_ = std::make_shared<regression::Sampling>(kAxes, sampling);
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const bool gyroscope = axis < 3;
+      regression::Unit unit;
+      unit.tau0 = gyroscope ? regression::Tau0{0.010, 0.012, 0.012} : regression::Tau0{0.015, 0.025, 0.025};
+      unit.first = axis * scales;
+      unit.count = scales;
+      unit.levels = {{"white_noise", "N", std::log(gyroscope ? 1.1 : 1.2), true},
+                     {"flicker_noise", "B", std::log(1.25), false},
+                     {"random_walk", "K", std::log(1.5), false}};
+      unit.modelled.resize(rows);
+      unit.sensitivity.resize(rows, 3);
+      for (std::size_t j = 0; j < scales; ++j) {
+        const auto m = static_cast<double>(half[j]);
+        const double tau = m * kDt;
+        const double total = haar_variance(model_, m, kDt);
+        unit.modelled(static_cast<Eigen::Index>(j)) = 0.5 * std::log(total);
+        for (std::size_t p = 0; p < 3; ++p) {
+          unit.sensitivity(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(p)) =
+              model_[p].haar_variance(m, kDt) / total;
+        }
+        const double percent = tau <= 1.0 ? (gyroscope ? 10.0 : 20.0) : tau <= 10.0 ? 25.0 : 50.0;
+        design_.rows.push_back({axis, static_cast<int>(j), tau, std::log(1.0 + percent / 100.0)});
+      }
+      design_.units.push_back(std::move(unit));
+    }
+    terms_ = regression::scatter_terms(design_);
+    common_ = root(terms_.common);
+    local_ = root(terms_.local);
+  }
+
+  /// What is added to the candidate's rows.
+  using Change = std::function<double(const regression::Row&)>;
+
+  [[nodiscard]] const regression::Design& rows() const { return design_; }
+  /// 1/2 ln nu of the axis at half length m.
+  [[nodiscard]] double variance(double m) const { return haar_variance(model_, m, kDt); }
+  [[nodiscard]] double white(double m) const { return model_[0].haar_variance(m, kDt); }
+
+  /// One rig and its sessions. `scale`: the rig is so many times as restless as the prior; 0: drawn.
+  [[nodiscard]] regression::Design draw(Random& random, std::size_t baseline, std::size_t candidate,
+                                        std::size_t history, const Change& change, double scale = 0.0) const {
+    regression::Design design = design_;
+    const double kl = scale > 0.0 ? scale : std::exp(factor_sd_ * random.normal());
+    const double ks = scale > 0.0 ? scale : std::exp(factor_sd_ * random.normal());
+    const auto add = [&](regression::Arm arm, std::size_t count) {
+      for (std::size_t r = 0; r < count; ++r) {
+        design.sessions.push_back(session(random, arm, kl, ks));
+        for (Eigen::Index row = 0; arm == regression::Arm::Candidate && row < design.size(); ++row) {
+          design.sessions.back().x(row) += change(design.rows[static_cast<std::size_t>(row)]);
+        }
+      }
+    };
+    add(regression::Arm::Baseline, baseline);
+    add(regression::Arm::Candidate, candidate);
+    add(regression::Arm::History, history);
+    return design;
+  }
+
+ private:
+  static Eigen::MatrixXd root(const Eigen::MatrixXd& a) {
+    const Eigen::MatrixXd raised = a + 1e-12 * a.trace() * Eigen::MatrixXd::Identity(a.rows(), a.cols());
+    return Eigen::LLT<Eigen::MatrixXd>(raised).matrixL();
+  }
+
+  [[nodiscard]] Eigen::MatrixXd relative_covariance(const std::vector<std::size_t>& half, std::size_t samples) const {
+    HaarCovariance plan(half, samples, kDt);
+    Eigen::MatrixXd covariance = plan.matrix(model_);
+    Eigen::VectorXd nu(covariance.rows());
+    for (Eigen::Index j = 0; j < nu.size(); ++j) {
+      nu(j) = haar_variance(model_, static_cast<double>(half[static_cast<std::size_t>(j)]), kDt);
+    }
+    covariance = nu.cwiseInverse().asDiagonal() * covariance * nu.cwiseInverse().asDiagonal();
+    for (Eigen::Index j = 0; j < nu.size(); ++j) {
+      covariance(j, j) = trigamma(1.0 / covariance(j, j));
+    }
+    return covariance;
+  }
+
+  [[nodiscard]] regression::Session session(Random& random, regression::Arm arm, double kl, double ks) const {
+    regression::Session session;
+    session.arm = arm;
+    session.has.assign(design_.rows.size(), true);
+    session.sampling = sampling_;
+    session.x.resize(design_.size());
+    const auto normals = [&random](Eigen::Index count) {
+      Eigen::VectorXd z(count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        z(i) = random.normal();
+      }
+      return z;
+    };
+    for (const regression::Unit& unit : design_.units) {
+      const auto count = static_cast<Eigen::Index>(unit.count);
+      session.x.segment(static_cast<Eigen::Index>(unit.first), count) = unit.modelled + root_ * normals(count);
+    }
+    double chi_square = 0.0;
+    for (int i = 0; i < 5; ++i) {
+      const double z = random.normal();
+      chi_square += z * z;
+    }
+    const double student = std::sqrt(3.0 / chi_square);
+    session.x += student * (kl * (common_ * normals(design_.size())) + ks * (local_ * normals(design_.size())));
+    return session;
+  }
+
+  double factor_sd_;
+  Model model_;
+  Eigen::MatrixXd covariance_;
+  Eigen::MatrixXd root_;
+  std::shared_ptr<const regression::Sampling> sampling_;
+  regression::Design design_;
+  regression::ScatterTerms terms_;
+  Eigen::MatrixXd common_;
+  Eigen::MatrixXd local_;
+};
+
+/// Shares of verdicts.
+struct Shares {
+  std::size_t runs = 0;
+  std::size_t pass = 0;
+  std::size_t fail = 0;
+  std::vector<double> scope_s;
+
+  void add(const regression::Comparison& comparison) {
+    ++runs;
+    pass += comparison.verdict == regression::Verdict::Pass ? 1U : 0U;
+    fail += comparison.verdict == regression::Verdict::Fail ? 1U : 0U;
+    scope_s.push_back(comparison.gate.scope_s);
+  }
+  [[nodiscard]] double percent(std::size_t count) const {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(runs);
+  }
+};
+
+struct Sessions {
+  std::size_t baseline = 3;
+  std::size_t candidate = 3;
+  std::size_t history = 0;
+};
+
+/// All alpha in the noise family, one look: as the table of the specification.
+inline regression::TestSettings table_settings() {
+  regression::TestSettings settings;
+  settings.look_share = 1.0;
+  settings.event_alpha = 0.0;
+  return settings;
+}
+
+inline Shares run_many(const Rig& rig, const Sessions& sessions, const Rig::Change& change, std::size_t runs,
+                       std::uint64_t seed, const regression::TestSettings& settings = table_settings(),
+                       double scale = 0.0) {
+  Shares shares;
+  for (std::size_t run = 0; run < runs; ++run) {
+    Random random(seed, run);
+    shares.add(regression::compare(
+        rig.draw(random, sessions.baseline, sessions.candidate, sessions.history, change, scale), settings));
+  }
+  return shares;
+}
+
+}  // namespace driftlab::accuracy
