@@ -136,17 +136,19 @@ CovarianceLaw FittedVariances::covariance(HaarCovariance& plan) const {
   for (std::size_t j = 0; j < efficiency.size(); ++j) {
     raise(static_cast<Eigen::Index>(j)) = 1.0 / std::sqrt(efficiency[j]);
   }
-  return [&plan, raise, kurtosis = shape](const Model& model) -> Eigen::MatrixXd {
+  return [&plan, raise, kurtosis = shape, observed = scatter](const Model& model) -> Eigen::MatrixXd {
     Eigen::MatrixXd covariance = plan.matrix(model);
     add_kurtosis(covariance, model, plan.half(), plan.samples(), plan.dt_s(), kurtosis);
+    observed.apply(covariance);
     return raise.asDiagonal() * covariance * raise.asDiagonal();
   };
 }
 
 FittedVariances fitted_variances(const ClassicalVariances& classical, const VarianceIntervals& intervals,
                                  const RobustVariances& robust, HaarCovariance& plan) {
-  FittedVariances fitted{classical.curve.variance, intervals.estimate_variance.cwiseSqrt(), classical.efficiency,
-                         intervals.shape, false};
+  FittedVariances fitted{
+      classical.curve.variance, intervals.estimate_variance.cwiseSqrt(), classical.efficiency, intervals.shape, false,
+      intervals.scatter};
   if (!robust.sample_wise || robust.contamination.verdict != name_of(ContaminationVerdict::Contaminated)) {
     return fitted;
   }
@@ -163,6 +165,7 @@ FittedVariances fitted_variances(const ClassicalVariances& classical, const Vari
   fitted.sd = own.estimate_variance.cwiseSqrt();
   fitted.efficiency = robust.efficiency;
   fitted.shape = own.shape;
+  fitted.scatter = {};
   fitted.robust = true;
   return fitted;
 }

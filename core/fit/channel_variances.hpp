@@ -70,6 +70,7 @@ struct FittedVariances {
   std::vector<double> efficiency;  ///< empty: 1
   NoiseShape shape;                ///< kurtosis of the noise; that of robust variances is Gaussian
   bool robust = false;
+  ScatterCorrection scatter = {};  ///< of the classical variances, where the record scatters more than linear noise
 
   /// Covariance under a model: that of a complete Gaussian record, with each standard deviation divided by the square
   /// root of its efficiency.

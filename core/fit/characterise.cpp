@@ -6,6 +6,7 @@
 #include "core/fit/channel_variances.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
+#include "core/variance/empirical_scatter.hpp"
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/haar_variance.hpp"
@@ -227,6 +228,12 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   VarianceIntervals gaussian = excess == 0.0 ? intervals : variance_intervals(curve, plan);
   lower_degrees(classical.efficiency, curve, intervals);
   lower_degrees(classical.efficiency, curve, gaussian);
+  if (classical.efficiency.empty()) {
+    const EmpiricalScatter seen = observe_scatter(samples, mean, curve, plan, intervals, control);
+    if (seen.departs) {
+      result.warnings.push_back(departure_sentence(seen));
+    }
+  }
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
   result.haar.efficiency = classical.efficiency;
   control.report("robust variance", 0.25);

@@ -13,7 +13,7 @@
 namespace driftlab {
 
 /// This number is raised whenever the same input and settings may give other figures. It is stored with every result.
-inline constexpr int kAlgorithmVersion = 6;
+inline constexpr int kAlgorithmVersion = 7;
 
 /// Which models are compared.
 enum class ModelSearch {
