@@ -70,7 +70,7 @@ Equation8 equation_8(const WaveletMoments& moments, const GmwmSolution& solution
   const Eigen::VectorXd weight = sd.cwiseInverse();
   const Eigen::VectorXd error = weight.cwiseProduct(moments.nu - modelled_variance(moments, active));
   Eigen::MatrixXd derivative(moments.nu.size(), static_cast<Eigen::Index>(count_parameters(active)));
-  std::array<double, 4> gradient{};
+  std::array<double, kMostParameters> gradient{};
   for (Eigen::Index j = 0; j < derivative.rows(); ++j) {
     Eigen::Index column = 0;
     for (const Process& process : active) {

@@ -16,9 +16,10 @@ namespace {
 constexpr int kGridOne = 48;
 constexpr int kGridThree = 20;
 
-/// One shape of the structure: which process it belongs to, and where to look for it.
+/// One shape of the structure: which parameter of which process it is, and where to look for it.
 struct ShapeSlot {
   std::size_t process = 0;
+  std::size_t parameter = 0;
   double log_low = 0.0;
   double log_high = 0.0;
 };
@@ -28,15 +29,15 @@ class Search {
   Search(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights)
       : moments_(moments), structure_(structure), whitening_(weights.whitening), target_(whitening_ * moments.nu) {
     for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
-      if (structure.kinds[k]->has_shape()) {
-        const auto [low, high] = structure.kinds[k]->shape_range(moments.dt_s, moments.samples);
-        slots_.push_back({k, std::log(low), std::log(high)});
+      for (std::size_t shape = 0; shape < structure.kinds[k]->shape_count(); ++shape) {
+        const auto [low, high] = structure.kinds[k]->shape_range(shape, moments.dt_s, moments.samples);
+        slots_.push_back({k, shape + 1, std::log(low), std::log(high)});
       }
     }
     fixed_.resize(target_.size(), static_cast<Eigen::Index>(structure.kinds.size()));
     for (std::size_t k = 0; k < structure.kinds.size(); ++k) {
       if (!structure.kinds[k]->has_shape()) {
-        fixed_.col(static_cast<Eigen::Index>(k)) = column(k, 0.0);
+        fixed_.col(static_cast<Eigen::Index>(k)) = column(k, {1.0});
       }
     }
   }
@@ -45,10 +46,21 @@ class Search {
   [[nodiscard]] const std::vector<ShapeSlot>& slots() const { return slots_; }
   [[nodiscard]] Eigen::Index scales() const { return target_.size(); }
 
-  /// Whitened wavelet variance of process k at level 1.
-  [[nodiscard]] Eigen::VectorXd column(std::size_t k, double log_shape) const {
+  /// The parameters of a process: 1 for its level, and its shapes, whose logarithms stand from slot `first` on.
+  using Values = std::array<double, kMostParameters>;
+  [[nodiscard]] Values values(std::size_t first, const Eigen::VectorXd& log_shapes) const {
+    Values p{1.0};
+    for (std::size_t s = first; s < slots_.size() && slots_[s].process == slots_[first].process; ++s) {
+      p[slots_[s].parameter] = std::exp(log_shapes(static_cast<Eigen::Index>(s)));
+    }
+    return p;
+  }
+  /// The first slot of the process that slot s belongs to.
+  [[nodiscard]] std::size_t first_slot(std::size_t s) const { return s + 1 - slots_[s].parameter; }
+
+  /// Whitened wavelet variance of process k at the parameters p.
+  [[nodiscard]] Eigen::VectorXd column(std::size_t k, const Values& p) const {
     const ProcessKind* kind = structure_.kinds[k];
-    const std::array<double, 2> p{1.0, std::exp(log_shape)};
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
     for (Eigen::Index j = 0; j < raw.size(); ++j) {
       raw(j) = kind->haar_variance({p.data(), kind->parameters.size()}, moments_.half[static_cast<std::size_t>(j)],
@@ -57,25 +69,24 @@ class Search {
     return whitening_ * raw;
   }
 
-  /// d column / d log_shape.
-  [[nodiscard]] Eigen::VectorXd column_slope(std::size_t k, double log_shape) const {
-    const ProcessKind* kind = structure_.kinds[k];
-    const std::array<double, 2> p{1.0, std::exp(log_shape)};
+  /// d column / d log_shape of slot s.
+  [[nodiscard]] Eigen::VectorXd column_slope(std::size_t s, const Eigen::VectorXd& log_shapes) const {
+    const ProcessKind* kind = structure_.kinds[slots_[s].process];
+    const Values p = values(first_slot(s), log_shapes);
     Eigen::VectorXd raw(static_cast<Eigen::Index>(moments_.half.size()));
-    std::array<double, 2> gradient{};
+    Values gradient{};
     for (Eigen::Index j = 0; j < raw.size(); ++j) {
       const auto row = static_cast<std::size_t>(j);
-      kind->haar_gradient(p, moments_.half[row], moments_.dt_at(row), gradient);
-      raw(j) = gradient[1] * p[1];
+      kind->haar_gradient({p.data(), kind->parameters.size()}, moments_.half[row], moments_.dt_at(row), gradient);
+      raw(j) = gradient[slots_[s].parameter] * p[slots_[s].parameter];
     }
     return whitening_ * raw;
   }
 
   [[nodiscard]] Eigen::MatrixXd design(const Eigen::VectorXd& log_shapes) const {
     Eigen::MatrixXd a = fixed_;
-    for (std::size_t s = 0; s < slots_.size(); ++s) {
-      a.col(static_cast<Eigen::Index>(slots_[s].process)) =
-          column(slots_[s].process, log_shapes(static_cast<Eigen::Index>(s)));
+    for (std::size_t s = 0; s < slots_.size(); s += structure_.kinds[slots_[s].process]->shape_count()) {
+      a.col(static_cast<Eigen::Index>(slots_[s].process)) = column(slots_[s].process, values(s, log_shapes));
     }
     return a;
   }
@@ -137,7 +148,7 @@ void projected_residual(const Search& search, LastLook& last, const Eigen::Vecto
   for (std::size_t s = 0; s < search.shapes(); ++s) {
     const auto process = static_cast<Eigen::Index>(search.slots()[s].process);
     const auto column = static_cast<Eigen::Index>(s);
-    slopes.col(column) = levels.x(process) * search.column_slope(search.slots()[s].process, at(column));
+    slopes.col(column) = levels.x(process) * search.column_slope(s, at);
   }
   *jacobian = -slopes;
   if (!active.empty()) {
@@ -150,27 +161,62 @@ struct Candidate {
   double objective = std::numeric_limits<double>::infinity();
 };
 
+/// The columns of one process with shapes in the matrix of a scan.
+struct GridBlock {
+  std::size_t slot = 0;      ///< first of its slots
+  std::size_t shapes = 0;    ///< and how many it has
+  Eigen::Index first = 0;    ///< column
+  Eigen::Index columns = 0;  ///< one per combination of its shapes' grid points
+  bool repeats = false;      ///< the process before it is of the same kind
+};
+
+std::vector<GridBlock> grid_blocks(const Search& search, const ModelStructure& structure, int points) {
+  std::vector<GridBlock> blocks;
+  Eigen::Index next = search.fixed().cols();
+  for (std::size_t slot = 0; slot < search.shapes();) {
+    const ProcessKind* kind = structure.kinds[search.slots()[slot].process];
+    GridBlock block{slot, kind->shape_count(), next, 1, false};
+    for (std::size_t s = 0; s < block.shapes; ++s) {
+      block.columns *= points;
+    }
+    block.repeats = slot > 0 && structure.kinds[search.slots()[slot - 1].process] == kind;
+    next += block.columns;
+    slot += block.shapes;
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
 /// Scans all combinations of grid points (rising within one kind) and keeps the best few that are not neighbours.
 std::vector<Candidate> scan(const Search& search, const ModelStructure& structure) {
   const std::size_t shapes = search.shapes();
-  const int points = shapes > 2 ? kGridThree : kGridOne;
+  const bool several = std::any_of(structure.kinds.begin(), structure.kinds.end(),
+                                   [](const ProcessKind* kind) { return kind->shape_count() > 1; });
+  const int points = shapes > 2 || several ? kGridThree : kGridOne;
   const auto at = [&](std::size_t s, int g) {
     const ShapeSlot& slot = search.slots()[s];
     return slot.log_low + (slot.log_high - slot.log_low) * g / (points - 1);
   };
-  // One Gram matrix over the fixed columns and every grid column; slots of one kind share theirs.
+  // One Gram matrix over the fixed columns and every grid column; processes of one kind share theirs. A process with
+  // several shapes has a column for each of their combinations, the last shape counted fastest.
   const Eigen::Index fixed = search.fixed().cols();
-  Eigen::MatrixXd all(search.scales(), fixed + static_cast<Eigen::Index>(shapes) * points);
+  const std::vector<GridBlock> blocks = grid_blocks(search, structure, points);
+  Eigen::MatrixXd all(search.scales(), blocks.empty() ? fixed : blocks.back().first + blocks.back().columns);
   all.leftCols(fixed) = search.fixed();
-  for (std::size_t s = 0; s < shapes; ++s) {
-    all.col(static_cast<Eigen::Index>(search.slots()[s].process)).setZero();
-    const Eigen::Index first = fixed + static_cast<Eigen::Index>(s) * points;
-    if (s > 0 && structure.kinds[search.slots()[s].process] == structure.kinds[search.slots()[s - 1].process]) {
-      all.middleCols(first, points) = all.middleCols(first - points, points);
+  for (const GridBlock& block : blocks) {
+    all.col(static_cast<Eigen::Index>(search.slots()[block.slot].process)).setZero();
+    if (block.repeats) {
+      all.middleCols(block.first, block.columns) = all.middleCols(block.first - block.columns, block.columns);
       continue;
     }
-    for (int g = 0; g < points; ++g) {
-      all.col(first + g) = search.column(search.slots()[s].process, at(s, g));
+    Eigen::VectorXd log_shapes(static_cast<Eigen::Index>(shapes));
+    for (Eigen::Index g = 0; g < block.columns; ++g) {
+      Eigen::Index rest = g;
+      for (std::size_t s = block.slot + block.shapes; s-- > block.slot; rest /= points) {
+        log_shapes(static_cast<Eigen::Index>(s)) = at(s, static_cast<int>(rest % points));
+      }
+      all.col(block.first + g) =
+          search.column(search.slots()[block.slot].process, search.values(block.slot, log_shapes));
     }
   }
   const GramProblem problem(all, search.target());
@@ -181,15 +227,18 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
   std::vector<Eigen::Index> picked(static_cast<std::size_t>(fixed));
   std::iota(picked.begin(), picked.end(), Eigen::Index{0});
   const auto visit = [&] {
-    for (std::size_t s = 1; s < shapes; ++s) {
-      const bool same_kind =
-          structure.kinds[search.slots()[s].process] == structure.kinds[search.slots()[s - 1].process];
-      if (same_kind && index[s] >= index[s - 1]) {  // fastest (largest beta) first; equal ones are one process
+    for (const GridBlock& block : blocks) {
+      // fastest (largest beta) first; equal ones are one process
+      if (block.repeats && index[block.slot] >= index[block.slot - block.shapes]) {
         return;
       }
     }
-    for (std::size_t s = 0; s < shapes; ++s) {
-      picked[search.slots()[s].process] = fixed + static_cast<Eigen::Index>(s) * points + index[s];
+    for (const GridBlock& block : blocks) {
+      Eigen::Index column = 0;
+      for (std::size_t s = block.slot; s < block.slot + block.shapes; ++s) {
+        column = column * points + index[s];
+      }
+      picked[search.slots()[block.slot].process] = block.first + column;
     }
     tried.push_back(index);
     value.push_back(problem.least_residual(picked));
@@ -255,7 +304,7 @@ void sort_repeats(Model& model) {
     if ((a.parameters[0] > 0.0) != (b.parameters[0] > 0.0)) {
       return a.parameters[0] > 0.0;
     }
-    if (a.parameters.size() > 1 && a.parameters[1] != b.parameters[1]) {
+    if (a.parameters.size() > 1 && a.parameters[1] != b.parameters[1]) {  // the first shape: a rate or a frequency
       return a.parameters[1] > b.parameters[1];
     }
     return a.parameters[0] > b.parameters[0];  // equal in all parameters: interchangeable
@@ -339,7 +388,7 @@ GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& struc
     process.parameters[0] = std::sqrt(levels.x(static_cast<Eigen::Index>(k)));
     for (std::size_t s = 0; s < search.shapes(); ++s) {
       if (search.slots()[s].process == k) {
-        process.parameters[1] = std::exp(best.log_shapes(static_cast<Eigen::Index>(s)));
+        process.parameters[search.slots()[s].parameter] = std::exp(best.log_shapes(static_cast<Eigen::Index>(s)));
       }
     }
     solution.model.push_back(std::move(process));

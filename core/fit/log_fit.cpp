@@ -92,10 +92,10 @@ LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd
     start.push_back(at);
   }
   for (std::size_t p = 0; p < model_.size(); ++p) {
-    if (model_[p].kind->has_shape()) {
-      const auto [low, high] = model_[p].kind->shape_range(moments.dt_s, moments.samples);
-      coordinates_.push_back({p, 1, std::log(low), std::log(high)});
-      start.push_back(std::log(model_[p].parameters[1]));
+    for (std::size_t k = 0; k < model_[p].kind->shape_count(); ++k) {
+      const auto [low, high] = model_[p].kind->shape_range(k, moments.dt_s, moments.samples);
+      coordinates_.push_back({p, k + 1, std::log(low), std::log(high)});
+      start.push_back(std::log(model_[p].parameters[k + 1]));
     }
   }
   best_ = Eigen::Map<Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
@@ -121,7 +121,7 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
   if (jacobian != nullptr) {
     slope.resize(count, static_cast<Eigen::Index>(coordinates_.size()));
   }
-  std::array<double, 4> gradient{};
+  std::array<double, kMostParameters> gradient{};
   Eigen::MatrixXd part(count, static_cast<Eigen::Index>(model.size()));
   for (Eigen::Index j = 0; j < count; ++j) {
     const auto row = static_cast<std::size_t>(used_[j]);
@@ -145,7 +145,7 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
         value = part(j, static_cast<Eigen::Index>(c.process)) / sum;
       } else {
         model[c.process].haar_gradient(half, dt_s, gradient);
-        value = gradient[1] * model[c.process].parameters[1] / sum;
+        value = gradient[c.parameter] * model[c.process].parameters[c.parameter] / sum;
       }
       slope(j, static_cast<Eigen::Index>(k)) = at >= c.low && at <= c.high ? -value : 0.0;
     }

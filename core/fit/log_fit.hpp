@@ -24,7 +24,7 @@ namespace driftlab {
 /// processes.
 struct LogCoordinate {
   std::size_t process = 0;
-  std::size_t parameter = 0;  ///< 0: the level (the coordinate is 2 ln level), 1: the shape
+  std::size_t parameter = 0;  ///< 0: the level (the coordinate is 2 ln level), 1 and more: a shape
   double low = 0.0;           ///< where the search stops: the component is gone, or the record cannot tell
   double high = 0.0;
 };

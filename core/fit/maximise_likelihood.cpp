@@ -38,9 +38,9 @@ class Objective {
       if (p != reference_) {
         coordinates_.push_back({p, 0, 0.0, 0.0});
       }
-      if (model_[p].kind->has_shape()) {
-        const auto [low, high] = model_[p].kind->shape_range(dt_s, static_cast<double>(samples.size()));
-        coordinates_.push_back({p, 1, std::log(low), std::log(high)});
+      for (std::size_t k = 0; k < model_[p].kind->shape_count(); ++k) {
+        const auto [low, high] = model_[p].kind->shape_range(k, dt_s, static_cast<double>(samples.size()));
+        coordinates_.push_back({p, k + 1, std::log(low), std::log(high)});
       }
     }
   }
@@ -54,7 +54,7 @@ class Objective {
       const Coordinate& c = coordinates_[k];
       const Process& process = model_[c.process];
       at(static_cast<Eigen::Index>(k)) =
-          c.parameter == 0 ? std::log(level_square(process) / own) : std::log(process.parameters[1]);
+          c.parameter == 0 ? std::log(level_square(process) / own) : std::log(process.parameters[c.parameter]);
     }
     return clamped(at);
   }

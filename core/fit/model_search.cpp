@@ -9,7 +9,6 @@
 namespace driftlab {
 namespace {
 
-constexpr std::size_t kMostShapes = 3;
 constexpr int kMostSteps = 12;
 
 std::size_t best_of(const std::vector<Candidate>& candidates, double samples) {
@@ -22,12 +21,12 @@ std::size_t best_of(const std::vector<Candidate>& candidates, double samples) {
   return best;
 }
 
-/// `from` with one process more, for each kind but `barred`.
+/// `from` with one process more, for each kind that octaves can tell but `barred`.
 void append_larger(const ModelStructure& from, const ProcessKind* barred, std::size_t most_parameters,
                    std::vector<ModelStructure>& all) {
   for (const ProcessKind& kind : process_registry()) {
     const bool there = std::find(from.kinds.begin(), from.kinds.end(), &kind) != from.kinds.end();
-    if (&kind == barred || (there && !kind.repeats) || from.kinds.size() == kMaxModelProcesses) {
+    if (!kind.in_octave_search || &kind == barred || (there && !kind.repeats) || from.kinds.size() == kMaxModelProcesses) {
       continue;
     }
     ModelStructure larger = from;
@@ -35,7 +34,7 @@ void append_larger(const ModelStructure& from, const ProcessKind* barred, std::s
         larger.kinds.begin(), larger.kinds.end(), &kind,
         [](const ProcessKind* a, const ProcessKind* b) { return registry_index(a) < registry_index(b); });
     larger.kinds.insert(place, &kind);
-    if (larger.shape_count() <= kMostShapes && larger.parameter_count() <= most_parameters) {
+    if (larger.shape_count() <= kMaxModelShapes && larger.parameter_count() <= most_parameters) {
       all.push_back(std::move(larger));
     }
   }

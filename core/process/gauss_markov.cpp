@@ -1,6 +1,7 @@
 #include "core/process/gauss_markov.hpp"
 
 #include "core/process/haar_differences.hpp"
+#include "core/process/haar_series.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,54 +11,10 @@
 namespace driftlab {
 namespace {
 
-/// (sinh x - x) / x^3 of s = x^2 <= 1.
-double sinh_rest(double s) {
-  double sum = 1.0;
-  for (const double factor : {1.0 / 210.0, 1.0 / 156.0, 1.0 / 110.0, 1.0 / 72.0, 1.0 / 42.0, 1.0 / 20.0}) {
-    sum = 1.0 + s * factor * sum;
-  }
-  return sum * (1.0 / 6.0);
-}
-
-/// sinh x - x without cancellation.
-double sinh_minus(double x) {
-  if (std::fabs(x) < 0.5) {
-    const double s = x * x;
-    return x * s * sinh_rest(s);
-  }
-  return std::sinh(x) - x;
-}
-
-/// sinh x, by the series where it is short.
-double sinh_of(double x) { return std::fabs(x) < 0.5 ? x + sinh_minus(x) : std::sinh(x); }
-
-/// (-1)^k (4 - 2^k) / k!, k = 3, 4, ...
-constexpr std::array<double, 18> kBump = [] {
-  std::array<double, 18> terms{};
-  double factorial = 2.0;
-  double two_power = 4.0;
-  double sign = 1.0;
-  for (std::size_t k = 3; k < terms.size() + 3; ++k) {
-    factorial *= static_cast<double>(k);
-    two_power *= 2.0;
-    sign = -sign;
-    terms[k - 3] = sign * (4.0 - two_power) / factorial;
-  }
-  return terms;
-}();
-
-/// p(y) = 2y - 3 + 4 e^-y - e^-2y, y >= 0, without cancellation: for small y the series, exact at eighteen terms.
-double haar_bump(double y) {
-  if (y < 0.5) {
-    double sum = 0.0;
-    for (std::size_t k = kBump.size(); k-- > 0;) {
-      sum = sum * y + kBump[k];
-    }
-    return sum * y * y * y;
-  }
-  const double t = std::expm1(-y);
-  return 2.0 * (y + t) - t * t;
-}
+using haar_series::haar_bump;
+using haar_series::sinh_minus;
+using haar_series::sinh_of;
+using haar_series::sinh_rest;
 
 /// Above this x = beta dt the process is white noise to the last bit, and sinh would overflow before long.
 constexpr double kWhite = 40.0;
@@ -109,6 +66,10 @@ std::optional<double> GaussMarkov::spectral_density(double f_hz, double dt_s) co
 
 std::optional<double> GaussMarkov::autocovariance(double lag, double dt_s) const {
   return sigma * sigma * std::exp(-beta * dt_s * std::fabs(lag));
+}
+
+LowFrequencyDensity GaussMarkov::low_frequency(double dt_s) const {
+  return {*spectral_density(0.0, dt_s), beta / (6.0 * std::numbers::pi)};
 }
 
 double GaussMarkov::variogram(double lag, double dt_s) const {

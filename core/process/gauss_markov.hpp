@@ -5,6 +5,7 @@
 /// and stationary variance sigma^2. As beta -> 0 with 2 beta sigma^2 fixed it becomes a random walk; as beta ->
 /// infinity, white noise. The closed forms below keep 15 digits for x = beta dt from 1e-14 to 700 and scales up to
 /// 2^30, where the usual form loses all of them.
+#include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/slow_law.hpp"
@@ -33,6 +34,8 @@ struct GaussMarkov {
   void haar_gradient(double m, double dt_s, std::span<double> out) const;
   /// dt sigma^2 (1 - phi^2) / (1 - 2 phi cos(2 pi f dt) + phi^2).
   [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const;
+  /// dt sigma^2 coth(x/2), about 2 sigma^2/beta, within a tenth up to a third of the corner beta/(2 pi).
+  [[nodiscard]] LowFrequencyDensity low_frequency(double dt_s) const;
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const;
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;

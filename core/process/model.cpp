@@ -55,9 +55,10 @@ Result<ModelStructure> parse_model(std::string_view name) {
       return bad_model(name,
                        "holds " + std::string(kind->symbol) + " more than once, which one process already covers");
     }
-    if (structure.kinds.size() > kMaxModelProcesses || structure.shape_count() > 3) {
-      return bad_model(name, "is too large: at most " + std::to_string(kMaxModelProcesses) +
-                                 " processes, three of them with a correlation time or frequency");
+    if (structure.kinds.size() > kMaxModelProcesses || structure.shape_count() > kMaxModelShapes) {
+      return bad_model(name, "is too large: at most " + std::to_string(kMaxModelProcesses) + " processes, and " +
+                                 std::to_string(kMaxModelShapes) +
+                                 " parameters that are correlation times, frequencies and other shapes");
     }
     if (plus == std::string_view::npos) {
       break;

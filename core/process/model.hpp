@@ -25,6 +25,8 @@ struct ModelStructure {
 
 /// At most this many processes in one model: the fit enumerates subsets of them.
 inline constexpr std::size_t kMaxModelProcesses = 8;
+/// And at most this many shapes: the fit scans a grid over all of them.
+inline constexpr std::size_t kMaxModelShapes = 3;
 
 /// Errors: InvalidArgument (unknown symbol, a kind twice that cannot repeat, too many processes), naming the model.
 [[nodiscard]] Result<ModelStructure> parse_model(std::string_view name);

@@ -4,11 +4,13 @@
 /// All laws are in the unit of the channel: a `Process` with level 1 in rad/s gives variances in (rad/s)^2. `half` is
 /// the half length m of a Haar filter in samples (scale n = 2m, Allan tau = m dt). It may be any whole number up to
 /// 2^40, held in a double.
+#include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/slow_law.hpp"
 #include "core/process/state_space.hpp"
 
+#include <cassert>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -25,6 +27,9 @@ struct ProcessKind {
   std::string_view symbol;  ///< as in model names: WN, ...
   std::string_view title;   ///< for people
   bool repeats = false;     ///< may a model hold several of them?
+  /// May a stepwise search over octave scales add it? Octaves alone do not tell filters, resonances and power laws from
+  /// one another: those take part where the spectrum shows them, or where a model is asked for by name.
+  bool in_octave_search = true;
   std::span<const ParameterSpec> parameters;
 
   double (*haar_variance)(std::span<const double> p, double half, double dt_s) = nullptr;
@@ -38,8 +43,11 @@ struct ProcessKind {
   double (*haar_mean)(std::span<const double> p, double half, double dt_s) = nullptr;
   std::optional<StateSpace> (*state_space)(std::span<const double> p, double dt_s) = nullptr;
   void (*add_path)(std::span<const double> p, Random& random, double dt_s, std::span<double> out) = nullptr;
-  /// Where a record of `samples` can tell the shape parameter; {0, 0} for kinds without one.
-  std::pair<double, double> (*shape_range)(double dt_s, double samples) = nullptr;
+  /// Where a record of `samples` can tell shape k, that is parameter k + 1; k < shape_count().
+  std::pair<double, double> (*shape_range)(std::size_t k, double dt_s, double samples) = nullptr;
+
+  /// Null where the density has no limit at low frequencies, or none but zero.
+  LowFrequencyDensity (*low_frequency)(std::span<const double> p, double dt_s) = nullptr;
 
   /// Optional laws, null where the kind declares none: what an investigation can do with the process where a model that
   /// is taken at its word holds it. A kind with none of them is simulated, and stays in a recording.
@@ -49,7 +57,8 @@ struct ProcessKind {
   AddBlockStates add_block_states = nullptr;                          ///< a slow process (slow_law.hpp)
   ExpectedPeriodogram expected_periodogram = nullptr;
 
-  [[nodiscard]] bool has_shape() const { return parameters.size() > 1; }
+  [[nodiscard]] std::size_t shape_count() const { return parameters.size() - 1; }
+  [[nodiscard]] bool has_shape() const { return shape_count() > 0; }
   [[nodiscard]] bool is_slow() const { return add_block_states != nullptr; }
   /// Can be taken off a recording or out of its innovations.
   [[nodiscard]] bool can_be_taken_out() const {
@@ -57,8 +66,9 @@ struct ProcessKind {
   }
 };
 
-/// A process has a level, and at most one shape after it: fits, covariances and searches hold the two by themselves.
-inline constexpr std::size_t kMostParameters = 2;
+/// A process has a level, and at most two shapes after it. One that is slow (`is_slow`) has at most one.
+inline constexpr std::size_t kMostParameters = 3;
+inline constexpr std::size_t kMostShapes = kMostParameters - 1;
 
 /// A kind with values: a value type, cheap to copy.
 struct Process {
@@ -67,8 +77,14 @@ struct Process {
 
   /// The square of the level, to which every second moment is proportional.
   [[nodiscard]] double square() const { return parameters[0] * parameters[0]; }
-  /// The parameter after the level; 0 for kinds without one.
-  [[nodiscard]] double shape() const { return kind->has_shape() ? parameters[1] : 0.0; }
+  /// The parameters after the level.
+  [[nodiscard]] std::span<const double> shapes() const { return std::span(parameters).subspan(1); }
+  /// The one parameter after the level, 0 for kinds without one. Precondition: the kind has at most one shape, as every
+  /// slow one has.
+  [[nodiscard]] double only_shape() const {
+    assert(kind->shape_count() <= 1);
+    return kind->has_shape() ? parameters[1] : 0.0;
+  }
 
   /// Haar MODWT wavelet variance at scale 2 `half` [unit^2].
   [[nodiscard]] double haar_variance(double half, double dt_s) const {
@@ -84,6 +100,10 @@ struct Process {
   /// variance.
   [[nodiscard]] std::optional<double> spectral_density(double f_hz, double dt_s) const {
     return kind->spectral_density(parameters, f_hz, dt_s);
+  }
+  /// Its density at low frequencies, where it has one there.
+  [[nodiscard]] std::optional<LowFrequencyDensity> low_frequency(double dt_s) const {
+    return kind->low_frequency != nullptr ? std::optional(kind->low_frequency(parameters, dt_s)) : std::nullopt;
   }
   /// Autocovariance at a lag in whole samples; nothing for processes that are not stationary.
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const {

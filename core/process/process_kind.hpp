@@ -1,8 +1,10 @@
 #pragma once
 /// Turns a value type such as GaussMarkov into a ProcessKind. A value type is an aggregate of doubles, one per declared
 /// parameter and in that order, with the functions of white_noise.hpp; `static shape_range(dt_s, samples)` where it has
-/// a shape; and those of the optional laws of ProcessKind that it has, `add_block_states` and `expected_periodogram` as
-/// static functions of slow_law.hpp's form.
+/// a shape, and `static shape_ranges(dt_s, samples)`, an array of ranges, where it has several; `low_frequency(dt_s)`
+/// where its density has a limit there; `kInOctaveSearch = false` where a search over octaves is not to add it; and
+/// those of the optional laws of ProcessKind that it has, `add_block_states` and `expected_periodogram` as static
+/// functions of slow_law.hpp's form.
 #include "core/process/process.hpp"
 
 #include <cassert>
@@ -30,13 +32,16 @@ template <class T>
 [[nodiscard]] ProcessKind kind_of() {
   using Values = std::span<const double>;
   static_assert(!T::kParameters.empty() && T::kParameters.size() <= kMostParameters,
-                "a process has a level and at most one shape");
+                "a process has a level and at most two shapes");
   ProcessKind kind;
   kind.name = T::kName;
   kind.symbol = T::kSymbol;
   kind.title = T::kTitle;
   kind.repeats = T::kRepeats;
   kind.parameters = T::kParameters;
+  if constexpr (requires { T::kInOctaveSearch; }) {
+    kind.in_octave_search = T::kInOctaveSearch;
+  }
   kind.haar_variance = [](Values p, double half, double dt_s) {
     return detail::from_values<T>(p).haar_variance(half, dt_s);
   };
@@ -55,10 +60,10 @@ template <class T>
     const T process = detail::from_values<T>(p);
     if constexpr (requires { process.add_haar_cross(mi, mj, dt_s, lags, factor, out); }) {
       process.add_haar_cross(mi, mj, dt_s, lags, factor, out);  // the type knows a faster way over many lags
-      return;
-    }
-    for (std::size_t i = 0; i < lags.size(); ++i) {
-      out[i] += factor * process.haar_cross(mi, mj, lags[i], dt_s);
+    } else {
+      for (std::size_t i = 0; i < lags.size(); ++i) {
+        out[i] += factor * process.haar_cross(mi, mj, lags[i], dt_s);
+      }
     }
   };
   kind.haar_mean = [](Values p, double half, double dt_s) { return detail::from_values<T>(p).haar_mean(half, dt_s); };
@@ -66,10 +71,13 @@ template <class T>
   kind.add_path = [](Values p, Random& random, double dt_s, std::span<double> out) {
     detail::from_values<T>(p).add_path(random, dt_s, out);
   };
-  if constexpr (requires { T::shape_range(1.0, 1.0); }) {
-    kind.shape_range = [](double dt_s, double samples) { return T::shape_range(dt_s, samples); };
-  } else {
-    kind.shape_range = [](double, double) { return std::pair{0.0, 0.0}; };
+  if constexpr (requires { T::shape_ranges(1.0, 1.0); }) {
+    kind.shape_range = [](std::size_t k, double dt_s, double samples) { return T::shape_ranges(dt_s, samples)[k]; };
+  } else if constexpr (requires { T::shape_range(1.0, 1.0); }) {
+    kind.shape_range = [](std::size_t, double dt_s, double samples) { return T::shape_range(dt_s, samples); };
+  }
+  if constexpr (requires(const T process) { process.low_frequency(1.0); }) {
+    kind.low_frequency = [](Values p, double dt_s) { return detail::from_values<T>(p).low_frequency(dt_s); };
   }
   if constexpr (requires(const T process) { process.white_square(); }) {
     kind.white_square = [](Values p) { return detail::from_values<T>(p).white_square(); };
@@ -81,6 +89,7 @@ template <class T>
     kind.slope = [](Values p) { return detail::from_values<T>(p).slope(); };
   }
   if constexpr (requires { &T::add_block_states; }) {
+    static_assert(T::kParameters.size() <= 2, "a slow process has a level and at most one shape");
     kind.add_block_states = T::add_block_states;
   }
   if constexpr (requires { &T::expected_periodogram; }) {

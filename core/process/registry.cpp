@@ -6,6 +6,7 @@
 #include "core/process/process_kind.hpp"
 #include "core/process/quantization_noise.hpp"
 #include "core/process/random_walk.hpp"
+#include "core/process/resonance.hpp"
 #include "core/process/sinusoid.hpp"
 #include "core/process/white_noise.hpp"
 
@@ -14,7 +15,7 @@ namespace driftlab {
 const std::vector<ProcessKind>& process_registry() {
   static const std::vector<ProcessKind> all_kinds{
       kind_of<QuantizationNoise>(), kind_of<WhiteNoise>(),  kind_of<FlickerNoise>(), kind_of<GaussMarkov>(),
-      kind_of<RandomWalk>(),        kind_of<LinearDrift>(), kind_of<Sinusoid>(),
+      kind_of<RandomWalk>(),        kind_of<LinearDrift>(), kind_of<Sinusoid>(),     kind_of<Resonance>(),
   };
   return all_kinds;
 }

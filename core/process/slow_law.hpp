@@ -3,7 +3,7 @@
 /// (core/process/process.hpp), by which an investigation fits it, whitens it and compares spectra with it.
 ///
 /// Both are linear in the square of the process's level and take that square, `square` [unit^2 ...], because a fit
-/// walks it. `shape` is the second parameter [1/s]; ignored by kinds that have one parameter.
+/// walks it. `shape` is the second parameter [1/s], and the last; ignored by kinds that have one parameter.
 ///
 /// Means over blocks of L samples of a process that is slow against the sample have the second moments of a sum of
 /// independent first-order autoregressions, one state each, and of a white remainder that the white noise beside the

@@ -2,13 +2,16 @@
 /// White noise: angle (velocity) random walk of a gyro (accelerometer).
 ///
 /// Independent samples of variance N^2/dt; two-sided density N^2 [unit^2 s]; Allan deviation N/sqrt(tau).
+/// Rounding a rate to steps s adds white noise of variance s^2/12; see quantization_noise.hpp.
 #include "core/process/haar_differences.hpp"
+#include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -55,6 +58,9 @@ struct WhiteNoise {
     for (double& value : out) {
       value += sd * random.normal();
     }
+  }
+  [[nodiscard]] LowFrequencyDensity low_frequency(double /*dt_s*/) const {
+    return {n * n, std::numeric_limits<double>::infinity()};
   }
   [[nodiscard]] double white_square() const { return n * n; }
 

@@ -193,7 +193,9 @@ void HaarCovariance::fill(Pair& plan, std::size_t i, std::size_t j, const Model&
       kind.add_haar_cross(process.parameters, half_[i], half_[j], dt_s_, plan.lag, 1.0, scratch_);
       continue;
     }
-    std::vector<double>& unit = plan.unit[{&kind, kind.has_shape() ? process.parameters[1] : 0.0}];
+    std::array<double, kMostShapes> shapes{};
+    std::copy(process.parameters.begin() + 1, process.parameters.end(), shapes.begin());
+    std::vector<double>& unit = plan.unit[{&kind, shapes}];
     if (unit.empty()) {
       unit.assign(size, 0.0);
       std::vector<double> at_level_one = process.parameters;

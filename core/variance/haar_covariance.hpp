@@ -64,8 +64,8 @@ class HaarCovariance {
   struct Pair {
     std::vector<double> lag;
     std::vector<double> weight;  ///< quadrature weight times n_ij, both signs of the lag together, over Mi Mj
-    /// gamma at level 1 by kind and shape: of kinds without shape, and of the shapes that diagonal() was asked for.
-    std::map<std::pair<const ProcessKind*, double>, std::vector<double>> unit;
+    /// gamma at level 1 by kind and shapes: of kinds without shape, and of the shapes that diagonal() was asked for.
+    std::map<std::pair<const ProcessKind*, std::array<double, kMostShapes>>, std::vector<double>> unit;
   };
   Pair& pair(std::size_t i, std::size_t j);
   /// Leaves gamma_ij at the plan's lags in scratch_.

@@ -54,7 +54,7 @@ TEST_P(SlowLaws, BlockMeansDifferAsTheVariogramSays) {
     }
     expected /= static_cast<double>(length * length);
     BlockStates states;
-    GetParam()->add_block_states(process().square(), process().shape(), {kDt, length, 0.0, 4000.0}, states);
+    GetParam()->add_block_states(process().square(), process().only_shape(), {kDt, length, 0.0, 4000.0}, states);
     double got = 2.0 * states.remainder;
     for (std::size_t k = 0; k < states.phi.size(); ++k) {
       const double gap = 1.0 - states.phi[k];
@@ -78,7 +78,7 @@ TEST_P(SlowLaws, PeriodogramFollowsFromTheVariogram) {
       expected -=
           kDt * (1.0 - h / kSamples) * process().variogram(h, kDt) * std::cos(2.0 * std::numbers::pi * f * h * kDt);
     }
-    const double got = GetParam()->expected_periodogram(process().square(), process().shape(), f, kDt, kSamples);
+    const double got = GetParam()->expected_periodogram(process().square(), process().only_shape(), f, kDt, kSamples);
     EXPECT_NEAR(got, expected, tolerance() * expected) << "f = " << f;
   }
 }
@@ -87,8 +87,8 @@ TEST_P(SlowLaws, GoWithTheSquareOfTheLevel) {
   BlockStates one;
   BlockStates four;
   const Blocks blocks{kDt, 4, 0.0, 4000.0};
-  GetParam()->add_block_states(1.0, process().shape(), blocks, one);
-  GetParam()->add_block_states(4.0, process().shape(), blocks, four);
+  GetParam()->add_block_states(1.0, process().only_shape(), blocks, one);
+  GetParam()->add_block_states(4.0, process().only_shape(), blocks, four);
   ASSERT_EQ(one.phi, four.phi);
   for (std::size_t k = 0; k < one.phi.size(); ++k) {
     EXPECT_DOUBLE_EQ(four.q[k], 4.0 * one.q[k]);
@@ -100,11 +100,11 @@ TEST_P(SlowLaws, GoWithTheSquareOfTheLevel) {
 INSTANTIATE_TEST_SUITE_P(Kinds, SlowLaws, testing::ValuesIn(slow_kinds()),
                          [](const auto& instance) { return std::string(instance.param->name); });
 
-/// Every registered process can be held by a given baseline: taken out by a law, or by a cause found again. The
-/// sinusoid is the one that stays.
+/// Every process of the octave search can be held by a given baseline: taken out by a law, or by a cause found again.
+/// Filters, resonances and power laws stay, and the sinusoid does.
 TEST(Processes, DeclareWhatABaselineDoesWithThem) {
   for (const ProcessKind& kind : process_registry()) {
-    EXPECT_EQ(kind.can_be_taken_out(), kind.name != "sinusoid") << kind.name;
+    EXPECT_EQ(kind.can_be_taken_out(), kind.in_octave_search && kind.name != "sinusoid") << kind.name;
   }
 }
 

@@ -1163,7 +1163,7 @@ class OutageScenarioInitial(TypedDict):
 
 class OutageScenarioModelItem(TypedDict):
     process: Literal['white_noise', 'gauss_markov', 'random_walk', 'linear_drift', 'quantization_noise',
-                     'flicker_noise', 'sinusoid']
+                     'flicker_noise', 'sinusoid', 'resonance']
     # As in the `processes` of a fit; a number alone is SI.
     params: dict[str, float | OutageScenarioModelItemParam2]
 

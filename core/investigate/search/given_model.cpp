@@ -26,7 +26,7 @@ void add_process(const Process& process, SlowModel& model) {
   if (kind.white_square != nullptr) {
     model.white += kind.white_square(process.parameters);
   } else if (kind.is_slow()) {
-    model.components.push_back({&kind, process.square(), process.shape(), {}});
+    model.components.push_back({&kind, process.square(), process.only_shape(), {}});
   }
 }
 

@@ -1,6 +1,7 @@
 #include "core/navigate/channel_dynamics.hpp"
 
 #include "core/process/registry.hpp"
+#include "tests/process_examples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,10 +55,7 @@ TEST(ChannelDynamics, PredictsTheIntegralsOfEverySimulatedProcess) {
   constexpr int kSamples = 50;
   constexpr int kPaths = 4000;
   for (const ProcessKind& kind : process_registry()) {
-    Process process{&kind, {1.3}};
-    if (kind.has_shape()) {
-      process.parameters.push_back(3.0);
-    }
+    const Process process = example_of(kind, 3.0, kDt);
     if (!process.state_space(kDt) || process.state_space(kDt)->relative_error > 0.0) {
       continue;  // an approximation starts as it likes; its error is told by the process's own tests
     }

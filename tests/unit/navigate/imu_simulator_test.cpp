@@ -4,6 +4,7 @@
 #include "core/navigate/paper_scenario.hpp"
 #include "core/process/registry.hpp"
 #include "core/variance/haar_variance.hpp"
+#include "tests/process_examples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,10 +43,7 @@ void expect_law(const ModelSchedule& schedule, std::span<const double> rates, co
 
 TEST(ImuSimulator, NoiseObeysTheLawOfEveryRegisteredProcess) {
   for (const ProcessKind& kind : process_registry()) {
-    Process process{&kind, {1.3}};
-    if (kind.has_shape()) {
-      process.parameters.push_back(2.0);
-    }
+    const Process process = example_of(kind, 2.0, kDt);
     expect_law(ModelSchedule::constant({process}), {}, {process}, registry_index(&kind));
   }
 }

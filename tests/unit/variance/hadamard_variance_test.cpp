@@ -3,6 +3,7 @@
 #include "core/process/registry.hpp"
 #include "core/variance/allan_variance.hpp"
 #include "core/variance/samples.hpp"
+#include "tests/process_examples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,10 +59,7 @@ TEST(HadamardVariance, DoesNotSeeARampThatTheAllanVarianceSees) {
 TEST(HadamardVariance, EveryProcessHasTheOneThatItsModelSays) {
   // 200 series of 600 samples; the scatter among the series is the standard error, 4.5 of them.
   for (const ProcessKind& kind : process_registry()) {
-    Process process{&kind, {1.3}};
-    if (kind.has_shape()) {
-      process.parameters.push_back(1.7);
-    }
+    const Process process = example_of(kind, 1.7, kDt);
     for (const std::size_t m : {std::size_t{1}, std::size_t{4}, std::size_t{32}}) {
       double sum = 0.0;
       double squares = 0.0;
