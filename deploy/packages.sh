@@ -4,7 +4,9 @@
 #
 #   runtime   shared libraries of the finished binaries driftlab and driftlabd
 #   build     compiler, headers and tools that make them
+#   dashboard node and npm, which build the pages; whatever of the two is there already stays as it is
 #   test      what the suites of tests/ need beside that
+#   browser   Chromium, which tests/browser drives
 #   python    what tests/python needs beside the set test: builds and checks the package clients/python, runs its notebook
 #   fuzz      clang 19 for the libFuzzer targets
 #   sanitize  clang 19 for the asan-ubsan and tsan presets
@@ -19,12 +21,14 @@ driftlab_packages() {
                 libboost1.81-dev libboost-url1.81-dev nlohmann-json3-dev libeigen3-dev libceres-dev libsqlite3-dev \
                 libspdlog-dev libfmt-dev libcli11-dev libssl-dev libexpected-dev libarchive-dev liblzma-dev libzstd-dev zlib1g-dev \
                 libgeographiclib-dev python3 python3-yaml ;;
+    dashboard) command -v node >/dev/null || echo nodejs; command -v npm >/dev/null || echo npm ;;
+    browser) echo chromium fonts-liberation ;;
     test) echo libgtest-dev libgmock-dev libbenchmark-dev python3-numpy python3-jsonschema xz-utils zstd sqlite3 ;;
     python) echo python3-venv python3-pip python3-setuptools python3-wheel python3-yaml mypy flake8 jupyter-nbconvert python3-ipykernel ;;
     fuzz) echo clang-19 libclang-rt-19-dev ;;
     sanitize) echo clang-19 libclang-rt-19-dev ;;
     tidy) echo clang-19 clang-tidy-19 clang-format-19 ;;
-    *) echo "packages.sh: unknown set '$1'; known: runtime build test python fuzz sanitize tidy" >&2; return 2 ;;
+    *) echo "packages.sh: unknown set '$1'; known: runtime build dashboard test browser python fuzz sanitize tidy" >&2; return 2 ;;
   esac
 }
 
@@ -82,5 +86,5 @@ install_packages() {
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then
-  driftlab_packages "${1:?which set? runtime build test python fuzz sanitize tidy}"
+  driftlab_packages "${1:?which set? runtime build dashboard test browser python fuzz sanitize tidy}"
 fi

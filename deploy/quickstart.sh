@@ -69,7 +69,7 @@ require_free_port
 if [ -z "$bin" ]; then
   # shellcheck source=deploy/packages.sh
   . "$repository/deploy/packages.sh"
-  install_packages "$logs/apt.log" build || exit 1
+  install_packages "$logs/apt.log" build dashboard || exit 1
   build=$repository/build/release
   # A tree that is configured, with the suites perhaps, stays as it is.
   [ -f "$build/CMakeCache.txt" ] || (cd "$repository" && cmake --preset release) >"$logs/configure.log" 2>&1 ||
@@ -153,7 +153,7 @@ else
 fi
 
 say ''
-say "driftlab serves at $address and keeps its data in $data"
+say "driftlab serves at $address (open it in a browser: the lab's pages) and keeps its data in $data"
 [ "$once" = no ] || exit 0
 trap 'say ""; say "Stopping"; exit 0' INT
 say "Ctrl-C stops it."

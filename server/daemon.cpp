@@ -6,6 +6,7 @@
 #include "server/jobs/fault_recorder.hpp"
 #include "server/jobs/worker_pool.hpp"
 #include "server/observe/log.hpp"
+#include "server/pages/pages.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 
 #include <algorithm>
@@ -95,6 +96,7 @@ struct Daemon::Parts {
   ApiContext api;
   Dispatcher dispatcher;
   Router router;
+  Pages pages{dashboard_files()};
   std::unique_ptr<HttpServer> http;
 };
 
@@ -151,6 +153,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   hooks.dispatch = [shared](const Route& route, const Request& request) {
     return shared->dispatcher.run(route, request);
   };
+  hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
   hooks.complete = complete_problem;
   hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
   hooks.log = log_request;

@@ -101,7 +101,7 @@ format_check() { git -c safe.directory='*' ls-files -z '*.cpp' '*.hpp' | xargs -
 # --- packages ---------------------------------------------------------------------------------------------------------
 # shellcheck source=deploy/packages.sh
 . deploy/packages.sh
-sets=(build test python fuzz)
+sets=(build dashboard test browser python fuzz)
 [ "$sanitize" = no ] || sets+=(sanitize)
 [ "$tidy" = no ] || sets+=(tidy)
 install_packages "$logs/apt.log" "${sets[@]}" || exit 1

@@ -192,7 +192,7 @@ void add_calibration_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/calibrations",
               "listCalibrations",
-              {"limit", "cursor", "device"},
+              {"limit", "cursor", "sort", "device"},
               Handler([&](const Request& request) { return list_calibrations(context, request); })});
   router.add({"POST", "/v1/calibrations", "createCalibration", {}, Handler([&](const Request& request) {
                 return create_calibration(context, request);

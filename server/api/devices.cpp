@@ -1,6 +1,7 @@
 #include "server/api/api.hpp"
 #include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
+#include "server/api/overviews.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -74,9 +75,20 @@ Result<Response> create_device(ApiContext& context, const Request& request) {
 }
 
 Result<Response> list_devices(ApiContext& context, const Request& request) {
+  const auto include = request.parameter("include");
+  if (include && *include != "summary") {
+    return fail(ErrorCode::InvalidArgument, "What can be included with a device is its summary.",
+                {{"parameter", "include"}});
+  }
   return list_rows(
       request, [&](const Page& page) { return context.store.devices(page); },
-      [](const Device& device) { return to_json(device); });
+      [&](const Device& device) {
+        Json document = to_json(device);
+        if (include) {
+          document["summary"] = device_summary(context.store, device.id).value_or(Json(nullptr));
+        }
+        return document;
+      });
 }
 
 Result<Response> get_device(ApiContext& context, const Request& request) {
@@ -117,9 +129,11 @@ Result<Response> patch_device(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_device_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/v1/devices", "listDevices", {"limit", "cursor"}, Handler([&](const Request& request) {
-                return list_devices(context, request);
-              })});
+  router.add({"GET",
+              "/v1/devices",
+              "listDevices",
+              {"limit", "cursor", "sort", "include"},
+              Handler([&](const Request& request) { return list_devices(context, request); })});
   router.add({"POST", "/v1/devices", "createDevice", {}, Handler([&](const Request& request) {
                 return create_device(context, request);
               })});

@@ -1,6 +1,7 @@
 #include "core/signal/text.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/http/compression.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
@@ -71,7 +72,7 @@ void add_etag(const Request& request, Response& response) {
     response.headers.emplace_back("ETag", etag);
   }
   const auto known = request.header("if-none-match");
-  if (known && (*known == "*" || known->find(etag) != std::string_view::npos)) {
+  if (known && (*known == "*" || plain_tag(*known).find(etag) != std::string::npos)) {
     response.status = 304;
     response.body.clear();
   }
@@ -89,6 +90,7 @@ Response Dispatcher::run(const Route& route, const Request& request) {
     const auto key = request.method == "POST" ? request.header("idempotency-key") : std::nullopt;
     Response response = key ? run_idempotent(handler, request, std::string(*key)) : run_handler(handler, request);
     add_etag(request, response);
+    compress(request, response);
     return response;
   } catch (const std::bad_alloc&) {
     return problem_response(HttpFault::Busy, "There is not enough memory for this request now.");

@@ -2,6 +2,7 @@
 
 #include "core/signal/condition.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "server/http/compression.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/stored_table.hpp"
 
@@ -157,7 +158,7 @@ tl::expected<std::int64_t, Response> expected_revision(const Request& request, s
         HttpFault::PreconditionRequired,
         "Send If-Match with the ETag of the object as you read it: " + etag_of(id, current) + " is the current one."));
   }
-  if (*match == "*" || *match == etag_of(id, current)) {
+  if (*match == "*" || plain_tag(*match) == etag_of(id, current)) {
     return current;
   }
   return tl::unexpected(problem_response(HttpFault::PreconditionFailed,
@@ -197,6 +198,13 @@ Result<Page> page_of(const Request& request) {
       return fail(ErrorCode::InvalidArgument, "The limit must be a whole number from 1 to 500.",
                   {{"parameter", "limit"}});
     }
+  }
+  if (const auto sort = request.parameter("sort")) {
+    if (*sort != "created_at" && *sort != "-created_at") {
+      return fail(ErrorCode::InvalidArgument, "Lists are sorted by created_at, oldest first, or by -created_at.",
+                  {{"parameter", "sort"}});
+    }
+    page.newest_first = *sort == "-created_at";
   }
   if (const auto cursor = request.parameter("cursor")) {
     const std::size_t underscore = cursor->find('_');

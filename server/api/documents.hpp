@@ -42,7 +42,8 @@ namespace driftlab::server {
 [[nodiscard]] tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
                                                                      std::int64_t current);
 
-/// `?limit=` (1 to 500, default 50) and `?cursor=`. Error: InvalidArgument naming the parameter.
+/// `?limit=` (1 to 500, default 50), `?cursor=`, and `?sort=` created_at (default) or -created_at. Error:
+/// InvalidArgument naming the parameter.
 [[nodiscard]] Result<Page> page_of(const Request& request);
 
 /// The id of the device that `?device=` names by id or name; nothing where it is not asked for. Error: NotFound.
@@ -64,7 +65,7 @@ template <class Fetch, class Item>
   if (!page) {
     return fail(page.error());
   }
-  const auto rows = fetch(Page{page->after, page->limit + 1});
+  const auto rows = fetch(Page{page->after, page->limit + 1, page->newest_first});
   if (!rows) {
     return fail(rows.error());
   }

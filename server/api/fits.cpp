@@ -46,7 +46,7 @@ void add_fit_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/fits",
               "listFits",
-              {"limit", "cursor", "device", "recording", "job", "quantity", "axis", "model", "best"},
+              {"limit", "cursor", "sort", "device", "recording", "job", "quantity", "axis", "model", "best"},
               Handler([&](const Request& request) { return list_fits(context, request); })});
   router.add({"GET", "/v1/fits/{id}", "getFit", {}, Handler([&](const Request& request) {
                 return get_fit(context, request);

@@ -67,7 +67,7 @@ void add_investigation_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/investigations",
               "listInvestigations",
-              {"limit", "cursor", "device", "study", "job"},
+              {"limit", "cursor", "sort", "device", "study", "job"},
               Handler([&](const Request& request) { return list_investigations(context, request); })});
   router.add({"GET", "/v1/investigations/{id}", "getInvestigation", {}, Handler([&](const Request& request) {
                 return get_investigation(context, request);

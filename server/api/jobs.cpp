@@ -174,9 +174,11 @@ Result<std::unique_ptr<EventSource>> job_events(ApiContext& context, const Reque
 }  // namespace
 
 void add_job_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/v1/jobs", "listJobs", {"limit", "cursor", "kind", "state"}, Handler([&](const Request& request) {
-                return list_jobs(context, request);
-              })});
+  router.add({"GET",
+              "/v1/jobs",
+              "listJobs",
+              {"limit", "cursor", "sort", "kind", "state"},
+              Handler([&](const Request& request) { return list_jobs(context, request); })});
   router.add({"POST", "/v1/jobs", "createJob", {}, Handler([&](const Request& request) {
                 return create_job(context, request);
               })});

@@ -97,10 +97,11 @@ Result<Response> create_model(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_model_routes(Router& router, ApiContext& context) {
-  router.add(
-      {"GET", "/v1/models", "listModels", {"limit", "cursor", "device", "parent"}, Handler([&](const Request& request) {
-         return list_models(context, request);
-       })});
+  router.add({"GET",
+              "/v1/models",
+              "listModels",
+              {"limit", "cursor", "sort", "device", "parent"},
+              Handler([&](const Request& request) { return list_models(context, request); })});
   router.add({"POST", "/v1/models", "createModel", {}, Handler([&](const Request& request) {
                 return create_model(context, request);
               })});

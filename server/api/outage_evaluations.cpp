@@ -146,7 +146,7 @@ void add_outage_evaluation_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/outage-evaluations",
               "listOutageEvaluations",
-              {"limit", "cursor", "state"},
+              {"limit", "cursor", "sort", "state"},
               Handler([&](const Request& request) { return list(context, request); })});
   router.add({"POST", "/v1/outage-evaluations", "createOutageEvaluation", {}, Handler([&](const Request& request) {
                 return create(context, request);

@@ -1,3 +1,4 @@
+#include "schema/json/channel_summary.hpp"
 #include "schema/json/parameter_table.hpp"
 #include "schema/json/trend_table.hpp"
 #include "schema/text/parameter_table.hpp"
@@ -71,7 +72,9 @@ Result<Response> get_table(ApiContext& context, const Request& request) {
   }
   const auto& [table, pooling] = *stored;
   const std::string note = note_of(pooling);
-  Response response = pooled_response(driftlab::to_json(table), pooling);
+  Json document = driftlab::to_json(table);
+  document["summary"] = driftlab::to_json(verdict_of(table));
+  Response response = pooled_response(std::move(document), pooling);
   if (*type == "text/csv") {
     response.content_type = "text/csv; charset=utf-8";
     response.body = table_to_csv(table);

@@ -146,7 +146,7 @@ void add_recording_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/recordings",
               "listRecordings",
-              {"limit", "cursor", "device", "condition"},
+              {"limit", "cursor", "sort", "device", "condition"},
               Handler([&](const Request& request) { return list_recordings(context, request); })});
   router.add({"POST",
               "/v1/recordings",

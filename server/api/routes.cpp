@@ -7,6 +7,10 @@
   RESOURCE(add_service_routes)          \
   RESOURCE(add_device_routes)           \
   RESOURCE(add_recording_routes)        \
+  RESOURCE(add_characterisation_routes) \
+  RESOURCE(add_trace_routes)            \
+  RESOURCE(add_overview_routes)         \
+  RESOURCE(add_sample_routes)           \
   RESOURCE(add_job_routes)              \
   RESOURCE(add_fit_routes)              \
   RESOURCE(add_parameter_table_routes)  \

@@ -135,9 +135,10 @@ Result<Response> get_study(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_study_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/v1/studies", "listStudies", {"limit", "cursor", "device"}, Handler([&](const Request& request) {
-                return list_studies(context, request);
-              })});
+  router.add(
+      {"GET", "/v1/studies", "listStudies", {"limit", "cursor", "sort", "device"}, Handler([&](const Request& request) {
+         return list_studies(context, request);
+       })});
   router.add({"POST", "/v1/studies", "createStudy", {}, Handler([&](const Request& request) {
                 return create_study(context, request);
               })});

@@ -141,6 +141,12 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   if (!refusal) {
     request.path = std::move(target->path);
     request.query = std::move(target->query);
+    if (shared_.hooks.page && verdict.content_length == 0) {
+      if (auto page = shared_.hooks.page(request)) {
+        route_ = "page";
+        co_return co_await send(request, std::move(*page), true);
+      }
+    }
     match = shared_.router.match(request.method, request.path);
     request.parameters = std::move(match.parameters);
     if (match.allowed.empty()) {

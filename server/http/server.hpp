@@ -57,6 +57,8 @@ struct AccessRecord {
 struct HttpHooks {
   /// Runs a plain route on a pool thread: checks, handler, ETag, idempotency.
   std::function<Response(const Route&, const Request&)> dispatch;
+  /// Pages and files for people, which are no part of the API. May be empty. Called from I/O threads; must not block.
+  std::function<std::optional<Response>(const Request&)> page;
   /// Adds request id and instance to a problem document.
   std::function<void(const Request&, Response&)> complete;
   /// A fresh request id.

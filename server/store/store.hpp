@@ -4,8 +4,8 @@
 /// One suite (tests/unit/store/store_suite.hpp) runs over every implementation; today that is SQLite. Methods are
 /// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A
 /// write that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors
-/// are named. Lists are keyset pages in ascending id order: `after` is the last id of the page before, empty for the
-/// first.
+/// are named. Lists are keyset pages in order of id, which is that of making: `after` is the last id of the page
+/// before, empty for the first.
 #include "core/signal/result.hpp"
 #include "server/store/rows.hpp"
 
@@ -20,6 +20,20 @@ namespace driftlab::server {
 struct Page {
   std::string after;
   int limit = 50;
+  bool newest_first = false;  ///< descending id order; `after` is still the last id of the page before
+};
+
+/// How much there is.
+struct Counts {
+  std::int64_t devices = 0;
+  std::int64_t recordings = 0;
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
+};
+
+struct ConditionCount {
+  std::string condition;  ///< compact text form
+  std::int64_t recordings = 0;
 };
 
 struct RecordingFilter {
@@ -105,6 +119,7 @@ class Store {
   // ---- health
   /// Answers a trivial query. For /readyz.
   [[nodiscard]] virtual Status ping() = 0;
+  [[nodiscard]] virtual Result<Counts> counts() = 0;
 
   // ---- devices
   /// The device of that name, created if absent. `created` tells.
@@ -127,6 +142,8 @@ class Store {
   [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
+  /// The conditions of a device's recordings, each once, in the order of their text.
+  [[nodiscard]] virtual Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) = 0;
   /// New metadata, one revision higher, if the revision is still `expected_revision`. What its results took part in is
   /// pooled anew without them. NotFound; Conflict.
   [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed,

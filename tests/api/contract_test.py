@@ -133,7 +133,7 @@ class Operations(DaemonTest):
         daemon.characterise(first.json["id"])
         daemon.finished(job.json["id"])
         daemon.post(f"/v1/jobs/{daemon.characterise(second.json['id']).json['id']}/cancel")
-        fit = daemon.items("/v1/fits")[0]
+        fit = next(fit for fit in daemon.items("/v1/fits") if fit["model"] == "WN")  # no parameter of it is open
         daemon.finished(daemon.items("/v1/jobs")[-1]["id"])
         daemon.request("DELETE", second.headers["location"], headers={"If-Match": "*"})
         for media in ("application/json", "text/csv", "text/plain", "text/markdown"):
@@ -155,11 +155,14 @@ class Operations(DaemonTest):
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
                   "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],
-                  "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json"}
+                  "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
+                  "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
+                  "/v1/recordings/{id}/trace": first.json["id"], "/v1/fits/{id}/implied": fit["id"]}
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
+                target += "?channel=gz" if path.endswith("/trace") else ""
                 answer = self.expect(200, daemon.get(target))
                 if "etag" in answer.headers:
                     self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))

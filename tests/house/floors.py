@@ -41,7 +41,8 @@ FLOORS: dict[str, list[str]] = {
     "server/jobs": [*RESULTS, "core/process", *SERVER],  # core/process: the units of parameters
     "server/http": [*SERVER, "server/auth", "schema/json"],
     "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http"],
-    "server": [*RESULTS, *SERVER, "server/auth", "server/jobs", "server/http", "server/api"],
+    "server/pages": ["server/store", "server/http"],
+    "server": [*RESULTS, *SERVER, "server/pages", "server/auth", "server/jobs", "server/http", "server/api"],
     "clients/cli": [*RESULTS, "core/read"],
 }
 

@@ -71,7 +71,7 @@ class Recipe:
 
     def build(self, *targets: str) -> Path:
         """Configures and builds as ./tests/run.sh does; the folder of the programs."""
-        for command in (["cmake", "--preset", "release", "-DDRIFTLAB_TESTS=ON", "-DDRIFTLAB_BENCH=OFF"],
+        for command in (["cmake", "--preset", "release", "-DDRIFTLAB_TESTS=ON", "-DDRIFTLAB_BENCH=OFF", "-DDRIFTLAB_DASHBOARD=OFF"],
                         ["cmake", "--build", "--preset", "release", "--parallel", str(os.cpu_count()), "--target", *targets]):
             done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
             self.assertEqual(done.returncode, 0, (done.stdout + done.stderr)[-6000:])

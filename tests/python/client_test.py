@@ -1,6 +1,7 @@
 """The Python client against the real daemon: every operation once, results as objects, problems as exceptions."""
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import tempfile
@@ -234,6 +235,14 @@ class Everything(ClientTest):
         self.assertTrue(client.parameter_table("all-07", axis="z").rows())
         self.assertIsInstance(client.trends("all-07", axis="z").rows(), list)
         self.assertIn("two conditions", client.trends_text("all-07", axis="z"))
+
+        self.assertIn("verdict", client.characterisation(first)["channels"][0]["summary"])
+        self.assertEqual(len(client.trace(first, client.recording(first)["file"]["columns"][0], points=10)["mean"]), 10)
+        self.assertGreater(client.counts()["recordings"], 0)
+        self.assertGreater(client.device_summary("all-07")["recordings"], 0)
+        with contextlib.suppress(NotFound):  # a fit may leave a parameter open
+            self.assertIn("allan", client.implied(next(client.fits(best=True))["id"])["implied"])
+        self.assertTrue(client.sample(seed=2).startswith("gz"))
 
         study = client.create_study("all-07", [first, {"recording": second}])
         self.assertEqual(client.study(study["id"])["id"], study["id"])

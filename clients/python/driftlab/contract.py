@@ -290,6 +290,8 @@ class Device(TypedDict):
     revision: int
     created_at: str
     updated_at: str
+    # In lists with `include=summary`.
+    summary: NotRequired[DeviceSummary | None]
 
 
 class DeviceChange(TypedDict):
@@ -297,6 +299,46 @@ class DeviceChange(TypedDict):
     imu: NotRequired[str]
     serial: NotRequired[str]
     labels: NotRequired[dict[str, str]]
+
+
+class DeviceSummary(TypedDict):
+    """Device at a glance. How many recordings a device has under which conditions, and the white noise of each of its
+    axes."""
+
+    recordings: int
+    conditions: list[DeviceSummaryCondition]
+    # Each sensor axis that was characterised, by the best fit of a recording at rest, or else of the first there is.
+    channels: list[DeviceSummaryChannel]
+    # The newest result; null where there is none.
+    latest: DeviceSummaryLatest | None
+
+
+class DeviceSummaryChannel(TypedDict):
+    quantity: str
+    axis: str | None
+    recording: str
+    condition: Condition | None
+    model: str
+    N: QuantityIdentified
+    # The J test does not reject the model at 1 %; null where it has too few scales.
+    fits: bool | None
+    level: Literal['fine', 'look']
+    # Why it wants a look.
+    reason: str | None
+
+
+class DeviceSummaryCondition(TypedDict):
+    condition: Condition | None
+    recordings: int
+
+
+class DeviceSummaryLatest(TypedDict):
+    """The newest result; null where there is none."""
+
+    kind: Literal['characterise']
+    job: str
+    recording: str
+    at: str
 
 
 class Fit(TypedDict):
@@ -371,6 +413,23 @@ class FitProcess(TypedDict):
     params: dict[str, QuantityIdentified]
     # Why a parameter is null.
     reasons: NotRequired[dict[str, str]]
+
+
+class GetCountsAnswer(TypedDict):
+    devices: int
+    recordings: int
+    jobs: GetCountsAnswerJobs
+
+
+class GetCountsAnswerJobs(TypedDict):
+    queued: int
+    running: int
+
+
+class GetImpliedCurvesAnswer(TypedDict):
+    fit: str
+    model: str
+    implied: RecordingCharacterisationImplied
 
 
 class HealthAnswer(TypedDict):
@@ -1264,6 +1323,7 @@ class ParameterTable(TypedDict):
     # The one model of all rows; null for method av.
     model: str | None
     pooling: ParameterTablePooling
+    summary: NotRequired[RecordingCharacterisationSummary]
     columns: list[ParameterTableColumn]
     rows: list[ParameterTableRow]
 
@@ -1468,6 +1528,99 @@ class RecordingChange(TypedDict):
     columns: NotRequired[RecordingMembersColumns | None]
     condition: NotRequired[Condition]
     trim: NotRequired[RecordingMembersTrim | None]
+
+
+class RecordingCharacterisation(TypedDict):
+    """Newest result of a recording. What the newest characterisation of one recording found, what it says in a
+    sentence, and what its best fit implies."""
+
+    recording: str
+    # The recording's revision that was characterised.
+    revision: int
+    # The recording has changed since.
+    stale: bool
+    job: str
+    created_at: str
+    algorithm_version: int
+    parameters: JobRequest
+    condition: Condition
+    duration_s: float
+    rate_hz: float
+    channels: list[RecordingCharacterisationChannel]
+
+
+class RecordingCharacterisationChannel(TypedDict):
+    summary: RecordingCharacterisationSummary
+    # Of each of the result's `fits`, in their order; empty text where a fit is not kept.
+    fit_ids: list[str]
+    # By the best fit; null where it leaves a parameter open.
+    implied: RecordingCharacterisationImplied | None
+    result: CharacterisationChannel
+
+
+class RecordingCharacterisationImplied(TypedDict):
+    """What a fit implies of the curves beside the measured ones, as a whole and process by process; independent
+    processes add in variance and density."""
+
+    # The channel's own unit.
+    unit: str
+    # Allan deviation [unit]; the Haar wavelet deviation is this over the square root of 2.
+    allan: RecordingCharacterisationImpliedAllan
+    # Two-sided density [unit^2/Hz]; null where a process has none.
+    spectrum: RecordingCharacterisationImpliedSpectrum
+    # At the times that were measured: the implied Allan deviation, and the measured one over it with its interval.
+    ratio: RecordingCharacterisationImpliedRatio
+
+
+class RecordingCharacterisationImpliedAllan(TypedDict):
+    """Allan deviation [unit]; the Haar wavelet deviation is this over the square root of 2."""
+
+    tau_s: list[float | None]
+    deviation: list[float | None]
+    components: list[RecordingCharacterisationImpliedAllanComponent]
+
+
+class RecordingCharacterisationImpliedAllanComponent(TypedDict):
+    process: str
+    deviation: list[float | None]
+
+
+class RecordingCharacterisationImpliedRatio(TypedDict):
+    """At the times that were measured: the implied Allan deviation, and the measured one over it with its interval."""
+
+    tau_s: list[float | None]
+    deviation: list[float | None]
+    measured_over_model: list[float | None]
+    ci95: list[list[float | None]]
+
+
+class RecordingCharacterisationImpliedSpectrum(TypedDict):
+    """Two-sided density [unit^2/Hz]; null where a process has none."""
+
+    f_hz: list[float | None]
+    density: list[float | None]
+    components: list[RecordingCharacterisationImpliedSpectrumComponent]
+
+
+class RecordingCharacterisationImpliedSpectrumComponent(TypedDict):
+    process: str
+    density: list[float | None]
+
+
+class RecordingCharacterisationSummary(TypedDict):
+    """A sentence that a person could act on, with its evidence. Command line, API and page say the same."""
+
+    verdict: str
+    details: list[str]
+    # look: something that a reader must know first; wrong: not to be used as it is.
+    level: Literal['fine', 'look', 'wrong']
+    # What the sentence rests on: JSON pointers into the document it is about.
+    facts: list[RecordingCharacterisationSummaryFact]
+
+
+class RecordingCharacterisationSummaryFact(TypedDict):
+    pointer: str
+    value: float | None
 
 
 class RecordingColumn(TypedDict):
@@ -1684,6 +1837,25 @@ class StudyRequestRecording(TypedDict):
     calibration: NotRequired[str]
 
 
+class Trace(TypedDict):
+    """Trace. A column of a recording as a screen can show it: least, greatest and mean value of every stretch of
+    samples."""
+
+    # 1: the samples themselves.
+    samples_per_bucket: int
+    # Of the first sample of each stretch since the first of the file, evenly spaced.
+    time_s: list[float]
+    # null where a stretch has no sample.
+    min: list[float | None]
+    max: list[float | None]
+    mean: list[float | None]
+    # null where nobody states it.
+    unit: str | None
+    # Of the whole file.
+    duration_s: float | None
+    rate_hz: float | None
+
+
 class Trends(TypedDict):
     """Trends. How each parameter of one sensor axis moves with |rate| and |angular acceleration|."""
 
@@ -1804,16 +1976,22 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/problems/{slug}', (), (), ('text/markdown',)),
     'getSchema': Operation(
         'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
+    'getCounts': Operation(
+        'GET', '/v1/counts', (), (), ('application/json',)),
+    'getSample': Operation(
+        'GET', '/v1/samples/{preset}', ('condition', 'seed'), (), ('text/csv',)),
     'listDevices': Operation(
-        'GET', '/v1/devices', ('limit', 'cursor'), (), ('application/json',)),
+        'GET', '/v1/devices', ('include', 'limit', 'cursor', 'sort'), (), ('application/json',)),
     'createDevice': Operation(
         'POST', '/v1/devices', (), ('Idempotency-Key',), ('application/json',)),
     'getDevice': Operation(
         'GET', '/v1/devices/{id}', (), (), ('application/json',)),
     'changeDevice': Operation(
         'PATCH', '/v1/devices/{id}', (), ('If-Match',), ('application/json',)),
+    'getDeviceSummary': Operation(
+        'GET', '/v1/devices/{id}/summary', (), (), ('application/json',)),
     'listRecordings': Operation(
-        'GET', '/v1/recordings', ('limit', 'cursor', 'device', 'condition'), (), ('application/json',)),
+        'GET', '/v1/recordings', ('limit', 'cursor', 'sort', 'device', 'condition'), (), ('application/json',)),
     'uploadRecording': Operation(
         'POST', '/v1/recordings',
         ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
@@ -1825,8 +2003,12 @@ OPERATIONS: dict[str, Operation] = {
         'PATCH', '/v1/recordings/{id}', (), ('If-Match',), ('application/json',)),
     'deleteRecording': Operation(
         'DELETE', '/v1/recordings/{id}', (), ('If-Match',), ()),
+    'getCharacterisation': Operation(
+        'GET', '/v1/recordings/{id}/characterisation', ('channel',), (), ('application/json',)),
+    'getTrace': Operation(
+        'GET', '/v1/recordings/{id}/trace', ('channel', 't0', 't1', 'points'), (), ('application/json',)),
     'listJobs': Operation(
-        'GET', '/v1/jobs', ('limit', 'cursor', 'kind', 'state'), (), ('application/json',)),
+        'GET', '/v1/jobs', ('limit', 'cursor', 'sort', 'kind', 'state'), (), ('application/json',)),
     'createJob': Operation(
         'POST', '/v1/jobs', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getJob': Operation(
@@ -1839,10 +2021,12 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/jobs/{id}/events', (), ('Last-Event-ID',), ('text/event-stream',)),
     'listFits': Operation(
         'GET', '/v1/fits',
-        ('limit', 'cursor', 'device', 'recording', 'job', 'quantity', 'axis', 'model', 'best'),
+        ('limit', 'cursor', 'sort', 'device', 'recording', 'job', 'quantity', 'axis', 'model', 'best'),
         (), ('application/json',)),
     'getFit': Operation(
         'GET', '/v1/fits/{id}', (), (), ('application/json',)),
+    'getImpliedCurves': Operation(
+        'GET', '/v1/fits/{id}/implied', (), (), ('application/json',)),
     'getParameterTable': Operation(
         'GET', '/v1/parameter-tables',
         ('device', 'sensor', 'axis', 'method', 'model'),
@@ -1852,29 +2036,29 @@ OPERATIONS: dict[str, Operation] = {
         ('device', 'sensor', 'axis', 'method', 'model'),
         ('Prefer',), ('application/json', 'text/plain')),
     'listStudies': Operation(
-        'GET', '/v1/studies', ('limit', 'cursor', 'device'), (), ('application/json',)),
+        'GET', '/v1/studies', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
     'createStudy': Operation(
         'POST', '/v1/studies', (), ('Idempotency-Key',), ('application/json',)),
     'getStudy': Operation(
         'GET', '/v1/studies/{id}', (), (), ('application/json',)),
     'listOutageEvaluations': Operation(
-        'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'state'), (), ('application/json',)),
+        'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
     'createOutageEvaluation': Operation(
         'POST', '/v1/outage-evaluations', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getOutageEvaluation': Operation(
         'GET', '/v1/outage-evaluations/{id}', (), ('Prefer',), ('application/json',)),
     'listCalibrations': Operation(
-        'GET', '/v1/calibrations', ('limit', 'cursor', 'device'), (), ('application/json',)),
+        'GET', '/v1/calibrations', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
     'createCalibration': Operation(
         'POST', '/v1/calibrations', (), ('Idempotency-Key',), ('application/json',)),
     'getCalibration': Operation(
         'GET', '/v1/calibrations/{id}', (), (), ('application/json',)),
     'listInvestigations': Operation(
-        'GET', '/v1/investigations', ('limit', 'cursor', 'device', 'study', 'job'), (), ('application/json',)),
+        'GET', '/v1/investigations', ('limit', 'cursor', 'sort', 'device', 'study', 'job'), (), ('application/json',)),
     'getInvestigation': Operation(
         'GET', '/v1/investigations/{id}', (), (), ('application/json', 'text/markdown')),
     'listModels': Operation(
-        'GET', '/v1/models', ('limit', 'cursor', 'device', 'parent'), (), ('application/json',)),
+        'GET', '/v1/models', ('limit', 'cursor', 'sort', 'device', 'parent'), (), ('application/json',)),
     'createModel': Operation(
         'POST', '/v1/models', (), ('Idempotency-Key',), ('application/json',)),
     'getModel': Operation(

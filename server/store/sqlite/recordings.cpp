@@ -22,6 +22,11 @@ constexpr std::string_view kById =
 constexpr std::string_view kByDeviceAndBlob =
     "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at "
     "FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
+constexpr std::string_view kCounts =
+    "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
+    "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
+constexpr std::string_view kConditionsOf =
+    "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
     "updated_at) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
@@ -227,6 +232,20 @@ Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256)
     return fail(removed.error());
   }
   return connection.changes() > 0;
+}
+
+Result<Counts> counts(Connection& connection) {
+  Statement statement = connection.prepare(kCounts);
+  return one_row(
+      statement,
+      +[](const Statement& row) { return Counts{row.integer(0), row.integer(1), row.integer(2), row.integer(3)}; },
+      Error{ErrorCode::Internal, "The store counts nothing.", {}});
+}
+
+Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id) {
+  Statement statement = connection.prepare(kConditionsOf);
+  statement.bind(device_id);
+  return all_rows(statement, +[](const Statement& row) { return ConditionCount{row.text(0), row.integer(1)}; });
 }
 
 }  // namespace driftlab::server::tables

@@ -61,6 +61,12 @@ class OpenedStore final : public SqliteStore {
   [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override {
     return readers_->read([&](Connection& c) { return tables::recordings(c, filter, page); });
   }
+  [[nodiscard]] Result<Counts> counts() override {
+    return readers_->read([](Connection& c) { return tables::counts(c); });
+  }
+  [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) override {
+    return readers_->read([&](Connection& c) { return tables::conditions_of(c, device_id); });
+  }
   [[nodiscard]] Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) override {
     return writer_.write([&](Connection& c) { return tables::revise_recording(c, changed, expected_revision, now()); });
   }

@@ -76,8 +76,12 @@ class FilteredQuery {
   template <class Row>
   [[nodiscard]] Result<std::vector<Row>> read_page(Connection& connection, const Page& page,
                                                    Row (*read)(const Statement&)) {
-    where("id > ?", page.after);
-    sql_.append(" ORDER BY id LIMIT ?");
+    if (page.newest_first) {
+      where("id < ?", page.after.empty() ? std::nullopt : std::optional(page.after));
+    } else {
+      where("id > ?", page.after);
+    }
+    sql_.append(page.newest_first ? " ORDER BY id DESC LIMIT ?" : " ORDER BY id LIMIT ?");
     Statement statement = connection.prepare(sql_);
     for (const std::string& value : values_) {
       statement.bind(value);
@@ -106,6 +110,8 @@ class FilteredQuery {
 [[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
+[[nodiscard]] Result<Counts> counts(Connection& connection);
+[[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
 [[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,

@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import cast
+from typing import Literal, cast
 
-from ..contract import Condition, Device, DeviceChange, RecordingChange, StoredRecording
+from ..contract import Condition, Device, DeviceChange, DeviceSummary, RecordingChange, RecordingCharacterisation, StoredRecording, Trace
 from ..transport import Body
 from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query
 from .base import PAGE, Routes, given, operation
@@ -12,9 +12,9 @@ from .base import PAGE, Routes, given, operation
 
 class RecordingRoutes(Routes):
     @operation("listDevices")
-    def devices(self, *, page_size: int = PAGE) -> Iterator[Device]:
-        """Every device, oldest first."""
-        return self._list("listDevices", {}, page_size)
+    def devices(self, *, include: Literal["summary"] | None = None, page_size: int = PAGE) -> Iterator[Device]:
+        """Every device, oldest first; with `include` each with its summary."""
+        return self._list("listDevices", {"include": include}, page_size)
 
     @operation("createDevice")
     def create_device(self, name: str, *, model: str | None = None, imu: str | None = None, serial: str | None = None,
@@ -27,6 +27,11 @@ class RecordingRoutes(Routes):
     def device(self, id: str) -> Device:
         """One device by id or name."""
         return cast(Device, self._get("getDevice", {"id": id}))
+
+    @operation("getDeviceSummary")
+    def device_summary(self, id: str) -> DeviceSummary:
+        """A device at a glance: recordings, conditions, white noise of each axis."""
+        return cast(DeviceSummary, self._get("getDeviceSummary", {"id": id}))
 
     def device_etag(self, id: str) -> str:
         """Names the state of a device, for `if_match`."""
@@ -42,6 +47,21 @@ class RecordingRoutes(Routes):
     def recordings(self, *, device: str | None = None, condition: str | None = None, page_size: int = PAGE) -> Iterator[StoredRecording]:
         """Recordings, oldest first; `condition` in its compact form, for example constant_rate:z:9:deg/s."""
         return self._list("listRecordings", {"device": device, "condition": condition}, page_size)
+
+    @operation("getCharacterisation")
+    def characterisation(self, id: str, *, channel: str | None = None) -> RecordingCharacterisation:
+        """The newest result of a recording, with its verdict and what its best fit implies; NotFound before there is one."""
+        return cast(RecordingCharacterisation, self._get("getCharacterisation", {"id": id}, {"channel": channel}))
+
+    @operation("getTrace")
+    def trace(self, id: str, channel: str, *, t0: float | None = None, t1: float | None = None, points: int | None = None) -> Trace:
+        """A column as a screen can show it: least, greatest and mean value of every stretch between two times [s]."""
+        return cast(Trace, self._get("getTrace", {"id": id}, {"channel": channel, "t0": t0, "t1": t1, "points": points}))
+
+    @operation("getSample")
+    def sample(self, preset: str = "iphone5s-z", *, condition: str | None = None, seed: int | None = None) -> str:
+        """A recording to try driftlab with, as CSV: simulated from published figures."""
+        return self._text("getSample", "text/csv", {"preset": preset}, {"condition": condition, "seed": seed})
 
     @operation("uploadRecording")
     def upload(self, source: Source, *, device: str, condition: str | Condition = "static", rate_hz: float | None = None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, cast
 
-from ..contract import Fit, InvestigationSummary
+from ..contract import Fit, GetImpliedCurvesAnswer, InvestigationSummary
 from ..contract import Investigation as InvestigationDocument
 from ..contract import ParameterTable as ParameterTableDocument
 from ..contract import Trends as TrendsDocument
@@ -31,6 +31,11 @@ class ResultRoutes(Routes):
     def fit(self, id: str) -> Fit:
         """One fit."""
         return cast(Fit, self._get("getFit", {"id": id}))
+
+    @operation("getImpliedCurves")
+    def implied(self, id: str) -> GetImpliedCurvesAnswer:
+        """Allan deviation and density that a fit implies, as a whole and process by process."""
+        return cast(GetImpliedCurvesAnswer, self._get("getImpliedCurves", {"id": id}))
 
     @operation("getParameterTable")
     def parameter_table(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from ..contract import ContractAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
+from ..contract import ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
 from .base import Routes, operation
 
 
@@ -22,6 +22,11 @@ class ServiceRoutes(Routes):
     def readiness(self) -> ReadinessAnswer:
         """The daemon can take work; Unavailable at once, without retries, where it cannot."""
         return cast(ReadinessAnswer, self._transport.call("readiness", retries=False).json)
+
+    @operation("getCounts")
+    def counts(self) -> GetCountsAnswer:
+        """How many devices and recordings there are, and jobs that live."""
+        return cast(GetCountsAnswer, self._get("getCounts"))
 
     @operation("contract")
     def contract(self) -> ContractAnswer:

@@ -1,0 +1,102 @@
+// The drawing itself: axes, marks, notes and keys of a column of plots, as one SVG.
+import type {ComponentChildren, JSX} from 'preact';
+import {writeTick} from '../format/number';
+import {type Area, type Layout} from './layout';
+import {Band, Curve, Points, Sample} from './marks';
+import type {Note} from './spec';
+
+const half = (x: number): number => Math.round(x * 2) / 2;
+
+function Axes({place}: {place: Area}): JSX.Element {
+  const {plot, x, y, left, right, top, bottom} = place;
+  const writeX = plot.x.write ?? writeTick;
+  const writeY = plot.y.write ?? writeTick;
+  return <g>
+    {x.ticks.map(t => <line key={t} class="gr" x1={half(x(t))} x2={half(x(t))} y1={top} y2={bottom} />)}
+    {y.ticks.map(t => <line key={t} class="gr" x1={left} x2={right} y1={half(y(t))} y2={half(y(t))} />)}
+    {(plot.rules ?? []).map(value => <line key={value} class="ax" x1={left} x2={right} y1={half(y(value))} y2={half(y(value))} />)}
+    {!plot.hideX && x.minor.map(t => <line key={t} class="ax" x1={half(x(t))} x2={half(x(t))} y1={bottom} y2={bottom - 4} />)}
+    {y.minor.map(t => <line key={t} class="ax" x1={left} x2={left + 4} y1={half(y(t))} y2={half(y(t))} />)}
+    <path class="ax" d={plot.hideX ? `M${left},${top}V${bottom}` : `M${left},${top}V${bottom}H${right}`} />
+    {!plot.hideX && x.ticks.map(t => <text key={t} x={half(x(t))} y={bottom + 17} text-anchor="middle">{writeX(t)}</text>)}
+    {y.ticks.map(t => <text key={t} x={left - 8} y={half(y(t)) + 4} text-anchor="end">{writeY(t)}</text>)}
+    {plot.y.name && <text class="t" x={0} y={top - 14}>{plot.y.name}</text>}
+    {!plot.hideX && plot.x.name && <text class="t" x={right} y={bottom + 36} text-anchor="end">{plot.x.name}</text>}
+  </g>;
+}
+
+// Slopes as short strokes near the lower left, where the data of an Allan deviation are not.
+function Guides({place}: {place: Area}): JSX.Element {
+  const {plot, left, bottom} = place;
+  const length = 52;
+  return <g>{(plot.guides ?? []).map((guide, i) => {
+    const x = left + 16 + i * 96;
+    const y = bottom - 22;
+    const rise = guide.slope * length;
+    return <g key={guide.text}>
+      <line class="ax" x1={x} x2={x + length} y1={y + rise / 2} y2={y - rise / 2} />
+      <text class="s h" x={x + length + 5} y={y + 4}>{guide.text}</text>
+    </g>;
+  })}</g>;
+}
+
+function NoteMark({note, place}: {note: Note; place: Area}): JSX.Element {
+  const x = place.x(note.x);
+  const y = place.y(note.y);
+  const colour = note.colour ?? 'var(--ink)';
+  const textX = note.drop ? x + 6 : note.line === undefined ? x : place.right;
+  const textY = note.drop ? place.bottom - (note.sub ? 22 : 8) : y - 10;
+  const anchor = note.drop ? 'start' : note.line === undefined ? note.anchor ?? 'start' : 'end';
+  return <g>
+    {note.drop && <line x1={x} x2={x} y1={y} y2={place.bottom} stroke={colour} stroke-width="1" stroke-dasharray="1 2" />}
+    {note.line !== undefined && <line x1={place.left + (place.right - place.left) * 0.62} x2={place.right} y1={place.y(note.line)} y2={place.y(note.line)} class="ax" />}
+    {note.ring && <circle cx={x} cy={y} r="5.5" fill="none" stroke={colour} stroke-width="1.2" />}
+    <text class="h t" x={textX} y={note.line === undefined ? textY : place.y(note.line) - (note.sub ? 17 : 6)} text-anchor={anchor} style={{fill: colour}}>{note.text}</text>
+    {note.sub && <text class="s h" x={textX} y={note.line === undefined ? textY + 14 : place.y(note.line) - 4} text-anchor={anchor}>{note.sub}</text>}
+  </g>;
+}
+
+function Keys({plan}: {plan: Layout}): JSX.Element {
+  const {areas, keyBelow, keyLeft, width} = plan;
+  const last = areas[areas.length - 1];
+  const columns = Math.max(1, Math.floor(width / 190));
+  let count = 0;
+  return <g>{areas.map(place => {
+    let y = place.top + 12;
+    return place.plot.series.filter(series => !series.hidden && !series.noKey).map(series => {
+      const index = count++;
+      const sampleX = keyBelow ? (index % columns) * 190 : keyLeft;
+      const sampleY = keyBelow ? (last?.foot ?? 0) + 12 + Math.floor(index / columns) * 18 : y;
+      y += series.detail ? 40 : 26;
+      return <g key={series.id}>
+        <Sample series={series} x={sampleX} y={sampleY} />
+        <text class="t" x={sampleX + 30} y={sampleY + 4}>{series.name}</text>
+        {series.detail && !keyBelow && <text class="s" x={sampleX + 30} y={sampleY + 18}>{series.detail}</text>}
+      </g>;
+    });
+  })}</g>;
+}
+
+export interface DrawingProps {
+  plan: Layout;
+  id: string;
+  cursor: ComponentChildren;
+}
+
+export function Drawing({plan, id, cursor}: DrawingProps): JSX.Element {
+  return <>
+    {plan.areas.map(place => <g key={place.plot.id}>
+      <clipPath id={`${id}-${place.plot.id}`}><rect x={place.left} y={place.top - 6} width={place.right - place.left + 6} height={place.bottom - place.top + 6} /></clipPath>
+      <Axes place={place} />
+      <Guides place={place} />
+      <g clip-path={`url(#${id}-${place.plot.id})`}>
+        {place.plot.series.filter(s => !s.hidden).map(series => <Band key={series.id} series={series} place={place} />)}
+        {place.plot.series.filter(s => !s.hidden).map(series => <Curve key={series.id} series={series} place={place} />)}
+        {place.plot.series.filter(s => !s.hidden).map(series => <Points key={series.id} series={series} place={place} />)}
+      </g>
+      {(place.plot.notes ?? []).map(note => <NoteMark key={note.text} note={note} place={place} />)}
+    </g>)}
+    <Keys plan={plan} />
+    {cursor}
+  </>;
+}

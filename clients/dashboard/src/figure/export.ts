@@ -1,0 +1,89 @@
+// A figure as a file of its own: light palette, fonts named, its source under it.
+import type {Plot} from './spec';
+
+const TEXT_STYLES = `text{font:12px Inter,Helvetica,Arial,sans-serif;fill:#4a5056}text.t{fill:#16191d}text.s{font-size:11px;fill:#666c73}text.b{font-weight:600;fill:#16191d}text.h{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}.gr{stroke:#e2e2dc;fill:none}.ax{stroke:#82878d;fill:none}`;
+
+function inLight(text: string): string {
+  const probe = document.createElement('div');
+  probe.className = 'light';
+  document.body.append(probe);
+  const styles = getComputedStyle(probe);
+  const coloured = text.replace(/var\((--[\w-]+)\)/g, (_, name: string) => styles.getPropertyValue(name).trim() || '#000');
+  probe.remove();
+  return coloured;
+}
+
+export function svgText(svg: SVGSVGElement, title: string, source: string): string {
+  const copy = svg.cloneNode(true) as SVGSVGElement;
+  for (const gone of [...copy.querySelectorAll('[data-cursor]')]) gone.remove();
+  const width = svg.viewBox.baseVal.width;
+  const height = svg.viewBox.baseVal.height;
+  copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
+  copy.setAttribute('viewBox', `0 0 ${width} ${height + 20}`);
+  copy.setAttribute('width', String(width));
+  copy.setAttribute('height', String(height + 20));
+  for (const name of ['tabindex', 'class', 'aria-label', 'aria-describedby', 'aria-roledescription']) copy.removeAttribute(name);
+  copy.setAttribute('role', 'img');
+  const make = (name: string, text: string): SVGElement => {
+    const element = document.createElementNS('http://www.w3.org/2000/svg', name) as SVGElement;
+    element.textContent = text;
+    return element;
+  };
+  const ground = make('rect', '');
+  ground.setAttribute('width', String(width));
+  ground.setAttribute('height', String(height + 20));
+  ground.setAttribute('fill', '#ffffff');
+  const line = make('text', source);
+  line.setAttribute('class', 's');
+  line.setAttribute('x', '0');
+  line.setAttribute('y', String(height + 14));
+  copy.querySelector('title')?.remove();
+  copy.prepend(make('title', title), make('style', TEXT_STYLES), ground);
+  copy.append(line);
+  return inLight(new XMLSerializer().serializeToString(copy));
+}
+
+export interface Table { heading: string[]; rows: (string | number | null)[][] }
+
+// Every series as columns over the x they share; full precision.
+export function tableOf(plots: readonly Plot[]): Table {
+  const first = plots[0];
+  if (!first) return {heading: [], rows: []};
+  const series = plots.flatMap(plot => plot.series.map(one => ({one, unit: plot.y.name})));
+  const measured = series.filter(({one}) => one.mark);
+  const grid = new Set<number>();
+  for (const {one} of measured.length > 0 ? measured : series) for (const x of one.x) grid.add(x);
+  const xs = [...grid].sort((a, b) => a - b);
+  const heading = [first.x.name];
+  const columns: (number | null)[][] = [];
+  for (const {one, unit} of series) {
+    const index = new Map(one.x.map((x, i) => [x, i] as const));
+    const pick = (values: readonly (number | null)[]): (number | null)[] => xs.map(x => { const i = index.get(x); return i === undefined ? null : values[i] ?? null; });
+    if (!xs.some(x => index.has(x))) continue;
+    heading.push(`${one.name} (${unit || 'same unit'})`);
+    columns.push(pick(one.y));
+    if (one.low && one.high) {
+      heading.push(`${one.name}, 95 % low`, `${one.name}, 95 % high`);
+      columns.push(pick(one.low), pick(one.high));
+    }
+  }
+  return {heading, rows: xs.map((x, i) => [x, ...columns.map(column => column[i] ?? null)])};
+}
+
+const field = (value: string | number | null): string => {
+  const text = value === null ? '' : String(value);
+  return /[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text;
+};
+
+export const csvOf = (table: Table): string => [table.heading, ...table.rows].map(row => row.map(field).join(',')).join('\n') + '\n';
+
+export function save(name: string, type: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], {type}));
+  const link = document.createElement('a');
+  link.href = url;
+  link.download = name;
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}

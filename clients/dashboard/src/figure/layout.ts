@@ -1,0 +1,130 @@
+// Where things go: scales, margins and ticks of a column of plots that share their x axis.
+import {scaleLinear, scaleLog} from 'd3-scale';
+import {finite, type Axis, type Numbers, type Plot, type Series} from './spec';
+
+export interface Scale { (value: number): number; invert(pixel: number): number; ticks: number[]; minor: number[]; domain: [number, number] }
+
+export interface Area {
+  plot: Plot;
+  x: Scale;
+  y: Scale;
+  left: number; right: number; top: number; bottom: number;
+  foot: number;          // lowest pixel that belongs to it
+}
+
+export interface Layout { width: number; height: number; areas: Area[]; keyBelow: boolean; keyLeft: number }
+
+const LEFT = 58;
+const KEY = 152;
+const NARROW = 600;
+const LEAST_EQUAL = 240;
+const MOST_EQUAL = 900;
+const KEY_LINE = 18;
+
+function extent(lists: Numbers[], log: boolean): [number, number] {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const list of lists) {
+    for (const value of list) {
+      if (!finite(value) || (log && value <= 0)) continue;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  }
+  if (!(low <= high)) return log ? [0.1, 10] : [0, 1];
+  if (low === high) return log ? [low / 2, high * 2] : [low - 1, high + 1];
+  return [low, high];
+}
+
+function padded([low, high]: [number, number], log: boolean, share: number): [number, number] {
+  if (log) {
+    const more = (high / low) ** share;
+    return [low / more, high * more];
+  }
+  const more = (high - low) * share;
+  return [low - more, high + more];
+}
+
+function logTicks([low, high]: [number, number]): {ticks: number[]; minor: number[]} {
+  const ticks: number[] = [];
+  const minor: number[] = [];
+  const decades = Math.log10(high / low);
+  const labelled = decades < 1.3 ? [1, 2, 3, 5] : decades < 2.2 ? [1, 2, 5] : [1];
+  const every = decades > 9 ? 2 : 1;
+  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
+    for (let digit = 1; digit < 10; ++digit) {
+      const value = Number(`${digit}e${e}`);
+      if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
+      if (labelled.includes(digit) && (digit > 1 || e % every === 0)) ticks.push(value);
+      else minor.push(value);
+    }
+  }
+  return {ticks, minor};
+}
+
+export function makeScale(axis: Axis, domain: [number, number], from: number, to: number): Scale {
+  if (axis.scale === 'log') {
+    const scale = scaleLog().domain(domain).range([from, to]);
+    return Object.assign((value: number) => scale(value), {invert: (pixel: number) => scale.invert(pixel), domain, ...(axis.ticks ? {ticks: [...axis.ticks], minor: []} : logTicks(domain))});
+  }
+  const scale = scaleLinear().domain(domain).range([from, to]);
+  const ticks = axis.ticks ? [...axis.ticks] : scale.ticks(Math.max(2, Math.round(Math.abs(to - from) / (from < to ? 90 : 44))));
+  return Object.assign((value: number) => scale(value), {invert: (pixel: number) => scale.invert(pixel), domain, ticks, minor: []});
+}
+
+const drawn = (plot: Plot): readonly Series[] => plot.series.filter(series => !series.hidden);
+
+function domainX(plots: readonly Plot[]): [number, number] {
+  const axis = plots[0]!.x;
+  if (axis.domain) return [axis.domain[0], axis.domain[1]];
+  // Curves follow the points, not the other way round.
+  const all = plots.flatMap(plot => drawn(plot));
+  const points = all.filter(series => series.mark);
+  const range = extent((points.length > 0 ? points : all).map(series => series.x), axis.scale === 'log');
+  return padded(range, axis.scale === 'log', 0.03);
+}
+
+function domainY(plot: Plot, x: [number, number]): [number, number] {
+  if (plot.y.domain) return [plot.y.domain[0], plot.y.domain[1]];
+  const log = plot.y.scale === 'log';
+  const inside = (series: Series, values: Numbers): Numbers => values.filter((_, i) => { const at = series.x[i]!; return at >= x[0] && at <= x[1]; });
+  const points = drawn(plot).filter(series => series.mark);
+  const body = extent((points.length > 0 ? points : drawn(plot)).map(series => inside(series, series.y)), log);
+  const ends = extent(drawn(plot).flatMap(series => [series.y, series.low ?? [], series.high ?? []].map(values => inside(series, values))), log);
+  // The last intervals may reach far: what lies a decade outside the points is cut.
+  const range: [number, number] = log ? [Math.max(ends[0], body[0] / 8), Math.min(ends[1], body[1] * 8)] : ends;
+  return padded(range, log, 0.05);
+}
+
+function keyLines(plots: readonly Plot[]): number {
+  return plots.reduce((sum, plot) => sum + drawn(plot).filter(series => !series.noKey).length, 0);
+}
+
+export function layout(plots: readonly Plot[], width: number): Layout {
+  const keys = keyLines(plots);
+  const keyBelow = width < NARROW || keys === 0;
+  const right = keyBelow ? width - 8 : width - KEY;
+  const x = domainX(plots);
+  let top = 0;
+  const areas: Area[] = [];
+  for (const plot of plots) {
+    const y = domainY(plot, x);
+    let height = plot.height ?? 220;
+    if (plot.equalDecades) {
+      const perDecade = (right - LEFT) / Math.log10(x[1] / x[0]);
+      height = perDecade * Math.log10(y[1] / y[0]);
+      const wanted = Math.min(Math.max(height, LEAST_EQUAL), MOST_EQUAL);
+      const more = 10 ** ((wanted - height) / perDecade / 2);
+      y[0] /= more;
+      y[1] *= more;
+      height = wanted;
+    }
+    const areaTop = top + (plot.y.name ? 32 : 10);
+    const areaBottom = areaTop + height;
+    const foot = areaBottom + (plot.hideX ? 12 : plot.x.name ? 44 : 26);
+    areas.push({plot, x: makeScale(plot.x, x, LEFT, right), y: makeScale(plot.y, y, areaBottom, areaTop), left: LEFT, right, top: areaTop, bottom: areaBottom, foot});
+    top = foot;
+  }
+  const columns = Math.max(1, Math.floor(width / 190));
+  return {width, height: top + (keyBelow && keys > 0 ? Math.ceil(keys / columns) * KEY_LINE + 6 : 0), areas, keyBelow, keyLeft: width - KEY + 14};
+}

@@ -1,0 +1,74 @@
+// Points, curves and bands of a plot; the meaning is in mark and dash, colour repeats it.
+import {area, line} from 'd3-shape';
+import type {JSX} from 'preact';
+import {finite, type Mark, type Series} from './spec';
+import type {Area} from './layout';
+
+export function MarkAt({mark, x, y, colour, size = 3.4}: {mark: Mark; x: number; y: number; colour: string; size?: number}): JSX.Element {
+  const hollow = {fill: 'var(--surface)', stroke: colour, 'stroke-width': 1.5};
+  switch (mark) {
+    case 'dot': return <circle cx={x} cy={y} r={size} fill={colour} />;
+    case 'open': return <circle cx={x} cy={y} r={size} {...hollow} />;
+    case 'diamond': return <path d={`M${x},${y - size - 1}L${x + size + 1},${y}L${x},${y + size + 1}L${x - size - 1},${y}Z`} {...hollow} />;
+    case 'square': return <rect x={x - size} y={y - size} width={2 * size} height={2 * size} {...hollow} />;
+    case 'triangle': return <path d={`M${x},${y - size - 0.8}L${x + size + 0.8},${y + size}L${x - size - 0.8},${y + size}Z`} fill={colour} />;
+  }
+}
+
+const round = (x: number): number => Math.round(x * 10) / 10;
+
+function visible(series: Series, place: Area): number[] {
+  const [low, high] = place.x.domain;
+  const positive = place.plot.y.scale === 'log';
+  const indices: number[] = [];
+  series.x.forEach((x, i) => {
+    const y = series.y[i];
+    if (finite(y) && (!positive || y > 0) && x >= low * (1 - 1e-12) - 1e-12 && x <= high * (1 + 1e-12) + 1e-12) indices.push(i);
+  });
+  return indices;
+}
+
+export function Band({series, place}: {series: Series; place: Area}): JSX.Element | null {
+  if (!series.band || !series.low || !series.high) return null;
+  const inside = visible(series, place).filter(i => finite(series.high?.[i]));
+  const log = place.plot.y.scale === 'log';
+  const path = area<number>()
+    .x(i => round(place.x(series.x[i]!)))
+    .y0(i => { const low = series.low![i]; return round(finite(low) && (!log || low > 0) ? place.y(low) : place.bottom); })
+    .y1(i => round(place.y(series.high![i]!)))(inside);
+  return <path d={path ?? ''} fill={series.band} stroke="none" />;
+}
+
+export function Curve({series, place}: {series: Series; place: Area}): JSX.Element | null {
+  if (!series.line) return null;
+  const ok = new Set(visible(series, place));
+  const path = line<number>().defined(i => ok.has(i)).x(i => round(place.x(series.x[i]!))).y(i => round(place.y(series.y[i]!)))(series.x.map((_, i) => i));
+  return <path d={path ?? ''} fill="none" stroke={series.colour} stroke-width={series.width ?? 1.3} stroke-linejoin="round" {...(series.dash ? {'stroke-dasharray': series.dash} : {})} />;
+}
+
+export function Points({series, place}: {series: Series; place: Area}): JSX.Element | null {
+  const {mark} = series;
+  if (!mark) return null;
+  const log = place.plot.y.scale === 'log';
+  return <g>{visible(series, place).map(i => {
+    const x = round(place.x(series.x[i]!));
+    const low = series.low?.[i];
+    const high = series.high?.[i];
+    const to = (v: number | null | undefined, open: number): number => round(finite(v) && (!log || v > 0) ? place.y(v) : open);
+    return <g key={i}>
+      {(finite(low) || finite(high)) && <line x1={x} x2={x} y1={to(low, place.bottom)} y2={to(high, place.top)} stroke={series.colour} stroke-width="1.3" />}
+      <MarkAt mark={mark} x={x} y={round(place.y(series.y[i]!))} colour={series.colour} />
+    </g>;
+  })}</g>;
+}
+
+// The sample of a series in a key, 22 px wide.
+export function Sample({series, x, y}: {series: Series; x: number; y: number}): JSX.Element {
+  return <g>
+    {series.line && <line x1={x} x2={x + 22} y1={y} y2={y} stroke={series.colour} stroke-width={series.width ?? 1.3} {...(series.dash ? {'stroke-dasharray': series.dash} : {})} />}
+    {series.mark && <>
+      {series.low && <line x1={x + 11} x2={x + 11} y1={y - 7} y2={y + 7} stroke={series.colour} stroke-width="1.3" />}
+      <MarkAt mark={series.mark} x={x + 11} y={y} colour={series.colour} />
+    </>}
+  </g>;
+}

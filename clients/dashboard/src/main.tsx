@@ -1,0 +1,65 @@
+// The dashboard: which page an address shows.
+import {render, type JSX} from 'preact';
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {followLinks, usePlace} from './route';
+import {Bar} from './shell/Bar';
+import {Drawer, openDrawer} from './shell/Drawer';
+import {Keys} from './shell/Help';
+import {startKeys} from './shell/keys';
+import {Said} from './shell/say';
+import {Hairlines} from './shell/states';
+import {startTheme} from './shell/theme';
+
+type Page = () => JSX.Element;
+const PAGES: Record<string, () => Promise<{default: Page}>> = {
+  '': () => import('./pages/Lab'),
+  // later devices: () => import('./pages/Devices'),
+  // later 'devices/*': () => import('./pages/Device'),
+  'recordings/*': () => import('./pages/Recording'),
+  // later compare: () => import('./pages/Compare'),
+  // later investigations: () => import('./pages/Investigations'),
+  // later 'investigations/*': () => import('./pages/Investigation'),
+  // later outages: () => import('./pages/Outages'),
+  // later 'outages/*': () => import('./pages/Outage'),
+  jobs: () => import('./pages/Jobs'),
+  'jobs/*': () => import('./pages/Job'),
+  upload: () => import('./pages/Upload'),
+  // later docs: () => import('./pages/Docs'),
+  // later 'docs/*': () => import('./pages/Docs'),
+  // later 'problems/*': () => import('./pages/Docs'),
+  // later 'models/*': () => import('./pages/Resource'),
+  // later 'studies/*': () => import('./pages/Resource'),
+  // later 'calibrations/*': () => import('./pages/Resource'),
+};
+const absent = (): Promise<{default: Page}> => import('./pages/Absent');
+
+function App(): JSX.Element {
+  const place = usePlace();
+  const key = place.parts.length > 1 ? `${place.parts[0]}/*` : place.parts[0] ?? '';
+  const [shown, setShown] = useState<{key: string; Page: Page} | null>(null);
+  const main = useRef<HTMLElement>(null);
+  const first = useRef(true);
+  useEffect(() => {
+    let current = true;
+    (place.parts.length > 2 ? absent : PAGES[key] ?? absent)().then(module => { if (current) setShown({key, Page: module.default}); }, () => window.location.reload());
+    return () => { current = false; };
+  }, [key]);
+  useEffect(() => {
+    if (first.current) { first.current = false; return; }
+    main.current?.focus({preventScroll: true});
+  }, [place.path]);
+  const Page = shown?.key === key ? shown.Page : null;
+  return <>
+    <Bar />
+    <main id="main" tabIndex={-1} ref={main} data-source={`${window.location.href}, driftlab`}>{Page ? <Page key={place.path} /> : <Hairlines />}</main>
+    <Drawer />
+    <Said />
+  </>;
+}
+
+startTheme();
+followLinks();
+startKeys(() => openDrawer('Keys', Keys));
+const root = document.getElementById('page')!;
+root.textContent = '';
+render(<App />, root);

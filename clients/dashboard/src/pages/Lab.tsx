@@ -1,0 +1,151 @@
+// The lab: what must be read today, what runs, and whether each device is like its siblings.
+import type {JSX} from 'preact';
+import {useRead} from '../api/client';
+import type {AxisSummary, Counts, Device, Job, List} from '../api/documents';
+import {writeTick, writeQuantity} from '../format/number';
+import {writeToday, writeWhen} from '../format/time';
+import {capital, conditionName, countWord, jobKind, plural, sensorOf, writeUnit} from '../format/words';
+import {MarkAt} from '../figure/marks';
+import type {Mark} from '../figure/spec';
+import {choose, pageOf, usePlace} from '../route';
+import {Head} from '../shell/Head';
+import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {curlOf, copy} from '../figure/Figure';
+import {EmptyLab} from './EmptyLab';
+
+const MARKS: Record<string, Mark> = {x: 'dot', y: 'square', z: 'triangle'};
+const PAGE = 50;
+
+interface Attention { device: string; href: string; text: string; at: string; bad: boolean }
+
+function attention(devices: readonly Device[], jobs: readonly Job[]): Attention[] {
+  const items: Attention[] = [];
+  for (const device of devices) {
+    const misfits = (device.summary?.channels ?? []).filter(channel => channel.level !== 'fine');
+    const latest = device.summary?.latest;
+    if (misfits.length === 0 || !latest) continue;
+    const groups = new Map<string, AxisSummary[]>();
+    for (const channel of misfits) groups.set(channel.quantity, [...groups.get(channel.quantity) ?? [], channel]);
+    const text = [...groups].map(([quantity, list]) => `${sensorOf(quantity)} ${list.map(one => one.axis ?? '').join(', ')}: ${list[0]!.reason}`).join('; ');
+    items.push({device: device.name, href: pageOf('recordings', misfits[0]!.recording), text: `${capital(text)}.`, at: latest.at, bad: false});
+  }
+  for (const job of jobs) {
+    if (job.state === 'failed' || job.state === 'dead') items.push({device: capital(jobKind(job.kind)), href: pageOf('jobs', job.id), text: job.problem?.detail ?? 'The job failed.', at: job.finished_at ?? job.created_at, bad: true});
+  }
+  return items.sort((a, b) => a.at < b.at ? 1 : -1).slice(0, 8);
+}
+
+function opening(jobs: readonly Job[], wants: number): string {
+  const today = new Date().toISOString().slice(0, 10);
+  const ended = jobs.filter(job => job.finished_at?.startsWith(today) && job.kind !== 'pool');
+  const failed = ended.filter(job => job.state === 'failed' || job.state === 'dead').length;
+  const results = ended.filter(job => job.state === 'succeeded').length;
+  const made = results === 0 ? 'No result today' : `${capital(countWord(results))}${results >= 50 ? ' or more' : ''} result${results === 1 ? '' : 's'} today`;
+  return `${made}, ${failed === 0 ? 'none' : countWord(failed)} failed. ${wants === 0 ? 'Nothing wants a look.' : `${capital(countWord(wants))} want${wants === 1 ? 's' : ''} a look.`}`;
+}
+
+interface Scale { (value: number): number; ticks: number[] }
+
+function levelScale(values: number[], width: number): Scale {
+  const low = Math.min(...values) / 1.4;
+  const high = Math.max(...values) * 1.4;
+  const x = (value: number): number => 10 + (width - 20) * Math.log(value / low) / Math.log(high / low);
+  const ticks: number[] = [];
+  for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const digit of [1, 2, 5]) { const value = Number(`${digit}e${e}`); if (value >= low && value <= high) ticks.push(value); }
+  return Object.assign(x, {ticks: ticks.length > 7 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
+}
+
+const WIDTH = 460;
+
+function Levels({channels, scale}: {channels: readonly AxisSummary[]; scale: Scale | null}): JSX.Element {
+  if (!scale) return <svg viewBox={`0 0 ${WIDTH} 34`} width="100%" aria-hidden="true" />;
+  const known = channels.filter(channel => channel.N && channel.N.value !== null);
+  return <svg viewBox={`0 0 ${WIDTH} 34`} width="100%" height="34" preserveAspectRatio="none" aria-hidden="true">
+    {scale.ticks.map(tick => <line key={tick} class="gr" x1={scale(tick)} x2={scale(tick)} y1="0" y2="34" />)}
+    {known.map((channel, i) => {
+      const y = 17 + (i - (known.length - 1) / 2) * 9;
+      const [low, high] = channel.N!.ci95 ?? [];
+      return <g key={i}>
+        {low && high && <line x1={scale(low)} x2={scale(high)} y1={y} y2={y} stroke="var(--ink)" stroke-width="1.3" />}
+        <MarkAt mark={MARKS[channel.axis ?? ''] ?? 'dot'} x={scale(channel.N!.value!)} y={y} colour="var(--ink)" size={3.2} />
+      </g>;
+    })}
+  </svg>;
+}
+
+function conditionsOf(device: Device): string {
+  const conditions = device.summary?.conditions ?? [];
+  const of = (kind: string): number => conditions.filter(one => one.condition?.kind === kind).length;
+  const words = conditions.filter(one => !['constant_rate', 'constant_angular_acceleration', 'six_position'].includes(one.condition?.kind ?? '')).map(one => conditionName(one.condition));
+  if (of('constant_rate') > 0) words.push(plural(of('constant_rate'), 'rate'));
+  if (of('constant_angular_acceleration') > 0) words.push(plural(of('constant_angular_acceleration'), 'acceleration'));
+  if (of('six_position') > 0) words.push(plural(of('six_position'), 'position'));
+  return words.join(', ') || '–';
+}
+
+function Devices({devices, next}: {devices: readonly Device[]; next: string | null}): JSX.Element {
+  const {query} = usePlace();
+  const quantity = query.get('sensor') === 'accelerometer' ? 'specific_force' : 'angular_rate';
+  const of = (device: Device): AxisSummary[] => (device.summary?.channels ?? []).filter(channel => channel.quantity === quantity);
+  const ends = devices.flatMap(device => of(device).flatMap(channel => channel.N && channel.N.value !== null && channel.N.value > 0 ? [channel.N.value, ...(channel.N.ci95 ?? []).filter((x): x is number => x !== null && x > 0)] : []));
+  const scale = ends.length > 0 ? levelScale(ends, WIDTH) : null;
+  const unit = devices.flatMap(of).find(channel => channel.N)?.N?.unit;
+  return <Panel title="Devices" sub={<>white noise N at rest{unit ? `, ${writeUnit(unit)}` : ''}, 95 %: ● x □ y ▲ z</>}
+    controls={<Segments label="Sensor" options={[['gyroscope', 'Gyroscopes'], ['accelerometer', 'Accelerometers']] as const} value={quantity === 'specific_force' ? 'accelerometer' : 'gyroscope'} onChange={value => choose({sensor: value === 'gyroscope' ? null : value})} />}
+    tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf('/v1/devices?include=summary'), 'The command is')}>curl</button></div>}>
+    <div class="scroll"><table class="stacked">
+      <thead><tr><th scope="col">device</th><th scope="col" class="n">recordings</th><th scope="col">conditions</th><th scope="col" class="desk-only">white noise N</th><th scope="col">x, y, z</th><th scope="col">last result</th></tr></thead>
+      <tbody>{devices.map(device => {
+        const channels = of(device);
+        const worst = channels.find(channel => channel.level !== 'fine');
+        return <tr key={device.id}>
+          <th scope="row"><a href={pageOf('devices', device.name)}>{device.name}</a></th>
+          <td class="n" data-label="recordings">{device.summary?.recordings ?? '–'}</td>
+          <td class="sec">{conditionsOf(device)}</td>
+          <td class="desk-only" style={{width: '34%'}}><Levels channels={channels} scale={scale} /></td>
+          <td class="nowrap" data-label="N">{channels.length > 0 ? channels.map(channel => channel.N ? writeQuantity(channel.N).value : '…').join(', ') : '–'}</td>
+          <td class="sec">{channels.length === 0 ? 'not characterised' : worst ? <><span class="g warn" aria-hidden="true">△ </span>{worst.fits === false ? 'no fit' : 'not tested'}: {worst.axis ?? 'channel'}</> : 'fits'}{device.summary?.latest ? <span class="dim">, {writeWhen(device.summary.latest.at)}</span> : ''}</td>
+        </tr>;
+      })}
+      {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
+      </tbody>
+    </table></div>
+    {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}
+  </Panel>;
+}
+
+function Running({jobs}: {jobs: readonly Job[]}): JSX.Element {
+  const running = jobs.filter(job => job.state === 'running');
+  const waiting = jobs.filter(job => job.state === 'queued').length;
+  return <Panel title="Running" tools={<div class="tools"><a href="/jobs">All jobs</a></div>}>
+    {running.map(job => <div key={job.id}><div class="row"><a href={pageOf('jobs', job.id)}>{capital(jobKind(job.kind))}</a><span class="sec">{job.stage}</span><span class="right sec">{Math.round(job.progress * 100)} %</span></div><Progress share={job.progress} label={jobKind(job.kind)} /></div>)}
+    <p class="sec">{running.length === 0 ? 'Nothing runs. ' : ''}{waiting === 0 ? 'Nothing waits.' : `${plural(waiting, 'job')} wait${waiting === 1 ? 's' : ''}.`}</p>
+  </Panel>;
+}
+
+export default function Lab(): JSX.Element {
+  const {query} = usePlace();
+  useTitle('Lab');
+  const counts = useRead<Counts>('/v1/counts', 5000);
+  const after = query.get('after');
+  const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=${PAGE}${after ? `&cursor=${after}` : ''}`);
+  const jobs = useRead<List<Job>>('/v1/jobs?sort=-created_at&limit=50', 3000);
+  if (devices.data?.items.length === 0 && !after) return <EmptyLab />;
+  const list = devices.data?.items ?? [];
+  const recent = jobs.data?.items ?? [];
+  const wants = attention(list, recent);
+  return <>
+    <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} />
+    {devices.data && jobs.data && <p class="verdict">{opening(recent, wants.length)}</p>}
+    <div class="grid wide-side">
+      <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}>
+        {!devices.data || !jobs.data ? <Hairlines /> : wants.length === 0 ? <p class="sec">Nothing. Every model of the newest devices fits, and no job failed.</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
+          <span class="nowrap"><span class={`g ${item.bad ? 'bad' : 'warn'}`} aria-hidden="true">{item.bad ? '✗' : '△'} </span><b>{item.device}</b></span>
+          <span class="grow"><a href={item.href}>{item.text}</a></span><span class="dim nowrap">{writeWhen(item.at)}</span></li>)}</ul>}
+      </Panel>
+      {jobs.data ? <Running jobs={recent} /> : <Panel title="Running"><Hairlines /></Panel>}
+    </div>
+    {devices.data ? <Devices devices={list} next={devices.data.next_cursor} /> : devices.problem ? <Panel title="Devices"><Refusal problem={devices.problem} again={devices.again} /></Panel> : <Panel title="Devices"><Hairlines /></Panel>}
+  </>;
+}

@@ -1,0 +1,151 @@
+// One recording: what it says, the evidence, the method.
+import type {JSX} from 'preact';
+import {useMemo} from 'preact/hooks';
+import {useJobEvents, useRead} from '../api/client';
+import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List, Recording} from '../api/documents';
+import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
+import {writeDuration} from '../format/time';
+import {unitsFor} from '../format/units';
+import {conditionName, sensorOf, writeUnit} from '../format/words';
+import {curlOf, defaultReadout, Figure} from '../figure/Figure';
+import {choose, hover, pageOf, usePlace} from '../route';
+import {Characterise} from '../shell/Characterise';
+import {Head, Report, Verdict} from '../shell/Head';
+import {usePageKeys} from '../shell/keys';
+import {Hairlines, Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {describe, variancePlots, type Curve} from './recording/plots';
+import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Side';
+import {Signal} from './recording/Signal';
+
+const SENSORS = ['angular_rate', 'specific_force'];
+
+export function qualityWords(recording: Recording): string {
+  const {quality} = recording;
+  const faults: string[] = [];
+  if (quality.gaps > 0) faults.push(`${quality.gaps} gap${quality.gaps === 1 ? '' : 's'}`);
+  const sum = (pick: (c: NonNullable<Recording['quality']['channels']>[number]) => number): number => (quality.channels ?? []).reduce((total, channel) => total + pick(channel), 0);
+  const frozen = sum(c => c.frozen);
+  const saturated = sum(c => c.saturated);
+  const missing = sum(c => c.missing + c.implausible);
+  if (missing > 0) faults.push(`${writeCount(missing)} values missing`);
+  if (frozen > 0) faults.push(`${writeCount(frozen)} samples frozen`);
+  if (saturated > 0) faults.push(`${writeCount(saturated)} at full scale`);
+  return faults.length > 0 ? faults.join(', ') : 'no gaps, no frozen stretch';
+}
+
+// A job that works on the recording now.
+function useLiveJob(id: string): Job | undefined {
+  const running = useRead<List<Job>>('/v1/jobs?state=running&limit=50', 2000);
+  const queued = useRead<List<Job>>('/v1/jobs?state=queued&limit=50', 2000);
+  return [...running.data?.items ?? [], ...queued.data?.items ?? []].find(job => job.kind === 'characterise' && job.request.inputs.recordings?.some(one => one.id === id));
+}
+
+function How({result, channel}: {result: Characterisation; channel: CharacterisedChannel}): JSX.Element {
+  const {result: c} = channel;
+  return <>
+    <p>The overlapping Allan variance and the Haar wavelet variance are computed at octaves with intervals from their equivalent degrees of freedom. Each candidate model is fitted to the wavelet variances by the generalised method of wavelet moments; the criterion ranks, the J test says whether the best of them fits. <a href="/docs/analysis">The manual</a> has the equations.</p>
+    <dl>
+      <dt>channel</dt><dd><code>{c.channel}</code>, {writeCount(c.samples)} samples at {writeNumber(1 / c.dt_s, 6)} Hz</dd>
+      <dt>candidates</dt><dd>{result.parameters.models?.join(', ')}</dd>
+      <dt>seed</dt><dd>{result.parameters.seed ?? 1}</dd>
+      <dt>algorithm</dt><dd>version {result.algorithm_version}</dd>
+      <dt>recording</dt><dd>{result.recording}, revision {result.revision}</dd>
+      <dt>job</dt><dd><a href={`/jobs/${result.job}`}>{result.job}</a></dd>
+      {c.contamination && <><dt>gross errors</dt><dd>{c.contamination.verdict}, {writeP(c.contamination.p)}, {writeCount(c.contamination.flagged_samples)} samples flagged</dd></>}
+    </dl>
+    {c.warnings.map(warning => <p key={warning} class="note"><span class="g warn" aria-hidden="true">△ </span>{warning}</p>)}
+  </>;
+}
+
+function Evidence({recording, result, channel}: {recording: Recording; result: Characterisation; channel: CharacterisedChannel}): JSX.Element {
+  const {query} = usePlace();
+  const c = channel.result;
+  const curve: Curve = query.get('curve') === 'haar' ? 'haar' : 'allan';
+  const units = unitsFor(c.unit);
+  const unit = units.includes(query.get('unit') ?? '') ? query.get('unit')! : units[0]!;
+  const wanted = c.fits.findIndex(fit => fit.model === query.get('model'));
+  const chosen = wanted >= 0 ? wanted : 0;
+  const other = useRead<{implied: Implied}>(chosen > 0 && channel.fit_ids[chosen] ? `/v1/fits/${channel.fit_ids[chosen]}/implied` : null);
+  const implied = chosen === 0 ? channel.implied : other.data?.implied ?? null;
+  const fit = c.fits[chosen];
+  const hidden = (query.get('show') ?? 'robust,components').split(',');
+  const shown = {robust: hidden.includes('robust'), components: hidden.includes('components'), guides: hidden.includes('guides')};
+  const plots = useMemo(() => variancePlots(c, fit, implied, unit, curve, shown), [c, fit, implied, unit, curve, query.get('show')]);
+  const toggle = (name: keyof typeof shown): void => {
+    const next = (['robust', 'components', 'guides'] as const).filter(each => each === name ? !shown[each] : shown[each]).join(',');
+    choose({show: next === 'robust,components' ? null : next || 'none'});
+  };
+  const tau = Number(query.get('tau')) || null;
+  const path = `/v1/recordings/${recording.id}/characterisation?channel=${encodeURIComponent(c.channel)}`;
+  const lastEdf = c.allan.edf?.[c.allan.edf.length - 1];
+  return <div class="grid main-side">
+    <div class="stack">
+      <Figure name={`${recording.metadata.id ?? recording.id}-${c.axis ?? c.channel}-${curve}`} title={curve === 'allan' ? 'Allan deviation' : 'Haar wavelet deviation'}
+        controls={<Segments label="Curve" options={[['allan', 'Allan'], ['haar', 'Haar wavelet']] as const} value={curve} onChange={value => choose({curve: value === 'allan' ? null : value})} />}
+        sub={<><label><span class="visually-hidden">Unit </span><select value={unit} onChange={event => choose({unit: event.currentTarget.value === units[0] ? null : event.currentTarget.value})}>{units.map(each => <option key={each} value={each}>{writeUnit(each)}</option>)}</select></label>{' '}
+          {(['robust', 'components', 'guides'] as const).map(name => <label key={name} class="nowrap"> <input type="checkbox" checked={shown[name]} onChange={() => toggle(name)} /> {name}</label>)}</>}
+        describe={describe(c, fit, unit, curve)} plots={plots} cursor={tau} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }}
+        readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}<span>{writeUnit(unit)}</span></>}
+        source={`driftlab, ${recording.id} ${c.channel}, algorithm ${result.algorithm_version}, seed ${result.parameters.seed ?? 1}`} curl={curlOf(path)} how={() => <How result={result} channel={channel} />}
+        note={<>Equal decades on both axes, so that a slope of −½ looks like one.{lastEdf ? ` The last point has ${writeNumber(lastEdf, 2)} equivalent degrees of freedom; its interval says so.` : ''}{chosen > 0 && other.problem ? ` ${other.problem.document.detail}` : ''}</>} />
+      <div class="grid two no-top">
+        <OtherNames channel={c} />
+        <FilePanel recording={recording} result={result} />
+      </div>
+    </div>
+    <div class="stack side">
+      {fit && <FittedModel fit={fit} />}
+      {c.fits.length > 0 && <Ranking fits={c.fits} chosen={chosen} onChoose={i => choose({model: i === 0 ? null : c.fits[i]!.model})} />}
+      <Ieee channel={c} />
+    </div>
+  </div>;
+}
+
+function Body({recording}: {recording: Recording}): JSX.Element {
+  const {query} = usePlace();
+  const device = useRead<Device>(`/v1/devices/${recording.device}`);
+  const read = useRead<Characterisation>(`/v1/recordings/${recording.id}/characterisation`);
+  const live = useLiveJob(recording.id);
+  const liveJob = useRead<Job>(live ? `/v1/jobs/${live.id}` : null);
+  useJobEvents(live?.id ?? null, () => { liveJob.again(); read.again(); });
+  const job = liveJob.data ?? live;
+  const channels = read.data?.channels ?? [];
+  const columns = (recording.quality.channels ?? []).map(channel => channel.column);
+  const named = query.get('ch');
+  const channel = channels.find(one => one.result.channel === named) ?? channels[0];
+  const column = channel?.result.channel ?? (named && columns.includes(named) ? named : columns[0]);
+  const select = (name: string): void => choose({ch: name});
+  usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), Escape: () => hover({tau: null})});
+  const title = recording.metadata.id ?? `Recording of ${device.data?.name ?? '…'}`;
+  useTitle(title);
+  const deviceName = device.data?.name ?? recording.device;
+  const axis = channel?.result.axis ?? null;
+  const label = (one: CharacterisedChannel): string => one.result.axis ? `${SENSORS.indexOf(one.result.quantity) === 1 ? 'f' : 'ω'} ${one.result.axis}` : one.result.channel;
+  return <>
+    <Head crumb={[['Devices', '/devices'], [deviceName, pageOf('devices', deviceName)], [conditionName(recording.metadata.condition), null]]} title={title}
+      facts={[channel ? `${sensorOf(channel.result.quantity)} ${axis ?? ''}` : '', conditionName(recording.metadata.condition, axis),
+        `${writeCount(recording.quality.samples)} samples${read.data ? ` at ${writeTick(Number(read.data.rate_hz.toPrecision(5)))} Hz, ${writeDuration(read.data.duration_s)}` : ''}`, qualityWords(recording), <><code>{recording.id.slice(0, 12)}…{recording.id.slice(-4)}</code> revision {recording.revision}</>]}
+      actions={<>
+        {channels.length > 1 && <Segments label="Channel" options={channels.map(one => [one.result.channel, label(one)] as const)} value={channel?.result.channel ?? ''} onChange={select} />}
+        <a class="btn" href={`/compare?with=${recording.id}`}>Compare <kbd>c</kbd></a>
+        <Report />
+      </>} />
+    {read.data?.stale && <p class="note">The recording was changed after it was characterised. <Characterise recordings={[recording.id]} label="Characterise again" onQueued={() => undefined} /></p>}
+    {job && <div role="status"><p class="verdict">Characterising: {job.state === 'queued' ? 'waiting for a worker' : `${job.stage ?? 'starting'}, ${Math.round(job.progress * 100)} %`}</p><Progress share={job.progress} label="Characterising" /></div>}
+    {channel && !job && <Verdict summary={channel.summary} />}
+    {!read.data && !job && (read.problem?.document.status === 404
+      ? <p class="verdict">Not characterised yet. <Characterise recordings={[recording.id]} label="Characterise" onQueued={read.again} /></p>
+      : read.problem ? <Refusal problem={read.problem} again={read.again} /> : <Hairlines />)}
+    {column && <Signal recording={recording} column={column} quantity={channel?.result.quantity ?? 'sensor'} />}
+    {read.data && channel && <Evidence recording={recording} result={read.data} channel={channel} />}
+    {!read.data && <div class="grid two"><Panel title="Quality"><p>{qualityWords(recording)}.</p></Panel><FilePanel recording={recording} /></div>}
+  </>;
+}
+
+export default function RecordingPage(): JSX.Element {
+  const {parts} = usePlace();
+  const read = useRead<Recording>(`/v1/recordings/${encodeURIComponent(parts[1] ?? '')}`);
+  useTitle('Recording');
+  return <Shown read={read}>{recording => <Body recording={recording} />}</Shown>;
+}

@@ -1,0 +1,124 @@
+// Upload: drop, columns, condition, and the job that follows.
+import type {JSX} from 'preact';
+import {useEffect, useState} from 'preact/hooks';
+import {Problem, ask} from '../api/client';
+import {writeBytes} from '../format/number';
+import {countWord} from '../format/words';
+import {copy} from '../figure/Figure';
+import {choose, go, pageOf, usePlace} from '../route';
+import {characterise} from '../shell/Characterise';
+import {Head} from '../shell/Head';
+import {Panel, Progress, Refusal} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {Columns} from './upload/Columns';
+import {ConditionField} from './upload/ConditionField';
+import {DropZone} from './upload/DropZone';
+import {addFiles, change, pending, remember, remove, usePending, type Pending} from './upload/pending';
+import {commandOf, upload} from './upload/send';
+
+// Which field mends a refusal.
+const wantsRate = (problem: Problem | null): boolean => /rate|sampling|time column/i.test(problem?.document.detail ?? '');
+
+async function sendOne(each: Pending): Promise<string | null> {
+  change(each.key, {state: 'sending', share: 0, problem: null});
+  try {
+    const recording = await upload(each, share => change(each.key, {share}));
+    remember(each);
+    change(each.key, {state: 'sent', share: 1, recording: recording.id});
+    return recording.id;
+  } catch (error) {
+    change(each.key, {state: 'refused', problem: error as Problem});
+    return null;
+  }
+}
+
+async function sendAll(analyse: boolean, refused: (problem: Problem) => void): Promise<void> {
+  const sent: string[] = [];
+  for (const each of pending().filter(one => one.state !== 'sent')) {
+    const id = await sendOne(each);
+    if (id) sent.push(id);
+  }
+  if (!analyse) return;
+  for (const id of sent) {
+    try {
+      const job = await characterise([id]);
+      const mine = pending().find(one => one.recording === id);
+      if (mine) change(mine.key, {job: job.id});
+    } catch (error) { refused(error as Problem); return; }
+  }
+  const left = pending().filter(one => one.state !== 'sent');
+  if (left.length === 0 && sent.length === 1) go(pageOf('recordings', sent[0]!));
+}
+
+function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
+  const name = each.file.name;
+  const text = (field: 'device' | 'rate', label: string, size: number, placeholder = ''): JSX.Element =>
+    <input type="text" aria-label={`${label} of ${name}`} size={size} placeholder={placeholder} value={each[field]} disabled={each.state === 'sending' || each.state === 'sent'} onInput={event => change(each.key, {[field]: event.currentTarget.value})} />;
+  return <tr aria-selected={chosen}>
+    <th scope="row"><button type="button" class="link" onClick={() => choose({file: String(each.key)})}>{name}</button></th>
+    <td data-label="device">{text('device', 'Device', 16)}</td>
+    <td data-label="condition"><ConditionField label={`Condition of ${name}`} value={each.condition} onChange={condition => change(each.key, {condition})} /></td>
+    <td class="n" data-label="size">{writeBytes(each.file.size)}</td>
+    <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, 'by time')}</td>
+    <td>
+      {each.state === 'ready' && <span class="sec">{each.look ? each.look.columns.length > 0 ? `${each.look.columns.length} column${each.look.columns.length === 1 ? '' : 's'} seen` : 'ready' : 'reading'}</span>}
+      {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)}</span></>}
+      {each.state === 'sent' && <><span class="g good" aria-hidden="true">✓ </span><a href={pageOf('recordings', each.recording ?? '')}>stored</a>{each.job && <>, <a href={pageOf('jobs', each.job)}>characterising</a></>}</>}
+      {each.state === 'refused' && each.problem && <><Refusal problem={each.problem} />
+        {wantsRate(each.problem) && <label class="row">rate <input type="text" size={7} placeholder="Hz" aria-label={`Rate in Hz that repairs ${name}`} value={each.rate} onInput={event => change(each.key, {rate: event.currentTarget.value})} /></label>}
+        <button type="button" class="link" onClick={() => choose({file: String(each.key)})}>What the columns mean</button></>}
+    </td>
+    <td class="n"><button type="button" class="quiet" aria-label={`Remove ${name}`} onClick={() => remove(each.key)}>Remove</button></td>
+  </tr>;
+}
+
+export async function trySample(): Promise<void> {
+  const files: File[] = [];
+  for (const [condition, name] of [['static', 'iphone5s-z-static'], ['constant_rate:z:9:deg/s', 'iphone5s-z-9-deg-s']] as const) {
+    const answer = await ask(`/v1/samples/iphone5s-z?condition=${encodeURIComponent(condition)}`);
+    files.push(new File([await answer.blob()], `${name}.csv`));
+  }
+  addFiles(files);
+  for (const each of pending()) if (/^iphone5s-z/.test(each.file.name) && each.state === 'ready') change(each.key, {device: 'iphone5s-simulated', rate: '100', condition: each.file.name.includes('static') ? 'static' : 'constant_rate:z:9:deg/s'});
+}
+
+export default function Upload(): JSX.Element {
+  const files = usePending();
+  const {query} = usePlace();
+  const [analyse, setAnalyse] = useState(true);
+  const [busy, setBusy] = useState(false);
+  const [problem, setProblem] = useState<Problem>();
+  useTitle('Upload');
+  useEffect(() => {
+    const over = (event: DragEvent): void => event.preventDefault();
+    const drop = (event: DragEvent): void => { if (!event.defaultPrevented && event.dataTransfer) { event.preventDefault(); addFiles([...event.dataTransfer.files]); } };
+    document.addEventListener('dragover', over);
+    document.addEventListener('drop', drop);
+    return () => { document.removeEventListener('dragover', over); document.removeEventListener('drop', drop); };
+  }, []);
+  const chosen = files.find(each => String(each.key) === query.get('file')) ?? files.find(each => each.state === 'refused') ?? files[0];
+  const open = files.filter(each => each.state !== 'sent');
+  const run = (withJobs: boolean): void => {
+    setBusy(true);
+    setProblem(undefined);
+    void sendAll(withJobs, setProblem).finally(() => setBusy(false));
+  };
+  return <>
+    <Head title="Upload" facts={[]} />
+    <DropZone onFiles={addFiles} onSample={() => { trySample().catch(error => setProblem(error as Problem)); }} />
+    {problem && <Panel><Refusal problem={problem} /></Panel>}
+    {files.length > 0 && <Panel title={`${files.length} file${files.length === 1 ? '' : 's'}`} sub={`${files.filter(each => each.state === 'sent').length} stored, ${files.filter(each => each.state === 'refused').length} refused`}
+      tools={<label class="right"><input type="checkbox" checked={analyse} onChange={() => setAnalyse(!analyse)} /> characterise when uploaded</label>}>
+      <div class="scroll"><table class="files stacked">
+        <thead><tr><th scope="col">file</th><th scope="col">device</th><th scope="col">condition</th><th scope="col" class="n">size</th><th scope="col" class="n">rate, Hz</th><th scope="col">state</th><th scope="col"><span class="visually-hidden">Remove</span></th></tr></thead>
+        <tbody>{files.map(each => <Row key={each.key} each={each} chosen={each === chosen} />)}</tbody>
+      </table></div>
+    </Panel>}
+    {chosen && <Columns each={chosen} />}
+    {open.length > 0 && <div class="row" style={{marginTop: '16px'}}>
+      <button type="button" class="btn primary" disabled={busy} onClick={() => run(analyse)}>Upload {open.length === 1 ? '' : countWord(open.length)}{analyse ? ' and characterise' : ''}</button>
+      {analyse && <button type="button" class="btn" disabled={busy} onClick={() => run(false)}>Upload only</button>}
+    </div>}
+    {chosen && chosen.state !== 'sent' && <p class="note">The same as a command: <code>{commandOf(chosen)}</code> <button type="button" class="link" onClick={() => copy(commandOf(chosen), 'The command is')}>Copy</button></p>}
+  </>;
+}

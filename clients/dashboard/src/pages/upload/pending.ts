@@ -1,0 +1,86 @@
+// Files that wait to be uploaded, and what was said about them. They outlive a change of page, so nothing typed is lost.
+import {useEffect, useState} from 'preact/hooks';
+import type {Problem} from '../../api/client';
+import {lookAt, type Look} from './look';
+
+export interface Role { quantity: string; axis: string; unit: string }
+export type State = 'ready' | 'sending' | 'sent' | 'refused';
+
+export interface Pending {
+  key: number;
+  file: File;
+  device: string;
+  condition: string;
+  rate: string;
+  roles: Record<string, Role>;  // only what a person chose
+  look: Look | null;
+  state: State;
+  share: number;
+  problem: Problem | null;
+  recording: string | null;
+  job: string | null;
+}
+
+let next = 1;
+let list: Pending[] = [];
+const listeners = new Set<() => void>();
+
+function tell(): void { for (const listener of [...listeners]) listener(); }
+
+export function usePending(): readonly Pending[] {
+  const [, again] = useState(0);
+  useEffect(() => {
+    const listener = (): void => again(n => n + 1);
+    listeners.add(listener);
+    return () => { listeners.delete(listener); };
+  }, []);
+  return list;
+}
+
+export const pending = (): readonly Pending[] => list;
+
+export function change(key: number, changes: Partial<Pending>): void {
+  list = list.map(each => each.key === key ? {...each, ...changes} : each);
+  tell();
+}
+
+export function remove(key: number): void {
+  list = list.filter(each => each.key !== key);
+  tell();
+}
+
+// --- what was said before, by the set of column names
+const KEY = 'driftlab-columns';
+type Remembered = Record<string, {roles: Record<string, Role>; rate: string}>;
+
+function remembered(): Remembered {
+  try { return JSON.parse(localStorage.getItem(KEY) ?? '{}') as Remembered; } catch { return {}; }
+}
+
+const signature = (look: Look): string => look.columns.map(column => column.name).join('\u0001');
+
+export function remember(each: Pending): void {
+  if (!each.look || each.look.columns.length === 0 || (Object.keys(each.roles).length === 0 && !each.rate)) return;
+  try { localStorage.setItem(KEY, JSON.stringify({...remembered(), [signature(each.look)]: {roles: each.roles, rate: each.rate}})); } catch { /* then it is asked again */ }
+}
+
+// The condition that a name suggests; a person sees it and may change it.
+function conditionIn(name: string): string {
+  const rate = /(\d+(?:\.\d+)?)\s*deg[-_ /]*s\b/i.exec(name);
+  return rate ? `constant_rate:z:${rate[1]}:deg/s` : 'static';
+}
+
+const deviceIn = (name: string): string => name.replace(/\.(csv|txt|npy|npz|mat|json|zip|gz|xz|zst|log|h5|hdf5|bag|ulg|mcap|db3|cwa)\b/gi, '').replace(/[^\w.-]+/g, '-').slice(0, 60) || 'device';
+
+export function addFiles(files: readonly File[]): void {
+  const device = list[list.length - 1]?.device;
+  for (const file of files) {
+    const each: Pending = {key: next++, file, device: device ?? deviceIn(file.name), condition: conditionIn(file.name), rate: '', roles: {}, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null};
+    list = [...list, each];
+    void lookAt(file).then(look => {
+      const known = look.columns.length > 0 ? remembered()[signature(look)] : undefined;
+      change(each.key, {look, ...(known ? {roles: known.roles, rate: known.rate} : {})});
+    });
+  }
+  tell();
+}

@@ -1,0 +1,19 @@
+import type {JSX} from 'preact';
+import {themeNow, setTheme, type Theme} from './theme';
+import {useState} from 'preact/hooks';
+import {Segments} from './states';
+
+const KEYS: readonly (readonly [string, string])[] = [
+  ['/', 'find'], ['g then l d i o j', 'go to Lab, Devices, Investigations, Outages, Jobs'], ['u', 'upload'], ['c', 'compare'], ['1 2 3', 'axis x, y, z'],
+  ['[ ]', 'recording or outage before, after'], ['← →', 'in a figure: point before, after'], ['Home End', 'in a figure: first, last point'], ['Enter', 'in a figure: pin the cursor'],
+  ['t', 'in a figure: its table'], ['Esc', 'close, or unpin'], ['?', 'this list'],
+];
+
+export function Keys(): JSX.Element {
+  const [theme, show] = useState<Theme>(themeNow());
+  return <>
+    <dl>{KEYS.map(([key, what]) => <><dt key={key}><kbd>{key}</kbd></dt><dd>{what}</dd></>)}</dl>
+    <h3>Theme</h3>
+    <p><Segments label="Theme" options={[['system', 'System'], ['light', 'Light'], ['dark', 'Dark']] as const} value={theme} onChange={value => { setTheme(value); show(value); }} /></p>
+  </>;
+}

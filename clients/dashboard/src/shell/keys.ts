@@ -1,0 +1,39 @@
+// Keys that work on every page; a page adds its own by `usePageKeys`.
+import {useEffect} from 'preact/hooks';
+import {go} from '../route';
+
+const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', j: '/jobs'};
+const GO_MS = 1200;
+
+const typing = (target: EventTarget | null): boolean => target instanceof HTMLElement && (target.isContentEditable || ['INPUT', 'SELECT', 'TEXTAREA'].includes(target.tagName));
+
+export function startKeys(help: () => void): void {
+  let pressedG = 0;
+  document.addEventListener('keydown', event => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
+    if (event.key === '/') {
+      event.preventDefault();
+      document.getElementById('find')?.focus();
+    } else if (event.key === 'g') {
+      pressedG = Date.now();
+    } else if (Date.now() - pressedG < GO_MS && PLACES[event.key]) {
+      pressedG = 0;
+      go(PLACES[event.key]!);
+    } else if (event.key === 'u') {
+      go('/upload');
+    } else if (event.key === '?') {
+      help();
+    }
+  });
+}
+
+export function usePageKeys(keys: Record<string, () => void>): void {
+  useEffect(() => {
+    const listener = (event: KeyboardEvent): void => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
+      keys[event.key]?.();
+    };
+    document.addEventListener('keydown', listener);
+    return () => document.removeEventListener('keydown', listener);
+  });
+}

@@ -1,0 +1,290 @@
+#include "core/campaign/verdict.hpp"
+
+#include "core/signal/significant.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+
+namespace driftlab {
+namespace {
+
+constexpr std::array<std::string_view, 13> kCounts{"no",    "one",   "two",  "three", "four",   "five",  "six",
+                                                   "seven", "eight", "nine", "ten",   "eleven", "twelve"};
+
+std::string counted(std::size_t n) { return n < kCounts.size() ? std::string(kCounts[n]) : std::to_string(n); }
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  }
+  return text;
+}
+
+std::string p_text(double p) {
+  if (p < kDoesNotFit) {
+    return "p < 0.01";
+  }
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "p = %.2f", p);
+  return buffer.data();
+}
+
+std::string written(const ReportedValue& value) {
+  return significant(value.value.value_or(0.0), value.low, value.high) + (value.unit.empty() ? "" : " " + value.unit);
+}
+
+const ReportedValue* parameter(const ReportedProcess& process, std::string_view name) {
+  for (const auto& [key, value] : process.parameters) {
+    if (key == name && value.value) {
+      return &value;
+    }
+  }
+  return nullptr;
+}
+
+/// 1/beta with its interval.
+std::string correlation_time(const ReportedValue& beta) {
+  const auto inverse = [](const std::optional<double>& x) {
+    return x && *x > 0.0 ? std::optional<double>(1.0 / *x) : std::nullopt;
+  };
+  return significant(1.0 / *beta.value, inverse(beta.high), inverse(beta.low)) + " s";
+}
+
+/// A process in words, with its figure; empty where the data do not identify its level.
+std::string phrase_of(const ReportedProcess& process) {
+  const ReportedValue* level = process.parameters.empty() ? nullptr : &process.parameters.front().second;
+  if (level == nullptr || !level->value) {
+    return {};
+  }
+  if (process.process == "white_noise") {
+    return "white noise of " + written(*level);
+  }
+  if (process.process == "gauss_markov") {
+    const ReportedValue* const beta = parameter(process, "beta");
+    return "a Gauss-Markov bias of " + written(*level) +
+           (beta != nullptr && *beta->value > 0.0 ? " with a correlation time of " + correlation_time(*beta) : "");
+  }
+  std::string name = process.process;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return (name == "random walk"    ? "a random walk of "
+          : name == "linear drift" ? "a drift of "
+                                   : name + " of ") +
+         written(*level);
+}
+
+bool fits(const ReportedFit& fit) { return fit.j_test && fit.j_test->p >= kDoesNotFit; }
+
+std::string figures_of(const ReportedFit& fit) {
+  std::vector<std::string> phrases;
+  for (const ReportedProcess& process : fit.processes) {
+    if (std::string phrase = phrase_of(process); !phrase.empty()) {
+      phrases.push_back(std::move(phrase));
+    }
+  }
+  return joined(phrases);
+}
+
+void add_facts(const ReportedFit& best, Verdict& verdict) {
+  if (best.j_test) {
+    verdict.facts.emplace_back("/fits/0/j_test/p", best.j_test->p);
+  }
+  for (std::size_t i = 0; i < best.processes.size(); ++i) {
+    for (const auto& [name, value] : best.processes[i].parameters) {
+      if (value.value) {
+        verdict.facts.emplace_back("/fits/0/processes/" + std::to_string(i) + "/params/" + name + "/value",
+                                   *value.value);
+      }
+    }
+  }
+}
+
+void raise(Verdict& verdict, VerdictLevel level) { verdict.level = std::max(verdict.level, level); }
+
+/// Whether a model describes the recording, and which.
+void say_fit(const ReportedChannel& channel, Verdict& verdict) {
+  const ReportedFit& best = channel.fits.front();
+  const std::string figures = figures_of(best);
+  if (!best.j_test) {
+    verdict.sentence = best.model + " is ranked first, and leaves too few scales to test whether it fits" +
+                       (figures.empty() ? "" : ": " + figures) + ".";
+    raise(verdict, VerdictLevel::Look);
+    return;
+  }
+  if (fits(best)) {
+    verdict.sentence = best.model + " describes this recording (J test " + p_text(best.j_test->p) + ")" +
+                       (figures.empty() ? "" : ": " + figures) + ".";
+    return;
+  }
+  raise(verdict, VerdictLevel::Look);
+  const auto other = std::find_if(channel.fits.begin(), channel.fits.end(), fits);
+  if (other != channel.fits.end()) {
+    verdict.sentence = best.model + ", ranked first by the criterion, does not fit (J test " + p_text(best.j_test->p) +
+                       "); " + other->model + " does (" + p_text(other->j_test->p) + ")" +
+                       (figures_of(*other).empty() ? "" : ": " + figures_of(*other)) + ".";
+    return;
+  }
+  verdict.sentence =
+      (channel.fits.size() == 1
+           ? best.model + " does not describe this recording (J test " + p_text(best.j_test->p) + ")"
+           : "None of " + counted(channel.fits.size()) + " candidates describes this recording (J test " +
+                 p_text(best.j_test->p) + " for the best, " + best.model + ")") +
+      ".";
+  if (!figures.empty()) {
+    verdict.details.push_back("The closest has " + figures + "; its intervals are too short.");
+  }
+}
+
+void say_shape(const ReportedChannel& channel, const NoiseShape& shape, Verdict& verdict) {
+  if (channel.contaminated()) {
+    verdict.sentence += " Gross errors move its variances: the figures are from robust ones.";
+    raise(verdict, VerdictLevel::Look);
+  } else if (shape.not_gaussian) {
+    verdict.sentence += " The noise is not Gaussian, so the robust figures do not replace the classical ones.";
+    raise(verdict, VerdictLevel::Look);
+  }
+  if (shape.disjoint_scales > 0) {
+    verdict.details.push_back("Classical and robust variance are disjoint at " + std::to_string(shape.disjoint_scales) +
+                              " of " + std::to_string(shape.scales) + " scales.");
+  }
+}
+
+void say_rivals(const ReportedChannel& channel, Verdict& verdict) {
+  const ReportedFit& best = channel.fits.front();
+  const auto plausible = static_cast<std::size_t>(
+      std::count_if(channel.fits.begin() + 1, channel.fits.end(), [](const ReportedFit& f) { return f.plausible; }));
+  if (channel.fits.size() > 1) {
+    verdict.details.push_back(plausible == 0 ? "No other candidate is plausible."
+                              : plausible == 1
+                                  ? "One more model is plausible: the data cannot tell it from the best."
+                                  : capital(counted(plausible)) +
+                                        " more models are plausible: the data cannot tell them from the best.");
+  }
+  for (const ReportedProcess& process : best.processes) {
+    for (const auto& [name, value] : process.parameters) {
+      if (!value.value && !value.reason.empty()) {
+        verdict.details.push_back(name + ": " + value.reason);
+      }
+    }
+  }
+  for (const std::string& warning : best.warnings) {
+    if (warning.find("J-test") == std::string::npos) {  // said already
+      verdict.details.push_back(warning);
+    }
+  }
+}
+
+/// The first column whose parameter is a white noise, or nothing.
+std::optional<std::size_t> white_column(const ParameterTable& table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].key == "N" || table.columns[c].key == "white_noise.N") {
+      return c;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The levels of white noise of all rows: at the first, and how many of the others moved.
+void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdict) {
+  const ReportedValue& first = table.rows.front().cells[column].estimate;
+  if (!first.value) {
+    verdict.sentence = "White noise is not identified under the condition " + table.rows.front().label + ".";
+    return;
+  }
+  verdict.sentence = "White noise is " + written(first) + " (" + table.rows.front().label + ")";
+  std::size_t moved = 0;
+  std::size_t compared = 0;
+  const TableRow* highest = nullptr;
+  for (const TableRow& row : table.rows) {
+    const TableCell& cell = row.cells[column];
+    if (&row == &table.rows.front() || !cell.estimate.value) {
+      continue;
+    }
+    ++compared;
+    moved += cell.change && *cell.change != Change::None ? 1U : 0U;
+    if (highest == nullptr || *cell.estimate.value > *highest->cells[column].estimate.value) {
+      highest = &row;
+    }
+  }
+  if (highest == nullptr) {
+    verdict.sentence += ".";
+    return;
+  }
+  verdict.sentence += " and " + written(highest->cells[column].estimate) + " at " + highest->label +
+                      (compared > 1 ? ", the highest" : "") + ".";
+  if (moved == 0) {
+    verdict.sentence += " No change against " + table.rows.front().label + " is shown.";
+  } else {
+    verdict.sentence +=
+        " It moves under " +
+        (moved == compared && compared > 1 ? "every other condition"
+                                           : counted(moved) + " of " + counted(compared) + " other conditions") +
+        ": a model of " + table.rows.front().label + " alone is wrong for this device in motion.";
+    raise(verdict, VerdictLevel::Look);
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(VerdictLevel level) {
+  return level == VerdictLevel::Fine ? "fine" : level == VerdictLevel::Look ? "look" : "wrong";
+}
+
+Verdict verdict_of(const ReportedChannel& channel, const NoiseShape& shape) {
+  Verdict verdict;
+  if (channel.fits.empty()) {
+    verdict.sentence = "No model could be fitted to this channel.";
+    verdict.level = VerdictLevel::Wrong;
+    return verdict;
+  }
+  say_fit(channel, verdict);
+  say_shape(channel, shape, verdict);
+  say_rivals(channel, verdict);
+  add_facts(channel.fits.front(), verdict);
+  return verdict;
+}
+
+Verdict verdict_of(const ParameterTable& table) {
+  Verdict verdict;
+  const auto column = white_column(table);
+  if (!column || table.rows.empty()) {
+    verdict.sentence = "The model " + table.model + " has no white noise.";
+    return verdict;
+  }
+  say_levels(table, *column, verdict);
+  std::vector<std::string> misfits;
+  for (const TableRow& row : table.rows) {
+    const bool misfit = std::any_of(row.warnings.begin(), row.warnings.end(), [](const std::string& warning) {
+      return warning.find("does not fit") != std::string::npos;
+    });
+    if (misfit) {
+      misfits.push_back(row.label);
+    }
+    if (row.agreement && !row.agreement->agree()) {
+      verdict.details.push_back("The recordings of " + row.label + " disagree (" + p_text(row.agreement->p) +
+                                "); the pooled values stand for none of them.");
+      raise(verdict, VerdictLevel::Look);
+    }
+    if (row.contamination == "contaminated") {
+      verdict.details.push_back("Gross errors move the variances under " + row.label + ".");
+      raise(verdict, VerdictLevel::Look);
+    }
+  }
+  if (!misfits.empty()) {
+    verdict.details.push_back("The model does not fit under " + joined(misfits) +
+                              "; the intervals there are too short.");
+    raise(verdict, VerdictLevel::Look);
+  }
+  return verdict;
+}
+
+}  // namespace driftlab

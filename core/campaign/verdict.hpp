@@ -1,0 +1,51 @@
+#pragma once
+/// What a result says, in one sentence that a person could act on.
+///
+/// Command line, API and page show the same sentence, so it is made once, here, from what is kept of a channel
+/// (core/campaign/reported_channel.hpp) or of a device (core/campaign/parameter_table.hpp): results just computed and
+/// results stored years ago read alike. Whether a model fits outranks which one is ranked first: "best of nine, does
+/// not fit" is the usual state of real recordings. A figure is named only where the data identify it, with the digits
+/// that its interval lets stand (core/signal/significant.hpp).
+#include "core/campaign/parameter_table.hpp"
+#include "core/campaign/reported_channel.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace driftlab {
+
+/// How much a person should care.
+enum class VerdictLevel {
+  Fine,
+  Look,   ///< usable, with something that a reader must know first
+  Wrong,  ///< not to be used as it is
+};
+
+[[nodiscard]] std::string_view name_of(VerdictLevel level);
+
+struct Verdict {
+  std::string sentence;
+  std::vector<std::string> details;  ///< sentences with the evidence
+  VerdictLevel level = VerdictLevel::Fine;
+  /// What the sentence rests on: JSON pointers into the channel's document, and the values there.
+  std::vector<std::pair<std::string, double>> facts;
+};
+
+/// What the test for gross errors said beside its verdict (core/variance/contamination.hpp).
+struct NoiseShape {
+  bool not_gaussian = false;
+  std::size_t disjoint_scales = 0;
+  std::size_t scales = 0;
+};
+
+/// Below this p the J test rejects a model.
+inline constexpr double kDoesNotFit = 0.01;
+
+/// Of one channel of one recording.
+[[nodiscard]] Verdict verdict_of(const ReportedChannel& channel, const NoiseShape& shape);
+
+/// Of one sensor axis over its conditions.
+[[nodiscard]] Verdict verdict_of(const ParameterTable& table);
+
+}  // namespace driftlab

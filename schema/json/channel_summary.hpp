@@ -1,0 +1,20 @@
+#pragma once
+/// What stored results say and imply, as documents (GET /v1/recordings/{id}/characterisation, /v1/fits/{id}/implied).
+#include "core/campaign/verdict.hpp"
+#include "schema/json/json.hpp"
+
+namespace driftlab {
+
+/// {"verdict", "details", "level", "facts"}.
+[[nodiscard]] Json to_json(const Verdict& verdict);
+
+/// The summary of one member of `channels` of a characterisation document. Error: Internal, for a document that
+/// driftlab has not written.
+[[nodiscard]] Result<Json> channel_summary(const Json& channel);
+
+/// What a fit of that channel implies: curves on a grid, the deviation at the times that were measured, and the
+/// measured deviation over it. Null where the fit leaves a parameter open. `fit`: one member of `fits`, or a stored
+/// fit.
+[[nodiscard]] Json implied_by(const Json& fit, const Json& channel);
+
+}  // namespace driftlab

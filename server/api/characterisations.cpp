@@ -1,0 +1,166 @@
+// The newest result of one recording, and what its fits imply.
+#include "schema/json/channel_summary.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/http/problem.hpp"
+
+#include <algorithm>
+
+namespace driftlab::server {
+namespace {
+
+/// A recording has this many fits at most: nine candidates of every axis of an inertial unit are 54.
+constexpr int kMostFits = 2000;
+
+/// Where a job's document speaks of a recording: by its id, or by the name that a study gave it.
+Result<Json> recording_in(const Json& document, const Job& job, const std::string& recording_id) {
+  const Json request = stored(job.request_json);
+  const Json& inputs = request.at("inputs").at("recordings");
+  const Json& results = document.at("recordings");
+  for (std::size_t i = 0; i < inputs.size() && i < results.size(); ++i) {
+    if (inputs[i].at("id") == recording_id) {
+      return results[i];
+    }
+  }
+  return fail(ErrorCode::Internal,
+              "The result of the job " + job.id + " does not hold the recording " + recording_id + ".");
+}
+
+/// The fits of the newest job that characterised the recording; empty where none has.
+Result<std::vector<Fit>> newest_fits(Store& store, const std::string& recording_id) {
+  FitFilter filter;
+  filter.recording_id = recording_id;
+  filter.latest_only = true;
+  auto fits = store.fits(filter, Page{"", kMostFits});
+  if (!fits || fits->empty()) {
+    return fits;
+  }
+  const std::string newest = std::max_element(fits->begin(), fits->end(), [](const Fit& a, const Fit& b) {
+                               return a.created_at < b.created_at;
+                             })->job_id;
+  std::erase_if(*fits, [&](const Fit& fit) { return fit.job_id != newest; });
+  return fits;
+}
+
+struct Characterised {
+  Job job;
+  Json recording;  ///< its part of the job's document
+};
+
+Result<Characterised> result_of(ApiContext& context, const std::string& job_id, const std::string& recording_id) {
+  auto job = context.store.job(job_id);
+  if (!job) {
+    return fail(job.error());
+  }
+  auto text = context.store.result_document(job_id);
+  if (!text) {
+    return fail(text.error());
+  }
+  auto part = recording_in(stored(*text), *job, recording_id);
+  if (!part) {
+    return fail(part.error());
+  }
+  return Characterised{std::move(*job), std::move(*part)};
+}
+
+/// One channel with the ids of its fits, what it says and what its best fit implies.
+Result<Json> channel_document(const Json& channel, const std::vector<Fit>& fits) {
+  auto summary = channel_summary(channel);
+  if (!summary) {
+    return fail(summary.error());
+  }
+  std::vector<std::string> ids(channel.at("fits").size());
+  for (const Fit& fit : fits) {
+    if (fit.channel == channel.at("channel") && static_cast<std::size_t>(fit.rank) < ids.size()) {
+      ids[static_cast<std::size_t>(fit.rank)] = fit.id;
+    }
+  }
+  const Json implied = ids.empty() ? Json(nullptr) : implied_by(channel.at("fits").at(0), channel);
+  return Json{{"summary", std::move(*summary)}, {"fit_ids", ids}, {"implied", implied}, {"result", channel}};
+}
+
+Result<Response> get_characterisation(ApiContext& context, const Request& request) {
+  auto recording = context.store.recording(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  auto fits = newest_fits(context.store, recording->id);
+  if (!fits) {
+    return fail(fits.error());
+  }
+  if (fits->empty()) {
+    return fail(ErrorCode::NotFound, "The recording " + recording->id + " has not been characterised.");
+  }
+  auto found = result_of(context, fits->front().job_id, recording->id);
+  if (!found) {
+    return fail(found.error());
+  }
+  const auto wanted = request.parameter("channel");
+  Json channels = Json::array();
+  for (const Json& channel : found->recording.at("channels")) {
+    if (wanted && channel.at("channel") != std::string(*wanted)) {
+      continue;
+    }
+    auto document = channel_document(channel, *fits);
+    if (!document) {
+      return fail(document.error());
+    }
+    channels.push_back(std::move(*document));
+  }
+  if (channels.empty()) {
+    return fail(ErrorCode::NotFound,
+                "The recording " + recording->id + " has no channel '" + std::string(*wanted) + "' in its result.",
+                {{"parameter", "channel"}});
+  }
+  const Json asked = stored(found->job.request_json);
+  const std::int64_t revision = fits->front().recording_revision;
+  Json document{{"recording", recording->id},
+                {"revision", revision},
+                {"stale", revision != recording->revision},
+                {"job", found->job.id},
+                {"created_at", rfc3339(fits->front().created_at)},
+                {"algorithm_version", asked.at("algorithm_version")},
+                {"parameters", asked.at("parameters")},
+                {"condition", found->recording.at("condition")},
+                {"duration_s", found->recording.at("duration_s")},
+                {"rate_hz", found->recording.at("rate_hz")}};
+  document["channels"] = std::move(channels);
+  return json_response(200, document);
+}
+
+Result<Response> get_implied(ApiContext& context, const Request& request) {
+  auto fit = context.store.fit(request.parameters[0]);
+  if (!fit) {
+    return fail(fit.error());
+  }
+  auto found = result_of(context, fit->job_id, fit->recording_id);
+  if (!found) {
+    return fail(found.error());
+  }
+  for (const Json& channel : found->recording.at("channels")) {
+    if (channel.at("channel") == fit->channel) {
+      Json implied = implied_by(stored(fit->document_json), channel);
+      if (implied.is_null()) {
+        return fail(ErrorCode::NotFound, "The fit " + fit->id + " leaves a parameter open: it implies no curve.");
+      }
+      return json_response(200, Json{{"fit", fit->id}, {"model", fit->model}, {"implied", std::move(implied)}});
+    }
+  }
+  return fail(ErrorCode::Internal,
+              "The result of the job " + fit->job_id + " does not hold the channel " + fit->channel + ".");
+}
+
+}  // namespace
+
+void add_characterisation_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/recordings/{id}/characterisation",
+              "getCharacterisation",
+              {"channel"},
+              Handler([&](const Request& request) { return get_characterisation(context, request); })});
+  router.add({"GET", "/v1/fits/{id}/implied", "getImpliedCurves", {}, Handler([&](const Request& request) {
+                return get_implied(context, request);
+              })});
+}
+
+}  // namespace driftlab::server

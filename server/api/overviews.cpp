@@ -1,0 +1,127 @@
+// What stands on the front of a lab: how much there is, and how each device is.
+#include "server/api/overviews.hpp"
+
+#include "core/signal/condition.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+
+#include <map>
+
+namespace driftlab::server {
+namespace {
+
+constexpr int kMostFits = 500;
+constexpr double kDoesNotFit = 0.01;
+
+Json condition_json(const std::string& text) {
+  const auto condition = parse_condition(text);
+  return condition ? driftlab::to_json(*condition) : Json(nullptr);
+}
+
+/// The white noise of a fit's document; null where it has none.
+Json white_noise_of(const Json& fit) {
+  for (const Json& process : fit.value("processes", Json::array())) {
+    if (process.value("process", "") == "white_noise") {
+      return process.value("params", Json::object()).value("N", Json(nullptr));
+    }
+  }
+  return nullptr;
+}
+
+/// One sensor axis by its best fit: at rest where there is one, else under the condition seen first.
+Json axis_summary(const Fit& fit) {
+  const Json document = stored(fit.document_json);
+  const Json test = document.value("j_test", Json(nullptr));
+  const Json p = test.is_object() ? test.value("p", Json(nullptr)) : Json(nullptr);
+  const bool fits = p.is_number() && p.get<double>() >= kDoesNotFit;
+  const auto condition = parse_condition(fit.condition);
+  return Json{{"quantity", fit.quantity},
+              {"axis", fit.axis.empty() ? Json(nullptr) : Json(fit.axis)},
+              {"recording", fit.recording_id},
+              {"condition", condition ? driftlab::to_json(*condition) : Json(nullptr)},
+              {"model", fit.model},
+              {"N", white_noise_of(document)},
+              {"fits", p.is_number() ? Json(fits) : Json(nullptr)},
+              {"level", fits ? "fine" : "look"},
+              {"reason", fits ? Json(nullptr)
+                              : Json(p.is_number() ? "the best model does not fit (J test p < 0.01)"
+                                                   : "too few scales to test whether the best model fits")}};
+}
+
+Result<Response> get_counts(ApiContext& context, const Request&) {
+  auto counts = context.store.counts();
+  if (!counts) {
+    return fail(counts.error());
+  }
+  return json_response(200, Json{{"devices", counts->devices},
+                                 {"recordings", counts->recordings},
+                                 {"jobs", Json{{"queued", counts->queued}, {"running", counts->running}}}});
+}
+
+Result<Response> get_summary(ApiContext& context, const Request& request) {
+  auto device = context.store.device(request.parameters[0]);
+  if (!device) {
+    return fail(device.error());
+  }
+  auto summary = device_summary(context.store, device->id);
+  if (!summary) {
+    return fail(summary.error());
+  }
+  return json_response(200, *summary);
+}
+
+}  // namespace
+
+Result<Json> device_summary(Store& store, const std::string& device_id) {
+  auto conditions = store.conditions_of(device_id);
+  if (!conditions) {
+    return fail(conditions.error());
+  }
+  FitFilter filter;
+  filter.device_id = device_id;
+  filter.best_only = true;
+  filter.latest_only = true;
+  auto fits = store.fits(filter, Page{"", kMostFits});
+  if (!fits) {
+    return fail(fits.error());
+  }
+  std::map<std::pair<std::string, std::string>, const Fit*> axes;
+  const Fit* newest = nullptr;
+  for (const Fit& fit : *fits) {
+    const Fit*& shown = axes[{fit.quantity, fit.axis}];
+    if (shown == nullptr || (shown->condition != "static" && fit.condition == "static")) {
+      shown = &fit;
+    }
+    if (newest == nullptr || fit.created_at > newest->created_at) {
+      newest = &fit;
+    }
+  }
+  std::int64_t recordings = 0;
+  Json kinds = Json::array();
+  for (const ConditionCount& one : *conditions) {
+    recordings += one.recordings;
+    kinds.push_back(Json{{"condition", condition_json(one.condition)}, {"recordings", one.recordings}});
+  }
+  Json channels = Json::array();
+  for (const auto& [axis, fit] : axes) {
+    channels.push_back(axis_summary(*fit));
+  }
+  return Json{{"recordings", recordings},
+              {"conditions", std::move(kinds)},
+              {"channels", std::move(channels)},
+              {"latest", newest == nullptr ? Json(nullptr)
+                                           : Json{{"kind", "characterise"},
+                                                  {"job", newest->job_id},
+                                                  {"recording", newest->recording_id},
+                                                  {"at", rfc3339(newest->created_at)}}}};
+}
+
+void add_overview_routes(Router& router, ApiContext& context) {
+  router.add({"GET", "/v1/counts", "getCounts", {}, Handler([&](const Request& r) { return get_counts(context, r); })});
+  router.add({"GET", "/v1/devices/{id}/summary", "getDeviceSummary", {}, Handler([&](const Request& r) {
+                return get_summary(context, r);
+              })});
+}
+
+}  // namespace driftlab::server

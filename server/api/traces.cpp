@@ -1,0 +1,142 @@
+// A recording's samples as a screen can show them.
+#include "core/read/column_file.hpp"
+#include "core/signal/decimated_trace.hpp"
+#include "core/signal/number.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace driftlab::server {
+namespace {
+
+constexpr int kPoints = 1200;
+constexpr int kMostPoints = 20000;
+
+/// A parameter as a number; `otherwise` where it is not given.
+Result<double> real_parameter(const Request& request, std::string_view name, double otherwise) {
+  const auto text = request.parameter(name);
+  if (!text) {
+    return otherwise;
+  }
+  const auto value = parse_double(*text);
+  if (!value || !std::isfinite(*value)) {
+    return fail(ErrorCode::InvalidArgument, "The parameter " + std::string(name) + " is a number of seconds.",
+                {{"parameter", std::string(name)}});
+  }
+  return *value;
+}
+
+Result<std::size_t> points_of(const Request& request) {
+  const auto text = request.parameter("points");
+  int points = kPoints;
+  if (text) {
+    const auto [stop, error] = std::from_chars(text->data(), text->data() + text->size(), points);
+    if (error != std::errc{} || stop != text->data() + text->size() || points < 1 || points > kMostPoints) {
+      return fail(ErrorCode::InvalidArgument, "The points are a whole number from 1 to 20000.",
+                  {{"parameter", "points"}});
+    }
+  }
+  return static_cast<std::size_t>(points);
+}
+
+/// Samples per second: measured by the time column, or as stated.
+double rate_of(const Recording& recording, const RecordingSpec& spec) {
+  const Json quality = stored(recording.quality_json);
+  const Json measured = quality.is_object() ? quality.value("measured_rate_hz", Json(nullptr)) : Json(nullptr);
+  return measured.is_number() && measured.get<double>() > 0.0 ? measured.get<double>() : spec.rate_hz.value_or(1.0);
+}
+
+struct Stretch {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// The rows between two times of a file of `rows`.
+Stretch stretch_of(double t0, double t1, double rate_hz, std::size_t rows) {
+  const auto row_at = [&](double t) {
+    return static_cast<std::size_t>(std::clamp(std::floor(t * rate_hz), 0.0, static_cast<double>(rows)));
+  };
+  const std::size_t first = std::min(row_at(t0), rows - 1);
+  return {first, std::max<std::size_t>(1, row_at(t1) - std::min(row_at(t1), first))};
+}
+
+Json trace_document(std::span<const double> samples, const Stretch& stretch, std::size_t points, double rate_hz) {
+  const auto buckets =
+      decimated_trace(samples.subspan(stretch.first, std::min(stretch.count, samples.size() - stretch.first)), points);
+  Json time = Json::array();
+  Json low = Json::array();
+  Json high = Json::array();
+  Json mean = Json::array();
+  for (const TraceBucket& bucket : buckets) {
+    time.push_back(number(static_cast<double>(stretch.first + bucket.first) / rate_hz));
+    low.push_back(bucket.present > 0 ? number(bucket.low) : Json(nullptr));
+    high.push_back(bucket.present > 0 ? number(bucket.high) : Json(nullptr));
+    mean.push_back(bucket.present > 0 ? number(bucket.mean) : Json(nullptr));
+  }
+  const std::size_t length = std::max<std::size_t>(1, (stretch.count + points - 1) / points);
+  return Json{{"samples_per_bucket", length},
+              {"time_s", std::move(time)},
+              {"min", std::move(low)},
+              {"max", std::move(high)},
+              {"mean", std::move(mean)}};
+}
+
+Result<Response> get_trace(ApiContext& context, const Request& request) {
+  auto recording = context.store.recording(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  Faults faults;
+  const RecordingSpec spec = recording_spec_from_json(stored(recording->metadata_json), "", faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
+  if (!columns) {
+    return fail(columns.error());
+  }
+  const auto& names = columns->names();
+  const std::string channel(request.parameter("channel").value_or(""));
+  const auto named = std::find(names.begin(), names.end(), channel);
+  if (named == names.end()) {
+    return fail(ErrorCode::InvalidArgument, "Name a column of the recording: ?channel=…", {{"parameter", "channel"}});
+  }
+  const auto roles = assign_roles(spec, names);
+  if (!roles) {
+    return fail(roles.error());
+  }
+  const auto column = static_cast<std::size_t>(named - names.begin());
+  const double rate_hz = rate_of(*recording, spec);
+  const auto t0 = real_parameter(request, "t0", 0.0);
+  const auto t1 = real_parameter(request, "t1", static_cast<double>(columns->rows()) / rate_hz);
+  const auto points = points_of(request);
+  if (!t0 || !t1 || !points) {
+    return fail(!t0 ? t0.error() : !t1 ? t1.error() : points.error());
+  }
+  if (!(*t1 > *t0) || columns->rows() == 0) {
+    return fail(ErrorCode::InvalidArgument, "The end t1 lies after the beginning t0.", {{"parameter", "t1"}});
+  }
+  Json document =
+      trace_document(columns->column(column), stretch_of(*t0, *t1, rate_hz, columns->rows()), *points, rate_hz);
+  const std::optional<ColumnRole>& role = (*roles)[column];
+  document["unit"] = role && role->unit ? Json(role->unit->symbol) : Json(nullptr);
+  document["duration_s"] = number(static_cast<double>(columns->rows()) / rate_hz);
+  document["rate_hz"] = number(rate_hz);
+  return json_response(200, document);
+}
+
+}  // namespace
+
+void add_trace_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/recordings/{id}/trace",
+              "getTrace",
+              {"channel", "t0", "t1", "points"},
+              Handler([&](const Request& request) { return get_trace(context, request); })});
+}
+
+}  // namespace driftlab::server
