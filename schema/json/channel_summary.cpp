@@ -44,7 +44,8 @@ Json present(const Json& processes) {
   Json kept = Json::array();
   for (const Json& process : processes) {
     bool none = false;
-    for (const auto& [name, reason] : process.value("reasons", Json::object()).items()) {
+    const Json reasons = process.value("reasons", Json::object());
+    for (const Json& reason : reasons) {
       none = none || reason.get<std::string>().find("has none of it") != std::string::npos;
     }
     if (!none) {

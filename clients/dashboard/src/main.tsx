@@ -13,14 +13,14 @@ import {startTheme} from './shell/theme';
 type Page = () => JSX.Element;
 const PAGES: Record<string, () => Promise<{default: Page}>> = {
   '': () => import('./pages/Lab'),
-  // later devices: () => import('./pages/Devices'),
-  // later 'devices/*': () => import('./pages/Device'),
+  devices: () => import('./pages/Devices'),
+  'devices/*': () => import('./pages/Device'),
   'recordings/*': () => import('./pages/Recording'),
   // later compare: () => import('./pages/Compare'),
   // later investigations: () => import('./pages/Investigations'),
   // later 'investigations/*': () => import('./pages/Investigation'),
-  // later outages: () => import('./pages/Outages'),
-  // later 'outages/*': () => import('./pages/Outage'),
+  outages: () => import('./pages/Outages'),
+  'outages/*': () => import('./pages/Outage'),
   jobs: () => import('./pages/Jobs'),
   'jobs/*': () => import('./pages/Job'),
   upload: () => import('./pages/Upload'),

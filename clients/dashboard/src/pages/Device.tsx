@@ -1,0 +1,131 @@
+// One device: its parameters by condition, how they move, its recordings.
+import type {JSX} from 'preact';
+import {useMemo} from 'preact/hooks';
+import {useRead, ask} from '../api/client';
+import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
+import {writeCount} from '../format/number';
+import {writeWhen} from '../format/time';
+import {factorBetween, unitsFor} from '../format/units';
+import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
+import {copy, curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
+import {save} from '../figure/export';
+import type {Plot, Series} from '../figure/spec';
+import {choose, hover, pageOf, usePlace} from '../route';
+import {Characterise} from '../shell/Characterise';
+import {Head, Report, Verdict} from '../shell/Head';
+import {usePageKeys} from '../shell/keys';
+import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {qualityWords} from './Recording';
+import {colours, type ParameterTable, type Trends} from './device/documents';
+import {Parameters} from './device/Table';
+import {TrendFrame} from './device/TrendPanel';
+
+const CONDITIONS = 8;
+
+function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}): JSX.Element | null {
+  const {query} = usePlace();
+  const shown = rows.slice(0, CONDITIONS);
+  const reads = Array.from({length: CONDITIONS}, (_, i) => useRead<Characterisation>(shown[i] === undefined ? null : `/v1/recordings/${table.rows[shown[i]!]!.recordings[0]}/characterisation`));
+  const colour = colours(table.rows);
+  const quantity = table.sensor === 'accelerometer' ? 'specific_force' : 'angular_rate';
+  const known = reads.map(read => read.data);
+  const plots = useMemo((): Plot[] => {
+    let unit = '';
+    const series = shown.flatMap((row, i): Series[] => {
+      const channel = known[i]?.channels.find(one => one.result.quantity === quantity && one.result.axis === table.axis)?.result;
+      if (!channel) return [];
+      unit = unitsFor(channel.unit)[0]!;
+      const factor = factorBetween(channel.unit, unit);
+      const times = (values: readonly (number | null | undefined)[]): (number | null)[] => values.map(value => value === null || value === undefined ? null : value * factor);
+      const acceleration = table.rows[row]!.condition.kind === 'constant_angular_acceleration';
+      return [{id: table.rows[row]!.label, name: conditionName(table.rows[row]!.condition, table.axis), x: channel.allan.tau_s, y: times(channel.allan.deviation), low: times(channel.allan.ci95.map(ends => ends[0])), high: times(channel.allan.ci95.map(ends => ends[1])), mark: acceleration ? 'open' : 'dot', line: true, colour: colour[row]!, ...(acceleration ? {dash: '5 3'} : {})}];
+    });
+    // The keys stand in the order of the curves at the shortest time.
+    series.sort((a, b) => (b.y[0] ?? 0) - (a.y[0] ?? 0));
+    return [{id: 'overlay', equalDecades: true, x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: `Allan deviation, ${writeUnit(unit)}`}, series}];
+  }, [table, shown.join(), known.map(each => each?.job).join()]);
+  if ((plots[0]?.series.length ?? 0) === 0) return <Panel title="Allan deviation by condition"><Hairlines /></Panel>;
+  const tau = Number(query.get('tau')) || null;
+  return <Figure name={`${table.device}-${table.axis}-allan`} title="Allan deviation by condition" sub="first recording of each" plots={plots} source={`driftlab, ${table.device}, ${table.sensor} ${table.axis ?? ''}`}
+    describe={`Allan deviations of ${plots[0]!.series.map(one => one.name).join(', ')}, log-log with equal decades.`} cursor={tau} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }}
+    readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} note="Rates are one ordered ramp, angular accelerations another, dashed with open marks." />;
+}
+
+function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.Element {
+  const {query} = usePlace();
+  const after = query.get('after');
+  const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
+  return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
+    <Shown read={read}>{list => <>
+      <div class="scroll"><table class="stacked">
+        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">samples</th><th scope="col">quality</th><th scope="col">uploaded</th></tr></thead>
+        <tbody>{list.items.map(recording => <tr key={recording.id}>
+          <th scope="row"><a href={pageOf('recordings', recording.id)}>{recording.metadata.id ?? recording.id}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
+          <td class="n" data-label="samples">{writeCount(recording.quality.samples)}</td><td class="sec">{qualityWords(recording)}</td><td class="sec">{writeWhen(recording.created_at)}</td>
+        </tr>)}</tbody></table></div>
+      {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
+    </>}</Shown>
+  </Panel>;
+}
+
+function Results({device, summary}: {device: Device; summary: DeviceSummary}): JSX.Element {
+  const {query} = usePlace();
+  const axes = summary.channels.filter(channel => channel.axis && ['angular_rate', 'specific_force'].includes(channel.quantity));
+  const wanted = `${query.get('sensor') ?? ''}:${query.get('axis') ?? ''}`;
+  const chosen = axes.find(channel => `${sensorOf(channel.quantity)}:${channel.axis}` === wanted) ?? axes.find(channel => channel.quantity === 'angular_rate') ?? axes[0];
+  const method = query.get('method') === 'av' ? 'av' : 'gmwm';
+  const model = query.get('model');
+  const path = chosen ? `/v1/parameter-tables?device=${device.id}&sensor=${sensorOf(chosen.quantity)}&axis=${chosen.axis}&method=${method}${model && method === 'gmwm' ? `&model=${encodeURIComponent(model)}` : ''}` : null;
+  const read = useRead<ParameterTable>(path, undefined);
+  const trends = useRead<Trends>(path ? path.replace('/v1/parameter-tables', '/v1/trends') : null);
+  const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
+  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (read.data) window.location.assign(`/compare?with=${read.data.rows.map(row => row.recordings[0]).slice(0, 8).join(',')}`); }});
+  if (!chosen || !path) return <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
+  const text = async (type: string, extension: string): Promise<void> => save(`${device.name}-${chosen.axis}.${extension}`, type, await (await ask(path, {headers: {Accept: type}})).text());
+  const selected = (query.get('sel') ?? '').split('|').filter(Boolean);
+  const against = query.get('trend') === 'acceleration' ? 'angular_acceleration' : 'rate';
+  const shown = (trends.data?.trends ?? []).filter(trend => trend.against.kind === against && trend.points.length > 0);
+  return <>
+    {read.data?.summary && <Verdict summary={read.data.summary} />}
+    <section class="panel">
+      <div class="ptop"><h2>Parameters by condition</h2>
+        <Segments label="Sensor and axis" options={axes.map(channel => [`${sensorOf(channel.quantity)}:${channel.axis}`, `${channel.quantity === 'angular_rate' ? 'ω' : 'f'} ${channel.axis}`] as const)} value={`${sensorOf(chosen.quantity)}:${chosen.axis}`} onChange={value => { const [sensor = null, axis = null] = value.split(':'); choose({sensor, axis, sel: null, ref: null}); }} />
+        <Segments label="Method" options={[['gmwm', 'GMWM'], ['av', 'Allan']] as const} value={method} onChange={value => choose({method: value === 'gmwm' ? null : value})} />
+        {read.data?.model && <span class="sub">model <b>{read.data.model}</b>{model ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>}
+        <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button></div>
+        <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows.</p>} />
+      </div>
+      {read.data?.pooling.state === 'pending' && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
+      <Shown read={read}>{table => <Parameters table={table} />}</Shown>
+    </section>
+    {read.data && <div class="grid two">
+      <Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} />
+      <Panel title={`Trends against ${against === 'rate' ? 'rate' : 'angular acceleration'}`} controls={<Segments label="Against" options={[['rate', '|rate|'], ['acceleration', '|acceleration|']] as const} value={against === 'rate' ? 'rate' : 'acceleration'} onChange={value => choose({trend: value === 'rate' ? null : value})} />}>
+        {trends.problem ? <Refusal problem={trends.problem} again={trends.again} /> : !trends.data ? <Hairlines /> : shown.length === 0 ? <p class="sec">One condition shows no trend. Record this device while it turns at a known rate.</p>
+          : <><div class="small-multiples">{shown.map(trend => <TrendFrame key={trend.parameter} trend={trend} device={device.name} />)}</div><p class="note">Zero is on every axis. “Moves” rejects equality at 5 %; “rises” or “falls” only where the trend itself does. … not identified.</p></>}
+      </Panel>
+    </div>}
+    <Recordings device={device} axis={chosen.axis} />
+  </>;
+}
+
+function CharacteriseAll({device}: {device: Device}): JSX.Element | null {
+  const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&limit=100`);
+  if (!read.data || read.data.items.length === 0) return null;
+  return <Characterise recordings={read.data.items.map(one => one.id)} label="Characterise" onQueued={job => window.location.assign(pageOf('jobs', job.id))} />;
+}
+
+export default function DevicePage(): JSX.Element {
+  const {parts} = usePlace();
+  const name = parts[1] ?? '';
+  const read = useRead<Device>(`/v1/devices/${encodeURIComponent(name)}`);
+  const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null);
+  useTitle(read.data?.name ?? name);
+  return <Shown read={read}>{device => <>
+    <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
+      facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), [device.model, device.imu, device.serial].filter(Boolean).join(', '), summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
+      actions={<><a class="btn" href={`/upload`}>Add recordings</a><a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a><Report /></>} />
+    <Shown read={summary}>{found => <>{found.channels.length > 0 ? <Results device={device} summary={found} /> : <><Results device={device} summary={found} /><Recordings device={device} axis={null} /></>}</>}</Shown>
+  </>}</Shown>;
+}

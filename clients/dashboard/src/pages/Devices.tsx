@@ -1,0 +1,36 @@
+// Every device, newest first.
+import type {JSX} from 'preact';
+import {useRead} from '../api/client';
+import type {Device, List} from '../api/documents';
+import {writeWhen} from '../format/time';
+import {conditionName} from '../format/words';
+import {choose, pageOf, usePlace} from '../route';
+import {Head} from '../shell/Head';
+import {Panel, Shown} from '../shell/states';
+import {useTitle} from '../shell/title';
+
+export default function Devices(): JSX.Element {
+  const {query} = usePlace();
+  useTitle('Devices');
+  const after = query.get('after');
+  const q = (query.get('q') ?? '').toLowerCase();
+  const read = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
+  return <>
+    <Head title="Devices" facts={['newest first']} actions={<input type="search" aria-label="Only names with" placeholder="Only names with" value={q} onInput={event => choose({q: event.currentTarget.value || null})} />} />
+    <Panel><Shown read={read}>{list => {
+      const shown = list.items.filter(device => device.name.toLowerCase().includes(q));
+      return <>
+        {shown.length === 0 ? <p class="sec">{q ? `No device of this page has “${q}” in its name.` : <>No device yet. <a href="/upload">Upload a recording</a> and it has one.</>}</p> : <div class="scroll"><table class="stacked">
+          <thead><tr><th scope="col">device</th><th scope="col">unit</th><th scope="col" class="n">recordings</th><th scope="col">conditions</th><th scope="col">last result</th></tr></thead>
+          <tbody>{shown.map(device => <tr key={device.id}>
+            <th scope="row"><a href={pageOf('devices', device.name)}>{device.name}</a></th>
+            <td class="sec">{[device.model, device.imu].filter(Boolean).join(', ') || '–'}</td>
+            <td class="n" data-label="recordings">{device.summary?.recordings ?? '–'}</td>
+            <td class="sec">{device.summary?.conditions.slice(0, 4).map(one => conditionName(one.condition)).join(', ')}{(device.summary?.conditions.length ?? 0) > 4 ? ` and ${device.summary!.conditions.length - 4} more` : ''}</td>
+            <td class="sec">{device.summary?.latest ? writeWhen(device.summary.latest.at) : 'not characterised'}</td>
+          </tr>)}</tbody></table></div>}
+        {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
+      </>;
+    }}</Shown></Panel>
+  </>;
+}

@@ -1,0 +1,41 @@
+import type {Condition, Ends, Quantity, Summary} from '../../api/documents';
+
+export interface Cell extends Quantity { value: number; unit: string; ci95: Ends; change: 'up' | 'down' | 'none' | null }
+export interface TableRow {
+  condition: Condition; label: string; contamination?: string | null; warnings?: string[]; recordings: string[]; pooling?: string; robust?: boolean;
+  agreement?: {p: number | null} | null; values: Record<string, Cell | null>; reasons: Record<string, string>;
+}
+export interface ParameterTable {
+  device: string; sensor: string; axis: string | null; method: string; model: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
+  pooling: {state: string; job: string | null; reason: string | null}; summary?: Summary;
+}
+export interface Trend {
+  parameter: string; unit: string | null; against: {kind: string; unit: string};
+  points: {label: string; at: number; value: number; ci95: Ends}[]; left_out: {label: string; at: number; reason: string}[];
+  equal: {p: number}; monotone: {p: number | null; direction: string; few: boolean}; statement: string;
+}
+export interface Trends { trends: Trend[] }
+
+// Conditions are ordered, so is their colour: rest in ink, rates a blue ramp, accelerations an ochre one.
+export function colours(rows: readonly {condition: Condition}[]): string[] {
+  const rates = rows.filter(row => row.condition.kind === 'constant_rate').map(row => Math.abs(row.condition.value ?? 0)).sort((a, b) => a - b);
+  const accelerations = rows.filter(row => row.condition.kind === 'constant_angular_acceleration').map(row => Math.abs(row.condition.value ?? 0)).sort((a, b) => a - b);
+  const ramp = (index: number, count: number, steps: number): number => count <= 1 ? 1 : 1 + Math.round(index / (count - 1) * (steps - 1));
+  return rows.map(row => {
+    const size = Math.abs(row.condition.value ?? 0);
+    if (row.condition.kind === 'constant_rate') return `var(--r${ramp(rates.indexOf(size), rates.length, 4)})`;
+    if (row.condition.kind === 'constant_angular_acceleration') return `var(--a${ramp(accelerations.indexOf(size), accelerations.length, 2)})`;
+    return 'var(--r0)';
+  });
+}
+
+const NAMES: Record<string, string> = {white_noise: 'White noise', gauss_markov: 'Gauss-Markov', random_walk: 'Random walk', linear_drift: 'Drift', quantization_noise: 'Quantization', flicker_noise: 'Flicker noise', resonance: 'Resonance'};
+
+// gauss_markov_1.beta -> Gauss-Markov β
+export function columnName(key: string): {process: string; symbol: string} {
+  const [process = '', parameter] = key.split('.');
+  if (!parameter) return {process: '', symbol: key};
+  const [, name = process, number] = /^(.*?)(?:_(\d))?$/.exec(process) ?? [];
+  const symbol = {sigma: 'σ', beta: 'β'}[parameter] ?? parameter;
+  return {process: `${NAMES[name] ?? name.replace(/_/g, ' ')}${number && number !== '1' ? ` ${number}` : ''}`, symbol};
+}
