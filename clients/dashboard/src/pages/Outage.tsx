@@ -66,7 +66,7 @@ function Staircase({evaluation, from}: {evaluation: Evaluation; from: Filter | u
   </svg>;
 }
 
-function sentence(evaluation: Evaluation, left: Filter, right: Filter): string {
+function sentence(left: Filter, right: Filter): string {
   const [a, b] = [left.mean_error_m.value ?? 0, right.mean_error_m.value ?? 0];
   const length = (left.outages[0]?.end_s ?? 0) - (left.outages[0]?.start_s ?? 0);
   const gain = Math.round((1 - b / a) * 100);
@@ -90,7 +90,7 @@ function Found({stored, evaluation}: {stored: StoredEvaluation; evaluation: Eval
   const table = (): void => save('outage-errors.csv', 'text/csv', csvOf({heading: ['filter', 'outage', 'error_m', 'low_m', 'high_m', 'nees', 'coverage95'], rows: evaluation.filters.flatMap(filter => filter.outages.map(one => [filter.name, one.index, one.error_m.value, one.error_m.ci95?.[0] ?? null, one.error_m.ci95?.[1] ?? null, one.nees, one.coverage95]))}));
   const choice = (side: 'left' | 'right', value: Filter): JSX.Element => <label class="nowrap">{side} <select value={value.name} onChange={event => choose({[side]: event.currentTarget.value})}>{evaluation.filters.map(filter => <option key={filter.name}>{filter.name}</option>)}</select></label>;
   return <>
-    <p class="verdict">{sentence(evaluation, left, right)}<small>{evaluation.attribution && <>Of the gain, {writeQuantity(evaluation.attribution.low_frequency_noise.difference_m).value} m come from telling the filter of low-frequency noise, {writeQuantity(evaluation.attribution.gauss_markov_states.difference_m).value} m from Gauss-Markov states, {writeQuantity(evaluation.attribution.switching.difference_m).value} m from following the rate.</>}</small></p>
+    <p class="verdict">{sentence(left, right)}<small>{evaluation.attribution && <>Of the gain, {writeQuantity(evaluation.attribution.low_frequency_noise.difference_m).value} m come from telling the filter of low-frequency noise, {writeQuantity(evaluation.attribution.gauss_markov_states.difference_m).value} m from Gauss-Markov states, {writeQuantity(evaluation.attribution.switching.difference_m).value} m from following the rate.</>}</small></p>
     <div class="grid side-main">
       <Panel title="Drive" sub={`${writeDuration(evaluation.trajectory.time_s[evaluation.trajectory.time_s.length - 1] ?? 0)}, outage ${outage + 1} enlarged`}><DriveMap evaluation={evaluation} outage={outage} left={left} right={right} /></Panel>
       <Panel title={`Outage ${outage + 1}, end`} controls={<Segments label="Outage" options={left.outages.map(one => [String(one.index), String(one.index)] as const)} value={String(outage + 1)} onChange={value => choose({outage: value})} />} sub={<>{evaluation.runs} runs · solid: the filter’s own 95 %, dashed: what happened</>} tools={<div class="tools">{choice('left', left)}{choice('right', right)}</div>}>
