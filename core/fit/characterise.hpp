@@ -45,7 +45,7 @@ struct ChannelSamples {
 [[nodiscard]] Status check_options(const CharacteriseOptions& options);
 
 /// Errors: TooFewSamples (fewer than 8 samples), NonFinite (naming the row), OutOfRange (squares overflow),
-/// InvalidArgument, LimitExceeded (more samples missing than recorded), Cancelled. A model needs as many scales as it
+/// InvalidArgument, LimitExceeded (more than two samples missing for each recorded), Cancelled. A model needs as many scales as it
 /// has parameters; candidates with more are left out with a warning. A constant channel is no error: it has zero
 /// variances, no fit and a warning. The result is deterministic; one thread is used.
 [[nodiscard]] Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel,

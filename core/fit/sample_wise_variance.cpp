@@ -370,7 +370,7 @@ SampleWiseVariance sample_wise_variance(const GappySamples& samples, HaarCovaria
   SampleWiseVariance result;
   const std::size_t absent = samples.missing_count();
   const std::size_t recorded = samples.size() - absent;
-  if (recorded < kFewestRecorded || recorded < absent) {
+  if (recorded < kFewestRecorded || kMostMissingPerRow * recorded < absent) {
     result.outcome = SampleWiseOutcome::TooFewSamples;
     return result;
   }

@@ -27,7 +27,7 @@ namespace driftlab {
 enum class SampleWiseOutcome {
   Estimated,
   NotGaussian,    ///< more than a fifth of the samples deviate
-  TooFewSamples,  ///< fewer than 16 recorded, or more missing than recorded
+  TooFewSamples,  ///< fewer than 16 recorded, or more than two missing for each
   Degenerate,     ///< more than half of the samples are equal to their neighbours: there is no noise to model
   Cancelled       ///< the token asked; it is polled every few milliseconds
 };

@@ -17,9 +17,11 @@ Result<GappySamples> on_grid(std::span<const double> rows, std::span<const Gap> 
                   {{"row", std::to_string(gap.row + 1)}});
     }
     before = gap.row;
-    if (gap.missing > rows.size() - absent) {
-      return fail(ErrorCode::LimitExceeded, "More samples are missing than are there.",
-                  {{"limit", std::to_string(rows.size())}});
+    const std::size_t most = kMostMissingPerRow * rows.size();
+    if (gap.missing > most - absent) {
+      return fail(ErrorCode::LimitExceeded,
+                  "More than " + std::to_string(kMostMissingPerRow) + " samples are missing for each that is there.",
+                  {{"limit", std::to_string(most)}});
     }
     absent += gap.missing;
   }

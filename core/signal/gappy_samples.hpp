@@ -20,6 +20,9 @@ struct Gap {
   friend bool operator==(const Gap&, const Gap&) = default;
 };
 
+/// A series may lack this many samples for each that it has: three fifths of its grid, with room to spare.
+inline constexpr std::size_t kMostMissingPerRow = 2;
+
 struct GappySamples {
   std::vector<double> values;         ///< one per grid point; 0 where missing
   std::vector<std::uint8_t> missing;  ///< one per grid point: 1 where there is no sample; empty: none is missing
@@ -30,7 +33,7 @@ struct GappySamples {
 };
 
 /// Lays `rows` on the grid. Gaps rise by row, 1 <= row < rows. Errors: InvalidArgument (gaps out of order or outside),
-/// LimitExceeded (more missing samples than rows: that is no gappy recording but several). O(grid).
+/// LimitExceeded (more than kMostMissingPerRow missing samples a row: that is no gappy recording but several). O(grid).
 [[nodiscard]] Result<GappySamples> on_grid(std::span<const double> rows, std::span<const Gap> gaps);
 
 }  // namespace driftlab

@@ -71,6 +71,11 @@ constexpr std::array<std::string_view, 20> kNoUnits{
 
 constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
 
+/// Whose time it is, before or behind the word: `TimestampGyro [ns]`, `imu_time (s)`, `device_timestamp_us`.
+constexpr std::array<std::string_view, 18> kClocks{
+    "gyro",   "gyr",    "gyroscope", "acc",    "accel", "accelerometer", "mag",   "magnetometer", "imu",
+    "sensor", "sample", "device",    "system", "host",  "unix",          "epoch", "utc",          "ros"};
+
 std::string_view trim(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   return begin == std::string_view::npos ? std::string_view{}
@@ -116,7 +121,16 @@ std::optional<Unit> known_unit(std::string_view symbol) {
 }
 
 bool is_time_name(std::string_view squashed) {
-  return std::find(kTimeNames.begin(), kTimeNames.end(), squashed) != kTimeNames.end();
+  if (std::find(kTimeNames.begin(), kTimeNames.end(), squashed) != kTimeNames.end()) {
+    return true;
+  }
+  return std::any_of(kClocks.begin(), kClocks.end(), [squashed](std::string_view clock) {
+    const bool before = squashed.starts_with(clock);
+    const std::string_view word = before                      ? squashed.substr(clock.size())
+                                  : squashed.ends_with(clock) ? squashed.substr(0, squashed.size() - clock.size())
+                                                              : std::string_view();
+    return word == "time" || word == "timestamp";
+  });
 }
 
 Quantity quantity_of(std::string_view stem, const std::optional<Unit>& unit) {

@@ -92,7 +92,8 @@ struct ChannelQuality {
 
 /// What is true of the recording as it came, reported and never silently repaired.
 struct Quality {
-  std::size_t samples = 0;          ///< rows of the file
+  std::size_t samples = 0;          ///< rows of the file, less those that repeat the row before
+  std::size_t repeated_rows = 0;    ///< rows with the stamp and all values of the row before: one sample written twice
   std::size_t analysed = 0;         ///< rows of the analysed part, after trims
   std::size_t missing = 0;          ///< samples that the time column says are missing between them
   std::size_t gaps = 0;             ///< steps of the time column longer than 1.5 intervals of the samples they join
@@ -120,12 +121,13 @@ struct Window {
 /// Decides which rows are analysed and on which time base, from the time column (in `time_unit`; an empty span: none),
 /// the stated rate and the trims. If the time column has gaps, the rows analysed are one stretch with gaps
 /// (core/signal/stretch.hpp); if it steps back, the part before or after the step. A note in `quality` says what is
-/// left out. The number of samples missing in a gap is counted on the grid of the sample interval from the rows on both
-/// sides, so that a late stamp which the next ones make up for counts as none. Stamps in bursts (more than 2 % of the
-/// steps look like gaps) are replaced by those of evenly spaced samples. Errors: InconsistentSampling (neither rate nor
-/// time column, or they differ by more than 1 %), NonMonotonicTime (one row in a thousand or more steps back; names the
-/// first), NonFinite, TooFewSamples (names the parameter if a trim leaves nothing), InvalidArgument. O(rows) time, and
-/// O(rows) memory for the median step.
+/// left out. Samples lost at random leave steps that are whole multiples of the sample interval, however many they are
+/// (core/signal/sample_grid.hpp). Elsewhere the number missing in a gap is counted on the grid of the sample interval
+/// from the rows on both sides, so that a late stamp which the next ones make up for counts as none; and stamps in
+/// bursts (more than 2 % of the steps look like gaps) are replaced by those of evenly spaced samples. Errors:
+/// InconsistentSampling (neither rate nor time column, or they differ by more than 1 %), NonMonotonicTime (one row in a
+/// thousand or more steps back; names the first), NonFinite, TooFewSamples (names the parameter if a trim leaves
+/// nothing), InvalidArgument. O(rows) time, and O(rows) memory for the median step.
 [[nodiscard]] Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows,
                                          std::span<const double> time_column, const Unit& time_unit);
 

@@ -2,6 +2,7 @@
 
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/recording_columns.hpp"
+#include "core/signal/repeated_rows.hpp"
 #include "core/signal/turns.hpp"
 
 #include <algorithm>
@@ -192,13 +193,11 @@ std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelVi
   return {longest.first, longest.count};
 }
 
-Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
-                                     const RecordingColumns::Samples& column, ViewUse use, const Passed& passed) {
-  auto read = RecordingColumns::read(spec, names, column);
-  if (!read) {
-    return fail(read.error());
-  }
-  const RecordingColumns& columns = *read;
+namespace {
+
+/// The view of columns in which no row repeats the one before.
+Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumns& columns, std::size_t rows,
+                                ViewUse use, const Passed& passed) {
   const auto time = columns.time();
   auto window = plan_window(spec, rows, time ? columns.samples(*time) : std::span<const double>(),
                             time ? columns.unit(*time) : Unit{});
@@ -221,16 +220,16 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
     if (!is_sensor(role->quantity)) {
       continue;
     }
-    if (auto holes = check_holes(names[i], columns.samples(i), passed); !holes) {
+    if (auto holes = check_holes(columns.name(i), columns.samples(i), passed); !holes) {
       first_fault = first_fault ? first_fault : std::optional(holes.error());
-      if (spec.columns.empty() && may_be_left_out(*role, names[i], i, columns.samples(i))) {
-        notes.push_back("The column '" + names[i] + "' is left out: " + holes.error().message);
+      if (spec.columns.empty() && may_be_left_out(*role, columns.name(i), i, columns.samples(i))) {
+        notes.push_back("The column '" + columns.name(i) + "' is left out: " + holes.error().message);
         continue;
       }
       return fail(holes.error());
     }
     if (!role->unit) {
-      notes.push_back("The unit of column '" + names[i] + "' is not stated; its unit is 1.");
+      notes.push_back("The unit of column '" + columns.name(i) + "' is not stated; its unit is 1.");
     }
     // A sensor that is frozen throughout does not keep the others from being analysed.
     if (auto status = add_channel(spec, columns, i, use, passed, view); !status) {
@@ -246,6 +245,43 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
         ErrorCode::UnknownColumn,
         "None of the columns is a sensor (angular_rate or specific_force), so there is nothing to characterise.",
         {{"parameter", "columns"}});
+  }
+  return view;
+}
+
+}  // namespace
+
+Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
+                                     const RecordingColumns::Samples& column, ViewUse use, const Passed& passed) {
+  auto read = RecordingColumns::read(spec, names, column);
+  if (!read) {
+    return fail(read.error());
+  }
+  const auto time = read->time();
+  const std::vector<std::size_t> repeated =
+      time ? repeated_rows(read->samples(*time), read->count(), column) : std::vector<std::size_t>();
+  if (repeated.empty()) {
+    return view_rows(spec, *read, rows, use, passed);
+  }
+  std::vector<std::vector<double>> distinct(names.size());
+  const auto column_without = [&](std::size_t i) -> std::span<const double> {
+    if (distinct[i].empty()) {
+      distinct[i] = without_repeats(column(i), repeated);
+    }
+    return distinct[i];
+  };
+  read = RecordingColumns::read(spec, names, column_without);
+  if (!read) {
+    return fail(read.error());
+  }
+  auto view = view_rows(spec, *read, rows - repeated.size(), use, {});
+  if (view) {
+    Quality& quality = view->window.quality;
+    quality.repeated_rows = repeated.size();
+    quality.notes.insert(quality.notes.begin(), std::to_string(repeated.size()) + " of " + std::to_string(rows) +
+                                                    " rows repeat the row before, stamp and values; they are one "
+                                                    "sample written twice and do not count.");
+    view->distinct = std::move(distinct);
   }
   return view;
 }

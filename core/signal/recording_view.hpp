@@ -40,6 +40,9 @@ struct ChannelView {
 struct RecordingView {
   Window window;
   std::vector<ChannelView> channels;  ///< sensors in file order
+  /// Where rows of the file repeat the row before them: columns of the file without these, on which `window` and
+  /// `channels` then stand. Empty: nothing repeats.
+  std::vector<std::vector<double>> distinct;
 };
 
 /// The longest run of rows that all of `channels` have without a gap: its first row and the number of rows (0: none).

@@ -20,7 +20,13 @@ std::size_t missing_of(std::span<const RowRun> runs) {
 
 bool little_missing(std::span<const RowRun> runs) {
   const auto missing = static_cast<double>(missing_of(runs));
-  return missing <= kMostMissing * (missing + static_cast<double>(rows_of(runs)));
+  const auto rows = static_cast<double>(rows_of(runs));
+  if (missing <= kMostMissing * (missing + rows)) {
+    return true;
+  }
+  const auto longest = std::max_element(runs.begin() + 1, runs.end(),
+                                        [](const RowRun& a, const RowRun& b) { return a.missing < b.missing; });
+  return missing <= kMostScattered * (missing + rows) && static_cast<double>(longest->missing) <= kScattered * rows;
 }
 
 }  // namespace

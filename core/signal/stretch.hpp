@@ -4,8 +4,8 @@
 /// Samples may be missing between two rows of a recording, either lost in transmission (a jump of the time column) or
 /// because rows hold no measurement. They are not bridged by interpolation, nor is the rest discarded: one stretch with
 /// gaps is analysed, in which only what touches a gap is lost (core/signal/gappy_samples.hpp). Up to a fifth of the
-/// grid of a stretch may be missing. If more is missing, the stretch is split at its largest gap and the part with more
-/// rows is kept.
+/// grid of a stretch may be missing, or three fifths if they are scattered: no gap is longer than a hundredth of the
+/// rows. If more is missing, the stretch is split at its largest gap and the part with more rows is kept.
 #include "core/signal/gappy_samples.hpp"
 
 #include <cstddef>
@@ -17,6 +17,8 @@ namespace driftlab {
 
 /// The largest share of the grid points of an analysed stretch that may be missing.
 inline constexpr double kMostMissing = 0.2;
+inline constexpr double kMostScattered = 0.6;  ///< the same where no gap is longer than kScattered of the rows
+inline constexpr double kScattered = 0.01;
 
 /// Rows [first, first + count) without a gap, and what is missing before them.
 struct RowRun {

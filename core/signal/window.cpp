@@ -1,6 +1,6 @@
-#include "core/signal/gap_sizes.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
+#include "core/signal/spacing.hpp"
 #include "core/signal/stretch.hpp"
 #include "core/signal/time_column.hpp"
 
@@ -81,157 +81,17 @@ Result<Window> plan_standing_clock(const RecordingSpec& spec, std::size_t rows) 
   return window;
 }
 
-/// Samples that share one stamp.
-struct Group {
-  std::size_t first = 0;
-  std::size_t count = 1;
-};
-
-/// The element below which a fraction `p` of `values` lies, 0 of none; reorders them. O(n).
-double quantile(std::vector<double>& values, double p) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto index = static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size()));
-  const auto at = values.begin() + std::min(index, static_cast<std::ptrdiff_t>(values.size()) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-std::vector<Group> group_by_stamp(const std::vector<double>& stamps) {
-  std::vector<Group> groups{{0, 1}};
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] == stamps[i - 1]) {
-      ++groups.back().count;
-    } else {
-      groups.push_back({i, 1});
-    }
-  }
-  return groups;
-}
-
-/// Median over the advancing steps of step per sample, 0 if none advances. Between groups of a and b samples lie
-/// (a + b)/2 sample intervals on average, so repeated stamps (coarse clocks, FIFOs stamped at once) do not bias it.
-double median_interval(const std::vector<double>& stamps, const std::vector<Group>& groups) {
-  std::vector<double> intervals;
-  intervals.reserve(groups.size());
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
-    if (step > 0.0) {
-      intervals.push_back(step / (0.5 * static_cast<double>(groups[g - 1].count + groups[g].count)));
-    }
-  }
-  return quantile(intervals, 0.5);
-}
-
-/// The rows before which samples are missing: a step is a gap if it exceeds what the samples of both its groups can
-/// span, a + b - 1 intervals, by more than half an interval. Without repeated stamps that is 1.5 intervals.
-std::vector<std::size_t> find_gaps(const std::vector<double>& stamps, const std::vector<Group>& groups,
-                                   double interval_s) {
-  std::vector<std::size_t> gaps;
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
-    if (step > (static_cast<double>(groups[g - 1].count + groups[g].count) - 0.5) * interval_s) {
-      gaps.push_back(groups[g].first);
-    }
-  }
-  return gaps;
-}
-
-/// Every step forward of the stamps.
-std::vector<double> forward_steps(const std::vector<double>& stamps) {
-  std::vector<double> steps;
-  steps.reserve(stamps.size());
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] >= stamps[i - 1]) {
-      steps.push_back(stamps[i] - stamps[i - 1]);
-    }
-  }
-  return steps;
-}
-
-/// The spacing of the stamps: where samples are missing, and how evenly the rest lie.
-struct Spacing {
-  std::vector<std::size_t> gaps;  ///< rows before which samples are missing
-  double interval_s = 0.0;        ///< median step a sample
-  double mean_s = 0.0;            ///< mean step a sample where nothing is missing
-  double jitter_s = 0.0;
-  bool bursts = false;
-};
-
-/// Mean step a sample over the groups that are not behind a gap (rows, rising).
-double mean_interval(const std::vector<double>& stamps, const std::vector<Group>& groups,
-                     const std::vector<std::size_t>& gaps) {
-  double sum = 0.0;
-  double samples = 0.0;
-  auto gap = gaps.begin();
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    const double step = stamps[groups[g].first] - stamps[groups[g - 1].first];
-    if (gap != gaps.end() && *gap == groups[g].first) {
-      ++gap;
-    } else if (step > 0.0) {
-      sum += step;
-      samples += 0.5 * static_cast<double>(groups[g - 1].count + groups[g].count);
-    }
-  }
-  return samples > 0.0 ? sum / samples : 0.0;
-}
-
-/// Stamps given on arrival come in bursts: many steps look like gaps, though none of the samples is lost. The recording
-/// is then read as evenly spaced, and a gap is what is far beyond every other step.
-Spacing find_spacing(const std::vector<double>& stamps, const std::vector<Group>& groups) {
-  constexpr double kBurstGaps = 0.02;  // more of the steps than this look like gaps
-  Spacing spacing;
-  spacing.interval_s = median_interval(stamps, groups);
-  if (spacing.interval_s <= 0.0) {
-    return spacing;
-  }
-  spacing.gaps = find_gaps(stamps, groups, spacing.interval_s);
-  std::vector<double> steps = forward_steps(stamps);
-  const double low = quantile(steps, 0.05);
-  spacing.jitter_s = 0.5 * (quantile(steps, 0.95) - low);
-  spacing.bursts = static_cast<double>(spacing.gaps.size()) > kBurstGaps * static_cast<double>(stamps.size()) &&
-                   stamps.size() >= 100;
-  if (!spacing.bursts) {
-    spacing.mean_s = mean_interval(stamps, groups, spacing.gaps);
-    return spacing;
-  }
-  const double largest_common = quantile(steps, 0.99);
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const double step : steps) {
-    sum += step <= largest_common ? step : 0.0;
-    count += step <= largest_common ? 1 : 0;
-  }
-  spacing.interval_s = sum / static_cast<double>(count);
-  const double longest = std::max(20.0 * spacing.interval_s, 5.0 * largest_common);
-  spacing.gaps.clear();
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] - stamps[i - 1] > longest) {
-      spacing.gaps.push_back(i);
-    }
-  }
-  sum = 0.0;
-  count = 0;
-  for (const double step : steps) {
-    sum += step <= longest ? step : 0.0;
-    count += step <= longest ? 1 : 0;
-  }
-  spacing.mean_s = sum / static_cast<double>(count);
-  return spacing;
-}
-
-Quality survey(const TimeColumn& time, std::size_t groups, const Spacing& spacing) {
+Quality survey(const TimeColumn& time, const Spacing& spacing) {
   const std::vector<double>& stamps = time.stamps;
   Quality quality;
   quality.samples = stamps.size();
-  quality.repeated_stamps = stamps.size() - groups;
-  quality.gaps = spacing.gaps.size();
+  quality.repeated_stamps = spacing.repeated_stamps;
+  quality.gaps = spacing.long_steps.size();
   quality.jitter_s = spacing.jitter_s;
   quality.bursts = spacing.bursts;
   quality.backward_steps = time.backward.size();
   quality.counter_wraps = time.wraps;
-  for (const std::size_t row : spacing.gaps) {
+  for (const std::size_t row : spacing.long_steps) {
     quality.longest_gap_s = std::max(quality.longest_gap_s, stamps[row] - stamps[row - 1]);
   }
   quality.measured_rate_hz = static_cast<double>(stamps.size() - 1) / time.advanced_s();
@@ -356,20 +216,18 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
     return fail(time.error());
   }
   const std::vector<double>& stamps = time->stamps;
-  const std::vector<Group> groups = group_by_stamp(stamps);
-  const Spacing spacing = find_spacing(stamps, groups);
+  const Spacing spacing = find_spacing(stamps, time->backward, spec.rate_hz ? 1.0 / *spec.rate_hz : 0.0);
   if (spacing.interval_s <= 0.0) {
     return plan_standing_clock(spec, column.size());
   }
   Window window;
-  window.quality = survey(*time, groups.size(), spacing);
+  window.quality = survey(*time, spacing);
   window.time.start_s = stamps.front();
   const auto [first, last] = trimmed_rows(spec, stamps, 1e-6 * spacing.interval_s);
   if (last < first + 2) {
     return trimmed_away(spec, stamps.back() - stamps.front());
   }
-  const Stretch stretch =
-      stretch_between(first, last, time->backward, gap_sizes(stamps, spacing.gaps, time->backward, spacing.mean_s));
+  const Stretch stretch = stretch_between(first, last, time->backward, spacing.gaps);
   window.first = stretch.runs.front().first;
   window.count = stretch.rows();
   window.time.first_s = stamps[window.first] - stamps.front();

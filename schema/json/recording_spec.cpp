@@ -232,6 +232,9 @@ Json to_json(const Quality& quality) {
                 {"jitter_s", number(quality.jitter_s)}};
   document["measured_rate_hz"] = quality.measured_rate_hz > 0.0 ? number(quality.measured_rate_hz) : Json(nullptr);
   document["clock_ratio"] = quality.clock_ratio ? number(*quality.clock_ratio) : Json(nullptr);
+  if (quality.repeated_rows > 0) {
+    document["repeated_rows"] = quality.repeated_rows;
+  }
   document["channels"] = Json::array();
   for (const ChannelQuality& channel : quality.channels) {
     document["channels"].push_back(to_json(channel));

@@ -1719,6 +1719,7 @@ class StoredRecordingFile(TypedDict):
 class StoredRecordingQuality(TypedDict):
     """What was found true of the recording as it came."""
 
+    # Rows of the file, less those that repeat the row before.
     samples: int
     # Samples of the window that analysis uses.
     analysed: int
@@ -1726,6 +1727,8 @@ class StoredRecordingQuality(TypedDict):
     missing: NotRequired[int]
     gaps: int
     repeated_stamps: int
+    # Rows with the stamp and all values of the row before; they do not count as samples. Absent: none.
+    repeated_rows: NotRequired[int]
     longest_gap_s: float | None
     # Steps of the time column below 0; the recording is split there.
     backward_steps: NotRequired[int]

@@ -35,7 +35,7 @@ TEST(GappySamples, RefusesGapsThatLieOutsideAndRecordsThatAreMostlyGap) {
     ASSERT_FALSE(samples.has_value());
     EXPECT_EQ(samples.error().code, ErrorCode::InvalidArgument);
   }
-  const std::vector<Gap> mostly{{1, 4}};
+  const std::vector<Gap> mostly{{1, 7}};
   EXPECT_EQ(on_grid(rows, mostly).error().code, ErrorCode::LimitExceeded);
 }
 

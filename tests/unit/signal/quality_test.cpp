@@ -259,6 +259,47 @@ TEST(Quality, ReadsBurstsAsEvenlySpacedSamples) {
   EXPECT_NEAR(seen->window.quality.jitter_s, 0.5 * (0.0385 - 0.0005), 1e-9);
 }
 
+TEST(Quality, DoesNotCountARowThatTheLoggerWroteTwice) {
+  // One row in twenty is there twice. They counted as samples, and lowered the white noise by what they repeat.
+  std::vector<double> stamps;
+  std::vector<double> values;
+  const std::vector<double> truth = noise(4000);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    for (int copy = 0; copy < (i % 20 == 7 ? 2 : 1); ++copy) {
+      stamps.push_back(0.01 * static_cast<double>(i));
+      values.push_back(i == 27 ? missing_sample(Missing::Empty, values.size()) : truth[i]);
+    }
+  }
+  const auto seen = view({stamps, values}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(seen) << seen.error().message;
+  const Quality& quality = seen->window.quality;
+  EXPECT_EQ(quality.repeated_rows, 200U);
+  EXPECT_EQ(quality.repeated_stamps, 0U);
+  EXPECT_EQ(quality.samples, 4000U);
+  EXPECT_EQ(seen->channels[0].values.size(), 3999U);
+  EXPECT_EQ(seen->channels[0].values[26], truth[26]);
+  EXPECT_EQ(seen->channels[0].values[27], truth[28]);
+  EXPECT_NEAR(seen->window.time.dt_s, 0.01, 1e-12);
+  EXPECT_THAT(quality.notes, Contains(HasSubstr("200 of 4200 rows repeat the row before")));
+}
+
+TEST(Quality, CountsEqualSamplesOfACoarseClockOrAFrozenSensor) {
+  // Two samples share each stamp; on a lattice of a few values they are often equal.
+  std::vector<double> stamps(4000);
+  std::vector<double> values = noise(4000);
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    stamps[i] = 0.02 * static_cast<double>(i / 2);
+    values[i] = 0.1 * std::round(values[i] / 0.1);
+  }
+  const auto coarse = view({stamps, values}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(coarse) << coarse.error().message;
+  EXPECT_EQ(coarse->window.quality.repeated_rows, 0U);
+  EXPECT_EQ(coarse->window.quality.samples, 4000U);
+  const auto frozen = view({stamps, std::vector<double>(4000, 1.0)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(frozen) << frozen.error().message;
+  EXPECT_EQ(frozen->window.quality.samples, 4000U);
+}
+
 TEST(Quality, ComparesTheClockWithTheStatedRate) {
   const auto seen = view({clock(2000, 0.01005), noise(2000)}, {"time (s)", "gz"}, 100.0);
   ASSERT_TRUE(seen) << seen.error().message;

@@ -156,6 +156,18 @@ TEST(AssignRoles, KeepsTheTimeColumnWhoseUnitIsKnown) {
   EXPECT_EQ(described(*roles->at(1)), "time [s]");
 }
 
+TEST(AssignRoles, KnowsTheTimeThatIsNamedAfterItsSensor) {
+  // `TimestampGyro [ns]` was analysed as a sensor in unit 1, and the rate asked for.
+  for (const char* name : {"TimestampGyro [ns]", "timestamp_acc (ns)", "gyro_timestamp_ns", "IMU Time [ns]"}) {
+    const auto roles = assign_roles({}, {name, "gx"});
+    ASSERT_TRUE(roles) << roles.error().message;
+    EXPECT_EQ(described(*roles->at(0)), "time [ns]") << name;
+  }
+  const auto both = assign_roles({}, {"TimestampGyro [ns]", "gx", "TimestampAcc [ns]", "ax"});
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_FALSE(both->at(2));
+}
+
 TEST(AssignRoles, DoesNotGuessBetweenTwoColumnsOrAgainstAUnit) {
   EXPECT_EQ(failure(assign_roles({}, {"gx", "gyro_x"})), "duplicate_column column=gyro_x");
   EXPECT_EQ(failure(assign_roles({}, {"ax (deg/s)"})), "unit_mismatch column=ax (deg/s) unit=deg/s");

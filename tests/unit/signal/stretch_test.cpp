@@ -17,6 +17,16 @@ TEST(Stretch, TakesEverythingWhileNoMoreThanAFifthIsMissing) {
   EXPECT_EQ(choose_stretch(std::vector<RowRun>{{0, 400, 0}, {400, 400, 201}}).runs, (std::vector<RowRun>{{0, 400, 0}}));
 }
 
+TEST(Stretch, TakesThreeFifthsMissingOneByOne) {
+  std::vector<RowRun> runs;
+  for (std::size_t i = 0; i < 400; ++i) {
+    runs.push_back({i, 1, i == 0 ? std::size_t{0} : 1 + i % 2});  // 599 or 600 of 1000 places
+  }
+  EXPECT_EQ(choose_stretch(runs).rows(), 400U);
+  runs.push_back({400, 4, 5});  // a gap of more than a hundredth of 404 rows
+  EXPECT_EQ(choose_stretch(runs).rows(), 400U);
+}
+
 TEST(Stretch, SplitsAtTheLargestGapAndGoesOnWithTheLongerPart) {
   const std::vector<RowRun> runs{{0, 300, 0}, {300, 100, 20}, {400, 350, 1000}};
   EXPECT_EQ(choose_stretch(runs).runs, (std::vector<RowRun>{{0, 300, 0}, {300, 100, 20}}));

@@ -1,0 +1,31 @@
+#pragma once
+/// The spacing of time stamps: where samples are missing, and how evenly the rest lie. Internal to core/signal.
+///
+/// Three readings are tried, in this order. Samples of an even sampler of which some are lost: steps are whole
+/// multiples of the interval (core/signal/sample_grid.hpp). Stamps on arrival, in bursts: more than 2 % of the steps
+/// look like gaps, though no grid fits; the samples are then evenly spaced by their mean step, and a gap is what is far
+/// beyond every other step. Otherwise every step is judged by itself: it is a gap if it exceeds 1.5 intervals, and what
+/// it lacks follows from the rows on both sides (core/signal/gap_sizes.hpp).
+#include "core/signal/gappy_samples.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace driftlab {
+
+struct Spacing {
+  std::vector<std::size_t> long_steps;  ///< rows behind a step that is too long for the samples it joins
+  std::vector<Gap> gaps;                ///< what is missing behind them; of a late stamp nothing is
+  std::size_t repeated_stamps = 0;
+  double interval_s = 0.0;  ///< median step a sample; 0 where the clock stands
+  double jitter_s = 0.0;    ///< half the distance of the 5 % and 95 % quantiles of the steps, without what is lost
+  bool bursts = false;
+};
+
+/// `stamps` [s] of all rows, which start anew at the rows `backward` (ascending). `stated_s`: the interval that the
+/// user states, 0 for none. O(rows log rows) where there are gaps, else O(rows).
+[[nodiscard]] Spacing find_spacing(const std::vector<double>& stamps, std::span<const std::size_t> backward,
+                                   double stated_s);
+
+}  // namespace driftlab
