@@ -159,6 +159,11 @@ void DampedOscillation::add_haar_cross(double mi, double mj, std::span<const dou
   }
 }
 
+Ringing DampedOscillation::ringing() const {
+  const double length = 2.5 / std::max({std::fabs(x_.imag()), fall_, 1e-9});
+  return {std::min(10.0 / fall_, 256.0 * length), length};
+}
+
 StateSpace DampedOscillation::state_space(double square) const {
   const double cosine = std::cos(turn_);
   const double sine = std::sin(turn_);

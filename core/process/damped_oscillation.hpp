@@ -7,6 +7,7 @@
 /// which is Re[C e^-x|h|] with x = a + ib and C = 1 + ia/b: the laws of a first-order process (gauss_markov.hpp) with a
 /// complex rate. They keep nine digits for a quality from 0.51 to 10^4, and seven where w m is as small as 10^-7.
 #include "core/process/random.hpp"
+#include "core/process/ringing.hpp"
 #include "core/process/state_space.hpp"
 
 #include <complex>
@@ -38,6 +39,8 @@ class DampedOscillation {
   [[nodiscard]] double variogram(double lag) const;
   /// Adds `factor` times the covariance of Haar coefficients, one value per lag.
   void add_haar_cross(double mi, double mj, std::span<const double> lags, double factor, std::span<double> out) const;
+  /// Down to 5e-5 of the peak, at most 256 lengths; a length is 2.5/w, four fifths of a period of gamma^2.
+  [[nodiscard]] Ringing ringing() const;
   /// Position and velocity/w as the two states: exact, stationary from the start, variance `square`.
   [[nodiscard]] StateSpace state_space(double square) const;
   /// Adds a path of standard deviation `sigma`, stationary from the start; two normal numbers per sample.

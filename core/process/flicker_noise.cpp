@@ -3,13 +3,10 @@
 #include "core/process/dense.hpp"
 #include "core/process/gauss_markov.hpp"
 #include "core/process/haar_differences.hpp"
+#include "core/process/stationary_increments.hpp"
 
-#include <unsupported/Eigen/FFT>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -230,14 +227,6 @@ struct PoleSum {
   }
 };
 
-std::size_t next_power_of_two(std::size_t n) {
-  std::size_t power = 1;
-  while (power < n) {
-    power *= 2;
-  }
-  return power;
-}
-
 }  // namespace
 
 double FlickerNoise::haar_variance(double m, double /*dt_s*/) const { return b * b * cached_unit_haar_variance(m); }
@@ -281,36 +270,12 @@ std::optional<StateSpace> FlickerNoise::state_space(double dt_s) const {
 }
 
 void FlickerNoise::add_path(Random& random, double /*dt_s*/, std::span<double> out) const {
-  const std::size_t n = out.size();
-  if (n == 0) {
-    return;
-  }
-  const std::size_t circle = 2 * next_power_of_two(n);
-  std::vector<std::complex<double>> row(circle);
-  for (std::size_t h = 0; h <= circle / 2; ++h) {
+  std::vector<double> increments(embedding_lags(out.size()));
+  for (std::size_t h = 0; h < increments.size(); ++h) {
     const double lag = static_cast<double>(h);
-    const double covariance = (cin_pi(lag + 1.0) + cin_pi(std::fabs(lag - 1.0)) - 2.0 * cin_pi(lag)) * b * b / kPi;
-    row[h] = covariance;
-    if (h > 0 && h < circle / 2) {
-      row[circle - h] = covariance;
-    }
+    increments[h] = (cin_pi(lag + 1.0) + cin_pi(std::fabs(lag - 1.0)) - 2.0 * cin_pi(lag)) * b * b / kPi;
   }
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> spectrum(circle);
-  fft.fwd(spectrum.data(), row.data(), static_cast<Eigen::Index>(circle));
-  for (std::size_t k = 0; k < circle; ++k) {
-    const double power = std::max(spectrum[k].real(), 0.0);
-    const double scale = std::sqrt(power / static_cast<double>(circle));
-    const double re = random.normal();
-    const double im = random.normal();
-    spectrum[k] = scale * std::complex<double>(re, im);
-  }
-  fft.fwd(row.data(), spectrum.data(), static_cast<Eigen::Index>(circle));
-  double level = 0.0;
-  for (std::size_t t = 0; t < n; ++t) {
-    out[t] += level;
-    level += row[t].real();
-  }
+  add_path_of_increments(increments, random, out);
 }
 
 void FlickerNoise::add_block_states(double square, double /*shape*/, const Blocks& blocks, BlockStates& states) {

@@ -40,8 +40,8 @@ struct FlickerNoise {
   /// where the spectrum of an autoregression must be flat. Below 10^-7 cycles a sample the density levels off, so the
   /// approximation is stationary; its constant part is not that of the process.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
-  /// Circulant embedding of the stationary increments (Davies and Harte 1987; Wood and Chan 1994), started at 0:
-  /// exact second moments of all differences. O(n log n) time, 4 n complex numbers.
+  /// Circulant embedding of the stationary increments (stationary_increments.hpp), started at 0: exact second moments
+  /// of all differences.
   void add_path(Random& random, double dt_s, std::span<double> out) const;
   /// Approximate: six Gauss-Markov processes with correlation times spaced evenly in the logarithm, from two samples to
   /// twice the longest record; the integral of their densities over ln(tau) is 1/f. Variances of differences of single

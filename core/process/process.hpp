@@ -7,6 +7,7 @@
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
+#include "core/process/ringing.hpp"
 #include "core/process/slow_law.hpp"
 #include "core/process/state_space.hpp"
 
@@ -48,6 +49,9 @@ struct ProcessKind {
 
   /// Null where the density has no limit at low frequencies, or none but zero.
   LowFrequencyDensity (*low_frequency)(std::span<const double> p, double dt_s) = nullptr;
+
+  /// What of the covariances of Haar coefficients is not smooth between their kinks; null where all is.
+  Ringing (*ringing)(std::span<const double> p, double dt_s) = nullptr;
 
   /// Optional laws, null where the kind declares none: what an investigation can do with the process where a model that
   /// is taken at its word holds it. A kind with none of them is simulated, and stays in a recording.

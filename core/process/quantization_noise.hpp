@@ -1,9 +1,9 @@
 #pragma once
 /// Quantization noise: differences of a white error of standard deviation Q [unit s] divided by dt (causes.md).
 ///
-/// It is what rounding an angle (velocity) leaves in its differences, and the Q of IEEE Std 952. A sensor that rounds its
-/// rate (specific force) to steps s does something else: it adds a white floor of s^2/12 per sample (Widrow 1956), N =
-/// s sqrt(dt/12), where the other noise is larger than a step.
+/// It is what rounding an angle (velocity) leaves in its differences, and the Q of IEEE Std 952. A sensor that rounds
+/// its rate (specific force) to steps s does something else: it adds a white floor of s^2/12 per sample (Widrow 1956),
+/// N = s sqrt(dt/12), where the other noise is larger than a step.
 ///
 /// Allan variance 3 Q^2/tau^2, slope -1 of the Allan deviation. Simulated with a uniform error, as a quantizer makes
 /// it.

@@ -67,6 +67,8 @@ void Resonance::add_haar_cross(double mi, double mj, double dt_s, std::span<cons
   unit_of(*this, dt_s).add_haar_cross(mi, mj, lags, factor * sigma * sigma, out);
 }
 
+Ringing Resonance::ringing(double dt_s) const { return unit_of(*this, dt_s).ringing(); }
+
 std::optional<StateSpace> Resonance::state_space(double dt_s) const {
   return unit_of(*this, dt_s).state_space(sigma * sigma);
 }

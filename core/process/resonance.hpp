@@ -9,6 +9,7 @@
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
+#include "core/process/ringing.hpp"
 #include "core/process/state_space.hpp"
 
 #include <algorithm>
@@ -46,6 +47,7 @@ struct Resonance {
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
+  [[nodiscard]] Ringing ringing(double dt_s) const;
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Two states, exact.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;

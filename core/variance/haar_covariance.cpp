@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace driftlab {
 namespace {
@@ -58,7 +59,8 @@ struct SumRule {
 /// Collects lags and the number of lags each stands for.
 class LagPlan {
  public:
-  LagPlan(double mi, std::map<double, SumRule>& rules) : first_(std::max(1.0, std::ceil(0.5 * mi))), rules_(rules) {}
+  LagPlan(double mi, const std::optional<Ringing>& ringing, std::map<double, SumRule>& rules)
+      : first_(std::max(1.0, std::ceil(0.5 * mi))), ringing_(ringing), rules_(rules) {}
 
   void single(double lag) {
     lag_.push_back(lag);
@@ -66,7 +68,7 @@ class LagPlan {
   }
 
   /// The lags strictly between two kinks (`end` a kink too) or up to and including the last lag. Near a kink a stretch
-  /// is m_i/2 long, away from it it grows fourfold in distance.
+  /// is m_i/2 long, away from it it grows fourfold in distance; where the process rings none is longer than that.
   void gap(double start, double end, bool end_is_kink) {
     const double low = start + 1.0;
     const double high = end_is_kink ? end - 1.0 : end;
@@ -89,6 +91,16 @@ class LagPlan {
       for (auto d = distance.rbegin(); d != distance.rend(); ++d) {
         cuts.push_back(std::ceil(high - *d));
       }
+    }
+    if (ringing_) {
+      const double step = std::max(1.0, std::floor(ringing_->length));
+      for (double d = step; d <= std::min(ringing_->reach + step, reach); d += step) {
+        cuts.push_back(low + d - 1.0);
+        if (end_is_kink) {
+          cuts.push_back(high - d);
+        }
+      }
+      std::sort(cuts.begin(), cuts.end());
     }
     cuts.push_back(high);
     double from = low;
@@ -119,14 +131,15 @@ class LagPlan {
   }
 
   double first_;
+  std::optional<Ringing> ringing_;
   std::map<double, SumRule>& rules_;
   std::vector<double> lag_;
   std::vector<double> weight_;
 };
 
 /// The rules depend on the lengths alone, which repeat from pair to pair.
-void choose_lags(double mi, double mj, double last, std::map<double, SumRule>& rules, std::vector<double>& lag,
-                 std::vector<double>& weight) {
+void choose_lags(double mi, double mj, double last, const std::optional<Ringing>& ringing,
+                 std::map<double, SumRule>& rules, std::vector<double>& lag, std::vector<double>& weight) {
   std::vector<double> kinks;
   for (const double kink : {0.0, mi, mj - mi, mj, mj + mi}) {
     if (kink <= last) {
@@ -135,7 +148,7 @@ void choose_lags(double mi, double mj, double last, std::map<double, SumRule>& r
   }
   std::sort(kinks.begin(), kinks.end());
   kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
-  LagPlan plan(mi, rules);
+  LagPlan plan(mi, ringing, rules);
   for (std::size_t k = 0; k < kinks.size(); ++k) {
     plan.single(kinks[k]);
     const bool more = k + 1 < kinks.size();
@@ -165,8 +178,24 @@ HaarCovariance::HaarCovariance(std::span<const std::size_t> half, std::size_t sa
   stride_.resize(half_.size());
 }
 
-HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
-  Pair& plan = pairs_[j * (j + 1) / 2 + i];
+/// The widest and the finest of what rings in a model.
+std::optional<Ringing> HaarCovariance::ringing_of(const Model& model) const {
+  std::optional<Ringing> all;
+  for (const Process& process : model) {
+    if (process.kind->ringing != nullptr) {
+      const Ringing own = process.kind->ringing(process.parameters, dt_s_);
+      all = all ? Ringing{std::max(all->reach, own.reach), std::min(all->length, own.length)} : own;
+    }
+  }
+  return all;
+}
+
+HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j, const Model& model) {
+  const std::optional<Ringing> ringing = ringing_of(model);
+  Pair& plan = ringing ? ringing_pair_ : pairs_[j * (j + 1) / 2 + i];
+  if (ringing) {  // where and how finely depends on its parameters: this plan is not kept
+    plan = {};
+  }
   if (!plan.lag.empty()) {
     return plan;
   }
@@ -175,7 +204,7 @@ HaarCovariance::Pair& HaarCovariance::pair(std::size_t i, std::size_t j) {
   const double n = samples_;
   const double last = n - mi - mj;
   const double count = (n - 2.0 * mi + 1.0) * (n - 2.0 * mj + 1.0);
-  choose_lags(mi, mj, last, rules_->of, plan.lag, plan.weight);
+  choose_lags(mi, mj, last, ringing, rules_->of, plan.lag, plan.weight);
   for (std::size_t k = 0; k < plan.lag.size(); ++k) {
     const double sides = plan.lag[k] == 0.0 ? 1.0 : 2.0;
     const double overlap = std::min(n - mj, n - mi - plan.lag[k]) - mj + 1.0;
@@ -210,7 +239,7 @@ void HaarCovariance::fill(Pair& plan, std::size_t i, std::size_t j, const Model&
 }
 
 double HaarCovariance::entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes) {
-  Pair& plan = pair(i, j);
+  Pair& plan = pair(i, j, model);
   fill(plan, i, j, model, remember_shapes);
   double mean_i = 0.0;
   double mean_j = 0.0;
@@ -258,7 +287,7 @@ std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::sums_of(const Pa
 
 std::array<double, HaarCovariance::kEvenPowers> HaarCovariance::correlation_sums(std::size_t i, std::size_t j,
                                                                                  const Model& model) {
-  Pair& plan = pair(i, j);
+  Pair& plan = pair(i, j, model);
   fill(plan, i, j, model, true);
   return sums_of(plan, i, j, model);
 }

@@ -11,7 +11,8 @@
 /// stretches between these lags. The stretches are m_i/2 long near these lags and grow fourfold with distance; each
 /// uses six lags (the Gauss-Legendre nodes rounded to whole lags, with weights that are exact for polynomials over
 /// whole lags). This takes some 100 lags for a pair of scales, and the error is below 0.1 % of sqrt(C_ii C_jj) for
-/// every process (0.3 % for flicker noise).
+/// every process (0.3 % for flicker noise). Where a process rings (core/process/ringing.hpp) the stretches around the
+/// kinks are as short as that takes, at most 256 of them: a resonance of a quality above 80 is sampled beyond.
 #include "core/process/model.hpp"
 
 #include <Eigen/Core>
@@ -20,6 +21,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -67,7 +69,8 @@ class HaarCovariance {
     /// gamma at level 1 by kind and shapes: of kinds without shape, and of the shapes that diagonal() was asked for.
     std::map<std::pair<const ProcessKind*, std::array<double, kMostShapes>>, std::vector<double>> unit;
   };
-  Pair& pair(std::size_t i, std::size_t j);
+  [[nodiscard]] std::optional<Ringing> ringing_of(const Model& model) const;
+  Pair& pair(std::size_t i, std::size_t j, const Model& model);
   /// Leaves gamma_ij at the plan's lags in scratch_.
   void fill(Pair& plan, std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
   /// The correlations in scratch_, summed in even powers.
@@ -80,6 +83,7 @@ class HaarCovariance {
   double dt_s_;
   std::unique_ptr<Rules> rules_;
   std::vector<Pair> pairs_;
+  Pair ringing_pair_;          ///< the plan asked for last of a model that rings
   std::vector<Pair> thinned_;  ///< by scale, of the stride asked for last
   std::vector<std::size_t> stride_;
   std::vector<double> scratch_;

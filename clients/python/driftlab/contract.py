@@ -1222,7 +1222,8 @@ class OutageScenarioInitial(TypedDict):
 
 class OutageScenarioModelItem(TypedDict):
     process: Literal['white_noise', 'gauss_markov', 'random_walk', 'linear_drift', 'quantization_noise',
-                     'flicker_noise', 'sinusoid', 'resonance']
+                     'flicker_noise', 'sinusoid', 'resonance', 'low_pass_1', 'low_pass_2', 'moving_average',
+                     'decimation', 'power_law']
     # As in the `processes` of a fit; a number alone is SI.
     params: dict[str, float | OutageScenarioModelItemParam2]
 

@@ -16,7 +16,9 @@ namespace {
 void add_process(const Process& process, Draft& draft, Random& random) {
   const double dt_s = draft.recording->dt_s;
   const bool noise = process.kind->spectral_density(process.parameters, 0.25 / dt_s, dt_s).has_value();
-  std::vector<double>& part = process.kind->is_slow() ? draft.slow : noise ? draft.white : draft.mean;
+  // A density that rises without limit towards frequency zero is that of a slow process too (power law).
+  const bool rises = noise && process.kind->low_frequency == nullptr && process.kind->differenced_square == nullptr;
+  std::vector<double>& part = process.kind->is_slow() || rises ? draft.slow : noise ? draft.white : draft.mean;
   process.add_path(random, dt_s, part);
 }
 
