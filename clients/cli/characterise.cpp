@@ -16,6 +16,7 @@ struct Flags {
   std::uint64_t seed = 1;
   bool stepwise = false;
   std::size_t bootstrap = 0;
+  std::size_t dynamic = 0;
   bool json = false;
 };
 
@@ -24,6 +25,7 @@ Exit run(const Flags& flags) {
   options.seed = flags.seed;
   options.search = flags.stepwise ? ModelSearch::Stepwise : ModelSearch::Listed;
   options.bootstrap = flags.bootstrap;
+  options.dynamic = flags.dynamic;
   if (!flags.models.empty()) {
     options.models = flags.models;
   }
@@ -76,6 +78,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->add_option("--bootstrap", flags->bootstrap,
                    "Series (40 to 2000) simulated to calibrate the best model's intervals; 0: none")
       ->capture_default_str();
+  command->add_flag("--dynamic{32}", flags->dynamic,
+                    "Add the Allan deviation of 32 windows that move along time (--dynamic=N of N) to --json");
   command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
   command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
   command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");

@@ -2,8 +2,10 @@
 /// The characterisation of one channel: everything driftlab says about the stochastic errors of one sensor axis in one
 /// recording. Values only; `characterise_channel` (core/fit/characterise.hpp) makes it, schema/json writes it down
 /// (spec/results.md), the parameter table reads it. All numbers are SI: a channel of angular rate is in rad/s.
+#include "core/fit/stationarity.hpp"
 #include "core/process/process.hpp"
 #include "core/signal/estimate.hpp"
+#include "core/variance/dynamic_allan.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -118,8 +120,10 @@ struct ChannelCharacterisation {
   HaarCurve haar;
   Contamination contamination;
   AllanParameters allan_parameters;
-  std::vector<ModelFit> fits;  ///< best first
-  std::size_t best = 0;        ///< index into fits
+  std::vector<ModelFit> fits;                 ///< best first
+  std::size_t best = 0;                       ///< index into fits
+  Stationarity stationarity;                  ///< whether it is one noise; sizes of jumps in the channel unit
+  std::optional<DynamicAllan> dynamic_allan;  ///< where it was asked for
   std::vector<std::string> warnings;
 };
 

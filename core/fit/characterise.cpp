@@ -6,6 +6,8 @@
 #include "core/fit/channel_variances.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
+#include "core/fit/stationarity.hpp"
+#include "core/variance/dynamic_allan.hpp"
 #include "core/variance/empirical_scatter.hpp"
 #include "core/variance/excess_kurtosis.hpp"
 #include "core/variance/haar_covariance.hpp"
@@ -26,6 +28,26 @@ constexpr std::size_t kFewestSamples = 8;
 constexpr std::size_t kMostModels = 64;
 /// Models whose criterion with 2p is this close to the best cannot be told apart.
 constexpr double kPlausible = 6.0;
+
+/// Whether `samples` are one noise, and how their Allan variance moves where that is asked for.
+void look_along_time(std::span<const double> samples, const ChannelSamples& channel, std::size_t windows,
+                     const RunControl& control, ChannelCharacterisation& result) {
+  result.stationarity = test_stationarity(samples, channel.dt_s);
+  for (NoiseChange& change : result.stationarity.changes) {
+    change.size *= change.kind == NoiseChange::Kind::Jump ? channel.si_factor : 1.0;
+  }
+  std::vector<std::string> said = describe(result.stationarity, channel.dt_s);
+  std::move(said.begin(), said.end(), std::back_inserter(result.warnings));
+  if (windows > 0) {
+    DynamicAllan moving = dynamic_allan(samples, channel.dt_s, windows, control);
+    for (std::vector<double>& row : moving.variance) {
+      for (double& variance : row) {
+        variance *= channel.si_factor * channel.si_factor;
+      }
+    }
+    result.dynamic_allan = std::move(moving);
+  }
+}
 
 tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The characterisation was cancelled."); }
 
@@ -252,6 +274,12 @@ Status check_options(const CharacteriseOptions& options) {
   if (options.bootstrap != 0 && (options.bootstrap < kFewestReplicates || options.bootstrap > kMostReplicates)) {
     return fail(replicates_error(options.bootstrap));
   }
+  if (options.dynamic != 0 && (options.dynamic < kFewestWindows || options.dynamic > kMostWindows)) {
+    return fail(ErrorCode::InvalidArgument,
+                "A dynamic Allan variance takes " + std::to_string(kFewestWindows) + " to " +
+                    std::to_string(kMostWindows) + " windows; 0 is none.",
+                {{"parameter", "dynamic"}, {"limit", std::to_string(kMostWindows)}});
+  }
   if (options.models.empty() || options.models.size() > kMostModels) {
     return fail(ErrorCode::InvalidArgument, "Between 1 and " + std::to_string(kMostModels) + " models can be compared.",
                 {{"parameter", "models"}, {"limit", std::to_string(kMostModels)}});
@@ -316,6 +344,7 @@ Result<ChannelCharacterisation> characterise_as_given(const ChannelSamples& chan
   }
   const std::span<const double> samples =
       result.missing > 0 ? std::span<const double>(classical->completed) : channel.values;
+  look_along_time(samples, channel, options.dynamic, control, result);
   Status status = analyse(*classical, samples, *grid, summary->mean, channel, options, control, result);
   if (!status) {
     return fail(std::move(status.error()));

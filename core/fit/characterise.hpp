@@ -31,6 +31,8 @@ struct CharacteriseOptions {
   ModelSearch search = ModelSearch::Listed;
   /// Replicates of a parametric bootstrap of the best model's parameter intervals (core/fit/bootstrap.hpp); 0: none.
   std::size_t bootstrap = 0;
+  /// Windows of a dynamic Allan variance (core/variance/dynamic_allan.hpp); 0: none.
+  std::size_t dynamic = 0;
 };
 
 /// Samples of one channel as they lie in the file, and the factor that makes them SI.
@@ -45,9 +47,9 @@ struct ChannelSamples {
 [[nodiscard]] Status check_options(const CharacteriseOptions& options);
 
 /// Errors: TooFewSamples (fewer than 8 samples), NonFinite (naming the row), OutOfRange (squares overflow),
-/// InvalidArgument, LimitExceeded (more than two samples missing for each recorded), Cancelled. A model needs as many scales as it
-/// has parameters; candidates with more are left out with a warning. A constant channel is no error: it has zero
-/// variances, no fit and a warning. The result is deterministic; one thread is used.
+/// InvalidArgument, LimitExceeded (more than two samples missing for each recorded), Cancelled. A model needs as many
+/// scales as it has parameters; candidates with more are left out with a warning. A constant channel is no error: it
+/// has zero variances, no fit and a warning. The result is deterministic; one thread is used.
 [[nodiscard]] Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel,
                                                                    const CharacteriseOptions& options = {},
                                                                    const RunControl& control = {});

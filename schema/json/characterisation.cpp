@@ -114,6 +114,40 @@ Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimensio
 
 }  // namespace
 
+namespace {
+
+Json stationarity_json(const Stationarity& found, double dt_s, double factor, const std::string& unit) {
+  const auto seconds = [dt_s](std::size_t sample) { return number(static_cast<double>(sample) * dt_s); };
+  Json changes = Json::array();
+  for (const NoiseChange& change : found.changes) {
+    const bool jump = change.kind == NoiseChange::Kind::Jump;
+    changes.push_back({{"kind", jump ? "jump" : "level"},
+                       {"time_s", seconds(change.sample)},
+                       {"size", number(change.size * (jump ? factor : 1.0))},
+                       {"unit", jump ? unit : "1"},
+                       {"scale_s", number(change.half_s)},
+                       {"statistic", number(change.statistic)}});
+  }
+  return {{"changes", std::move(changes)}, {"segment_s", {seconds(found.first), seconds(found.last)}}};
+}
+
+Json dynamic_allan_json(const DynamicAllan& moving, double factor) {
+  Json deviation = Json::array();
+  for (const std::vector<double>& row : moving.variance) {
+    Json line = Json::array();
+    for (const double variance : row) {
+      line.push_back(number(std::sqrt(variance) * std::abs(factor)));
+    }
+    deviation.push_back(std::move(line));
+  }
+  return {{"window_s", number(moving.window_s)},
+          {"start_s", moving.start_s},
+          {"tau_s", moving.tau_s},
+          {"deviation", std::move(deviation)}};
+}
+
+}  // namespace
+
 Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& channel) {
   const Unit unit = identity.role.unit.value_or(Unit{});
   const double factor = 1.0 / unit.factor;
@@ -136,6 +170,12 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
   document["fits"] = std::move(fits);
   document["equivalents"] = channel.fits.empty() ? Json::object() : equivalents_json(channel, unit.dimension);
   document["best"] = channel.fits.empty() ? Json(nullptr) : Json(channel.best);
+  if (!channel.stationarity.changes.empty()) {
+    document["stationarity"] = stationarity_json(channel.stationarity, channel.dt_s, factor, unit.symbol);
+  }
+  if (channel.dynamic_allan) {
+    document["dynamic_allan"] = dynamic_allan_json(*channel.dynamic_allan, factor);
+  }
   document["warnings"] = channel.warnings;
   return document;
 }

@@ -37,10 +37,14 @@ Json to_json(const CharacterisedRecording& recording) {
 }
 
 Json to_json(const CharacteriseOptions& options) {
-  return Json{{"models", options.models},
-              {"seed", options.seed},
-              {"search", options.search == ModelSearch::Stepwise ? "stepwise" : "listed"},
-              {"bootstrap", options.bootstrap}};
+  Json document{{"models", options.models},
+                {"seed", options.seed},
+                {"search", options.search == ModelSearch::Stepwise ? "stepwise" : "listed"},
+                {"bootstrap", options.bootstrap}};
+  if (options.dynamic > 0) {
+    document["dynamic"] = options.dynamic;
+  }
+  return document;
 }
 
 CharacteriseOptions characterise_options_from_json(const Json& document, const std::string& pointer, Faults& faults) {
@@ -71,11 +75,14 @@ CharacteriseOptions characterise_options_from_json(const Json& document, const s
   if (const auto replicates = reader.integer("bootstrap")) {
     options.bootstrap = *replicates < 0 ? 1 : static_cast<std::size_t>(*replicates);  // 1 is refused below
   }
+  if (const auto windows = reader.integer("dynamic")) {
+    options.dynamic = *windows < 0 ? 1 : static_cast<std::size_t>(*windows);  // 1 is refused below
+  }
   reader.reject_unknown();
   if (auto checked = check_options(options); !checked) {
     const auto& fields = checked.error().fields;
-    const bool replicates = !fields.empty() && fields.front().value == "bootstrap";
-    faults.add(reader.pointer(replicates ? "bootstrap" : "models"), checked.error());
+    const std::string named = fields.empty() ? "" : fields.front().value;
+    faults.add(reader.pointer(named == "bootstrap" || named == "dynamic" ? named : "models"), checked.error());
   }
   return options;
 }

@@ -63,10 +63,11 @@ class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoute
         return self.job_result(job["id"])
 
     def characterise(self, *recordings: str, study: str | None = None, models: Sequence[str] | None = None, seed: int | None = None,
-                     search: Literal["listed", "stepwise"] | None = None, bootstrap: int | None = None, priority: int | None = None,
-                     timeout_s: float | None = None, progress: JobProgress | None = None) -> Characterisation:
+                     search: Literal["listed", "stepwise"] | None = None, bootstrap: int | None = None, dynamic: int | None = None,
+                     priority: int | None = None, timeout_s: float | None = None, progress: JobProgress | None = None) -> Characterisation:
         """Characterises uploaded recordings, or those of a study, and waits for the result."""
-        parameters = given(models=None if models is None else list(models), seed=seed, search=search, bootstrap=bootstrap)
+        parameters = given(models=None if models is None else list(models), seed=seed, search=search, bootstrap=bootstrap,
+                           dynamic=dynamic)
         inputs = given(recordings=list(recordings) or None, study=study)
         request = given(kind="characterise", inputs=inputs, parameters=parameters or None, priority=priority)
         return Characterisation(cast(CharacterisationDocument, self._result(request, timeout_s, progress)))

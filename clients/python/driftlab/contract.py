@@ -136,6 +136,10 @@ class CharacterisationChannel(TypedDict):
     equivalents: NotRequired[CharacterisationChannelEquivalents]
     # Indexes `fits`.
     best: int | None
+    # Where the noise is not the same before and after. Absent: one noise, as far as the test sees.
+    stationarity: NotRequired[CharacterisationChannelStationarity]
+    # Allan deviation in windows that overlap by half, where it was asked for.
+    dynamic_allan: NotRequired[CharacterisationChannelDynamicAllan]
     warnings: list[str]
 
 
@@ -168,6 +172,16 @@ class CharacterisationChannelContamination(TypedDict):
     disjoint_scales: list[int]
     flagged_samples: int
     not_gaussian: NotRequired[bool]
+
+
+class CharacterisationChannelDynamicAllan(TypedDict):
+    """Allan deviation in windows that overlap by half, where it was asked for."""
+
+    window_s: float
+    start_s: list[float]
+    tau_s: list[float]
+    # One row a window, one value a tau, in the unit of the channel.
+    deviation: list[list[float | None]]
 
 
 class CharacterisationChannelEquivalents(TypedDict):
@@ -214,6 +228,29 @@ class CharacterisationChannelReference(TypedDict):
     warnings: NotRequired[list[str]]
     # Why it was not estimated or not shifted.
     reason: NotRequired[str]
+
+
+class CharacterisationChannelStationarity(TypedDict):
+    """Where the noise is not the same before and after. Absent: one noise, as far as the test sees."""
+
+    # By time.
+    changes: list[CharacterisationChannelStationarityChange]
+    # From and to: the longest part without a change, to be analysed alone.
+    segment_s: list[float]
+
+
+class CharacterisationChannelStationarityChange(TypedDict):
+    # A jump of the mean, or a change of the level of the noise.
+    kind: Literal['jump', 'level']
+    # After the first analysed sample.
+    time_s: float
+    # Of a jump in `unit`; else standard deviation after over that before.
+    size: float | None
+    unit: str
+    # The averaging time at which it shows most.
+    scale_s: float
+    # Standard deviations of the levels; or supremum of a Brownian bridge.
+    statistic: float | None
 
 
 class CharacterisationEquivalent(TypedDict):
@@ -691,6 +728,8 @@ class JobRequestCharacteriseParameters(TypedDict):
     search: NotRequired[Literal['listed', 'stepwise']]
     # Replicates (40 or more) of a parametric bootstrap of the best model's intervals.
     bootstrap: NotRequired[int]
+    # Windows (2 or more) of a dynamic Allan deviation; 0: none.
+    dynamic: NotRequired[int]
 
 
 class JobRequestInvestigate(TypedDict):
@@ -748,6 +787,7 @@ class JobRequestMemberParameters(TypedDict):
     seed: NotRequired[int]
     search: NotRequired[Literal['listed', 'stepwise']]
     bootstrap: NotRequired[int]
+    dynamic: NotRequired[int]
     runs: NotRequired[int]
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
