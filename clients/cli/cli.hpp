@@ -14,7 +14,8 @@ class App;
 namespace driftlab::cli {
 
 /// Exit codes of every command (spec/results.md).
-enum class Exit : int { Success = 0, Negative = 1, BadInput = 2, ServerOrJob = 4, Interrupted = 130 };
+/// Inconclusive is that of a regression run which decides nothing.
+enum class Exit : int { Success = 0, Negative = 1, BadInput = 2, Inconclusive = 3, ServerOrJob = 4, Interrupted = 130 };
 
 /// Prints one sentence on standard error and says how the process ends.
 [[nodiscard]] Exit complain(const Error& error);

@@ -9,7 +9,9 @@
   COMMAND(add_investigate)         \
   COMMAND(add_simulate)            \
   COMMAND(add_calibrate)           \
-  COMMAND(add_outages)
+  COMMAND(add_outages)             \
+  COMMAND(add_regress)             \
+  COMMAND(add_ci)
 // clang-format on
 
 namespace driftlab::cli {

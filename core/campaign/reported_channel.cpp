@@ -30,6 +30,9 @@ ReportedHaar told(const HaarCurve& curve, double factor) {
   for (const double efficiency : curve.efficiency) {
     haar.efficiency.push_back(finite(efficiency).value_or(1.0));
   }
+  for (const double edf : curve.edf) {
+    haar.edf.push_back(finite(edf).value_or(0.0));
+  }
   const double square_factor = factor * factor;
   for (std::size_t j = 0; j < curve.robust_variance.size(); ++j) {
     const std::optional<double>& value = curve.robust_variance[j];

@@ -62,6 +62,7 @@ struct ReportedHaar {
   std::vector<std::size_t> scale;         ///< filter length in samples, rising
   std::vector<double> variance;           ///< 0 where it is not known
   std::vector<double> efficiency;         ///< of each, 1 where it is not known; empty: all 1
+  std::vector<double> edf;                ///< degrees of freedom of each, 0 where they are not known
   std::vector<double> robust_variance;    ///< 0 where the estimator has no root; empty: not estimated
   std::vector<double> robust_efficiency;  ///< as `efficiency`
 

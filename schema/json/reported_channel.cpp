@@ -106,6 +106,9 @@ ReportedChannel channel_from_json(const Json& document) {
   channel.missing = document.value("missing", std::size_t{0});
   channel.dt_s = document.at("dt_s").get<double>();
   channel.haar = haar_from_json(document.at("haar"));
+  if (const auto allan = document.find("allan"); allan != document.end() && allan->is_object()) {
+    channel.haar.edf = numbers(*allan, "edf", 0.0);  // of the same octaves
+  }
   if (const auto found = document.find("contamination"); found != document.end() && found->is_object()) {
     channel.contamination = text_member(*found, "verdict");
   }

@@ -57,15 +57,16 @@ TEST(Accuracy, RegressionRunsKeepTheirPromises) {
       "\n## Regression runs: wrong verdicts and power\n\nSix axes at 100 Hz, 15 min a session, rigs with ln k ~ N(0, "
       "0.5), sessions Student t5 by the law of the comparison (core/campaign/regression/session_scatter.hpp), one "
       "look. "
-      "Shares [%%] of runs. Goals: wrong fail and wrong pass at most 5.\n\n| 15 min | |");
+      "Shares [%%] of runs: pass / inconclusive / fail. Goals: wrong fail and wrong pass at most 5.\n\n| 15 min | runs "
+      "|");
   for (const Design& design : kDesigns) {
     section.print(" %s |", design.name);
   }
   section.print("\n|---|---|---|---|---|---|\n");
   const Rig rig(900.0);
-  const auto row = [&](const char* name, const Rig::Change& change, std::size_t runs, std::uint64_t seed,
-                       const char* what, auto told, const regression::TestSettings& settings) {
-    section.print("| %s | %s |", name, what);
+  const auto row = [&](const char* name, const Rig::Change& change, std::size_t runs, std::uint64_t seed, auto told,
+                       const regression::TestSettings& settings) {
+    section.print("| %s | %zu |", name, repetitions(runs));
     for (const Design& design : kDesigns) {
       told(design, run_many(rig, design.sessions, change, repetitions(runs), seed, settings));
     }
@@ -83,24 +84,24 @@ TEST(Accuracy, RegressionRunsKeepTheirPromises) {
     all(design, shares);
     EXPECT_LE(shares.percent(shares.pass), 7.0) << design.name;
   };
-  const char* const three = "pass / inconclusive / fail";
   const regression::TestSettings settings = table_settings();
   regression::TestSettings worse = settings;
   worse.fail_on_worse = true;
-  row("unchanged", unchanged, 500, 101, three, wrong_fail, settings);
-  row("unchanged, `fail_on: worse`", unchanged, 200, 102, three, all, worse);
-  row("one scale of one axis at its margin, all others 30 % better", at_margin_once, 300, 103, three, wrong_pass,
-      settings);
-  row("all axes and scales at their margins", at_margins, 300, 104, three, wrong_fail, settings);
-  row("white noise of one axis + 20 %", white_noise(rig, 0.2), 100, 105, three, all, settings);
-  row("white noise of one axis + 50 %", white_noise(rig, 0.5), 100, 106, three, all, settings);
+  row("unchanged", unchanged, 500, 101, wrong_fail, settings);
+  row("unchanged, `fail_on: worse`", unchanged, 200, 102, all, worse);
+  row("one scale of one axis at its margin, all others 30 % better", at_margin_once, 300, 103, wrong_pass, settings);
+  row("all axes and scales at their margins", at_margins, 300, 104, wrong_fail, settings);
+  row("white noise of one axis + 20 %", white_noise(rig, 0.2), 100, 105, all, settings);
+  row("white noise of one axis + 50 %", white_noise(rig, 0.5), 100, 106, all, settings);
   const Process markov = *make_process("gauss_markov", {1.0, 1.0 / 0.32});
-  row("new GM of 0.32 s, + 50 % at 0.64 s", new_process(rig, markov, 6, 0.5), 100, 107, three, all, settings);
+  row("new GM of 0.32 s, + 50 % at 0.64 s", new_process(rig, markov, 6, 0.5), 100, 107, all, settings);
   const Process walk = *make_process("random_walk", {1.0});
-  row("new RW, + 50 % at 10 s", new_process(rig, walk, 10, 0.5), 100, 108, three, all, settings);
+  row("new RW, + 50 % at 10 s", new_process(rig, walk, 10, 0.5), 100, 108, all, settings);
 
   section.print(
-      "\nOther lengths, unchanged: pass / inconclusive / fail, median scope.\n\n| | 1 v 1 | 3 v 3 |\n|---|---|---|\n");
+      "\nOther lengths, unchanged, %zu runs: pass / inconclusive / fail, median scope.\n\n| | 1 v 1 | 3 v 3 "
+      "|\n|---|---|---|\n",
+      repetitions(200));
   for (const auto& [name, seconds] : {std::pair{"5 min", 300.0}, std::pair{"60 min", 3600.0}}) {
     const Rig other(seconds);
     section.print("| %s |", name);
@@ -113,7 +114,9 @@ TEST(Accuracy, RegressionRunsKeepTheirPromises) {
     section.print("\n");
   }
   section.print(
-      "\nA rig more restless than the prior, unchanged, 15 min.\n\n| factor | 1 v 1 | 3 v 3 |\n|---|---|---|\n");
+      "\nA rig more restless than the prior, unchanged, 15 min, %zu runs.\n\n| factor | 1 v 1 | 3 v 3 "
+      "|\n|---|---|---|\n",
+      repetitions(200));
   for (const double scale : {2.0, 3.0}) {
     section.print("| %.0f |", scale);
     for (const std::size_t n : {std::size_t{1}, std::size_t{3}}) {

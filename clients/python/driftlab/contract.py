@@ -1729,6 +1729,160 @@ class RecordingUploadMetadata(TypedDict):
     device: NotRequired[str | RecordingDevice]
 
 
+class Regression(TypedDict):
+    """Regression run. Whether the noise of a device is no worse than before a change: verdict, what it rests on, and
+    every test."""
+
+    id: NotRequired[str]
+    device: str
+    verdict: RegressionVerdict
+    lean: Literal['worse', None]
+    summary: RegressionSummary
+    # Largest averaging time to which all axes are gated.
+    scope_s: float
+    # As asked, with defaults filled in.
+    settings: dict[str, Any]
+    arms: RegressionArms
+    # What a session adds, as factors of its prior scatter: common to all scales of an axis, and local to a scale.
+    between: RegressionBetween | None
+    critical: RegressionCritical
+    look: RegressionLook
+    units: list[RegressionUnit]
+    findings: list[RegressionFinding]
+    comparability: list[RegressionComparabilityItem]
+    needs: RegressionNeeds
+    versus_previous: RegressionVersusPrevious | None
+    algorithm_version: int
+
+
+class RegressionArm(TypedDict):
+    label: str | None
+    sessions: list[RegressionArmSession]
+    rate_hz: float
+
+
+class RegressionArmSession(TypedDict):
+    session: str
+    recordings: list[str]
+    duration_s: float
+
+
+class RegressionArms(TypedDict):
+    baseline: RegressionArm
+    candidate: RegressionArm
+    history: list[RegressionArm]
+    excluded: list[RegressionArmsExcludedItem]
+
+
+class RegressionArmsExcludedItem(TypedDict):
+    recording: str
+    reason: str
+
+
+class RegressionBetween(TypedDict):
+    """What a session adds, as factors of its prior scatter: common to all scales of an axis, and local to a scale."""
+
+    common: NotRequired[RegressionFactor]
+    local: NotRequired[RegressionFactor]
+    factors: NotRequired[list[float]]
+    posterior: NotRequired[list[list[float]]]
+    contrasts: NotRequired[int]
+
+
+class RegressionComparabilityItem(TypedDict):
+    item: Literal['unit', 'temperature', 'length', 'repeatability']
+    sentence: str
+
+
+class RegressionCritical(TypedDict):
+    c_max: NotRequired[float]
+    c_1: NotRequired[float]
+    draws: NotRequired[int]
+    seed: NotRequired[int]
+
+
+class RegressionFactor(TypedDict):
+    value: NotRequired[float]
+    ci95: NotRequired[list[float]]
+
+
+class RegressionFinding(TypedDict):
+    check: Literal['full_scale', 'missing', 'frozen', 'repeated', 'timestamps', 'resolution', 'contamination',
+                   'findings', 'rate']
+    verdict: Literal['ok', 'note', 'fail']
+    sentence: str | None
+    sessions: list[str]
+    p: float | None
+
+
+class RegressionLook(TypedDict):
+    number: NotRequired[int]
+    of: NotRequired[int]
+    counted: NotRequired[bool]
+    share: NotRequired[float]
+
+
+class RegressionNeeds(TypedDict):
+    sessions_per_arm: int | None
+    length_s: float | None
+    sentence: str | None
+
+
+class RegressionSummary(TypedDict):
+    verdict: str
+    details: list[str]
+    level: Literal['fine', 'look', 'wrong']
+    facts: list[dict[str, Any]]
+
+
+class RegressionTest(TypedDict):
+    kind: Literal['scale', 'parameter']
+    tau_s: NotRequired[float]
+    name: NotRequired[str]
+    # Candidate over baseline, of the deviation.
+    ratio: float
+    # Holds for all tests at once.
+    ci: list[float]
+    # Upper limit of this test alone.
+    upper_single: float
+    margin: float
+    gated: bool
+    verdict: Literal['ok', 'worse_within_margin', 'beyond', 'open', 'improved']
+    # That unchanged noise shows this much beyond the margin anywhere.
+    p_adjusted: float
+
+
+class RegressionUnit(TypedDict):
+    device: str
+    condition: str
+    sensor: Literal['gyroscope', 'accelerometer']
+    axis: str
+    edf: RegressionUnitEdf
+    structure: RegressionUnitStructure
+    tests: list[RegressionTest]
+
+
+class RegressionUnitEdf(TypedDict):
+    tau_s: NotRequired[list[float]]
+    baseline: NotRequired[list[float]]
+    candidate: NotRequired[list[float]]
+
+
+class RegressionUnitStructure(TypedDict):
+    baseline: NotRequired[str | None]
+    candidate: NotRequired[str | None]
+    pooled: NotRequired[str | None]
+    # Parameters are not compared; scales decide.
+    changed: NotRequired[bool]
+    p: NotRequired[float]
+
+
+class RegressionVersusPrevious(TypedDict):
+    label: NotRequired[str]
+    verdict: NotRequired[RegressionVerdict]
+    sentence: NotRequired[str]
+
+
 class StoredRecording(TypedDict):
     """Stored recording."""
 
@@ -2000,6 +2154,7 @@ ProblemErrors: TypeAlias = "list[ProblemError]"
 QuantityIdentified: TypeAlias = "Quantity | None"
 RecordingMembersColumns: TypeAlias = "dict[str, RecordingColumn]"
 RecordingMembersTrim: TypeAlias = "RecordingTrim"
+RegressionVerdict: TypeAlias = "Literal['pass', 'fail', 'inconclusive']"
 StudyBaseline: TypeAlias = "StudyBaselineAuto | StudyBaselineModel | StudyBaselineFitModel"
 
 # operationId -> what it takes and gives; `media` are the types of a good answer.

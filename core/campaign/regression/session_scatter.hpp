@@ -36,8 +36,9 @@ struct ScatterTerms {
 
 /// The posterior of (kL, kS).
 struct SessionScatter {
-  Eigen::Matrix<double, kFactors, kFactors> posterior;  ///< rows: kL; columns: kS
-  std::size_t contrasts = 0;                            ///< sessions that inform it, less one per arm or release
+  /// Rows: kL; columns: kS.
+  Eigen::Matrix<double, kFactors, kFactors> posterior = Eigen::Matrix<double, kFactors, kFactors>::Zero();
+  std::size_t contrasts = 0;  ///< sessions that inform it, less one per arm or release
 
   [[nodiscard]] double mean_square_common() const;  ///< E kL^2
   [[nodiscard]] double mean_square_local() const;

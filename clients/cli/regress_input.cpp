@@ -1,0 +1,191 @@
+#include "clients/cli/regress_input.hpp"
+
+#include "clients/cli/local_files.hpp"
+#include "clients/cli/progress.hpp"
+#include "core/analysis/characterise.hpp"
+#include "schema/json/characterise.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+namespace driftlab::cli {
+namespace {
+
+Result<Json> read_json(const std::string& path) {
+  const std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return fail(ErrorCode::NotFound, "The file " + path + " cannot be opened.", {{"path", path}});
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  auto document = parse_json(text.str());
+  return document ? document : fail(document.error().code, path + ": " + document.error().message);
+}
+
+Error located(const std::string& path, const Faults& faults) {
+  const Error error = faults.error();
+  return {error.code, path + (error.fields.empty() ? "" : ", " + error.fields.front().name) + ": " + error.message,
+          error.fields};
+}
+
+/// The arm that files on the command line make.
+Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::string& label, const FileFlags& flags) {
+  WrittenArm arm;
+  arm.label = label;
+  for (const std::string& file : files) {
+    WrittenRecording recording;
+    if (file.ends_with(".json")) {
+      recording.result = file;
+    } else {
+      auto described = read_inputs({file}, flags);
+      if (!described) {
+        return fail(described.error());
+      }
+      recording.file = file;
+      recording.spec = described->files.front().spec;
+      recording.spec.id = label.empty() ? file : label + "/" + file;
+    }
+    arm.recordings.push_back(std::move(recording));
+  }
+  return arm;
+}
+
+Result<std::vector<Json>> results_in(const WrittenRecording& written) {
+  auto document = read_json(written.result);
+  if (!document) {
+    return fail(document.error());
+  }
+  if (!document->is_object() || !document->contains("recordings") || !(*document)["recordings"].is_array()) {
+    return fail(ErrorCode::ParseError,
+                "The file " + written.result + " is not what `driftlab characterise --json` writes.");
+  }
+  std::vector<Json> documents;
+  for (const Json& recording : (*document)["recordings"]) {
+    if (!recording.is_object() || !recording.contains("id") || !recording["id"].is_string()) {
+      return fail(ErrorCode::ParseError, "A recording in " + written.result + " has no id.");
+    }
+    documents.push_back(recording);
+  }
+  return documents;
+}
+
+}  // namespace
+
+Result<WrittenRegression> written_run(const RegressFlags& flags) {
+  WrittenRegression run;
+  std::filesystem::path folder;
+  if (!flags.run.empty()) {
+    auto document = read_json(flags.run);
+    if (!document) {
+      return fail(document.error());
+    }
+    Faults faults;
+    run = regression_from_json(*document, faults);
+    if (!faults.none()) {
+      return fail(located(flags.run, faults));
+    }
+    folder = std::filesystem::path(flags.run).parent_path();
+    std::vector<WrittenArm*> arms{&run.baseline, &run.candidate};
+    for (WrittenArm& release : run.history) {
+      arms.push_back(&release);
+    }
+    for (WrittenArm* arm : arms) {
+      for (WrittenRecording& recording : arm->recordings) {
+        recording.spec.id = recording.spec.id.empty() ? recording.file : recording.spec.id;
+        for (std::string* path : {&recording.file, &recording.result}) {
+          *path = path->empty() ? "" : (folder / *path).string();
+        }
+      }
+    }
+  }
+  for (const auto& [files, label, arm] : {std::tuple{&flags.baseline, &flags.baseline_label, &run.baseline},
+                                          std::tuple{&flags.candidate, &flags.candidate_label, &run.candidate}}) {
+    if (!files->empty()) {
+      auto made = arm_of(*files, *label, flags.file);
+      if (!made) {
+        return fail(made.error());
+      }
+      *arm = std::move(*made);
+    }
+    arm->label = label->empty() ? arm->label : *label;
+  }
+  if (flags.run.empty() && flags.baseline.empty()) {
+    run.baseline.special = "anchor";
+  }
+  if (!flags.history.empty()) {
+    auto made = arm_of(flags.history, "", flags.file);
+    if (!made) {
+      return fail(made.error());
+    }
+    run.history.push_back(std::move(*made));
+  }
+  run.device = flags.file.device.empty() ? (run.device.empty() ? "device" : run.device) : flags.file.device;
+  if (!flags.settings.empty()) {
+    auto document = read_json(flags.settings);
+    if (!document) {
+      return fail(document.error());
+    }
+    Faults faults;
+    regression_settings_from_json(*document, "", run, faults);
+    if (!faults.none()) {
+      return fail(located(flags.settings, faults));
+    }
+  }
+  if (!flags.inconclusive.empty()) {
+    run.inconclusive = flags.inconclusive == "pass" ? Inconclusive::Pass : Inconclusive::Fail;
+  }
+  return run;
+}
+
+ResultReader::ResultReader(std::vector<std::string> models, std::string device) : models_(std::move(models)) {
+  inputs_.device = std::move(device);
+}
+
+Result<std::vector<StoredRecording>> ResultReader::read(const WrittenArm& arm) {
+  std::vector<StoredRecording> stored;
+  for (const WrittenRecording& written : arm.recordings) {
+    auto documents = written.result.empty() ? characterised(written) : results_in(written);
+    if (!documents) {
+      return fail(documents.error());
+    }
+    for (Json& document : *documents) {
+      stored.push_back(
+          {std::move(document), written.session, written.recorded_at, written.temperature_degc, written.causes});
+    }
+  }
+  return stored;
+}
+
+Result<std::vector<Json>> ResultReader::characterised(const WrittenRecording& written) {
+  if (written.file.empty()) {
+    return fail(ErrorCode::InvalidArgument,
+                "The recording " + written.recording + " is one of a server: name it with --server.");
+  }
+  CharacteriseOptions options;
+  if (!models_.empty()) {
+    options.models = models_;
+  }
+  inputs_.files = {{written.file, written.spec}};
+  auto files = LocalFiles::of(inputs_);
+  if (!files) {
+    return fail(files.error());
+  }
+  ProgressBar bar;
+  const RunControl control{interrupt_token(), [&](std::string_view stage, double f) {
+                             bar.show(written.spec.id + ": " + std::string(stage), f);
+                           }};
+  const auto found = characterise(**files, options, control);
+  if (!found) {
+    return fail(found.error());
+  }
+  std::vector<Json> documents;
+  for (const CharacterisedRecording& recording : *found) {
+    documents.push_back(to_json(recording));
+  }
+  return documents;
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,30 @@
+#pragma once
+/// What a regression run is given on the command line: a run.json or files, read and where needed characterised.
+#include "clients/cli/regress_run.hpp"
+#include "clients/cli/regress_state.hpp"
+
+#include <string>
+#include <vector>
+
+namespace driftlab::cli {
+
+/// The run that the flags ask for. Errors are the user's.
+[[nodiscard]] Result<WrittenRegression> written_run(const RegressFlags& flags);
+
+/// Characterises the files of an arm, one after the other, and reads the results that files hold already.
+class ResultReader {
+ public:
+  /// `models`: candidates of the fits; empty: the usual ones.
+  ResultReader(std::vector<std::string> models, std::string device);
+
+  /// Errors: those of reading and characterising a file; Cancelled.
+  [[nodiscard]] Result<std::vector<StoredRecording>> read(const WrittenArm& arm);
+
+ private:
+  [[nodiscard]] Result<std::vector<Json>> characterised(const WrittenRecording& written);
+
+  std::vector<std::string> models_;
+  Inputs inputs_;
+};
+
+}  // namespace driftlab::cli

@@ -1,0 +1,305 @@
+#include "clients/cli/regress_run.hpp"
+
+#include "clients/cli/regress_input.hpp"
+#include "clients/cli/regress_state.hpp"
+#include "schema/text/regression.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+namespace driftlab::cli {
+namespace {
+
+Result<regression::Recordings> compared(const std::string& label, const std::vector<StoredRecording>& stored,
+                                        const std::vector<regression::Exclusion>& excluded) {
+  regression::Recordings arm{label, {}};
+  for (const StoredRecording& one : stored) {
+    auto recording = compared_recording_from_json(one.document);
+    if (!recording) {
+      return fail(recording.error());
+    }
+    const bool left_out = std::any_of(excluded.begin(), excluded.end(), [&](const regression::Exclusion& exclusion) {
+      return exclusion.recording == recording->id;
+    });
+    if (left_out) {
+      continue;
+    }
+    recording->session = one.session;
+    recording->temperature_degc = one.temperature_degc;
+    recording->causes = one.causes;
+    if (!one.recorded_at.empty()) {
+      const auto began = seconds_of(one.recorded_at);
+      if (!began) {
+        return fail(began.error());
+      }
+      recording->began_s = *began;
+    }
+    arm.recordings.push_back(std::move(*recording));
+  }
+  return arm;
+}
+
+/// Ids of an arm's recordings: what makes two runs the same look.
+std::string content_of(const std::vector<StoredRecording>& stored) {
+  std::vector<std::string> ids;
+  for (const StoredRecording& one : stored) {
+    ids.push_back(one.document.value("id", ""));
+  }
+  std::sort(ids.begin(), ids.end());
+  std::string content;
+  for (const std::string& id : ids) {
+    content += (content.empty() ? "" : " ") + id;
+  }
+  return content;
+}
+
+/// The run with everything that the state adds to it.
+struct Prepared {
+  RegressRequest request;
+  std::string content;
+};
+
+Result<std::vector<StoredRecording>> baseline_of(WrittenRegression& run, RegressState& state, ResultReader& reader) {
+  if (run.baseline.special.empty()) {
+    auto stored = reader.read(run.baseline);
+    if (stored && state.kept() && !run.baseline.label.empty()) {
+      state.add(run.baseline.label, *stored);
+      if (state.anchor().empty()) {
+        state.set_anchor(run.baseline.label, "the first baseline");
+      }
+      return state.recordings(run.baseline.label);
+    }
+    return stored;
+  }
+  run.baseline.label = run.baseline.special == "anchor" ? state.anchor() : state.last_pass();
+  if (run.baseline.label.empty() || !state.has(run.baseline.label)) {
+    return fail(ErrorCode::InvalidArgument,
+                run.baseline.special == "anchor"
+                    ? "There is no baseline: name one with --baseline, or keep an anchor in --state FILE."
+                    : "No run has passed yet: name a baseline with --baseline.");
+  }
+  return state.recordings(run.baseline.label);
+}
+
+Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultReader& reader) {
+  Prepared prepared;
+  auto baseline = baseline_of(run, state, reader);
+  if (!baseline) {
+    return fail(baseline.error());
+  }
+  auto candidate = reader.read(run.candidate);
+  if (!candidate) {
+    return fail(candidate.error());
+  }
+  const bool counted = state.kept() && !run.candidate.label.empty();
+  std::vector<std::string> earlier;
+  if (counted) {
+    if (run.candidate.label == run.baseline.label) {
+      return fail(ErrorCode::InvalidArgument,
+                  "Baseline and candidate have the same label, " + run.baseline.label + ".");
+    }
+    for (const std::string& label : state.labels()) {
+      if (label != run.candidate.label && label != run.baseline.label) {
+        earlier.push_back(label);
+      }
+    }
+    state.add(run.candidate.label, *candidate);
+    *candidate = state.recordings(run.candidate.label);
+    prepared.content = content_of(*candidate);
+    prepared.request.look.number = state.look_of(run.candidate.label, prepared.content);
+  }
+  prepared.request.look.of = run.looks;
+  prepared.request.look.counted = counted;
+  regression::Request& request = prepared.request.comparison;
+  request.device = run.device;
+  request.settings = run.settings;
+  request.excluded = run.excluded;
+  for (const auto& [label, stored, into] : {std::tuple{&run.baseline.label, &*baseline, &request.baseline},
+                                            std::tuple{&run.candidate.label, &*candidate, &request.candidate}}) {
+    auto arm = compared(*label, *stored, run.excluded);
+    if (!arm) {
+      return fail(arm.error());
+    }
+    *into = std::move(*arm);
+  }
+  const auto add_release = [&](const std::string& label, const std::vector<StoredRecording>& stored) -> Status {
+    auto arm = compared(label, stored, run.excluded);
+    if (!arm) {
+      return fail(arm.error());
+    }
+    request.history.push_back(std::move(*arm));
+    return {};
+  };
+  for (const std::string& label : earlier) {
+    if (auto added = add_release(label, state.recordings(label)); !added) {
+      return fail(added.error());
+    }
+  }
+  if (!earlier.empty()) {
+    prepared.request.previous = request.history.back();
+  }
+  for (const WrittenArm& release : run.history) {
+    auto stored = reader.read(release);
+    if (!stored) {
+      return fail(stored.error());
+    }
+    if (auto added = add_release(release.label, *stored); !added) {
+      return fail(added.error());
+    }
+  }
+  return prepared;
+}
+
+Status write_file(const std::string& path, const std::string& text) {
+  std::ofstream stream(path, std::ios::binary);
+  stream << text;
+  stream.close();
+  return stream ? Status{} : fail(ErrorCode::Io, "The file " + path + " cannot be written.", {{"path", path}});
+}
+
+Status write_outputs(const RegressFlags& flags, const RegressReport& report, bool skip_open) {
+  std::string junit = flags.junit;
+  std::string markdown = flags.markdown;
+  std::string figure = flags.figure;
+  std::string badge = flags.badge;
+  std::string document;
+  if (!flags.out.empty()) {
+    const std::filesystem::path folder(flags.out);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    const auto within = [&](const std::string& given, const char* name) {
+      return given.empty() ? (folder / name).string() : given;
+    };
+    junit = within(junit, "junit.xml");
+    markdown = within(markdown, "summary.md");
+    figure = within(figure, "ratio.svg");
+    badge = within(badge, "badge.svg");
+    document = (folder / "regression.json").string();
+  }
+  const std::string shown =
+      figure.empty() ? ""
+                     : std::filesystem::path(figure).lexically_relative(std::filesystem::path(markdown).parent_path());
+  for (const auto& [path, text] :
+       {std::pair<std::string, std::function<std::string()>>{document, [&] { return to_json(report).dump(2) + "\n"; }},
+        {junit, [&] { return regression_to_junit(report, skip_open); }},
+        {markdown, [&] { return regression_to_markdown(report, shown); }},
+        {figure, [&] { return regression_to_svg(report); }},
+        {badge, [&] { return regression_to_badge(report); }}}) {
+    if (!path.empty()) {
+      if (auto written = write_file(path, text()); !written) {
+        return written;
+      }
+    }
+  }
+  return {};
+}
+
+Exit exit_of(regression::Verdict verdict, Inconclusive inconclusive) {
+  if (verdict == regression::Verdict::Inconclusive) {
+    return inconclusive == Inconclusive::Pass   ? Exit::Success
+           : inconclusive == Inconclusive::Fail ? Exit::Negative
+                                                : Exit::Inconclusive;
+  }
+  return verdict == regression::Verdict::Pass ? Exit::Success : Exit::Negative;
+}
+
+Exit accept(const RegressFlags& flags) {
+  if (flags.state.empty() || flags.reason.empty()) {
+    return complain(
+        {ErrorCode::InvalidArgument, "--accept moves the anchor: it needs --state FILE and --reason TEXT.", {}});
+  }
+  auto state = RegressState::open(flags.state);
+  if (!state) {
+    return complain(state.error());
+  }
+  if (!state->has(flags.accept)) {
+    std::string known;
+    for (const std::string& label : state->labels()) {
+      known += (known.empty() ? "" : ", ") + label;
+    }
+    return complain({ErrorCode::NotFound,
+                     "No recording has the label " + flags.accept +
+                         "; labels of this state: " + (known.empty() ? "none" : known) + ".",
+                     {}});
+  }
+  state->set_anchor(flags.accept, flags.reason);
+  if (auto saved = state->save(); !saved) {
+    return complain(saved.error());
+  }
+  std::printf("The baseline is %s from now on: %s\n", flags.accept.c_str(), flags.reason.c_str());
+  return Exit::Success;
+}
+
+}  // namespace
+
+void add_regress_flags(CLI::App& command, RegressFlags& flags) {
+  command.add_option("--baseline", flags.baseline, "Recordings before the change, or what `characterise --json` wrote");
+  command.add_option("--candidate", flags.candidate, "Recordings after the change");
+  command.add_option("--history", flags.history, "Recordings of an earlier release of the same device");
+  command.add_option("--baseline-label", flags.baseline_label, "Label of the baseline, e.g. firmware=1.4.2");
+  command.add_option("--candidate-label", flags.candidate_label, "Label of the candidate, e.g. firmware=1.5.0");
+  command.add_option("--device", flags.file.device, "Name of the device");
+  command.add_option("--rate-hz", flags.file.rate_hz, "Sampling rate; needed without a time column");
+  command.add_option("--columns", flags.file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s");
+  command.add_option("--condition", flags.file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
+  command.add_option("--models", flags.models, "Candidate models, e.g. WN,WN+GM")->delimiter(',');
+  command.add_option("--settings", flags.settings, "JSON file with margins and other settings");
+  command.add_option("--state", flags.state, "JSON file that keeps anchor, looks and earlier releases");
+  command.add_option("--accept", flags.accept, "Make this label of the state the baseline from now on");
+  command.add_option("--reason", flags.reason, "Why the anchor moves");
+  command.add_option("--inconclusive", flags.inconclusive, "Exit code of an inconclusive run: pass (0) or fail (1)")
+      ->check(CLI::IsMember({"pass", "fail"}));
+  command.add_option("--junit", flags.junit, "Write a JUnit report to this file");
+  command.add_option("--markdown", flags.markdown, "Write the summary as Markdown to this file");
+  command.add_option("--figure", flags.figure, "Write the figure as SVG to this file");
+  command.add_option("--badge", flags.badge, "Write a badge as SVG to this file");
+  command.add_flag("--json", flags.json, "Print the document instead of text");
+}
+
+Exit run_regress(const RegressFlags& flags) {
+  if (!flags.accept.empty()) {
+    return accept(flags);
+  }
+  auto run = written_run(flags);
+  if (!run) {
+    return complain(run.error());
+  }
+  if (run->candidate.recordings.empty()) {
+    return complain(
+        {ErrorCode::InvalidArgument, "A run needs a candidate: --candidate FILE... or a run.json that names one.", {}});
+  }
+  auto state = RegressState::open(flags.state);
+  if (!state) {
+    return complain(state.error());
+  }
+  ResultReader reader(flags.models, run->device);
+  auto prepared = prepare(*run, *state, reader);
+  if (!prepared) {
+    return complain_of_work(prepared.error());
+  }
+  const auto report = regress(prepared->request);
+  if (!report) {
+    return complain_of_work(report.error());
+  }
+  if (prepared->request.look.counted) {
+    state->add_run(run->candidate.label, prepared->content, *report);
+  }
+  if (state->kept()) {
+    if (auto saved = state->save(); !saved) {
+      return complain(saved.error());
+    }
+  }
+  if (auto written = write_outputs(flags, *report, run->inconclusive == Inconclusive::Pass); !written) {
+    return complain(written.error());
+  }
+  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : regression_to_text(*report);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return exit_of(report->report.verdict, run->inconclusive);
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,50 @@
+#pragma once
+/// What a regression gate remembers without a server, in one JSON file: the anchor, the stored results of every label,
+/// and the runs made of them, from which looks are counted.
+#include "schema/json/regression.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::cli {
+
+/// A recording as the state holds it: a member of a characterisation with what was said of it beside.
+struct StoredRecording {
+  Json document;  ///< of the characterisation
+  std::string session;
+  std::string recorded_at;
+  std::optional<double> temperature_degc;
+  std::vector<std::string> causes;
+};
+
+class RegressState {
+ public:
+  /// The state in a file; empty where there is none yet, and where `path` is empty. Errors: ParseError, Io.
+  [[nodiscard]] static Result<RegressState> open(const std::string& path);
+
+  [[nodiscard]] bool kept() const { return !path_.empty(); }
+  [[nodiscard]] std::string anchor() const;
+  void set_anchor(const std::string& label, const std::string& reason);
+  [[nodiscard]] bool has(const std::string& label) const;
+  /// Labels in the order in which they came.
+  [[nodiscard]] std::vector<std::string> labels() const;
+  [[nodiscard]] std::vector<StoredRecording> recordings(const std::string& label) const;
+  /// Adds recordings to a label; those whose id it has already stay as they are.
+  void add(const std::string& label, const std::vector<StoredRecording>& recordings);
+  /// The last label with a run that passed; empty: none.
+  [[nodiscard]] std::string last_pass() const;
+
+  /// The number of the look that a run over these recordings is: a run over the same recordings is the same look.
+  [[nodiscard]] std::size_t look_of(const std::string& label, const std::string& content) const;
+  void add_run(const std::string& label, const std::string& content, const RegressReport& report);
+
+  /// Writes the file: whole or not at all. Error: Io.
+  [[nodiscard]] Status save() const;
+
+ private:
+  std::string path_;
+  Json document_;
+};
+
+}  // namespace driftlab::cli

@@ -1,0 +1,51 @@
+#pragma once
+/// The use case "regress": is the noise of this firmware no worse than before?
+///
+/// Stored results of two sets of recordings in, one verdict out (core/campaign/regression/report.hpp). Several runs on
+/// one candidate label share the level of the claims: the k-th look takes 0.6, 0.25, 0.15 of alpha, so that
+/// re-recording until it passes is not a way to pass (spec/regression.md, section 8).
+#include "core/campaign/regression/report.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace driftlab {
+
+/// Changes when a change of the code changes verdicts.
+inline constexpr int kRegressionVersion = 1;
+
+/// Which run on the candidate's label this is.
+struct Look {
+  std::size_t number = 1;
+  std::size_t of = 3;    ///< 3, or 1: the first run spends all of alpha
+  bool counted = false;  ///< somebody remembers the runs before
+};
+
+struct RegressRequest {
+  regression::Request comparison;
+  Look look;
+  /// The label before the candidate's, where it is not the baseline: compared as information.
+  std::optional<regression::Recordings> previous;
+};
+
+struct PreviousVerdict {
+  std::string label;
+  regression::Verdict verdict = regression::Verdict::Inconclusive;
+  std::string sentence;
+};
+
+struct RegressReport {
+  regression::Report report;
+  Look look;
+  std::optional<PreviousVerdict> versus_previous;
+};
+
+/// The share of alpha that a look takes. Error: Conflict, for a look after the last ("start a new label").
+[[nodiscard]] Result<double> look_share(const Look& look);
+
+/// Errors: InvalidArgument (a setting outside its range, field "parameter"); Conflict (too many looks); those of
+/// run_regression.
+[[nodiscard]] Result<RegressReport> regress(const RegressRequest& request);
+
+}  // namespace driftlab

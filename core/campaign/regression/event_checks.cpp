@@ -1,0 +1,377 @@
+#include "core/campaign/regression/event_checks.hpp"
+
+#include "core/campaign/regression/gross_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <set>
+
+namespace driftlab::regression {
+namespace {
+
+constexpr double kMoreMissing = 0.005;
+constexpr double kMoreJitter = 2.0;
+constexpr double kJitterOfInterval = 0.05;
+constexpr double kCoarser = 1.5;
+constexpr double kRateOff = 0.005;
+constexpr double kWarmer = 5.0;
+
+template <class... Arguments>
+std::string written(const char* format, Arguments... arguments) {
+  std::array<char, 256> buffer{};
+  const int length = std::snprintf(buffer.data(), buffer.size(), format, arguments...);
+  return {buffer.data(), std::min(static_cast<std::size_t>(length), buffer.size() - 1)};
+}
+
+/// A figure of a channel, by unit: the largest over a session's recordings.
+using Figure = std::function<double(const ComparedRecording&, const ComparedChannel&)>;
+using ByUnit = std::map<std::string, double>;
+
+ByUnit largest_of(const PowerUp& session, const Figure& figure) {
+  ByUnit largest;
+  for (const ComparedRecording* recording : session.recordings) {
+    for (const ComparedChannel& channel : recording->channels) {
+      const std::string name = unit_name(*recording, channel.result);
+      const double value = figure(*recording, channel);
+      const auto [at, fresh] = largest.emplace(name, value);
+      at->second = fresh ? value : std::max(at->second, value);
+    }
+  }
+  return largest;
+}
+
+ByUnit largest_of(const std::vector<PowerUp>& sessions, const Figure& figure) {
+  ByUnit largest;
+  for (const PowerUp& session : sessions) {
+    for (const auto& [name, value] : largest_of(session, figure)) {
+      const auto [at, fresh] = largest.emplace(name, value);
+      at->second = fresh ? value : std::max(at->second, value);
+    }
+  }
+  return largest;
+}
+
+struct Excess {
+  std::string unit;
+  double baseline = 0.0;
+  double candidate = 0.0;
+  std::vector<std::string> sessions;
+};
+
+/// Units in which a candidate session's figure is more than `allowed` permits after the baseline's largest; the worst
+/// first. `sessions` of it: all that show it.
+std::vector<Excess> exceeding(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                              const Figure& figure, const std::function<bool(double, double)>& exceeds) {
+  const ByUnit before = largest_of(baseline, figure);
+  std::map<std::string, Excess> found;
+  for (const PowerUp& session : candidate) {
+    for (const auto& [name, value] : largest_of(session, figure)) {
+      const auto known = before.find(name);
+      if (known == before.end() || !exceeds(value, known->second)) {
+        continue;
+      }
+      Excess& excess = found[name];
+      excess.unit = name;
+      excess.baseline = known->second;
+      excess.candidate = std::max(excess.candidate, value);
+      excess.sessions.push_back(session.name);
+    }
+  }
+  std::vector<Excess> list;
+  for (auto& [name, excess] : found) {
+    list.push_back(std::move(excess));
+  }
+  std::stable_sort(list.begin(), list.end(), [](const Excess& a, const Excess& b) {
+    return a.candidate - a.baseline > b.candidate - b.baseline;
+  });
+  return list;
+}
+
+EventCheck told(const char* name, const std::vector<Excess>& found,
+                const std::function<std::string(const Excess&)>& sentence) {
+  EventCheck check{name, CheckVerdict::Ok, "", {}, std::nullopt};
+  if (!found.empty()) {
+    check.verdict = CheckVerdict::Fail;
+    check.sentence = sentence(found.front());
+    check.sessions = found.front().sessions;
+  }
+  return check;
+}
+
+EventCheck check_share(const char* name, const char* words, const std::vector<PowerUp>& baseline,
+                       const std::vector<PowerUp>& candidate, std::size_t ChannelFacts::* count) {
+  const Figure share = [count](const ComparedRecording& recording, const ComparedChannel& channel) {
+    const double samples = static_cast<double>(std::max<std::size_t>(channel.facts.samples, 1));
+    const double own = static_cast<double>(channel.facts.*count);
+    const bool missing = count == &ChannelFacts::missing;
+    const double lost = missing ? static_cast<double>(recording.missing) : 0.0;
+    return (own + lost) / (samples + lost);
+  };
+  return told(
+      name,
+      exceeding(baseline, candidate, share, [](double now, double before) { return now > before + kMoreMissing; }),
+      [&](const Excess& excess) {
+        return written("%s: %.2g %% of the samples are %s, in the baseline at most %.2g %%.", excess.unit.c_str(),
+                       100.0 * excess.candidate, words, 100.0 * excess.baseline);
+      });
+}
+
+EventCheck check_saturation(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  const Figure saturated = [](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
+    return static_cast<double>(channel.facts.saturated);
+  };
+  return told(
+      "full_scale",
+      exceeding(baseline, candidate, saturated, [](double now, double before) { return now > 0.0 && before == 0.0; }),
+      [](const Excess& excess) {
+        return written("%s: %.0f samples lie at the full scale, in the baseline none.", excess.unit.c_str(),
+                       excess.candidate);
+      });
+}
+
+EventCheck check_jitter(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  const Figure jitter = [](const ComparedRecording& recording, const ComparedChannel& /*channel*/) {
+    return recording.jitter_s * recording.rate_hz;
+  };
+  return told(
+      "timestamps",
+      exceeding(baseline, candidate, jitter,
+                [](double now, double before) { return now > kMoreJitter * before && now > kJitterOfInterval; }),
+      [](const Excess& excess) {
+        return written("The time stamps jitter by %.2g of a sample interval, in the baseline by %.2g.",
+                       excess.candidate, excess.baseline);
+      });
+}
+
+EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  const Figure step = [](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
+    return channel.facts.resolution * channel.result.parsed_unit().factor;
+  };
+  const auto sentence = [](const Excess& excess) {
+    return written("%s: the step of the values went from %.3g to %.3g (SI).", excess.unit.c_str(), excess.baseline,
+                   excess.candidate);
+  };
+  EventCheck check = told("resolution",
+                          exceeding(baseline, candidate, step,
+                                    [](double now, double before) { return before > 0.0 && now > kCoarser * before; }),
+                          sentence);
+  if (check.verdict == CheckVerdict::Ok) {
+    const auto finer = exceeding(baseline, candidate, step,
+                                 [](double now, double before) { return now > 0.0 && before > kCoarser * now; });
+    if (!finer.empty()) {
+      check = {"resolution", CheckVerdict::Note, sentence(finer.front()), finer.front().sessions, std::nullopt};
+    }
+  }
+  return check;
+}
+
+EventCheck check_rate(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  EventCheck check{"rate", CheckVerdict::Ok, "", {}, std::nullopt};
+  for (const PowerUp& session : candidate) {
+    for (const ComparedRecording* now : session.recordings) {
+      bool like_one = false;
+      double before_hz = 0.0;
+      for (const PowerUp& other : baseline) {
+        for (const ComparedRecording* before : other.recordings) {
+          const double declared =
+              now->declared_hz && before->declared_hz ? *now->declared_hz / *before->declared_hz : 1.0;
+          before_hz = before->rate_hz * declared;
+          like_one = like_one || std::abs(now->rate_hz / before_hz - 1.0) <= kRateOff;
+        }
+      }
+      if (!like_one && before_hz > 0.0) {
+        check.verdict = CheckVerdict::Fail;
+        check.sessions.push_back(session.name);
+        check.sentence = written("The sampling rate is %.6g Hz where the baseline has %.6g Hz; nobody declared that.",
+                                 now->rate_hz, before_hz);
+      }
+    }
+  }
+  return check;
+}
+
+EventCheck check_findings(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  std::set<std::string> before;
+  for (const PowerUp& session : baseline) {
+    for (const ComparedRecording* recording : session.recordings) {
+      before.insert(recording->causes.begin(), recording->causes.end());
+    }
+  }
+  std::map<std::string, std::set<std::string>> fresh;
+  for (const PowerUp& session : candidate) {
+    for (const ComparedRecording* recording : session.recordings) {
+      for (const std::string& cause : recording->causes) {
+        if (!before.contains(cause)) {
+          fresh[cause].insert(session.name);
+        }
+      }
+    }
+  }
+  EventCheck check{"findings", CheckVerdict::Ok, "", {}, std::nullopt};
+  for (const auto& [cause, sessions] : fresh) {
+    const bool fails = sessions.size() >= 2;
+    if (check.verdict != CheckVerdict::Fail && (fails || check.verdict == CheckVerdict::Ok)) {
+      check.verdict = fails ? CheckVerdict::Fail : CheckVerdict::Note;
+      check.sentence = "Investigations find " + cause + " in " + std::to_string(sessions.size()) +
+                       " candidate sessions and in no baseline session.";
+      check.sessions.assign(sessions.begin(), sessions.end());
+    }
+  }
+  return check;
+}
+
+std::map<std::string, ErrorCounts> counts_of(const std::vector<PowerUp>& sessions) {
+  std::map<std::string, ErrorCounts> counts;
+  for (const PowerUp& session : sessions) {
+    std::map<std::string, std::pair<double, double>> own;
+    for (const ComparedRecording* recording : session.recordings) {
+      for (const ComparedChannel& channel : recording->channels) {
+        auto& [errors, hours] = own[unit_name(*recording, channel.result)];
+        errors += channel.result.contaminated() ? static_cast<double>(channel.facts.flagged) : 0.0;
+        hours += std::max(recording->duration_s, 1.0) / 3600.0;
+      }
+    }
+    for (const auto& [unit, of] : own) {
+      counts[unit].errors.push_back(of.first);
+      counts[unit].hours.push_back(of.second);
+    }
+  }
+  return counts;
+}
+
+EventCheck check_contamination(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                               double event_alpha) {
+  EventCheck check{"contamination", CheckVerdict::Ok, "", {}, std::nullopt};
+  const auto before = counts_of(baseline);
+  std::string worst;
+  double tests = 0.0;
+  for (const auto& [unit, now] : counts_of(candidate)) {
+    const auto known = before.find(unit);
+    if (unit.empty() || known == before.end()) {
+      continue;
+    }
+    ++tests;
+    if (now.sum() > 0.0) {
+      const double p = error_rate_p(known->second, now);
+      if (!check.p || p < *check.p) {
+        check.p = p;
+        worst = unit;
+        check.sentence = written("%s: %.3g gross errors an hour, in the baseline %.3g.", unit.c_str(),
+                                 now.sum() / now.time_h(), known->second.sum() / known->second.time_h());
+      }
+    }
+  }
+  // Holm fails something if and only if it fails the smallest p at level alpha over the number of tests.
+  if (check.p && *check.p * tests <= event_alpha) {
+    check.verdict = CheckVerdict::Fail;
+    for (const PowerUp& session : candidate) {
+      const auto own = counts_of({session});
+      if (const auto found = own.find(worst); found != own.end() && found->second.sum() > 0.0) {
+        check.sessions.push_back(session.name);
+      }
+    }
+  } else {
+    check.sentence.clear();
+  }
+  return check;
+}
+
+std::set<std::string> units_of(const std::vector<PowerUp>& sessions) {
+  std::set<std::string> units;
+  for (const PowerUp& session : sessions) {
+    for (const ComparedRecording* recording : session.recordings) {
+      for (const ComparedChannel& channel : recording->channels) {
+        if (std::string name = unit_name(*recording, channel.result); !name.empty()) {
+          units.insert(std::move(name));
+        }
+      }
+    }
+  }
+  return units;
+}
+
+std::vector<double> temperatures_of(const std::vector<PowerUp>& sessions) {
+  std::vector<double> all;
+  for (const PowerUp& session : sessions) {
+    for (const ComparedRecording* recording : session.recordings) {
+      if (recording->temperature_degc) {
+        all.push_back(*recording->temperature_degc);
+      }
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+std::string_view name_of(CheckVerdict verdict) {
+  switch (verdict) {
+    case CheckVerdict::Ok:
+      return "ok";
+    case CheckVerdict::Note:
+      return "note";
+    case CheckVerdict::Fail:
+      break;
+  }
+  return "fail";
+}
+
+std::string unit_name(const ComparedRecording& recording, const ReportedChannel& channel) {
+  const auto quantity = parse_quantity(channel.quantity);
+  if (!quantity || *quantity == Quantity::Unspecified || !is_sensor(*quantity) || channel.axis.empty()) {
+    return "";
+  }
+  std::string name = std::string(sensor_of(*quantity)) + " " + channel.axis;
+  if (recording.condition != "static") {
+    const auto condition = parse_condition(recording.condition);
+    name += ", " + (condition ? label(*condition) : recording.condition);
+  }
+  return name;
+}
+
+std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                                     double event_alpha) {
+  return {check_saturation(baseline, candidate),
+          check_share("missing", "missing", baseline, candidate, &ChannelFacts::missing),
+          check_share("frozen", "of a sensor that gives one value only", baseline, candidate, &ChannelFacts::frozen),
+          check_share("repeated", "equal to the one before", baseline, candidate, &ChannelFacts::repeated),
+          check_jitter(baseline, candidate),
+          check_resolution(baseline, candidate),
+          check_contamination(baseline, candidate, event_alpha),
+          check_findings(baseline, candidate),
+          check_rate(baseline, candidate)};
+}
+
+std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+  std::vector<Incomparable> found;
+  const std::set<std::string> before = units_of(baseline);
+  const std::set<std::string> now = units_of(candidate);
+  for (const std::string& unit : before) {
+    if (!now.contains(unit)) {
+      found.push_back({"unit", "Candidate lacks " + unit + "."});
+    }
+  }
+  for (const std::string& unit : now) {
+    if (!before.contains(unit)) {
+      found.push_back({"unit", "Baseline lacks " + unit + "."});
+    }
+  }
+  const std::vector<double> cold = temperatures_of(baseline);
+  const std::vector<double> warm = temperatures_of(candidate);
+  if (!cold.empty() && !warm.empty()) {
+    const double apart = warm[warm.size() / 2] - cold[cold.size() / 2];
+    if (std::abs(apart) > kWarmer) {
+      found.push_back({"temperature", written("The candidate was %.1f K %s than the baseline; at most 5 K apart can be "
+                                              "compared.",
+                                              std::abs(apart), apart > 0.0 ? "warmer" : "colder")});
+    }
+  }
+  return found;
+}
+
+}  // namespace driftlab::regression

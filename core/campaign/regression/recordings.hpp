@@ -1,0 +1,86 @@
+#pragma once
+/// What a regression run is given: two sets of recordings of one device, what is known of each, and the settings.
+///
+/// Only stored results are read (core/campaign/reported_channel.hpp): curves, fits, contamination and the facts of each
+/// file. No samples are needed.
+#include "core/campaign/regression/critical.hpp"
+#include "core/campaign/reported_channel.hpp"
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::regression {
+
+/// What is true of one channel as it came.
+struct ChannelFacts {
+  std::size_t samples = 0;    ///< of the file
+  std::size_t missing = 0;    ///< cells without a number, or with one that stands for none
+  std::size_t frozen = 0;     ///< samples of a stretch in which the sensor gives one value only
+  std::size_t repeated = 0;   ///< samples equal to the one before
+  std::size_t saturated = 0;  ///< samples at a full-scale value
+  std::size_t flagged = 0;    ///< gross errors
+  double resolution = 0.0;    ///< step of the lattice [channel unit]; 0: none
+};
+
+struct ComparedChannel {
+  ReportedChannel result;
+  ChannelFacts facts;
+};
+
+struct ComparedRecording {
+  std::string id;
+  std::string session;            ///< empty: not stated
+  std::optional<double> began_s;  ///< time of its first sample, seconds since any fixed moment
+  std::string condition;          ///< compact form, `static`
+  double duration_s = 0.0;
+  double rate_hz = 0.0;               ///< 1/dt of the analysed samples
+  std::optional<double> declared_hz;  ///< as somebody stated it
+  double jitter_s = 0.0;
+  std::size_t samples = 0;
+  std::size_t missing = 0;  ///< samples that the time column says are missing
+  std::optional<double> temperature_degc;
+  std::vector<std::string> causes;  ///< identified by a stored investigation
+  std::vector<ComparedChannel> channels;
+};
+
+/// An arm, or an earlier release.
+struct Recordings {
+  std::string label;  ///< `firmware=1.5.0`; empty: nobody gave one
+  std::vector<ComparedRecording> recordings;
+};
+
+struct Exclusion {
+  std::string recording;
+  std::string reason;
+};
+
+/// Margins of a sensor in per cent of the deviation, by tau: to 1 s, to 10 s, above.
+struct Margins {
+  std::array<double, 3> percent = {10.0, 25.0, 50.0};
+};
+
+struct Settings {
+  TestSettings test;
+  Margins gyroscope = {};
+  Margins accelerometer = {{20.0, 25.0, 50.0}};
+  double margin_sigma_percent = 25.0;  ///< of levels without a power of time: sigma, B
+  double margin_slow_percent = 50.0;   ///< of the others beside N: K, Q, R
+  Tau0 tau0_gyroscope = {0.010, 0.012, 0.012};
+  Tau0 tau0_accelerometer = {0.015, 0.025, 0.025};
+  double min_edf = 10.0;
+};
+
+struct Request {
+  std::string device;
+  Recordings baseline;
+  Recordings candidate;
+  std::vector<Recordings> history;  ///< earlier releases, oldest first
+  std::vector<Exclusion> excluded;
+  Settings settings;
+};
+
+}  // namespace driftlab::regression

@@ -1,0 +1,88 @@
+#pragma once
+/// The use of it all: a request in, a verdict in sentences out.
+#include "core/campaign/regression/event_checks.hpp"
+#include "core/campaign/regression/verdict.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace driftlab::regression {
+
+struct ArmReport {
+  std::string label;
+  struct Session {
+    std::string name;
+    std::vector<std::string> recordings;
+    double duration_s = 0.0;
+  };
+  std::vector<Session> sessions;
+  double rate_hz = 0.0;  ///< of the first recording
+};
+
+struct ScaleReport {
+  Test test;
+  Outcome outcome;
+  std::string name;  ///< of a level: `white_noise.N`; empty for a scale
+  double theta = 0.0;
+  bool gated = false;
+};
+
+struct UnitReport {
+  std::string name;  ///< `gyroscope z`
+  std::string condition;
+  std::string sensor;
+  std::string axis;
+  std::vector<double> tau_s;               ///< rows
+  std::array<std::vector<double>, 2> edf;  ///< baseline, candidate: sum over the sessions, per row
+  std::array<std::string, 2> structure;    ///< best model of each arm
+  std::string model;                       ///< of the pooled curve; empty: none
+  StructureTest structure_test;
+  std::vector<ScaleReport> tests;
+};
+
+/// The verdict as the dashboard shows it (dashboard/api-needs.md, A1).
+struct Summary {
+  std::string verdict;  ///< one sentence
+  std::vector<std::string> details;
+  std::string level;  ///< fine, look, wrong
+};
+
+struct Report {
+  std::string device;
+  Verdict verdict = Verdict::Inconclusive;
+  bool leaning_worse = false;
+  Summary summary;
+  double scope_s = 0.0;
+  Settings settings;
+  ArmReport baseline;
+  ArmReport candidate;
+  std::vector<ArmReport> history;
+  std::vector<Exclusion> excluded;
+  Comparison comparison;
+  std::vector<UnitReport> units;
+  std::vector<EventCheck> checks;
+  std::vector<Incomparable> comparability;
+  std::vector<std::string> notes;
+  std::optional<double> needed_length_s;
+  std::string needs;  ///< the sentence on what would decide; empty for a verdict
+};
+
+/// Errors: InvalidArgument (an arm without recordings; no channel that both arms can be compared in), each with the
+/// field "arm" where it concerns one.
+[[nodiscard]] Result<Report> run_regression(const Request& request);
+
+/// `+23 % [+14, +33]`: a difference in ln deviation as people read it.
+[[nodiscard]] std::string percent_text(double ln_deviation);
+[[nodiscard]] std::string interval_text(double theta, double lower, double upper);
+/// `0.32 s`, `20 s`, `5 min`.
+[[nodiscard]] std::string duration_text(double seconds);
+/// `gyro z`, `accel x`, short form of a unit's name.
+[[nodiscard]] std::string short_name(const std::string& unit);
+
+/// Writes verdict sentence, details, level and needs into a report that has everything else.
+void tell(Report& report);
+
+}  // namespace driftlab::regression

@@ -1,0 +1,265 @@
+/// The sentences of a regression run, made once for every output (spec/regression.md, section 9).
+#include "core/campaign/regression/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace driftlab::regression {
+namespace {
+
+constexpr double kOnTheMargin = 0.02;
+
+template <class... Arguments>
+std::string written(const char* format, Arguments... arguments) {
+  std::array<char, 256> buffer{};
+  const int length = std::snprintf(buffer.data(), buffer.size(), format, arguments...);
+  return {buffer.data(), std::min(static_cast<std::size_t>(length), buffer.size() - 1)};
+}
+
+double percent_of(double ln_deviation) { return 100.0 * std::expm1(ln_deviation); }
+
+/// A test with the unit it belongs to.
+struct Told {
+  const UnitReport* unit = nullptr;
+  const ScaleReport* test = nullptr;
+};
+
+std::string place_of(const Told& told) {
+  return told.test->name.empty() ? " at " + duration_text(told.test->test.tau_s)
+                                 : " in " + told.test->name.substr(told.test->name.find('.') + 1);
+}
+
+/// Of the tests that `is` holds for, the one with the largest `score`.
+template <class Is, class Score>
+Told largest(const Report& report, const Is& is, const Score& score) {
+  Told best;
+  for (const UnitReport& unit : report.units) {
+    for (const ScaleReport& test : unit.tests) {
+      if (is(test) && (best.test == nullptr || score(test) > score(*best.test))) {
+        best = {&unit, &test};
+      }
+    }
+  }
+  return best;
+}
+
+std::string worse_sentence(const Told& told) {
+  const ScaleReport& test = *told.test;
+  return short_name(told.unit->name) + (test.theta >= 0.0 ? " is worse: " : " changed: ") +
+         interval_text(test.theta, test.outcome.lower, test.outcome.upper) + place_of(told) + ", margin " +
+         written("%.3g %%.", percent_of(test.test.margin));
+}
+
+std::string counted(std::size_t count, const char* one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::string pass_sentence(const Report& report) {
+  std::string margins;
+  for (const char* const sensor : {"gyroscope", "accelerometer"}) {
+    const bool present = std::any_of(report.units.begin(), report.units.end(),
+                                     [&](const UnitReport& unit) { return unit.sensor == sensor; });
+    if (present) {
+      const bool gyroscope = sensor == std::string("gyroscope");
+      margins += (margins.empty() ? "" : " and ") +
+                 written("%.3g %% (%s)",
+                         gyroscope ? report.settings.gyroscope.percent[0] : report.settings.accelerometer.percent[0],
+                         gyroscope ? "gyro" : "accel");
+    }
+  }
+  return "No worse than " + margins + " to " + duration_text(report.scope_s) + ", " +
+         (report.units.size() == 1 ? "1 axis" : std::to_string(report.units.size()) + " axes") + ", " +
+         counted(report.candidate.sessions.size(), "session") + " against " +
+         std::to_string(report.baseline.sessions.size()) + ".";
+}
+
+bool is_open(const ScaleReport& test) { return test.gated && test.outcome.upper_one >= test.test.margin; }
+
+std::string needs_sentence(const Report& report, const Told& open) {
+  if (open.test != nullptr && std::abs(open.test->theta - open.test->test.margin) < kOnTheMargin) {
+    return short_name(open.unit->name) + " sits on the margin; no affordable recording decides; the margin does.";
+  }
+  const Needs& needs = report.comparison.needs;
+  const std::string longer =
+      report.needed_length_s ? "sessions of " + duration_text(*report.needed_length_s) : std::string();
+  if (needs.sessions_per_arm) {
+    return counted(*needs.sessions_per_arm, "session") + " an arm decide; " +
+           (longer.empty() ? "longer recordings do not." : "so do " + longer + ".");
+  }
+  return longer.empty() ? "Neither more sessions (to 30) nor longer ones (to 64 times) decide."
+                        : "Sessions of " + duration_text(*report.needed_length_s) + " decide.";
+}
+
+std::string undecided_sentence(const Report& report, const Told& open) {
+  const std::string head = report.leaning_worse ? "Undecided, leaning worse: " : "Undecided: ";
+  if (!report.comparability.empty()) {
+    return head + report.comparability.front().sentence;
+  }
+  if (open.test == nullptr) {
+    return head + "nothing could be compared.";
+  }
+  return head + short_name(open.unit->name) +
+         written(" could be up to %+.0f %% worse", percent_of(open.test->outcome.upper_one)) + place_of(open) +
+         written(" (margin %.3g %%).", percent_of(open.test->test.margin));
+}
+
+void note_structures(Report& report) {
+  for (const UnitReport& unit : report.units) {
+    if (unit.model.empty() || unit.structure_test.compared) {
+      continue;
+    }
+    const bool moved = unit.structure[0] != unit.structure[1];
+    report.notes.push_back(short_name(unit.name) + ": " +
+                           (moved ? "structure changed (" + unit.structure[0] + " to " + unit.structure[1] + ")"
+                                  : "no fitted model describes both arms (" + unit.model + ")") +
+                           ": parameters are not compared, scales are.");
+  }
+}
+
+void note_improvement(Report& report) {
+  const Told best = largest(
+      report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Improved; },
+      [](const ScaleReport& test) { return -test.theta; });
+  if (best.test == nullptr) {
+    return;
+  }
+  const bool much = best.test->theta < -best.test->test.margin && best.test->test.tau_s <= 1.0;
+  report.notes.push_back(short_name(best.unit->name) + " improved: " +
+                         interval_text(best.test->theta, best.test->outcome.lower, best.test->outcome.upper) +
+                         place_of(best) + (much ? "; check filter bandwidth and scale." : "."));
+}
+
+void note_scatter(Report& report) {
+  if (report.comparison.scatter.contrasts > 0 || report.units.empty()) {
+    return;
+  }
+  const bool gyroscope = std::any_of(report.units.begin(), report.units.end(),
+                                     [](const UnitReport& unit) { return unit.sensor == "gyroscope"; });
+  const Tau0& tau0 = gyroscope ? report.settings.tau0_gyroscope : report.settings.tau0_accelerometer;
+  const double sd = std::sqrt(tau0.device * tau0.device + tau0.axis * tau0.axis + tau0.scale * tau0.scale);
+  report.notes.push_back(
+      written("One session an arm: the scatter between sessions is assumed (%.1f %% %s), not "
+              "measured.",
+              100.0 * sd, gyroscope ? "gyro" : "accel"));
+}
+
+/// All axes move by one factor: so does a clock that is off (a clock error d moves N by d/2).
+void note_time_base(Report& report) {
+  std::vector<double> shifts;
+  for (const UnitReport& unit : report.units) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const ScaleReport& test : unit.tests) {
+      if (test.name.empty() && test.test.tau_s <= report.settings.test.through_s) {
+        sum += test.theta;
+        ++count;
+      }
+    }
+    if (count > 0.0) {
+      shifts.push_back(sum / count);
+    }
+  }
+  if (shifts.size() < 3) {
+    return;
+  }
+  double mean = 0.0;
+  for (const double shift : shifts) {
+    mean += shift / static_cast<double>(shifts.size());
+  }
+  const bool alike = std::all_of(shifts.begin(), shifts.end(),
+                                 [&](double shift) { return std::abs(shift - mean) < std::abs(mean) / 3.0; });
+  if (alike && std::abs(mean) > 0.03) {
+    report.notes.push_back(written("All axes move by one factor, as a clock %.0f %% %s would; stamp the samples.",
+                                   std::abs(percent_of(2.0 * mean)), mean > 0.0 ? "fast" : "slow"));
+  }
+}
+
+}  // namespace
+
+std::string percent_text(double ln_deviation) {
+  const double percent = percent_of(ln_deviation);
+  return std::abs(percent) < 9.95 ? written("%+.1f %%", percent) : written("%+.0f %%", percent);
+}
+
+std::string interval_text(double theta, double lower, double upper) {
+  const bool fine = std::abs(percent_of(theta)) < 9.95;
+  const char* const format = fine ? "%+.1f %% [%+.1f, %+.1f]" : "%+.0f %% [%+.0f, %+.0f]";
+  return written(format, percent_of(theta), percent_of(lower), percent_of(upper));
+}
+
+std::string duration_text(double seconds) {
+  if (seconds >= 7200.0) {
+    return written("%.2g h", seconds / 3600.0);
+  }
+  return seconds >= 120.0 ? written("%.3g min", seconds / 60.0) : written("%.2g s", seconds);
+}
+
+std::string short_name(const std::string& unit) {
+  for (const auto& [whole, part] : {std::pair{"gyroscope", "gyro"}, std::pair{"accelerometer", "accel"}}) {
+    if (unit.starts_with(whole)) {
+      return part + unit.substr(std::string_view(whole).size());
+    }
+  }
+  return unit;
+}
+
+void tell(Report& report) {
+  note_structures(report);
+  note_improvement(report);
+  note_scatter(report);
+  note_time_base(report);
+  const Told beyond = largest(
+      report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Beyond; },
+      [](const ScaleReport& test) { return test.outcome.lower - test.test.margin; });
+  const Told open =
+      largest(report, is_open, [](const ScaleReport& test) { return test.outcome.upper_one - test.test.margin; });
+  if (report.comparison.needs.length_factor) {
+    double longest_s = 0.0;
+    for (const ArmReport::Session& session : report.candidate.sessions) {
+      longest_s = std::max(longest_s, session.duration_s);
+    }
+    report.needed_length_s = longest_s * *report.comparison.needs.length_factor;
+  }
+  Summary& summary = report.summary;
+  if (report.verdict == Verdict::Pass) {
+    summary.verdict = pass_sentence(report);
+    summary.level = "fine";
+  } else if (report.verdict == Verdict::Fail) {
+    summary.level = "wrong";
+    if (beyond.test != nullptr) {
+      summary.verdict = worse_sentence(beyond);
+    }
+  } else {
+    summary.verdict = undecided_sentence(report, open);
+    summary.level = "look";
+    if (report.comparability.empty()) {
+      report.needs = needs_sentence(report, open);
+      summary.details.push_back(report.needs);
+    }
+  }
+  for (const EventCheck& check : report.checks) {
+    if (check.verdict == CheckVerdict::Fail) {
+      if (summary.verdict.empty()) {
+        summary.verdict = check.sentence;
+      } else {
+        summary.details.push_back(check.sentence);
+      }
+    }
+  }
+  for (const Incomparable& item : report.comparability) {
+    if (report.verdict != Verdict::Inconclusive || &item != &report.comparability.front()) {
+      summary.details.push_back(item.sentence);
+    }
+  }
+  for (const EventCheck& check : report.checks) {
+    if (check.verdict == CheckVerdict::Note) {
+      summary.details.push_back(check.sentence);
+    }
+  }
+  summary.details.insert(summary.details.end(), report.notes.begin(), report.notes.end());
+}
+
+}  // namespace driftlab::regression

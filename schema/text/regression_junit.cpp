@@ -1,0 +1,143 @@
+/// The JUnit report of a regression run.
+#include "schema/text/regression.hpp"
+
+namespace driftlab {
+namespace {
+
+using regression::ScaleReport;
+using regression::UnitReport;
+
+/// Text of an XML attribute or element; characters that XML 1.0 cannot hold become a question mark.
+std::string xml_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\n':
+        out += "&#10;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
+    }
+  }
+  return out;
+}
+
+struct CaseCounts {
+  std::size_t tests = 0;
+  std::size_t failures = 0;
+  std::size_t errors = 0;
+  std::size_t skipped = 0;
+};
+
+class TestSuite {
+ public:
+  TestSuite(std::string classname, bool skip_open) : classname_(std::move(classname)), skip_open_(skip_open) {}
+
+  void passed(const std::string& name) { add(name, ""); }
+  void failed(const std::string& name, const std::string& sentence) {
+    ++counts.failures;
+    add(name, "<failure message=\"" + xml_text(sentence) + "\"/>");
+  }
+  void open(const std::string& name, const std::string& sentence) {
+    if (skip_open_) {
+      ++counts.skipped;
+      add(name, "<skipped message=\"" + xml_text(sentence) + "\"/>");
+    } else {
+      ++counts.errors;
+      add(name, "<error type=\"inconclusive\" message=\"" + xml_text(sentence) + "\"/>");
+    }
+  }
+
+  CaseCounts counts;
+  std::string cases;
+
+ private:
+  void add(const std::string& name, const std::string& content) {
+    ++counts.tests;
+    cases += "    <testcase classname=\"" + xml_text(classname_) + "\" name=\"" + xml_text(name) + "\"" +
+             (content.empty() ? "/>\n" : ">" + content + "</testcase>\n");
+  }
+  std::string classname_;
+  bool skip_open_;
+};
+
+std::string name_of_test(const UnitReport& unit, const ScaleReport& test) {
+  return regression::short_name(unit.name) + " " +
+         (test.name.empty() ? "at " + regression::duration_text(test.test.tau_s) : test.name);
+}
+
+std::string case_sentence(const UnitReport& unit, const ScaleReport& test) {
+  return name_of_test(unit, test) + ": " +
+         regression::interval_text(test.theta, test.outcome.lower, test.outcome.upper) + ", margin " +
+         regression::percent_text(test.test.margin).substr(1);
+}
+
+void add_tests(const regression::Report& report, TestSuite& suite, std::string& watched) {
+  for (const UnitReport& unit : report.units) {
+    for (const ScaleReport& test : unit.tests) {
+      const std::string sentence = case_sentence(unit, test);
+      const bool beyond = test.outcome.finding == regression::Finding::Beyond;
+      if (beyond) {
+        suite.failed(name_of_test(unit, test), sentence);
+      } else if (!test.gated) {
+        watched += sentence + " (watched: " + std::string(name_of(test.outcome.finding)) + ")\n";
+      } else if (test.outcome.upper_one >= test.test.margin) {
+        suite.open(name_of_test(unit, test), sentence);
+      } else {
+        suite.passed(name_of_test(unit, test));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string regression_to_junit(const RegressReport& run, bool skip_open) {
+  const regression::Report& report = run.report;
+  const std::string pair = report.baseline.label + " to " + report.candidate.label;
+  const std::string name = "sensor noise of " + report.device + (report.candidate.label.empty() ? "" : ", " + pair);
+  TestSuite suite("driftlab.regression." + report.device, skip_open);
+  std::string watched;
+  add_tests(report, suite, watched);
+  for (const regression::EventCheck& check : report.checks) {
+    if (check.verdict == regression::CheckVerdict::Fail) {
+      suite.failed(check.check, check.sentence);
+    } else {
+      suite.passed(check.check);
+    }
+  }
+  for (const regression::Incomparable& item : report.comparability) {
+    suite.open("comparable: " + item.item, item.sentence);
+  }
+  switch (report.verdict) {
+    case regression::Verdict::Pass:
+      suite.passed("verdict");
+      break;
+    case regression::Verdict::Fail:
+      suite.failed("verdict", report.summary.verdict);
+      break;
+    case regression::Verdict::Inconclusive:
+      suite.open("verdict", report.summary.verdict);
+  }
+  const CaseCounts& counts = suite.counts;
+  const std::string numbers = " tests=\"" + std::to_string(counts.tests) + "\" failures=\"" +
+                              std::to_string(counts.failures) + "\" errors=\"" + std::to_string(counts.errors) +
+                              "\" skipped=\"" + std::to_string(counts.skipped) + "\"";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + numbers + ">\n  <testsuite name=\"" +
+         xml_text(name) + "\"" + numbers + ">\n" + suite.cases + "    <system-out>" +
+         xml_text(report.summary.verdict + "\n" + watched) + "</system-out>\n  </testsuite>\n</testsuites>\n";
+}
+
+}  // namespace driftlab

@@ -1,0 +1,169 @@
+/// Terminal text and Markdown page of a regression run.
+#include "schema/text/regression.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace driftlab {
+namespace {
+
+using regression::ScaleReport;
+using regression::UnitReport;
+
+constexpr std::size_t kWorstTests = 5;
+
+struct ListedTest {
+  const UnitReport* unit;
+  const ScaleReport* test;
+};
+
+/// All tests, the nearest to or furthest beyond its margin first.
+std::vector<ListedTest> by_distance(const regression::Report& report) {
+  std::vector<ListedTest> tests;
+  for (const UnitReport& unit : report.units) {
+    for (const ScaleReport& test : unit.tests) {
+      tests.push_back({&unit, &test});
+    }
+  }
+  const auto score = [](const ListedTest& listed) {
+    const double beyond = listed.test->outcome.finding == regression::Finding::Beyond ? 10.0 : 0.0;
+    return beyond + (listed.test->gated ? 1.0 : 0.0) + listed.test->outcome.upper_one - listed.test->test.margin;
+  };
+  std::stable_sort(tests.begin(), tests.end(),
+                   [&](const ListedTest& a, const ListedTest& b) { return score(a) > score(b); });
+  return tests;
+}
+
+std::string test_place(const ScaleReport& test) {
+  return test.name.empty() ? regression::duration_text(test.test.tau_s) : test.name;
+}
+
+std::string test_figures(const ScaleReport& test) {
+  return regression::interval_text(test.theta, test.outcome.lower, test.outcome.upper) + ", margin " +
+         regression::percent_text(test.test.margin).substr(1);
+}
+
+std::string head_word(regression::Verdict verdict) {
+  switch (verdict) {
+    case regression::Verdict::Pass:
+      return "PASS";
+    case regression::Verdict::Fail:
+      return "FAIL";
+    case regression::Verdict::Inconclusive:
+      break;
+  }
+  return "INCONCLUSIVE";
+}
+
+std::string arm_line(const char* name, const regression::ArmReport& arm) {
+  std::string recordings;
+  for (const regression::ArmReport::Session& session : arm.sessions) {
+    for (const std::string& id : session.recordings) {
+      recordings += (recordings.empty() ? "" : ", ") + id;
+    }
+  }
+  return std::string(name) + (arm.label.empty() ? "" : " " + arm.label) + ": " + std::to_string(arm.sessions.size()) +
+         (arm.sessions.size() == 1 ? " session" : " sessions") + " (" + recordings + ")";
+}
+
+std::string look_line(const Look& look) {
+  return "Look " + std::to_string(look.number) + " of " + std::to_string(look.of) + " at this candidate label" +
+         (look.counted ? "." : " (not counted).");
+}
+
+std::string worst_row(const ListedTest& listed) {
+  const ScaleReport& test = *listed.test;
+  return "| " + regression::short_name(listed.unit->name) + " | " + test_place(test) + " | " + test_figures(test) +
+         " | " + std::string(name_of(test.outcome.finding)) + (test.gated ? "" : ", watched") + " |\n";
+}
+
+const char* const kWorstHead = "| axis | at | change | finding |\n|---|---|---|---|\n";
+
+/// Text that may stand in a Markdown line: what a label or a name could smuggle in is escaped.
+std::string markdown_safe(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\n' || c == '\r') {
+      out += ' ';
+      continue;
+    }
+    if (c == '|' || c == '<' || c == '>' || c == '`' || c == '[' || c == ']') {
+      out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string("\\") + c;
+      continue;
+    }
+    out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string regression_to_text(const RegressReport& run) {
+  const regression::Report& report = run.report;
+  std::string text = head_word(report.verdict) + ": " + report.summary.verdict + "\n";
+  for (const std::string& detail : report.summary.details) {
+    text += "  " + detail + "\n";
+  }
+  text += arm_line("Baseline", report.baseline) + "\n" + arm_line("Candidate", report.candidate) + "\n";
+  text += look_line(run.look) + "\n";
+  for (const regression::Exclusion& exclusion : report.excluded) {
+    text += "Left out: " + exclusion.recording + " (" + exclusion.reason + ")\n";
+  }
+  if (run.versus_previous) {
+    text += "Against " + run.versus_previous->label + ": " + run.versus_previous->sentence + "\n";
+  }
+  const std::vector<ListedTest> tests = by_distance(report);
+  for (std::size_t i = 0; i < std::min(kWorstTests, tests.size()); ++i) {
+    std::array<char, 160> line{};
+    const int length = std::snprintf(
+        line.data(), line.size(), "  %-10s %-22s %-36s %s%s\n", regression::short_name(tests[i].unit->name).c_str(),
+        test_place(*tests[i].test).c_str(), test_figures(*tests[i].test).c_str(),
+        std::string(name_of(tests[i].test->outcome.finding)).c_str(), tests[i].test->gated ? "" : ", watched");
+    text.append(line.data(), std::min(static_cast<std::size_t>(length), line.size() - 1));
+  }
+  return text;
+}
+
+std::string regression_to_markdown(const RegressReport& run, const std::string& figure) {
+  const regression::Report& report = run.report;
+  std::string page = "**" + head_word(report.verdict) + "**: " + markdown_safe(report.summary.verdict) + "\n";
+  page += "<!-- driftlab-regression -->\n\n";
+  for (const std::string& detail : report.summary.details) {
+    page += "- " + markdown_safe(detail) + "\n";
+  }
+  if (!report.excluded.empty()) {
+    for (const regression::Exclusion& exclusion : report.excluded) {
+      page += "- Left out: " + markdown_safe(exclusion.recording) + " (" + markdown_safe(exclusion.reason) + ")\n";
+    }
+  }
+  if (run.versus_previous) {
+    page += "- Against " + markdown_safe(run.versus_previous->label) +
+            ", as information: " + markdown_safe(run.versus_previous->sentence) + "\n";
+  }
+  const std::vector<ListedTest> tests = by_distance(report);
+  if (!tests.empty()) {
+    page += std::string("\n") + kWorstHead;
+    for (std::size_t i = 0; i < std::min(kWorstTests, tests.size()); ++i) {
+      page += worst_row(tests[i]);
+    }
+  }
+  if (!figure.empty()) {
+    page += "\n![Candidate over baseline against averaging time, with margin and scope](" + figure + ")\n";
+  }
+  page += "\n<details><summary>All tests, sessions and settings</summary>\n\n";
+  page += "- " + markdown_safe(arm_line("Baseline", report.baseline)) + "\n- " +
+          markdown_safe(arm_line("Candidate", report.candidate)) + "\n- " + look_line(run.look) + "\n\n";
+  if (!tests.empty()) {
+    page += kWorstHead;
+    for (const ListedTest& listed : tests) {
+      page += worst_row(listed);
+    }
+  }
+  page += "\n</details>\n";
+  return page;
+}
+
+}  // namespace driftlab

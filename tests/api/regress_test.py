@@ -1,0 +1,231 @@
+"""driftlab regress and ci as a pipeline runs them: verdicts, exit codes, artefacts, anchor, looks, and the templates in deploy/ci."""
+from __future__ import annotations
+
+import json
+import math
+import os
+import random
+import re
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import yaml
+from contract import closed
+
+PROGRAM = os.environ["DRIFTLAB"]
+ROOT = Path(__file__).resolve().parents[2]
+DEPLOY = ROOT / "deploy/ci"
+VALIDATOR = jsonschema.Draft202012Validator(closed(json.loads((ROOT / "schema/regression.schema.json").read_text())))
+PATIENCE_S = 300
+
+
+def recording(seed: int, white: float, scale: float = 1.0, rows: int = 12000) -> str:
+    """A gyroscope axis at rest, stamped, 20 Hz: white noise and a little of slow noise, both times `scale`.
+
+    Where a pass must be certain the candidate is the baseline's noise times 1.01: that chance alone leaves a fifth of unchanged devices
+    undecided is for tests/accuracy to say.
+    """
+    draw = random.Random(seed)
+    slow, lines = 0.0, ["t [s],gz [deg/s]"]
+    for row in range(rows):
+        slow = 0.999 * slow + 0.002 * draw.gauss(0.0, 1.0)
+        lines.append(f"{row * 0.05:.3f},{scale * (white * draw.gauss(0.0, 1.0) + slow):.6f}")
+    return "\n".join(lines) + "\n"
+
+
+class Regress(unittest.TestCase):
+    folder: Path
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-regress-")))
+        for arm, seed, white, scale in (("baseline", 1, 0.1, 1.0), ("candidate", 1, 0.1, 1.01), ("worse", 21, 0.17, 1.0)):
+            (cls.folder / arm).mkdir()
+            for session in range(3):
+                (cls.folder / arm / f"{session}.csv").write_text(recording(seed + session, white, scale))
+
+    def files(self, arm: str) -> list[str]:
+        return [f"{arm}/{session}.csv" for session in range(3)]
+
+    def driftlab(self, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([PROGRAM, *arguments], cwd=cwd or self.folder, capture_output=True, text=True, timeout=PATIENCE_S,
+                              check=False, stdin=subprocess.DEVNULL)
+
+    def regress(self, exit_code: int, *arguments: str) -> str:
+        done = self.driftlab("regress", "--models", "WN,WN+GM", *arguments)
+        self.assertEqual(done.returncode, exit_code, done.stdout + done.stderr)
+        return done.stdout if exit_code in (0, 1, 3) else done.stderr
+
+    def document(self, exit_code: int, *arguments: str) -> dict[str, Any]:
+        document: dict[str, Any] = json.loads(self.regress(exit_code, "--json", *arguments))
+        self.assertEqual([], [fault.message for fault in VALIDATOR.iter_errors(document)])
+        return document
+
+    def test_unchanged_noise_passes_and_says_how_far(self) -> None:
+        document = self.document(0, "--baseline", *self.files("baseline"), "--candidate", *self.files("candidate"))
+        self.assertEqual(document["verdict"], "pass")
+        self.assertRegex(document["summary"]["verdict"], r"^No worse than 10 % \(gyro\) to .*, 1 axis, 3 sessions against 3\.$")
+        self.assertEqual(document["between"]["contrasts"], 4)
+
+    def test_a_white_density_that_grew_by_seventy_per_cent_fails_with_its_size(self) -> None:
+        document = self.document(1, "--baseline", *self.files("baseline"), "--candidate", *self.files("worse"))
+        self.assertRegex(document["summary"]["verdict"], r"^gyro z is worse: \+\d+ % \[\+\d+, \+\d+\]")
+        white = [test for test in document["units"][0]["tests"] if test.get("name") == "white_noise.N"]
+        for test in white:
+            self.assertLess(abs(math.log(test["ratio"] / 1.7)), 0.1)
+        first = document["units"][0]["tests"][0]
+        self.assertLess(abs(math.log(first["ratio"] / 1.7)), 0.1)
+        self.assertEqual((first["verdict"], first["gated"]), ("beyond", True))
+
+    def test_an_undecided_run_exits_3_unless_told_otherwise(self) -> None:
+        arms = ("--baseline", "baseline/0.csv", "--candidate", "candidate/0.csv")
+        text = self.regress(3, *arms)
+        self.assertTrue(text.startswith("INCONCLUSIVE: Undecided"), text)
+        self.assertIn("sessions an arm decide", text)
+        self.assertIn("the scatter between sessions is assumed (2.0 % gyro), not measured", text)
+        self.regress(0, *arms, "--inconclusive", "pass")
+        self.regress(1, *arms, "--inconclusive", "fail")
+
+    def test_stored_results_give_the_same_run_as_their_files(self) -> None:
+        from_files = self.document(0, "--baseline", *self.files("baseline"), "--candidate", *self.files("candidate"))
+        stored = []
+        for arm in ("baseline", "candidate"):
+            for name in self.files(arm):
+                done = self.driftlab("characterise", name, "--models", "WN,WN+GM", "--json")
+                document = json.loads(done.stdout)
+                document["recordings"][0]["id"] = name
+                stored.append(name.replace(".csv", ".json"))
+                (self.folder / stored[-1]).write_text(json.dumps(document))
+        from_results = self.document(0, "--baseline", *stored[:3], "--candidate", *stored[3:])
+        self.assertEqual(from_files["units"], from_results["units"])
+
+    def test_a_state_keeps_anchor_and_looks(self) -> None:
+        state = ("--state", str(self.folder / "gate.json"))
+        first = self.document(0, *state, "--baseline", *self.files("baseline"), "--baseline-label", "firmware=1.0",
+                              "--candidate", "candidate/0.csv", "candidate/1.csv", "--candidate-label", "firmware=1.1",
+                              "--inconclusive", "pass")
+        self.assertEqual((first["look"]["number"], first["look"]["counted"]), (1, True))
+        again = self.document(0, *state, "--candidate", "candidate/0.csv", "candidate/1.csv", "--candidate-label", "firmware=1.1",
+                              "--inconclusive", "pass")
+        self.assertEqual(again["look"]["number"], 1, "the same recordings are the same look")
+        self.assertEqual(again["units"], first["units"])
+        second = self.document(0, *state, "--candidate", "candidate/2.csv", "--candidate-label", "firmware=1.1", "--inconclusive", "pass")
+        self.assertEqual((second["look"]["number"], len(second["arms"]["candidate"]["sessions"])), (2, 3))
+        self.document(0, *state, "--candidate", *self.files("worse")[:1], "--candidate-label", "firmware=1.1", "--inconclusive", "pass")
+        refused = self.regress(2, *state, "--candidate", *self.files("worse")[1:2], "--candidate-label", "firmware=1.1")
+        self.assertIn("start a new label", refused)
+        self.regress(2, *state, "--accept", "firmware=9", "--reason", "none")
+        self.regress(2, *state, "--accept", "firmware=1.1")
+        self.assertIn("firmware=1.1", self.regress(0, *state, "--accept", "firmware=1.1", "--reason", "meant so"))
+
+    def test_run_json_names_sessions_exclusions_and_settings(self) -> None:
+        run: dict[str, Any] = {"device": {"id": "imu-07"},
+               "baseline": {"labels": {"firmware": "1.0"}, "recordings": [{"id": f"b{i}", "file": f"baseline/{i}.csv"} for i in range(3)]},
+               "candidate": {"labels": {"firmware": "1.1"},
+                             "recordings": [{"id": f"c{i}", "file": f"candidate/{i}.csv", "session": "Monday"} for i in range(3)]},
+               "excluded": [{"recording": "b2", "reason": "cable touched"}], "settings": {"looks": 1}}
+        (self.folder / "run.json").write_text(json.dumps(run))
+        done = self.driftlab("regress", "run.json", "--models", "WN,WN+GM", "--json")
+        document = json.loads(done.stdout)
+        self.assertEqual(len(document["arms"]["candidate"]["sessions"]), 1)
+        self.assertEqual(len(document["arms"]["baseline"]["sessions"]), 2)
+        self.assertEqual(document["arms"]["excluded"], run["excluded"])
+        self.assertEqual(document["look"]["share"], 1)
+        for i, recording_ in enumerate(run["candidate"]["recordings"]):
+            del recording_["session"]
+            recording_["recorded_at"] = f"2026-11-22T1{i}:00:00+01:00"  # ten minutes long, an hour apart
+        (self.folder / "timed.json").write_text(json.dumps(run))
+        timed = json.loads(self.driftlab("regress", "timed.json", "--models", "WN,WN+GM", "--json").stdout)
+        self.assertEqual(len(timed["arms"]["candidate"]["sessions"]), 3)
+        for fault, words in (({**run, "candidates": {}}, "candidates"), ({**run, "settings": {"margins": 3}}, "margins"),
+                             ({**run, "excluded": [{"recording": "b2"}]}, "reason"), ({"baseline": run["baseline"]}, "candidate")):
+            (self.folder / "bad.json").write_text(json.dumps(fault))
+            bad = self.driftlab("regress", "bad.json")
+            self.assertEqual((bad.returncode, bad.stdout), (2, ""))
+            self.assertIn(words, bad.stderr)
+            self.assertEqual(len(bad.stderr.strip().splitlines()), 1)
+
+    def test_bad_input_is_one_sentence(self) -> None:
+        self.assertIn("in both arms", self.regress(2, "--baseline", "baseline/0.csv", "--candidate", "baseline/0.csv"))
+        (self.folder / "copy.csv").write_text((self.folder / "baseline/0.csv").read_text())
+        self.assertIn("same samples", self.regress(2, "--baseline", "baseline/0.csv", "--candidate", "copy.csv"))
+        self.assertIn("--candidate", self.regress(2, "--baseline", "baseline/0.csv"))
+        self.assertIn("--baseline", self.regress(2, "--candidate", "candidate/0.csv"))
+        self.regress(2, "--baseline", "absent.csv", "--candidate", "candidate/0.csv")
+        for text in ("[]", "{", '{"format": "driftlab-regress-state/1", "labels": [3], "runs": []}', '{"recordings": [7]}', '{"recordings": [{"id": "a"}]}'):
+            (self.folder / "odd.json").write_text(text)
+            self.regress(2, "--state", "odd.json", "--candidate", "candidate/0.csv", "--candidate-label", "a=b")
+            self.regress(2, "--baseline", "odd.json", "--candidate", "candidate/0.csv")
+
+    def test_the_artefacts_of_ci_lie_in_one_folder_and_say_the_same(self) -> None:
+        done = self.driftlab("ci", "--models", "WN,WN+GM", "--baseline", *self.files("baseline"), "--candidate",
+                             *self.files("worse"), "--candidate-label", 'firmware=<1.1>&"')
+        self.assertEqual(done.returncode, 1, done.stderr)
+        report = self.folder / "driftlab-report"
+        self.assertEqual(sorted(path.name for path in report.iterdir()), ["badge.svg", "junit.xml", "ratio.svg", "regression.json", "summary.md"])
+        document = json.loads((report / "regression.json").read_text())
+        summary = (report / "summary.md").read_text().splitlines()
+        self.assertEqual(summary[0], "**FAIL**: " + document["summary"]["verdict"].replace("[", "\\[").replace("]", "\\]"))
+        self.assertEqual(summary[1], "<!-- driftlab-regression -->")
+        self.assertLess(next(i for i, line in enumerate(summary) if line.startswith("<details>")), 60)
+        self.assertIn("](ratio.svg)", "\n".join(summary))
+        suites = ElementTree.parse(report / "junit.xml").getroot()
+        cases = {case.get("name"): case for case in suites.iter("testcase")}
+        self.assertIsNotNone(cases["verdict"].find("failure"))
+        self.assertEqual(int(suites.get("failures", "")), len(suites.findall(".//failure")))
+        self.assertEqual(int(suites.get("tests", "")), len(cases))
+        badge = ElementTree.parse(report / "badge.svg").getroot()
+        self.assertEqual(badge.get("height"), "20")
+        self.assertIn("worse: gyro z +", "".join(badge.itertext()))
+        self.assertIn("svg", ElementTree.parse(report / "ratio.svg").getroot().tag)
+
+
+class Templates(unittest.TestCase):
+    """Each template's steps, run in a shell in a repository like the one that its first lines describe."""
+
+    def steps(self, name: str) -> list[str]:
+        text = (DEPLOY / name).read_text()
+        if name == "Jenkinsfile":
+            steps = re.findall(r"script: '([^']+)'", text) + re.findall(r"^\s*sh '([^']+)'", text, re.MULTILINE)
+            self.assertIn("archiveArtifacts 'driftlab-report/**'", text)
+            return steps
+        document = yaml.safe_load(text)
+        if name == "gitlab-ci.yml":
+            job = document["sensor-noise"]
+            self.assertEqual(job["artifacts"]["reports"]["junit"], "driftlab-report/junit.xml")
+            self.assertEqual(job["allow_failure"], {"exit_codes": 3})
+            return [*job["script"], *job["after_script"]]
+        return [step["run"] for step in document["jobs"]["regress"]["steps"] if "run" in step]
+
+    def test_every_template_gates_and_posts_the_summary(self) -> None:
+        for name in ("github-actions.yml", "gitlab-ci.yml", "Jenkinsfile"):
+            steps = self.steps(name)
+            self.assertEqual(len(steps), 2, name)
+            for white, expected in ((0.1, 0), (0.17, 1)):
+                with self.subTest(name, white=white), tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
+                    repository = Path(folder)
+                    for arm, level, scale in (("baseline", 0.1, 1.0), ("candidate", white, 1.01)):
+                        (repository / arm).mkdir()
+                        for session in range(3):
+                            (repository / arm / f"{session}.csv").write_text(recording(1 + session, level, scale))
+                    environment = {**os.environ, "PATH": f"{Path(PROGRAM).parent}:{os.environ['PATH']}",
+                                   "GITHUB_STEP_SUMMARY": str(repository / "posted.md")}
+                    done = [subprocess.run(["bash", "-e", "-c", step], cwd=repository, env=environment, capture_output=True, text=True,
+                                           timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL) for step in steps]
+                    self.assertEqual([each.returncode for each in done], [expected, 0], done[0].stderr)
+                    posted = (repository / "posted.md").read_text() if name == "github-actions.yml" else done[1].stdout
+                    self.assertTrue(posted.startswith("**PASS**" if expected == 0 else "**FAIL**"), posted)
+
+    def test_templates_are_ten_lines_or_little_more(self) -> None:
+        for name in ("github-actions.yml", "gitlab-ci.yml", "Jenkinsfile"):
+            lines = [line for line in (DEPLOY / name).read_text().splitlines() if not line.startswith(("#", "//"))]
+            self.assertLessEqual(len(lines), 14, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
