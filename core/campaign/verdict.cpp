@@ -224,11 +224,13 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
   if (moved == 0) {
     verdict.sentence += " No change against " + table.rows.front().label + " is shown.";
   } else {
-    verdict.sentence +=
-        " It moves under " +
-        (moved == compared && compared > 1 ? "every other condition"
-                                           : counted(moved) + " of " + counted(compared) + " other conditions") +
-        ": a model of " + table.rows.front().label + " alone is wrong for this device in motion.";
+    verdict.sentence += " It moves";
+    if (compared > 1) {
+      verdict.sentence += moved == compared
+                              ? " under every other condition"
+                              : " under " + counted(moved) + " of " + counted(compared) + " other conditions";
+    }
+    verdict.sentence += ": a model of " + table.rows.front().label + " alone is wrong for this device in motion.";
     raise(verdict, VerdictLevel::Look);
   }
 }

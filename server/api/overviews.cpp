@@ -49,6 +49,16 @@ Json axis_summary(const Fit& fit) {
                                                    : "too few scales to test whether the best model fits")}};
 }
 
+/// Of two best fits of an axis the one at rest stands for it, and of two at rest the one that does not fit: a glance
+/// must not pass over it.
+bool tells_more(const Fit& fit, const Fit& shown) {
+  const bool rests = fit.condition == "static";
+  if (rests != (shown.condition == "static")) {
+    return rests;
+  }
+  return rests && axis_summary(fit).at("level") == "look" && axis_summary(shown).at("level") == "fine";
+}
+
 Result<Response> get_counts(ApiContext& context, const Request&) {
   auto counts = context.store.counts();
   if (!counts) {
@@ -90,7 +100,7 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
   const Fit* newest = nullptr;
   for (const Fit& fit : *fits) {
     const Fit*& shown = axes[{fit.quantity, fit.axis}];
-    if (shown == nullptr || (shown->condition != "static" && fit.condition == "static")) {
+    if (shown == nullptr || tells_more(fit, *shown)) {
       shown = &fit;
     }
     if (newest == nullptr || fit.created_at > newest->created_at) {

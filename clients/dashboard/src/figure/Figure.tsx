@@ -164,7 +164,7 @@ export function Figure(props: FigureProps): JSX.Element {
     {props.readout && <div class="readout">{x === null ? props.quietReadout ?? <span>Move over the figure, or focus it and use the arrow keys.</span> : props.readout(x)}</div>}
     <div class="figure" ref={box}>
       <div class="visually-hidden" aria-live="polite">{spoken}</div>
-      {width > 0 && <svg ref={svg} viewBox={`0 0 ${plan.width} ${Math.ceil(plan.height)}`} width={plan.width} height={Math.ceil(plan.height)} tabIndex={0} role="img"
+      {width > 0 && <svg ref={svg} viewBox={`0 0 ${plan.width} ${Math.ceil(plan.height)}`} width={plan.width} height={Math.ceil(plan.height)} tabindex={0} role="img"
         aria-label={`${title}. ${props.describe} Arrow keys move along the points, t shows the table.`}
         onMouseMove={move} onMouseLeave={leave} onKeyDown={key}
         onMouseDown={event => { const value = pointed(event); if (props.onZoom && value !== null) { event.preventDefault(); setDrag([value, value]); } }}

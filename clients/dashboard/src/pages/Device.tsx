@@ -10,7 +10,7 @@ import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
 import {copy, curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
 import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
-import {choose, hover, pageOf, usePlace} from '../route';
+import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
 import {Head, Report, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
@@ -80,7 +80,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
   const read = useRead<ParameterTable>(path, undefined);
   const trends = useRead<Trends>(path ? path.replace('/v1/parameter-tables', '/v1/trends') : null);
   const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
-  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (read.data) window.location.assign(`/compare?with=${read.data.rows.map(row => row.recordings[0]).slice(0, 8).join(',')}`); }});
+  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (read.data) go(`/compare?with=${read.data.rows.map(row => row.recordings[0]).slice(0, 8).join(',')}`); }});
   if (!chosen || !path) return <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
   const text = async (type: string, extension: string): Promise<void> => save(`${device.name}-${chosen.axis}.${extension}`, type, await (await ask(path, {headers: {Accept: type}})).text());
   const selected = (query.get('sel') ?? '').split('|').filter(Boolean);
@@ -113,7 +113,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
 function CharacteriseAll({device}: {device: Device}): JSX.Element | null {
   const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&limit=100`);
   if (!read.data || read.data.items.length === 0) return null;
-  return <Characterise recordings={read.data.items.map(one => one.id)} label="Characterise" onQueued={job => window.location.assign(pageOf('jobs', job.id))} />;
+  return <Characterise recordings={read.data.items.map(one => one.id)} label="Characterise" onQueued={job => go(pageOf('jobs', job.id))} />;
 }
 
 export default function DevicePage(): JSX.Element {

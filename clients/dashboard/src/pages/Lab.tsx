@@ -61,7 +61,7 @@ const WIDTH = 460;
 function Levels({channels, scale}: {channels: readonly AxisSummary[]; scale: Scale | null}): JSX.Element {
   if (!scale) return <svg viewBox={`0 0 ${WIDTH} 34`} width="100%" aria-hidden="true" />;
   const known = channels.filter(channel => channel.N && channel.N.value !== null);
-  return <svg viewBox={`0 0 ${WIDTH} 34`} width="100%" height="34" preserveAspectRatio="none" aria-hidden="true">
+  return <svg viewBox={`0 0 ${WIDTH} 34`} width="100%" height="34" preserveAspectRatio="xMinYMid meet" aria-hidden="true">
     {scale.ticks.map(tick => <line key={tick} class="gr" x1={scale(tick)} x2={scale(tick)} y1="0" y2="34" />)}
     {known.map((channel, i) => {
       const y = 17 + (i - (known.length - 1) / 2) * 9;
@@ -108,7 +108,7 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
           <td class="sec">{channels.length === 0 ? 'not characterised' : worst ? <><span class="g warn" aria-hidden="true">△ </span>{worst.fits === false ? 'no fit' : 'not tested'}: {worst.axis ?? 'channel'}</> : 'fits'}{device.summary?.latest ? <span class="dim">, {writeWhen(device.summary.latest.at)}</span> : ''}</td>
         </tr>;
       })}
-      {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
+      {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18" preserveAspectRatio="xMinYMid meet">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
       </tbody>
     </table></div>
     {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}

@@ -58,12 +58,12 @@ function Staircase({evaluation, from}: {evaluation: Evaluation; from: Filter | u
   const [low, high] = [Math.min(level, ...stairs.map(each => each.after)), Math.max(start, ...stairs.map(each => each.before))];
   const width = 620;
   const x = (value: number): number => 210 + (value - low) / Math.max(high - low, 1e-9) * (width - 400);
-  return <svg viewBox={`0 0 ${width} ${32 * (stairs.length + 1) + 26}`} width="100%" role="img" aria-label={`From ${writeNumber(start)} m with ${from.name}: ${stairs.map(each => `${each.name} ${writeQuantity(each.pair.difference_m).value} m`).join(', ')}.`}>
+  return <div class="scroll" tabIndex={0} role="region" aria-label="Staircase"><svg viewBox={`0 0 ${width} ${32 * (stairs.length + 1) + 26}`} class="staircase" width="100%" role="img" aria-label={`From ${writeNumber(start)} m with ${from.name}: ${stairs.map(each => `${each.name} ${writeQuantity(each.pair.difference_m).value} m`).join(', ')}.`}>
     <text class="t" x="0" y="20">{from.name}</text><circle cx={x(start)} cy="16" r="4.5" fill="var(--robust)" /><text x={x(start) + 10} y="20">{writeQuantity(from.mean_error_m).value} m</text>
     {stairs.map((each, i) => { const y = 32 * (i + 1) + 16; const written = writeQuantity(each.pair.difference_m); return <g key={each.name}>
       <line class="ax" x1={x(each.before)} x2={x(each.before)} y1={y - 32} y2={y} /><text class="t" x="0" y={y + 4}>{each.name}</text>
       <line x1={x(each.before)} x2={x(each.after)} y1={y} y2={y} stroke="var(--ink)" stroke-width="5" /><text x={Math.max(x(each.before), x(each.after)) + 10} y={y + 4}>{written.value} m {written.interval}</text></g>; })}
-  </svg>;
+  </svg></div>;
 }
 
 function sentence(left: Filter, right: Filter): string {

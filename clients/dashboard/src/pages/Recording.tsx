@@ -6,9 +6,9 @@ import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List,
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
 import {writeDuration} from '../format/time';
 import {unitsFor} from '../format/units';
-import {conditionName, sensorOf, writeUnit} from '../format/words';
+import {capital, conditionName, sensorOf, writeUnit} from '../format/words';
 import {curlOf, defaultReadout, Figure} from '../figure/Figure';
-import {choose, hover, pageOf, usePlace} from '../route';
+import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
 import {Head, Report, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
@@ -116,7 +116,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   const channel = channels.find(one => one.result.channel === named) ?? channels[0];
   const column = channel?.result.channel ?? (named && columns.includes(named) ? named : columns[0]);
   const select = (name: string): void => choose({ch: name});
-  usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), Escape: () => hover({tau: null})});
+  usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), c: () => go(`/compare?with=${recording.id}`), Escape: () => hover({tau: null})});
   const title = recording.metadata.id ?? `Recording of ${device.data?.name ?? '…'}`;
   useTitle(title);
   const deviceName = device.data?.name ?? recording.device;
@@ -139,7 +139,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
       : read.problem ? <Refusal problem={read.problem} again={read.again} /> : <Hairlines />)}
     {column && <Signal recording={recording} column={column} quantity={channel?.result.quantity ?? 'sensor'} />}
     {read.data && channel && <Evidence recording={recording} result={read.data} channel={channel} />}
-    {!read.data && <div class="grid two"><Panel title="Quality"><p>{qualityWords(recording)}.</p></Panel><FilePanel recording={recording} /></div>}
+    {!read.data && <div class="grid two"><Panel title="Quality"><p>{capital(qualityWords(recording))}.</p></Panel><FilePanel recording={recording} /></div>}
   </>;
 }
 

@@ -8,12 +8,12 @@ import {copy} from '../../figure/Figure';
 import {Panel} from '../../shell/states';
 import {styleOf} from './plots';
 
-function Row({name, symbol, quantity, reason, sample}: {name: string; symbol: string; quantity: Quantity | null; reason?: string | undefined; sample?: JSX.Element | null}): JSX.Element {
+function Row({name, hidden, symbol, quantity, reason, sample}: {name: string; hidden?: string; symbol: string; quantity: Quantity | null; reason?: string | undefined; sample?: JSX.Element | null}): JSX.Element {
   const written = quantity ? writeQuantity(quantity) : null;
   return <tr>
-    <th scope="row">{sample}{name}</th><td>{symbol}</td>
+    <th scope="row">{sample}{name || <span class="visually-hidden">{hidden}</span>}</th><td class="nowrap">{symbol}</td>
     <td class="n">{written ? <b>{written.value}</b> : <b title={reason}>…</b>}</td>
-    {written ? <><td class="ci">{written.interval}</td><td class="u">{writeUnit(quantity?.unit)}</td></> : <td class="u" colSpan={2}>{reason ? writeSentence(reason) : 'not identifiable'}</td>}
+    {written ? <><td class="ci">{written.interval}</td><td class="u nowrap">{writeUnit(quantity?.unit)}</td></> : <td class="u" colSpan={2}>{reason ? writeSentence(reason) : 'not identifiable'}</td>}
   </tr>;
 }
 
@@ -32,10 +32,10 @@ export function FittedModel({fit}: {fit: ModelFit}): JSX.Element {
         const nth = seen.get(process.process) ?? 0;
         seen.set(process.process, nth + 1);
         const style = styleOf(process.process, nth);
-        const rows = Object.entries(process.params).map(([name, quantity], j) => <Row key={`${i}${name}`} name={j === 0 ? processName(process.process) : ''} symbol={symbolOf(name)} quantity={quantity} reason={process.reasons?.[name]}
+        const rows = Object.entries(process.params).map(([name, quantity], j) => <Row key={`${i}${name}`} name={j === 0 ? processName(process.process) : ''} hidden={processName(process.process)} symbol={symbolOf(name)} quantity={quantity} reason={process.reasons?.[name]}
           sample={j === 0 ? <svg width="30" height="10" aria-hidden="true"><line x1="0" x2="22" y1="6" y2="6" stroke={style.colour} stroke-width="1.6" stroke-dasharray={style.dash} /></svg> : null} />);
         const time = inverse(process.params.beta);
-        return time ? [...rows, <Row key={`${i}time`} name="" symbol="1/β" quantity={time} />] : rows;
+        return time ? [...rows, <Row key={`${i}time`} name="" hidden={processName(process.process)} symbol="1/β" quantity={time} />] : rows;
       })}
     </tbody></table>
     {fit.warnings.map(warning => <p key={warning} class="note"><span class="g warn" aria-hidden="true">△ </span>{warning}</p>)}
@@ -56,8 +56,8 @@ export function Ranking({fits, chosen, onChoose}: {fits: readonly ModelFit[]; ch
   return <Panel title="Ranking" sub={`${fits.length} candidates`}>
     <div class="row u"><span style={{width: '142px'}}>model</span><span>criterion above the best</span></div>
     {fits.map((fit, i) => <button key={`${fit.model}${fit.robust}`} type="button" class="model-row" aria-pressed={i === chosen} onClick={() => onChoose(i)}
-      aria-label={`${fit.model}, ${above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, ${fit.plausible ? 'plausible' : 'ruled out'}, J test ${writeP(fit.j_test?.p)}`}>
-      <span>{fit.model}</span><span class="u">{fit.status === 'collapsed' ? '∅' : ''}</span>
+      aria-label={`${fit.model}, ${above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, ${fit.plausible ? 'plausible' : 'ruled out'}${fit.status === 'collapsed' ? ', a component vanished' : ''}, J test ${writeP(fit.j_test?.p)}`}>
+      <span>{fit.model}</span><span class="u" aria-hidden="true">{fit.status === 'collapsed' ? '∅' : ''}</span>
       <svg viewBox={`0 0 ${width} 26`} width="100%" height="26" preserveAspectRatio="xMinYMid meet" aria-hidden="true">
         {ticks.map(tick => <line key={tick} class="gr" x1={x(tick)} x2={x(tick)} y1="0" y2="26" />)}
         {above[i] !== null && <circle cx={x(above[i]!)} cy="13" r="4" fill={fit.plausible ? 'var(--model)' : 'var(--surface)'} stroke={fit.plausible ? 'var(--model)' : 'var(--ink3)'} stroke-width="1.5" />}

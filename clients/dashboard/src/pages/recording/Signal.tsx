@@ -12,12 +12,13 @@ import {choose, usePlace} from '../../route';
 import {Panel, Shown} from '../../shell/states';
 
 const POINTS = 1200;
+const MEAN_SHOWN = 40;  // samples in a stretch from which on its mean is smoother than they are
 
 function tracePlots(trace: Trace): Plot[] {
   const samples = trace.samples_per_bucket === 1;
   const series: Series = samples
     ? {id: 'samples', name: 'samples', x: trace.time_s, y: trace.mean, line: true, colour: 'var(--measured)', width: 1, noKey: true, ...(trace.time_s.length < 240 ? {mark: 'dot' as const} : {})}
-    : {id: 'range', name: 'mean', x: trace.time_s, y: trace.mean, low: trace.min, high: trace.max, band: 'var(--measured)', line: true, colour: 'var(--surface)', width: 0.6, noKey: true};
+    : {id: 'range', name: 'mean', x: trace.time_s, y: trace.mean, low: trace.min, high: trace.max, band: 'var(--measured)', line: trace.samples_per_bucket >= MEAN_SHOWN, colour: 'var(--surface)', width: 0.6, noKey: true};
   return [{id: 'trace', height: 130, x: {scale: 'linear', name: '', write: value => `${writeTick(Number(value.toPrecision(7)))} s`, domain: [trace.time_s[0] ?? 0, trace.time_s[trace.time_s.length - 1] ?? 1]}, y: {scale: 'linear', name: writeUnit(trace.unit) || 'unit not stated'}, series: [series]}];
 }
 

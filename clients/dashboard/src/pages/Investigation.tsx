@@ -1,0 +1,110 @@
+// What the simulation gets wrong: causes with their sizes, what they mend, what is left, what was not examined.
+import type {JSX} from 'preact';
+import {useRead} from '../api/client';
+import type {Device, List, Quantity, Recording} from '../api/documents';
+import {writeNumber, writeQuantity} from '../format/number';
+import {writeWhen} from '../format/time';
+import {capital, countWord, listWords, plural, processName, symbolOf, writeSentence, writeUnit} from '../format/words';
+import {csvOf, save} from '../figure/export';
+import {curlOf, Tools} from '../figure/Figure';
+import {choose, pageOf, usePlace} from '../route';
+import {Head, Report} from '../shell/Head';
+import {Panel, Segments, Shown} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {Checks} from './investigation/Checks';
+import {axisOf, causeName, columnOf, type Finding, type Investigation} from './investigation/documents';
+import {Measured} from './investigation/Measured';
+
+const MOST_BAR = 1000;
+
+// Grouped by cause, the strongest first.
+function grouped(findings: readonly Finding[]): [string, Finding[]][] {
+  const groups = new Map<string, Finding[]>();
+  for (const finding of findings) groups.set(finding.cause, [...groups.get(finding.cause) ?? [], finding]);
+  const score = (list: Finding[]): number => Math.max(...list.map(finding => finding.score ?? 0));
+  return [...groups].map(([cause, list]) => [cause, [...list].sort((a, b) => (b.score ?? 0) - (a.score ?? 0))] as [string, Finding[]]).sort((a, b) => score(b[1]) - score(a[1]));
+}
+
+function sentence(found: Investigation): string {
+  const groups = grouped(found.findings);
+  const {checks_failed_before: before, checks_failed_after: after} = found.gain;
+  if (groups.length === 0) return before === 0 ? `${found.checks.length} checks, none failed. The simulation agrees with these recordings.` : `${before} of ${found.checks.length} checks fail, and no listed cause explains them.`;
+  const lacks = listWords(groups.slice(0, 4).map(([cause, list]) => `${causeName(cause)}${list.length > 1 ? ` (${list.length} findings)` : ''}`));
+  const more = groups.length > 4 ? ` and ${countWord(groups.length - 4)} more` : '';
+  const still = after > before / 2 && after > 0 ? `${after} of ${before} failed checks still fail. ` : '';
+  return `${still}The simulation lacks ${lacks}${more}. Adding ${groups.length === 1 && groups[0]![1].length === 1 ? 'it' : 'them'} mends ${before === after ? 'none' : before - after} of ${before} failed checks out of ${found.checks.length}.`;
+}
+
+function Size({name, quantity}: {name: string; quantity: Quantity}): JSX.Element {
+  const written = writeQuantity(quantity);
+  return <span class="nowrap"><span class="sec">{symbolOf(name.replace(/_/g, ' '))}</span> <b>{written.value}</b> <span class="u">{writeUnit(quantity.unit)}</span> <span class="ci">{written.interval}</span></span>;
+}
+
+function FindingRow({finding, names, total}: {finding: Finding; names: Map<string, string>; total: number}): JSX.Element {
+  const recordings = [...new Set(finding.channels.map(channel => /^(rec_[0-9A-Z]{26})\//.exec(channel)?.[1]).filter((id): id is string => Boolean(id)))];
+  const axes = [...new Set(finding.channels.map(axisOf))];
+  const score = finding.score ?? 0;
+  return <li class={`finding ${finding.status}`}>
+    <div class="row"><b>{axes.join(', ')}</b>{Object.entries(finding.parameters).map(([name, quantity]) => <Size key={name} name={name} quantity={quantity} />)}
+      <span class="right nowrap sec">{recordings.length === 0 || recordings.length === total ? `all ${total || ''}` : recordings.length === 1 ? `${names.get(recordings[0]!) ?? 'one'} only` : `${recordings.length} of ${total}`}</span>
+      <span class="nowrap" title="evidence; over 6 identifies"><svg width="90" height="8" aria-hidden="true"><rect x="0" y="1" width={Math.min(90, Math.log1p(Math.max(score, 0)) / Math.log1p(MOST_BAR) * 90)} height="5" fill="var(--model)" /></svg> {writeNumber(score, 3)}</span></div>
+    <details><summary class="sec">{finding.status === 'ambiguous' && finding.alternatives.length > 0 ? `cannot be told from ${listWords(finding.alternatives.map(causeName))}` : 'explanation'}</summary>
+      <p>{writeSentence(finding.explanation)}</p>{finding.next_measurement && <p class="sec">Next: {finding.next_measurement}</p>}
+      {finding.gain.heldout && <p class="u">held-out gain {writeNumber(finding.gain.log_score_per_sample)} nats a sample; misfit {writeNumber(finding.gain.misfit_before)} → {writeNumber(finding.gain.misfit_after)}</p>}</details>
+  </li>;
+}
+
+function NotExamined({found}: {found: Investigation}): JSX.Element {
+  const needs = new Map<string, Set<string>>();
+  for (const each of found.not_examined ?? []) needs.set(each.needs, (needs.get(each.needs) ?? new Set()).add(each.cause));
+  const rows = [...needs].sort((a, b) => b[1].size - a[1].size);
+  return <Panel title="Not examined" sub="what the next recording should hold">{rows.length === 0 ? <p class="sec">Every listed cause was examined.</p> : <table class="stacked"><thead><tr><th scope="col">needs</th><th scope="col">would decide</th><th scope="col" class="n">causes</th></tr></thead>
+    <tbody>{rows.map(([need, causes]) => <tr key={need}><th scope="row">{capital(need)}</th><td class="sec">{[...causes].map(causeName).join(', ')}</td><td class="n">{causes.size}</td></tr>)}</tbody></table>}</Panel>;
+}
+
+function Found({found}: {found: Investigation}): JSX.Element {
+  const {query} = usePlace();
+  const device = useRead<Device>(`/v1/devices/${found.device}`);
+  const recordings = useRead<List<Recording>>(`/v1/recordings?device=${found.device}&limit=500`);
+  const names = new Map((recordings.data?.items ?? []).map(one => [one.id, one.metadata.id ?? one.id] as const));
+  const ids = new Set(found.checks.map(check => check.recording).filter(Boolean));
+  const {gain} = found;
+  const outage = gain.outage_error_m;
+  const groups = grouped(found.findings);
+  const series = found.findings.flatMap(finding => finding.series ? [finding.series] : []);
+  const channels = [...new Map(series.map(one => [one.channel, one] as const)).values()];
+  const shown = channels.find(one => one.channel === query.get('axis')) ?? channels[0];
+  const title = `What the simulation gets wrong: ${device.data?.name ?? '…'}`;
+  const table = (): void => save(`${found.id}-findings.csv`, 'text/csv', csvOf({heading: ['cause', 'status', 'channels', 'parameter', 'value', 'low', 'high', 'unit', 'score'], rows: found.findings.flatMap(finding => Object.entries(finding.parameters).map(([name, q]) => [finding.cause, finding.status, finding.channels.map(columnOf).join(' '), name, q.value, q.ci95?.[0] ?? null, q.ci95?.[1] ?? null, q.unit, finding.score ?? null]))}));
+  useTitle(title);
+  const causes = new Set((found.not_examined ?? []).map(each => each.cause)).size;
+  return <>
+    <Head crumb={[['Investigations', '/investigations'], [device.data?.name ?? '…', device.data ? pageOf('devices', device.data.name) : null]]} title={title}
+      facts={[plural(ids.size, 'recording'), `baseline ${found.baseline.processes.map(process => processName(process.process)).join(' + ')}`, writeWhen(found.created_at)]}
+      actions={<>{found.model && <a class="btn" href={pageOf('models', found.model)}>Extended model</a>}<a class="btn" href={pageOf('jobs', found.job)}>Job</a><Report /></>} />
+    <p class="verdict">{sentence(found)}<small>{found.unexplained.map(one => writeSentence(one.explanation)).join(' ')} {causes > 0 ? `${capital(countWord(causes))} cause${causes === 1 ? '' : 's'} could not be examined with these recordings.` : ''}</small></p>
+    <section class="panel figures4">
+      <div><span class="sec">failed checks, of {found.checks.length}</span><strong>{gain.checks_failed_before} → {gain.checks_failed_after}</strong><span class="u">5 % false alarms over all of them together</span></div>
+      <div><span class="sec">misfit, nats per sample</span><strong>{writeNumber(gain.misfit_before)} → {writeNumber(gain.misfit_after)}</strong><span class="u">held out where there was enough</span></div>
+      <div><span class="sec">outage error, 10 s</span><strong>{outage.baseline === null ? '–' : `${writeNumber(outage.baseline, 2)} m → ${writeNumber(outage.adopted ?? outage.extended, 2)} m`}</strong><span class="u">{outage.baseline === null ? 'no axis of an inertial unit' : 'two outages, as each model predicts'}</span></div>
+      <div><span class="sec">causes not examined</span><strong>{causes}</strong><span class="u">what the next recording decides, below</span></div>
+    </section>
+    {channels.length > 1 && <p class="row" style={{marginTop: '16px'}}><Segments label="Channel" options={channels.map(one => [one.channel, columnOf(one.channel)] as const)} value={shown?.channel ?? ''} onChange={value => choose({axis: value})} /></p>}
+    {shown && <Measured found={found} one={shown} />}
+    {groups.map(([cause, list], i) => <Panel key={cause} title={capital(causeName(cause))} sub={`${list.every(finding => finding.status === 'identified') ? 'identified' : 'ambiguous'} · ${plural(list.length, 'finding')}`} tools={i === 0 ? <Tools title="The search" onCsv={table} curl={curlOf(`/v1/investigations/${found.id}`)} how={() => <p>Every listed cause is sought in the recordings, estimated, held out and compared with its rivals; checks compare the recordings with simulations of the baseline, corrected for their number. <a href="/docs/analysis">The manual</a> tells how.</p>} /> : undefined}>
+      <ul class="rows plain">{list.map((finding, j) => <FindingRow key={j} finding={finding} names={names} total={ids.size} />)}</ul>
+    </Panel>)}
+    <div class="grid two">
+      <Panel title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`}><Checks found={found} names={names} /></Panel>
+      <NotExamined found={found} />
+    </div>
+    {(found.notes ?? []).map(note => <p key={note} class="note">{note}</p>)}
+  </>;
+}
+
+export default function InvestigationPage(): JSX.Element {
+  const {parts} = usePlace();
+  const read = useRead<Investigation>(`/v1/investigations/${encodeURIComponent(parts[1] ?? '')}`);
+  useTitle('Investigation');
+  return <Shown read={read}>{found => <Found found={found} />}</Shown>;
+}

@@ -1,0 +1,41 @@
+// Where it was looked, and how much: recordings and axes against kinds of checks.
+import type {JSX} from 'preact';
+import {checkKind, columnOf, type Check, type Finding, type Investigation} from './documents';
+
+const CELL = 22;
+const LEFT = 190;
+const TOP = 118;
+const UNCORRECTED = 0.05;
+
+function mended(check: Check, found: Investigation): boolean {
+  return !found.unexplained.some(one => one.checks.includes(check.id)) && found.findings.some((finding: Finding) => finding.because.some(id => check.id === id || check.id.endsWith(id)));
+}
+
+export function Checks({found, names}: {found: Investigation; names: Map<string, string>}): JSX.Element {
+  const rows = [...new Set(found.checks.map(check => `${check.recording ?? ''}\u0001${columnOf(check.channel)}`))];
+  const kinds = [...new Set(found.checks.map(checkKind))];
+  const at = new Map<string, Check>(found.checks.map(check => [`${check.recording ?? ''}\u0001${columnOf(check.channel)}\u0001${checkKind(check)}`, check] as const));
+  const failed = found.checks.filter(check => check.failed);
+  return <>
+    <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg width={LEFT + kinds.length * CELL + 70} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
+      {kinds.map((kind, i) => <text key={kind} class="s" transform={`translate(${LEFT + i * CELL + 14},${TOP - 8}) rotate(-52)`}>{kind}</text>)}
+      {rows.map((row, j) => {
+        const [recording = '', column = ''] = row.split('\u0001');
+        const first = j === 0 || !rows[j - 1]!.startsWith(recording);
+        const y = TOP + j * CELL + CELL / 2;
+        return <g key={row}>
+          {first && <text class="t" x="0" y={y + 4}>{(recording ? names.get(recording) ?? '' : 'whole study').slice(0, 16)}</text>}
+          <text class="s" x={LEFT - 8} y={y + 4} text-anchor="end">{column.slice(0, 14)}</text>
+          {kinds.map((kind, i) => {
+            const check = at.get(`${row}\u0001${kind}`);
+            if (!check) return null;
+            const x = LEFT + i * CELL + CELL / 2;
+            if (check.failed) return <rect key={kind} x={x - 5} y={y - 5} width="10" height="10" fill={mended(check, found) ? 'var(--surface)' : 'var(--robust)'} stroke="var(--robust)" stroke-width="1.8" />;
+            return <circle key={kind} cx={x} cy={y} r={check.p !== null && check.p < UNCORRECTED ? 3 : 1.1} fill="var(--ink3)" />;
+          })}
+        </g>;
+      })}
+    </svg></div>
+    <p class="note"><b style={{color: 'var(--robust)'}}>■</b> fails and no finding explains it · <b style={{color: 'var(--robust)'}}>□</b> a finding rests on it · ● p &lt; 0.05 but not after correction for {found.checks.length} checks · · agrees</p>
+  </>;
+}

@@ -1,0 +1,33 @@
+import type {Nullable, Quantity} from '../../api/documents';
+
+export interface Band { q025: Nullable; median: Nullable; q975: Nullable }
+export interface SeriesDocument {
+  recording: string; channel: string; unit: string;
+  wavelet: {scale_s: number[]; measured: Nullable; baseline: Band; remaining: Nullable; extended: Band};
+  spectrum: {f_hz: number[]; measured: Nullable; baseline: Nullable; remaining: Nullable};
+  course: {time_s: number[]; error: Nullable; effect: Nullable};
+}
+export interface Finding {
+  cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; channels: string[]; because: string[]; explanation: string; parameters: Record<string, Quantity>; score?: number | null;
+  gain: {log_score_per_sample: number | null; misfit_before: number | null; misfit_after: number | null; heldout: boolean}; next_measurement: string | null; series?: SeriesDocument;
+}
+export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean }
+export interface Model { processes: {process: string; params: Record<string, Quantity>}[]; effects?: {cause: string; channels: string[]; params: Record<string, Quantity>}[] }
+export interface Investigation {
+  study: string; id: string; job: string; device: string; baseline_model?: string; model?: string; created_at: string; baseline: Model; extended_model: Model; checks: Check[]; findings: Finding[];
+  gain: {misfit_before: number | null; misfit_after: number | null; checks_failed_before: number; checks_failed_after: number; outage_error_m: {baseline: number | null; extended: number | null; measured: number | null; adopted?: number | null; ci95?: {baseline?: Nullable; extended?: Nullable; adopted?: Nullable}; left_out?: string[]}};
+  unexplained: {channel: string; explanation: string; checks: string[]}[]; not_examined?: {cause: string; channel: string; needs: string}[]; notes?: string[];
+}
+export interface InvestigationRow { id: string; job: string; device: string; study: string; created_at: string; findings: {cause: string; status: string; channels: string[]}[] }
+
+export const causeName = (cause: string): string => cause === 'gauss_markov' ? 'Gauss-Markov' : cause.replace(/_/g, ' ');
+
+// The column of `rec_…/gyro_x (rad/s)`: what follows the id.
+export const columnOf = (channel: string): string => channel.replace(/^rec_[0-9A-Z]{26}\//, '');
+export const axisOf = (channel: string): string => /(?:^|[^a-z])([xyz])(?:[^a-z]|$)/i.exec(columnOf(channel).replace(/_/g, ' '))?.[1]?.toLowerCase() ?? columnOf(channel);
+// The kind of a check: what follows the channel; scales are written as times.
+export function checkKind(check: Check): string {
+  const tail = check.id.slice(check.id.lastIndexOf(check.channel) + check.channel.length + 1);
+  const scale = /^wavelet_variance_(.+)s$/.exec(tail);
+  return scale ? `${Number(scale[1]).toPrecision(2)} s` : causeName(tail);
+}

@@ -1,0 +1,142 @@
+// A day in the lab, in a real browser before the real daemon.
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {after, before, test} from 'node:test';
+import {Daemon, csv, launch, open} from './world.mjs';
+
+let browser;
+let daemon;
+before(async () => { browser = await launch(); daemon = await Daemon.start(); });
+after(async () => { await browser?.close(); await daemon?.end(); });
+
+const visible = (page, text) => page.getByText(text).first().waitFor();
+
+test('an empty lab leads from the sample to its device without reading anything', async () => {
+  const page = await open(browser, daemon, '/');
+  await visible(page, 'Drop a recording of a sensor at rest; you get its noise model.');
+  await page.getByRole('button', {name: 'Try the sample'}).click();
+  await page.getByRole('button', {name: 'Upload two and characterise'}).click();
+  await visible(page, 'stored');
+  await page.waitForFunction(() => document.querySelectorAll('a[href^="/jobs/"]').length >= 2);
+  await page.goto(`${daemon.address}/devices/iphone5s-simulated`);
+  await page.getByRole('heading', {name: 'Parameters by condition'}).waitFor();
+  await visible(page, 'White noise is 1.03');
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('a refusal is repaired in place, and the recording ends in a figure that is a file of its own', async () => {
+  const page = await open(browser, daemon, '/upload');
+  await page.locator('input[type=file]').setInputFiles({name: 'bench gyro.csv', mimeType: 'text/csv', buffer: Buffer.from(csv(6000))});
+  await page.getByLabel('Device of bench gyro.csv').fill('bench-01');
+  await page.getByRole('button', {name: /^Upload .*and characterise/}).click();
+  await page.getByLabel('Rate in Hz that repairs bench gyro.csv').fill('100');
+  assert.equal(await page.getByLabel('Device of bench gyro.csv').inputValue(), 'bench-01', 'what was typed is lost');
+  await page.getByRole('button', {name: /^Upload .*and characterise/}).click();
+  await page.waitForURL(/\/recordings\/rec_/);
+  await page.getByRole('heading', {name: 'Ranking'}).waitFor();
+  await page.locator('.verdict', {hasText: /describes this recording|does not/}).waitFor();
+  const figure = page.locator('section.panel', {has: page.getByRole('heading', {name: 'Allan deviation'})});
+  const [download] = await Promise.all([page.waitForEvent('download'), figure.getByRole('button', {name: 'SVG'}).click()]);
+  const svg = readFileSync(await download.path(), 'utf8');
+  assert.match(download.suggestedFilename(), /allan\.svg$/);
+  assert.match(svg, /^<svg [^>]*xmlns="http:\/\/www\.w3\.org\/2000\/svg"/);
+  assert.match(svg, /<title>Allan deviation\./);
+  assert.match(svg, /driftlab, rec_/);
+  assert.doesNotMatch(svg, /var\(--|data-cursor|<script/);
+  const [table] = await Promise.all([page.waitForEvent('download'), figure.getByRole('button', {name: 'CSV'}).click()]);
+  assert.match(readFileSync(await table.path(), 'utf8').split('\n')[0], /averaging time τ, s|classical/);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('the address holds the view: back undoes, reload restores, a second tab shows the same', async () => {
+  const [recording] = (await daemon.json('/v1/recordings?sort=-created_at')).items;
+  const page = await open(browser, daemon, `/recordings/${recording.id}`);
+  await page.getByRole('button', {name: 'Haar wavelet'}).click();
+  await page.waitForURL(/curve=haar/);
+  await page.getByRole('combobox', {name: 'Unit'}).selectOption('rad/s');
+  await page.waitForURL(/unit=rad/);
+  await page.goBack();
+  assert.doesNotMatch(page.url(), /unit=/);
+  await page.reload();
+  await page.getByRole('heading', {name: 'Haar wavelet deviation'}).waitFor();
+  const figure = page.locator('section.panel', {has: page.getByRole('heading', {name: 'Haar wavelet deviation'})}).locator('svg[role=img]');
+  await figure.focus();
+  await page.keyboard.press('Home');
+  await page.keyboard.press('ArrowRight');
+  await page.waitForURL(/tau=/);
+  assert.match(await page.locator('.readout').innerText(), /τ 0\.02.*classical/s);
+  const other = await open(browser, daemon, new URL(page.url()).pathname + new URL(page.url()).search);
+  await other.getByRole('heading', {name: 'Haar wavelet deviation'}).waitFor();
+  await other.locator('.readout', {hasText: 'τ 0.02'}).waitFor();
+  await page.keyboard.press('Escape');
+  await page.waitForURL(url => !url.search.includes('tau='));
+  assert.deepEqual([...page.loud, ...other.loud], []);
+  await page.context().close();
+  await other.context().close();
+});
+
+test('what people name things is text on every page', async () => {
+  const evil = '<img src=x onerror="window.hurt=1">';
+  const recording = await daemon.upload(csv(4000, 7), {device: evil, condition: 'static', rate_hz: 100, id: evil});
+  await daemon.characterise(recording.id);
+  const page = await open(browser, daemon, `/recordings/${recording.id}`);
+  await page.getByRole('heading', {level: 1, name: evil}).waitFor();
+  for (const path of ['/', '/devices', `/devices/${encodeURIComponent(evil)}`, `/compare?with=${recording.id}`]) {
+    await page.goto(daemon.address + path);
+    await page.getByText(evil, {exact: false}).first().waitFor({state: 'attached'});
+    assert.equal(await page.locator('img').count(), 0, path);
+  }
+  assert.equal(await page.evaluate(() => window.hurt), undefined);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('keys lead everywhere and the find field finds', async () => {
+  const page = await open(browser, daemon, '/jobs');
+  await page.getByRole('heading', {level: 1, name: 'Jobs'}).waitFor();
+  await page.keyboard.press('/');
+  await page.keyboard.type('bench');
+  await page.getByRole('option', {name: /bench-01/}).waitFor();
+  await page.keyboard.press('Enter');
+  await page.waitForURL(/\/devices\/bench-01/);
+  await page.keyboard.press('g');
+  await page.keyboard.press('l');
+  await page.getByRole('heading', {level: 1, name: 'Lab'}).waitFor();
+  await page.keyboard.press('?');
+  await page.getByRole('dialog', {name: 'Keys'}).waitFor();
+  await page.keyboard.press('Escape');
+  assert.equal(await page.getByRole('dialog').count(), 0);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('a daemon that restarts under an open page is waited for, and nothing is lost', async () => {
+  const page = await open(browser, daemon, '/devices/bench-01');
+  await page.getByRole('heading', {name: 'Parameters by condition'}).waitFor();
+  const {data, port} = daemon;
+  await daemon.stop('SIGKILL');
+  await page.locator('.offline', {hasText: 'The daemon does not answer. Trying again in 5 s.'}).waitFor();
+  assert.ok(await page.getByRole('heading', {name: 'Parameters by condition'}).isVisible(), 'the page stays readable');
+  daemon = await Daemon.start(data, port);
+  await page.locator('.offline').waitFor({state: 'detached'});
+  await page.getByRole('link', {name: 'Jobs', exact: true}).click();
+  await page.getByRole('cell', {name: /succeeded/}).first().waitFor();
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('a job that cannot succeed says why where it stands', async () => {
+  const recording = await daemon.upload(csv(40, 3), {device: 'short', condition: 'static', rate_hz: 100});
+  const job = await daemon.characterise(recording.id);
+  const page = await open(browser, daemon, `/jobs/${job.id}`);
+  await page.locator('.verdict').waitFor();
+  if (job.state === 'failed') await page.locator('.verdict', {hasText: job.problem.detail.slice(0, 30)}).waitFor();
+  await page.goto(`${daemon.address}/recordings/rec_00000000000000000000000000`);
+  await page.getByRole('alert').waitFor();
+  await page.goto(`${daemon.address}/devices/nobody`);
+  await page.getByRole('alert').waitFor();
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});

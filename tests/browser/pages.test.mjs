@@ -1,0 +1,109 @@
+// Every page: nothing for axe to find in either theme, nothing in the console, nothing wider than a phone. With
+// $DRIFTLAB_SCREENS each is also pictured at 390, 1440 and 2560 px, light and dark, for a person to look at.
+import assert from 'node:assert/strict';
+import {mkdirSync} from 'node:fs';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {Daemon, accessibilityFaults, csv, launch, open} from './world.mjs';
+
+let browser;
+let daemon;
+let paths;
+
+before(async () => {
+  browser = await launch();
+  daemon = await Daemon.start();
+  const ids = [];
+  for (const [condition, seed] of [['static', 1], ['static', 2], ['constant_rate:z:9:deg/s', 3]]) {
+    const sample = await (await fetch(`${daemon.address}/v1/samples/iphone5s-z?seed=${seed}&condition=${encodeURIComponent(condition)}`)).text();
+    ids.push((await daemon.upload(sample, {device: 'phone-07', condition, rate_hz: 100, id: `run-${seed}`})).id);
+  }
+  await daemon.characterise(...ids);
+  const study = await daemon.json('/v1/studies', {device: {id: 'phone-07'}, recordings: ids.slice(0, 2).map(recording => ({recording}))});
+  const investigate = await daemon.json('/v1/jobs', {kind: 'investigate', inputs: {study: study.id}});
+  const outages = await daemon.json('/v1/outage-evaluations', {scenario: 'paper', runs: 2});
+  const waiting = await daemon.upload(csv(4000, 9), {device: 'new-01', condition: 'static', rate_hz: 100});
+  await daemon.finished(investigate.id);
+  await daemon.finished(outages.id);
+  const [investigation] = (await daemon.json('/v1/investigations')).items;
+  const [model] = (await daemon.json('/v1/models')).items;
+  paths = {
+    lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
+    compare: `/compare?with=${ids[0]},${ids[2]}`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
+    outages: '/outages', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
+    model: `/models/${model.id}`, absent: '/regressions',
+  };
+});
+after(async () => { await browser?.close(); await daemon?.end(); });
+
+const settled = async page => {
+  await page.locator('h1').first().waitFor();
+  await page.waitForLoadState('networkidle').catch(() => undefined);  // a page that asks again every few seconds may never be idle
+  await page.waitForFunction(() => !document.querySelector('[aria-busy=true]'), undefined, {timeout: 20000});
+};
+
+for (const colorScheme of ['light', 'dark']) {
+  test(`axe finds nothing on any page, ${colorScheme}`, async () => {
+    const page = await open(browser, daemon, '/', {colorScheme});
+    const faults = [];
+    for (const [name, path] of Object.entries(paths)) {
+      await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
+      await settled(page);
+      faults.push(...(await accessibilityFaults(page)).map(fault => `${name}: ${fault}`));
+    }
+    assert.deepEqual(faults, []);
+    assert.deepEqual(page.loud, []);
+    await page.context().close();
+  });
+}
+
+test('no page is wider than a phone', async () => {
+  const page = await open(browser, daemon, '/', {viewport: {width: 390, height: 844}});
+  const wide = [];
+  for (const [name, path] of Object.entries(paths)) {
+    await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
+    await settled(page);
+    const width = await page.evaluate(() => document.documentElement.scrollWidth);
+    if (width > 390) wide.push(`${name}: ${width}`);
+  }
+  assert.deepEqual(wide, []);
+  await page.context().close();
+});
+
+test('curl gets what it got, browsers get pages that forbid everything of others', async () => {
+  const get = (path, headers = {}) => fetch(daemon.address + path, {headers});
+  const html = {Accept: 'text/html,application/xhtml+xml,*/*;q=0.8'};
+  assert.match((await get('/docs')).headers.get('content-type'), /application\/json/);
+  assert.match((await get('/docs/units')).headers.get('content-type'), /text\/markdown/);
+  assert.equal((await get('/devices')).status, 404);
+  assert.match((await get('/v1/devices', html)).headers.get('content-type'), /application\/json/);
+  const page = await get('/devices', html);
+  assert.equal(page.status, 200);
+  const policy = page.headers.get('content-security-policy');
+  assert.match(policy, /default-src 'none'/);
+  assert.doesNotMatch(policy, /unsafe/);
+  assert.equal(page.headers.get('cache-control'), 'no-cache');
+  const [script] = /\/assets\/main-[\w-]+\.js/.exec(await page.text());
+  const asset = await get(script);
+  assert.match(asset.headers.get('cache-control'), /immutable/);
+  assert.equal(asset.headers.get('content-encoding'), 'gzip');
+  assert.equal((await get(script, {'If-None-Match': asset.headers.get('etag')})).status, 304);
+  assert.equal((await get('/assets/none.js')).status, 404);
+});
+
+if (process.env.DRIFTLAB_SCREENS) {
+  test('pictures of every page', async () => {
+    mkdirSync(process.env.DRIFTLAB_SCREENS, {recursive: true});
+    for (const colorScheme of ['light', 'dark']) {
+      for (const width of [390, 1440, 2560]) {
+        const page = await open(browser, daemon, '/', {colorScheme, viewport: {width, height: 900}});
+        for (const [name, path] of Object.entries(paths)) {
+          await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
+          await settled(page);
+          await page.screenshot({path: join(process.env.DRIFTLAB_SCREENS, `${name}-${width}-${colorScheme}.png`), fullPage: true});
+        }
+        await page.context().close();
+      }
+    }
+  });
+}
