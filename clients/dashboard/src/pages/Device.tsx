@@ -1,6 +1,6 @@
 // One device: its parameters by condition, how they move, its recordings.
 import type {JSX} from 'preact';
-import {useMemo} from 'preact/hooks';
+import {useEffect, useMemo, useState} from 'preact/hooks';
 import {useRead, ask} from '../api/client';
 import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
 import {writeCount} from '../format/number';
@@ -22,6 +22,7 @@ import {Parameters} from './device/Table';
 import {TrendFrame} from './device/TrendPanel';
 
 const CONDITIONS = 8;
+const WAITS_MS = 2500;
 
 function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}): JSX.Element | null {
   const {query} = usePlace();
@@ -120,7 +121,10 @@ export default function DevicePage(): JSX.Element {
   const {parts} = usePlace();
   const name = parts[1] ?? '';
   const read = useRead<Device>(`/v1/devices/${encodeURIComponent(name)}`);
-  const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null);
+  const [waits, setWaits] = useState(true);
+  const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits ? WAITS_MS : undefined);
+  // Until there is a first result the page looks for one.
+  useEffect(() => { if (summary.data) setWaits(summary.data.channels.length === 0); }, [summary.data]);
   useTitle(read.data?.name ?? name);
   return <Shown read={read}>{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}

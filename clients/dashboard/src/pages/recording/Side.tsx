@@ -55,9 +55,8 @@ export function Ranking({fits, chosen, onChoose}: {fits: readonly ModelFit[]; ch
   const closest = fits.findIndex(fit => fit.plausible);
   return <Panel title="Ranking" sub={`${fits.length} candidates`}>
     <div class="row u"><span style={{width: '142px'}}>model</span><span>criterion above the best</span></div>
-    {fits.map((fit, i) => <button key={`${fit.model}${fit.robust}`} type="button" class="model-row" aria-pressed={i === chosen} onClick={() => onChoose(i)}
-      aria-label={`${fit.model}, ${above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, ${fit.plausible ? 'plausible' : 'ruled out'}${fit.status === 'collapsed' ? ', a component vanished' : ''}, J test ${writeP(fit.j_test?.p)}`}>
-      <span>{fit.model}</span><span class="u" aria-hidden="true">{fit.status === 'collapsed' ? '∅' : ''}</span>
+    {fits.map((fit, i) => <button key={`${fit.model}${fit.robust}`} type="button" class="model-row" aria-pressed={i === chosen} onClick={() => onChoose(i)}>
+      <span>{fit.model}<span class="visually-hidden">, {above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, {fit.plausible ? 'plausible' : 'ruled out'}{fit.status === 'collapsed' ? ', a component vanished' : ''}, J test {writeP(fit.j_test?.p)}</span></span><span class="u" aria-hidden="true">{fit.status === 'collapsed' ? '∅' : ''}</span>
       <svg viewBox={`0 0 ${width} 26`} width="100%" height="26" preserveAspectRatio="xMinYMid meet" aria-hidden="true">
         {ticks.map(tick => <line key={tick} class="gr" x1={x(tick)} x2={x(tick)} y1="0" y2="26" />)}
         {above[i] !== null && <circle cx={x(above[i]!)} cy="13" r="4" fill={fit.plausible ? 'var(--model)' : 'var(--surface)'} stroke={fit.plausible ? 'var(--model)' : 'var(--ink3)'} stroke-width="1.5" />}
