@@ -67,7 +67,7 @@ function Levels({channels, scale}: {channels: readonly AxisSummary[]; scale: Sca
       const y = 17 + (i - (known.length - 1) / 2) * 9;
       const [low, high] = channel.N!.ci95 ?? [];
       return <g key={i}>
-        {low && high && <line x1={scale(low)} x2={scale(high)} y1={y} y2={y} stroke="var(--ink)" stroke-width="1.3" />}
+        {low && high && low > 0 && <line x1={scale(low)} x2={scale(high)} y1={y} y2={y} stroke="var(--ink)" stroke-width="1.3" />}
         <MarkAt mark={MARKS[channel.axis ?? ''] ?? 'dot'} x={scale(channel.N!.value!)} y={y} colour="var(--ink)" size={3.2} />
       </g>;
     })}

@@ -44,7 +44,7 @@ function Nees({filters, colours}: {filters: Filter[]; colours: string[]}): JSX.E
     {ticks.map(tick => <g key={tick}><line class={tick === HONEST ? 'ax' : 'gr'} x1={x(tick)} x2={x(tick)} y1="0" y2={height - 18} /><text class="s" x={x(tick)} y={height - 5} text-anchor="middle">{tick}</text></g>)}
     {filters.map((filter, i) => { const y = i * ROW + ROW / 2; const [a, b] = filter.nees_ci95; return <g key={filter.name}>
       {filter.outages.map(one => <circle key={one.index} cx={x(one.nees)} cy={y} r="3" fill="var(--surface)" stroke={colours[i]} stroke-width="1.2" />)}
-      {a && b && <line x1={x(a)} x2={x(b)} y1={y} y2={y} stroke={colours[i]} stroke-width="1.8" />}<circle cx={x(filter.nees)} cy={y} r="4" fill={colours[i]} /></g>; })}
+      {a !== null && a !== undefined && b && <line x1={x(Math.max(a, low))} x2={x(b)} y1={y} y2={y} stroke={colours[i]} stroke-width="1.8" />}<circle cx={x(filter.nees)} cy={y} r="4" fill={colours[i]} /></g>; })}
   </svg></div>;
 }
 
