@@ -40,6 +40,28 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
   return document;
 }
 
+namespace {
+
+/// What is true of the recordings, a line each: it was in the document alone, and a frozen sensor was tabled unmarked.
+std::string notes_of(const Json& document) {
+  std::string text;
+  const auto add = [&](const std::string& whose, const Json& sentences) {
+    for (const Json& sentence : sentences) {
+      text += "! " + whose + ": " + sentence.get<std::string>() + "\n";
+    }
+  };
+  for (const Json& recording : document.at("recordings")) {
+    const auto id = recording.at("id").get<std::string>();
+    add(id, recording.at("quality").at("notes"));
+    for (const Json& channel : recording.at("channels")) {
+      add(id + ", " + channel.at("channel").get<std::string>(), channel.at("warnings"));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
 Result<std::string> tables_of(const Json& document, const std::string& device) {
   std::string text;
   const auto sensors = sensors_of(document);
@@ -64,7 +86,7 @@ Result<std::string> tables_of(const Json& document, const std::string& device) {
       text += pooled->structure->statement + "\n\n";
     }
   }
-  return text;
+  return text + notes_of(document);
 }
 
 }  // namespace driftlab::cli

@@ -169,6 +169,11 @@ std::optional<ColumnRole> infer_bare(std::string_view name, const std::optional<
   if (squashed.empty()) {
     return std::nullopt;
   }
+  for (const auto& [turn, axis] : {std::pair{"roll", "x"}, std::pair{"pitch", "y"}, std::pair{"yaw", "z"}}) {
+    if (squashed == std::string(turn) + "rate") {
+      return ColumnRole{Quantity::AngularRate, axis, unit};
+    }
+  }
   const std::string_view whole = squashed;
   const std::array<std::pair<char, std::string_view>, 2> splits{
       std::pair{whole.back(), whole.substr(0, whole.size() - 1)}, std::pair{whole.front(), whole.substr(1)}};

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace driftlab {
@@ -195,6 +197,26 @@ std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelVi
 
 namespace {
 
+/// Whether a column is known to be a gyroscope or an accelerometer.
+bool has_inertial_column(const RecordingColumns& columns) {
+  for (std::size_t i = 0; i < columns.count(); ++i) {
+    const auto& role = columns.role(i);
+    if (role && (role->quantity == Quantity::AngularRate || role->quantity == Quantity::SpecificForce)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a name speaks of a gyroscope or an accelerometer, though not which axis: `gyro`, `acc_l_x`.
+bool sounds_inertial(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  return holds("gyr") || (holds("acc") && !holds("accuracy")) || holds("omega") || holds("angular");
+}
+
 /// The view of columns in which no row repeats the one before.
 Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumns& columns, std::size_t rows,
                                 ViewUse use, const Passed& passed) {
@@ -211,8 +233,14 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
   if (std::string note = columns.note_of_time(); !note.empty()) {
     notes.push_back(std::move(note));
   }
+  const bool inertial = spec.columns.empty() && has_inertial_column(columns);
+  std::string skipped;
   for (std::size_t i = 0; i < columns.count(); ++i) {
     const auto& role = columns.role(i);
+    if (role && role->quantity == Quantity::Unspecified && inertial && !sounds_inertial(columns.name(i))) {
+      skipped += (skipped.empty() ? "'" : ", '") + columns.name(i) + "'";
+      continue;
+    }
     if (!role) {
       notes.push_back(columns.note_of_unnamed(i));
       continue;
@@ -236,6 +264,10 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
       first_fault = first_fault ? first_fault : std::optional(status.error());
       notes.push_back(status.error().message + " It is left out.");
     }
+  }
+  if (!skipped.empty()) {
+    notes.push_back("No inertial sensor by their names, and skipped: " + skipped +
+                    ". State what they measure to have them analysed.");
   }
   if (view.channels.empty() && first_fault) {
     return fail(std::move(*first_fault));

@@ -1,9 +1,12 @@
 #include "core/signal/unit.hpp"
 
 #include "core/signal/angle.hpp"
+#include "core/signal/number.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace driftlab {
@@ -37,9 +40,77 @@ constexpr std::array kAliases{
     Alias{"degree", "deg"},
     Alias{"degrees", "deg"},
     Alias{"µT", "uT"},
+    Alias{"mdps", "mdeg/s"},
+    Alias{"deg/second", "deg/s"},
+    Alias{"degrees/second", "deg/s"},
+    Alias{"degrees/sec", "deg/s"},
+    Alias{"°/sec", "deg/s"},
+    Alias{"rad/second", "rad/s"},
+    Alias{"radians/s", "rad/s"},
+    Alias{"radians/sec", "rad/s"},
+    Alias{"radians/second", "rad/s"},
+    Alias{"µg", "ug"},
     Alias{"", "1"},
     Alias{"-", "1"},
+    Alias{"LSB", "1"},
+    Alias{"lsb", "1"},
+    Alias{"counts", "1"},
+    Alias{"raw", "1"},
 };
+
+/// Powers of a second as they are written behind a product, and behind a slash.
+constexpr std::array kPowers{
+    Alias{" s^-1", "/s"},   Alias{" s-1", "/s"},   Alias{" s⁻¹", "/s"},
+    Alias{" s^-2", "/s^2"}, Alias{" s-2", "/s^2"}, Alias{" s⁻²", "/s^2"},
+};
+
+/// `rad s^-1`, `rad·s⁻¹`, `m*s^-2`, `m.s-2` as a quotient.
+std::string as_quotient(std::string_view written) {
+  std::string text(written);
+  for (const std::string_view dot : {"·", "⋅", "*", "."}) {
+    const std::size_t at = text.rfind(dot);
+    if (at != std::string::npos && text.substr(at + dot.size()).starts_with("s")) {
+      text.replace(at, dot.size(), " ");
+    }
+  }
+  for (const Alias& power : kPowers) {
+    if (text.ends_with(power.written)) {
+      text.replace(text.size() - power.written.size(), power.written.size(), power.symbol);
+    }
+  }
+  return text;
+}
+
+std::optional<Unit> plain_unit(std::string_view symbol) {
+  for (const Alias& alias : kAliases) {
+    if (alias.written == symbol) {
+      symbol = alias.symbol;
+      break;
+    }
+  }
+  const auto& units = all_units();
+  const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.symbol == symbol; });
+  return found == units.end() ? std::nullopt : std::optional(*found);
+}
+
+/// `deg/s/131` and `0.061 mg`: a unit over a number, or a number of them.
+std::optional<Unit> scaled_unit(std::string_view symbol) {
+  const auto scaled = [&](std::string_view base, std::optional<double> factor) -> std::optional<Unit> {
+    auto unit = plain_unit(as_quotient(base));
+    if (!unit || !factor || !(*factor > 0.0) || !std::isfinite(*factor) || unit->offset != 0.0) {
+      return std::nullopt;
+    }
+    return Unit{std::string(symbol), unit->dimension, unit->factor * *factor, 0.0};
+  };
+  if (const std::size_t slash = symbol.rfind('/'); slash != std::string_view::npos) {
+    if (const auto divisor = parse_double(symbol.substr(slash + 1)); divisor && *divisor > 0.0) {
+      return scaled(symbol.substr(0, slash), 1.0 / *divisor);
+    }
+  }
+  const std::size_t blank = symbol.find(' ');
+  return blank == std::string_view::npos ? std::nullopt
+                                         : scaled(symbol.substr(blank + 1), parse_double(symbol.substr(0, blank)));
+}
 
 }  // namespace
 
@@ -53,9 +124,14 @@ const std::vector<Unit>& all_units() {
       {"rad/s", Dimension::AngularRate, 1.0, 0.0},
       {"deg/s", Dimension::AngularRate, kDegree, 0.0},
       {"deg/h", Dimension::AngularRate, kDegree / 3600.0, 0.0},
+      {"mdeg/s", Dimension::AngularRate, kDegree * 1e-3, 0.0},
+      {"mrad/s", Dimension::AngularRate, 1e-3, 0.0},
+      {"rpm", Dimension::AngularRate, 6.0 * kDegree, 0.0},
       {"m/s^2", Dimension::SpecificForce, 1.0, 0.0},
       {"g", Dimension::SpecificForce, kStandardGravity, 0.0},
       {"mg", Dimension::SpecificForce, kStandardGravity * 1e-3, 0.0},
+      {"ug", Dimension::SpecificForce, kStandardGravity * 1e-6, 0.0},
+      {"mm/s^2", Dimension::SpecificForce, 1e-3, 0.0},
       {"K", Dimension::Temperature, 1.0, 0.0},
       {"degC", Dimension::Temperature, 1.0, 273.15},
       {"rad", Dimension::Angle, 1.0, 0.0},
@@ -69,16 +145,11 @@ const std::vector<Unit>& all_units() {
 }
 
 Result<Unit> parse_unit(std::string_view symbol) {
-  for (const Alias& alias : kAliases) {
-    if (alias.written == symbol) {
-      symbol = alias.symbol;
-      break;
-    }
+  if (auto unit = plain_unit(as_quotient(symbol))) {
+    return *std::move(unit);
   }
-  for (const Unit& unit : all_units()) {
-    if (unit.symbol == symbol) {
-      return unit;
-    }
+  if (auto unit = scaled_unit(symbol)) {
+    return *std::move(unit);
   }
   std::string known;
   for (const Unit& unit : all_units()) {

@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import random
 import subprocess
 import tempfile
 import unittest
@@ -62,6 +64,47 @@ class CommandLine(DaemonTest):
         table = self.said("characterise", "rest.csv", "--rate-hz", "100")
         self.assertIn("static", table)
         self.assertIn("deg/sqrt(h)", table)
+
+    def own_file(self, name: str, values: list[float], stamps: list[float] | None = None) -> None:
+        """A file with a quaternion beside its gyroscope, in milli-degrees a second."""
+        lines = ["t (s),q_w,gz [mdps]"]
+        for i, value in enumerate(values):
+            lines.append(f"{stamps[i] if stamps else 0.01 * i:.6f},{0.5 + 0.1 * math.sin(i):.4f},{1000 * value:.6g}")
+        (self.folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def test_what_is_wrong_with_a_recording_stands_under_its_table(self) -> None:
+        # A sensor frozen for most of a file was tabled unmarked: its notes were in --json alone.
+        noise = random.Random(5)
+        values = [noise.gauss(0, 0.1) for _ in range(6000)]
+        self.own_file("frozen.csv", values[:2000] + [values[1999]] * 3000 + values[2000:])
+        table = self.said("characterise", "frozen.csv", "--models", "WN")
+        self.assertIn("! frozen: Column 'gz [mdps]': the sensor is frozen for 300", table)
+        self.assertIn("skipped: 'q_w'", table)
+        self.assertNotIn("sensor q_w", table)
+
+    def test_noise_that_is_not_one_noise_is_said_to_be_several(self) -> None:
+        # One jump of 50 standard deviations was fitted as WN+GM with a J-test of p = 0.97, and nothing said.
+        noise = random.Random(6)
+        self.own_file("jump.csv", [noise.gauss(0, 0.1) + (5 if i >= 4000 else 0) for i in range(10000)])
+        self.assertIn("gz [mdps]: Not one noise: the level jumps ", self.said("characterise", "jump.csv", "--models", "WN,WN+GM"))
+        channel = json.loads(self.said("characterise", "jump.csv", "--models", "WN", "--json", "--dynamic=8"))["recordings"][0]["channels"][0]
+        [change] = channel["stationarity"]["changes"]
+        self.assertEqual((change["kind"], change["unit"]), ("jump", "mdeg/s"))
+        self.assertAlmostEqual(change["time_s"], 40, delta=0.05)
+        self.assertAlmostEqual(change["size"], 5000, delta=150)
+        self.assertEqual([round(bound) for bound in channel["stationarity"]["segment_s"]], [40, 100])
+        self.assertEqual(len(channel["dynamic_allan"]["deviation"]), 8)
+
+    def test_a_file_that_lost_a_fifth_of_its_rows_has_the_noise_of_its_sensor(self) -> None:
+        # Above 2 % lost at random the stamps were read as bursts, time was stretched, and N was 41 % off at half lost.
+        noise = random.Random(7)
+        kept = [i for i in range(20000) if noise.random() > 0.2]
+        self.own_file("lost.csv", [noise.gauss(0, 0.1) for _ in kept], [0.01 * i for i in kept])
+        [recording] = json.loads(self.said("characterise", "lost.csv", "--models", "WN", "--json"))["recordings"]
+        self.assertAlmostEqual(recording["rate_hz"], 100, places=6)
+        self.assertEqual(recording["quality"]["missing"], kept[-1] - kept[0] + 1 - len(kept))
+        deviation = recording["channels"][0]["allan"]["deviation"][0]  # 0.1 deg/s; 2 % is four standard errors
+        self.assertAlmostEqual(deviation, 100, delta=2)
 
     def test_a_bare_file_takes_rate_columns_and_condition(self) -> None:
         rows = [row for row in (self.folder / "rest.csv").read_text().splitlines() if not row.startswith("#")]

@@ -122,10 +122,31 @@ TEST(Quality, RefusesAChannelOfWhichTooMuchIsMissingByItsFirstRow) {
 
 TEST(Quality, LeavesOutAColumnOfUnknownMeaningThatHoldsText) {
   std::vector<double> words(3000, missing_sample(Missing::Text, 2));
-  const auto seen = view({words, noise(3000)}, {"state", "gz"});
+  const auto seen = view({words, noise(3000)}, {"state", "signal"});
   ASSERT_TRUE(seen) << seen.error().message;
   EXPECT_EQ(seen->channels.size(), 1U);
   EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("'state' is left out")));
+}
+
+TEST(Quality, SkipsByNameWhatStandsBesideInertialSensors) {
+  // Quaternions, a pressure and `Zeit [s]` beside a gyroscope were characterised as sensors in unit 1.
+  const Table table{noise(3000), noise(3000, 8), noise(3000, 9)};
+  const auto seen = view(table, {"q_w", "gz [deg/s]", "pressure"});
+  ASSERT_TRUE(seen) << seen.error().message;
+  ASSERT_EQ(seen->channels.size(), 1U);
+  EXPECT_EQ(seen->channels[0].column, "gz [deg/s]");
+  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("skipped: 'q_w', 'pressure'.")));
+  // What speaks of an inertial sensor is not dropped because its axis is unclear.
+  EXPECT_EQ(view({table[0], table[1]}, {"gz", "acc_l"})->channels.size(), 2U);
+  // Alone they are all there is to analyse; stated, they are what the user wants.
+  EXPECT_EQ(view({table[0]}, {"pressure"})->channels.size(), 1U);
+  RecordingSpec spec;
+  spec.rate_hz = 100.0;
+  spec.columns = {{"q_w", {}}, {"gz [deg/s]", {Quantity::AngularRate, "z", *parse_unit("deg/s")}}};
+  const auto stated = view_recording(spec, {"q_w", "gz [deg/s]"}, 3000,
+                                     [&](std::size_t i) { return std::span<const double>(table[i]); });
+  ASSERT_TRUE(stated) << stated.error().message;
+  EXPECT_EQ(stated->channels.size(), 2U);
 }
 
 TEST(Quality, TakesNumbersThatMeanNothingAsMissing) {

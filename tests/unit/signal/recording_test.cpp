@@ -87,7 +87,6 @@ TEST(InferRole, UnderstandsNamesPeopleUse) {
       {"x", "unspecified [-]"},
       {"state", "unspecified [-]"},
       {"max", "unspecified [-]"},
-      {"rollrate", "unspecified [-]"},
       {"acc_l_x[mg]", "unspecified [-]"},
       {"gyro", "unspecified [-]"},
       {"time_zone", "unspecified [-]"},
@@ -154,6 +153,15 @@ TEST(AssignRoles, KeepsTheTimeColumnWhoseUnitIsKnown) {
   ASSERT_TRUE(roles) << roles.error().message;
   EXPECT_FALSE(roles->at(0));
   EXPECT_EQ(described(*roles->at(1)), "time [s]");
+}
+
+TEST(AssignRoles, KnowsTheRatesOfRollPitchAndYaw) {
+  const auto roles = assign_roles({}, {"rollrate", "pitch_rate [deg/s]", "YawRate", "roll"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "angular_rate x [-]");
+  EXPECT_EQ(described(*roles->at(1)), "angular_rate y [deg/s]");
+  EXPECT_EQ(described(*roles->at(2)), "angular_rate z [-]");
+  EXPECT_EQ(described(*roles->at(3)), "unspecified [-]");
 }
 
 TEST(AssignRoles, KnowsTheTimeThatIsNamedAfterItsSensor) {

@@ -38,6 +38,32 @@ TEST(Unit, ReadsItsOwnSymbolAndSpellingsPeopleUse) {
   EXPECT_EQ(parse_unit("")->symbol, "1");
 }
 
+TEST(Unit, ReadsProductsPrefixesAndScales) {
+  // `[rad s^-1]`, `mdps`, `deg/s/131` were refused, though every data sheet writes them.
+  for (const char* const symbol : {"rad s^-1", "rad s-1", "rad·s⁻¹", "rad*s^-1", "rad.s-1", "radians/second"}) {
+    ASSERT_TRUE(parse_unit(symbol)) << symbol;
+    EXPECT_EQ(parse_unit(symbol)->symbol, "rad/s");
+  }
+  for (const char* const symbol : {"m s^-2", "m s-2", "m·s⁻²", "m.s-2"}) {
+    ASSERT_TRUE(parse_unit(symbol)) << symbol;
+    EXPECT_EQ(parse_unit(symbol)->symbol, "m/s^2");
+  }
+  EXPECT_EQ(parse_unit("° s^-1")->symbol, "deg/s");
+  EXPECT_DOUBLE_EQ(parse_unit("mdps")->to_si(180e3), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("rpm")->to_si(30.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("ug")->to_si(1e6), 9.80665);
+  EXPECT_EQ(parse_unit("LSB")->symbol, "1");
+  const auto scaled = parse_unit("deg/s/131");
+  ASSERT_TRUE(scaled);
+  EXPECT_EQ(scaled->dimension, Dimension::AngularRate);
+  EXPECT_DOUBLE_EQ(scaled->to_si(131.0 * 180.0), std::numbers::pi);
+  EXPECT_EQ(parse_unit(scaled->symbol), *scaled);
+  EXPECT_DOUBLE_EQ(parse_unit("0.061 mg")->to_si(1.0), 0.061e-3 * 9.80665);
+  for (const char* const symbol : {"deg/s/0", "deg/s/-3", "degC/2", "0.1 furlong", "deg/s/nan", "1 1e400 g"}) {
+    EXPECT_FALSE(parse_unit(symbol)) << symbol;
+  }
+}
+
 TEST(Unit, NamesTheUnknownSymbolAndTheKnownOnes) {
   for (const char* const symbol : {"furlong", "G", "deg/S", " s", "M/S^2", "kg"}) {
     const auto unit = parse_unit(symbol);
