@@ -3,7 +3,7 @@ import type {ComponentChildren, JSX} from 'preact';
 import {writeTick} from '../format/number';
 import {type Area, type Layout} from './layout';
 import {Band, Curve, Points, Sample} from './marks';
-import type {Note} from './spec';
+import type {Note, Series} from './spec';
 
 const half = (x: number): number => Math.round(x * 2) / 2;
 
@@ -77,6 +77,9 @@ function Keys({plan}: {plan: Layout}): JSX.Element {
   })}</g>;
 }
 
+// The first series of the key lies on top.
+const drawn = (place: Area): Series[] => place.plot.series.filter(series => !series.hidden).reverse();
+
 export interface DrawingProps {
   plan: Layout;
   id: string;
@@ -90,9 +93,9 @@ export function Drawing({plan, id, cursor}: DrawingProps): JSX.Element {
       <Axes place={place} />
       <Guides place={place} />
       <g clip-path={`url(#${id}-${place.plot.id})`}>
-        {place.plot.series.filter(s => !s.hidden).map(series => <Band key={series.id} series={series} place={place} />)}
-        {place.plot.series.filter(s => !s.hidden).map(series => <Curve key={series.id} series={series} place={place} />)}
-        {place.plot.series.filter(s => !s.hidden).map(series => <Points key={series.id} series={series} place={place} />)}
+        {drawn(place).map(series => <Band key={series.id} series={series} place={place} />)}
+        {drawn(place).map(series => <Curve key={series.id} series={series} place={place} />)}
+        {drawn(place).map(series => <Points key={series.id} series={series} place={place} />)}
       </g>
       {(place.plot.notes ?? []).map(note => <NoteMark key={note.text} note={note} place={place} />)}
     </g>)}

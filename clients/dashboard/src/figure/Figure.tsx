@@ -76,7 +76,7 @@ export function Tools({onTable, tableShown, onSvg, onCsv, curl, how, title}: Too
     {onSvg && <button type="button" class="quiet" onClick={onSvg}>SVG</button>}
     {onCsv && <button type="button" class="quiet" onClick={onCsv}>CSV</button>}
     {curl && <button type="button" class="quiet" onClick={() => copy(curl, 'The command is')}>curl</button>}
-    {how && <button type="button" class="quiet" onClick={() => openDrawer(`How ${title.toLowerCase()} is computed`, how)}>How computed</button>}
+    {how && <button type="button" class="quiet" onClick={() => openDrawer(`${title}: how it is computed`, how)}>How computed</button>}
   </div>;
 }
 

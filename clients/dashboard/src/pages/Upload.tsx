@@ -58,7 +58,7 @@ function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
     <th scope="row"><button type="button" class="link" onClick={() => choose({file: String(each.key)})}>{name}</button></th>
     <td data-label="device">{text('device', 'Device', 16)}</td>
     <td data-label="condition"><ConditionField label={`Condition of ${name}`} value={each.condition} onChange={condition => change(each.key, {condition})} /></td>
-    <td class="n" data-label="size">{writeBytes(each.file.size)}</td>
+    <td class="n nowrap" data-label="size">{writeBytes(each.file.size)}</td>
     <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, 'by time')}</td>
     <td>
       {each.state === 'ready' && <span class="sec">{each.look ? each.look.columns.length > 0 ? `${each.look.columns.length} column${each.look.columns.length === 1 ? '' : 's'} seen` : 'ready' : 'reading'}</span>}

@@ -71,7 +71,7 @@ export function variancePlots(channel: Channel, fit: ModelFit | undefined, impli
   const name = curve === 'allan' ? 'Allan deviation' : 'Haar wavelet deviation';
   const main: Plot = {
     id: 'variance', equalDecades: true, x: {scale: 'log', name: implied ? '' : 'averaging time τ, s'}, y: {scale: 'log', name: `${name}, ${writeUnit(unit)}`},
-    series: [...components, ...model, ...(robust && shown.robust ? [robust] : []), measured],
+    series: [measured, ...(robust && shown.robust ? [robust] : []), ...model, ...components],
     notes: notesOf(channel, fit, components, unit, curve), guides: shown.guides ? [{slope: -1, text: '−1'}, {slope: -0.5, text: '−½'}, {slope: 0.5, text: '+½'}] : [],
   };
   return implied ? [main, ratioPlot(measured, robust && shown.robust ? robust : null, implied, law)] : [{...main, x: {scale: 'log', name: 'averaging time τ, s'}}];
@@ -90,7 +90,7 @@ function ratioPlot(measured: Series, robust: Series | null, implied: Implied, la
   return {
     id: 'ratio', height: 96, x: {scale: 'log', name: 'averaging time τ, s'}, rules: [1],
     y: {scale: 'log', name: 'measured ÷ model', domain: [1 / limit, limit], ticks, write: value => value === 1 ? '1' : writeTick(value)},
-    series: [...(robust ? [ratio(robust, 'robust-ratio')] : []), ratio(measured, 'classical-ratio')],
+    series: [ratio(measured, 'classical-ratio'), ...(robust ? [ratio(robust, 'robust-ratio')] : [])],
   };
 }
 

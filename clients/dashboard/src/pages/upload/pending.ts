@@ -66,7 +66,7 @@ export function remember(each: Pending): void {
 
 // The condition that a name suggests; a person sees it and may change it.
 function conditionIn(name: string): string {
-  const rate = /(\d+(?:\.\d+)?)\s*deg[-_ /]*s\b/i.exec(name);
+  const rate = /(\d+(?:\.\d+)?)\s*deg[-_ /]*s(?![a-z0-9])/i.exec(name);
   return rate ? `constant_rate:z:${rate[1]}:deg/s` : 'static';
 }
 
