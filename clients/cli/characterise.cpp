@@ -17,6 +17,7 @@ struct Flags {
   bool stepwise = false;
   std::size_t bootstrap = 0;
   std::size_t dynamic = 0;
+  FurtherRequest also;
   bool json = false;
 };
 
@@ -26,6 +27,7 @@ Exit run(const Flags& flags) {
   options.search = flags.stepwise ? ModelSearch::Stepwise : ModelSearch::Listed;
   options.bootstrap = flags.bootstrap;
   options.dynamic = flags.dynamic;
+  options.also = flags.also;
   if (!flags.models.empty()) {
     options.models = flags.models;
   }
@@ -41,10 +43,13 @@ Exit run(const Flags& flags) {
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
-  const Result<std::string> text =
+  Result<std::string> text =
       flags.json ? Result<std::string>(document->dump(2) + "\n") : tables_of(*document, inputs->device);
   if (!text) {
     return complain(text.error());
+  }
+  if (!flags.json) {
+    *text += further_to_text(*document);
   }
   std::fwrite(text->data(), 1, text->size(), stdout);
   return Exit::Success;
@@ -80,6 +85,9 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_flag("--dynamic{32}", flags->dynamic,
                     "Add the Allan deviation of 32 windows that move along time (--dynamic=N of N) to --json");
+  command->add_flag("--total", flags->also.total, "Total deviation for tau up to half of the recording");
+  command->add_flag("--theo1", flags->also.theo1, "Theo1 for tau up to three quarters of the recording");
+  command->add_flag("--psd", flags->also.psd, "Power spectral density with its lines");
   command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
   command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
   command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");

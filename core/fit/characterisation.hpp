@@ -2,6 +2,7 @@
 /// The characterisation of one channel: everything driftlab says about the stochastic errors of one sensor axis in one
 /// recording. Values only; `characterise_channel` (core/fit/characterise.hpp) makes it, schema/json writes it down
 /// (spec/results.md), the parameter table reads it. All numbers are SI: a channel of angular rate is in rad/s.
+#include "core/fit/further_curves.hpp"
 #include "core/fit/stationarity.hpp"
 #include "core/process/process.hpp"
 #include "core/signal/estimate.hpp"
@@ -118,6 +119,7 @@ struct ChannelCharacterisation {
   double mean = 0.0;  ///< of the analysed samples
   AllanCurve allan;
   HaarCurve haar;
+  FurtherCurves further;  ///< on request
   Contamination contamination;
   AllanParameters allan_parameters;
   std::vector<ModelFit> fits;                 ///< best first

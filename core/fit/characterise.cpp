@@ -258,6 +258,8 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   }
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
   result.haar.efficiency = classical.efficiency;
+  result.further =
+      further_curves(options.also, samples, mean, largest, channel.si_factor, intervals.mixture, channel.dt_s, control);
   control.report("robust variance", 0.25);
   RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed, control);
   if (control.stop.stop_requested()) {

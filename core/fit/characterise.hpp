@@ -33,6 +33,7 @@ struct CharacteriseOptions {
   std::size_t bootstrap = 0;
   /// Windows of a dynamic Allan variance (core/variance/dynamic_allan.hpp); 0: none.
   std::size_t dynamic = 0;
+  FurtherRequest also = {};  ///< curves beside the Allan and wavelet variances
 };
 
 /// Samples of one channel as they lie in the file, and the factor that makes them SI.

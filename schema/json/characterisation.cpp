@@ -16,7 +16,9 @@ Interval root(const Interval& variance) {
   return {std::sqrt(std::max(variance.low, 0.0)), std::sqrt(std::max(variance.high, 0.0))};
 }
 
-Json allan_json(const AllanCurve& curve, double factor) {
+/// Of an Allan curve, and of what estimates it at the longest tau.
+template <class Curve>
+Json allan_json(const Curve& curve, double factor) {
   Json tau = Json::array();
   Json deviation = Json::array();
   Json ci95 = Json::array();
@@ -72,6 +74,26 @@ Json haar_json(const HaarCurve& curve, double factor) {
     for (const double efficiency : curve.efficiency) {
       document["efficiency_by_scale"].push_back(number(efficiency));
     }
+  }
+  return document;
+}
+
+Json psd_json(const PowerSpectrum& spectrum, double factor) {
+  Json document{{"frequency_hz", Json::array()},
+                {"density", Json::array()},
+                {"ci95", Json::array()},
+                {"edf", Json::array()},
+                {"lines", Json::array()}};
+  for (std::size_t i = 0; i < spectrum.density.size(); ++i) {
+    document["frequency_hz"].push_back(number(spectrum.frequency_hz[i]));
+    document["density"].push_back(number(spectrum.density[i] * factor * factor));
+    document["ci95"].push_back(interval(spectrum.ci95[i], factor * factor));
+    document["edf"].push_back(number(spectrum.edf[i]));
+  }
+  for (const SpectrumLine& line : spectrum.lines) {
+    document["lines"].push_back({{"frequency_hz", number(line.frequency_hz)},
+                                 {"amplitude", number(line.amplitude * std::fabs(factor))},
+                                 {"excess", number(line.excess)}});
   }
   return document;
 }
@@ -163,6 +185,15 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"haar", haar_json(channel.haar, factor)},
                 {"contamination", contamination_json(channel.contamination)},
                 {"allan_parameters", allan_parameters_json(reported(channel.allan_parameters, unit.dimension))}};
+  if (channel.further.total) {
+    document["total"] = allan_json(*channel.further.total, factor);
+  }
+  if (channel.further.theo1) {
+    document["theo1"] = allan_json(*channel.further.theo1, factor);
+  }
+  if (channel.further.psd) {
+    document["psd"] = psd_json(*channel.further.psd, factor);
+  }
   Json fits = Json::array();
   for (const ModelFit& fit : channel.fits) {
     fits.push_back(to_json(reported(fit, unit)));

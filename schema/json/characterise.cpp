@@ -2,8 +2,34 @@
 
 #include "schema/json/characterisation.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace driftlab {
 namespace {
+
+struct FurtherName {
+  const char* name;
+  bool FurtherRequest::* member;
+};
+
+constexpr std::array<FurtherName, 3> kFurther{
+    {{"total", &FurtherRequest::total}, {"theo1", &FurtherRequest::theo1}, {"psd", &FurtherRequest::psd}}};
+
+/// The curves that `also` names.
+FurtherRequest further_from_json(const Json& names, const std::string& pointer, Faults& faults) {
+  FurtherRequest request;
+  for (const Json& name : names.is_array() ? names : Json::array({names})) {
+    const auto known = std::find_if(kFurther.begin(), kFurther.end(),
+                                    [&](const FurtherName& one) { return name.is_string() && name == one.name; });
+    if (known == kFurther.end()) {
+      faults.add(pointer, ErrorCode::InvalidArgument, "Beside the variances there are 'total', 'theo1' and 'psd'.");
+    } else {
+      request.*(known->member) = true;
+    }
+  }
+  return request;
+}
 
 Json to_json(const ReferenceAlignment& alignment) {
   Json document{{"column", alignment.reference}, {"applied", alignment.applied}, {"delay", nullptr}};
@@ -37,14 +63,19 @@ Json to_json(const CharacterisedRecording& recording) {
 }
 
 Json to_json(const CharacteriseOptions& options) {
-  Json document{{"models", options.models},
+  Json settings{{"models", options.models},
                 {"seed", options.seed},
                 {"search", options.search == ModelSearch::Stepwise ? "stepwise" : "listed"},
                 {"bootstrap", options.bootstrap}};
-  if (options.dynamic > 0) {
-    document["dynamic"] = options.dynamic;
+  for (const auto& [name, member] : kFurther) {
+    if (options.also.*member) {
+      settings["also"].push_back(name);
+    }
   }
-  return document;
+  if (options.dynamic > 0) {
+    settings["dynamic"] = options.dynamic;
+  }
+  return settings;
 }
 
 CharacteriseOptions characterise_options_from_json(const Json& document, const std::string& pointer, Faults& faults) {
@@ -77,6 +108,9 @@ CharacteriseOptions characterise_options_from_json(const Json& document, const s
   }
   if (const auto windows = reader.integer("dynamic")) {
     options.dynamic = *windows < 0 ? 1 : static_cast<std::size_t>(*windows);  // 1 is refused below
+  }
+  if (const Json* const also = reader.member("also")) {
+    options.also = further_from_json(*also, reader.pointer("also"), faults);
   }
   reader.reject_unknown();
   if (auto checked = check_options(options); !checked) {

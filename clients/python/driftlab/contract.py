@@ -120,6 +120,11 @@ class CharacterisationChannel(TypedDict):
     mean: float | None
     # Overlapping Allan deviation at octaves.
     allan: CharacterisationChannelAllan
+    # Total deviation, corrected for its bias, on request (`also`).
+    total: NotRequired[CharacterisationLongTau]
+    # Root of Theo1, corrected for its bias to the Allan variance, on request (`also`).
+    theo1: NotRequired[CharacterisationLongTau]
+    psd: NotRequired[CharacterisationPsd]
     # Haar wavelet variance; the scale is the length of the filter in samples.
     haar: CharacterisationChannelHaar
     # Where a reference column was subtracted: by how much the channel shows it later, and whether it was shifted by
@@ -258,6 +263,34 @@ class CharacterisationEquivalent(TypedDict):
     value: float
     unit: str
     ci95: list[float | None]
+
+
+class CharacterisationLongTau(TypedDict):
+    tau_s: list[float]
+    deviation: list[float | None]
+    ci95: list[list[float | None]]
+    # Equivalent degrees of freedom.
+    edf: list[float | None]
+
+
+class CharacterisationPsd(TypedDict):
+    """Power spectral density by sine multitapers, one-sided, in unit^2/Hz, on request (`also`)."""
+
+    frequency_hz: list[float]
+    density: list[float | None]
+    ci95: list[list[float | None]]
+    # Equivalent degrees of freedom.
+    edf: list[float | None]
+    # Frequencies that stand out of the density around them; noise alone shows one in a hundred records.
+    lines: list[CharacterisationPsdLine]
+
+
+class CharacterisationPsdLine(TypedDict):
+    frequency_hz: float
+    # Of the sinusoid, in the channel's unit.
+    amplitude: float | None
+    # Its power over that of the noise around it.
+    excess: float | None
 
 
 class CharacterisationRecording(TypedDict):
@@ -730,6 +763,9 @@ class JobRequestCharacteriseParameters(TypedDict):
     bootstrap: NotRequired[int]
     # Windows (2 or more) of a dynamic Allan deviation; 0: none.
     dynamic: NotRequired[int]
+    # Curves beside the Allan and wavelet variances: total deviation and Theo1 for the longest tau, power spectral
+    # density with lines.
+    also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
 
 
 class JobRequestInvestigate(TypedDict):
@@ -788,6 +824,7 @@ class JobRequestMemberParameters(TypedDict):
     search: NotRequired[Literal['listed', 'stepwise']]
     bootstrap: NotRequired[int]
     dynamic: NotRequired[int]
+    also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
     runs: NotRequired[int]
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
