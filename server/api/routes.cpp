@@ -18,7 +18,8 @@
   RESOURCE(add_outage_evaluation_routes) \
   RESOURCE(add_calibration_routes)      \
   RESOURCE(add_investigation_routes)    \
-  RESOURCE(add_model_routes)
+  RESOURCE(add_model_routes)            \
+  RESOURCE(add_regression_routes)
 // clang-format on
 
 namespace driftlab::server {

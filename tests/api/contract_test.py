@@ -149,12 +149,18 @@ class Operations(DaemonTest):
         daemon.finished(asked.json["id"])
         investigation = daemon.items("/v1/investigations")[0]["id"]
         daemon.get(f"/v1/investigations/{investigation}", Accept="text/markdown")
+        third = daemon.upload(samples.gyro_csv(seed=3), rate_hz=100, columns=samples.GYRO_Z)
+        daemon.finished(daemon.characterise(third.json["id"]).json["id"])
+        arms = {name: {"recordings": [{"recording": made.json["id"]}]} for name, made in (("baseline", first), ("candidate", third))}
+        regression = daemon.post("/v1/jobs", {"kind": "regress", "inputs": {"device": "phone-07", **arms}})
+        daemon.finished(regression.json["id"])
         body = {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]}
         model, _ = (daemon.post("/v1/models", body) for _ in range(2))
         values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
                   "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],
+                  "/v1/regressions/{id}": regression.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
                   "/v1/recordings/{id}/trace": first.json["id"], "/v1/fits/{id}/implied": fit["id"]}

@@ -738,6 +738,21 @@ class JobEvent(TypedDict):
     at: str
 
 
+class JobRequestArm(TypedDict):
+    labels: NotRequired[dict[str, str]]
+    recordings: list[JobRequestArmRecording]
+
+
+class JobRequestArmRecording(TypedDict):
+    recording: str
+    # One power-up of the device.
+    session: NotRequired[str]
+    recorded_at: NotRequired[str]
+    temperature_degc: NotRequired[float]
+    # What an investigation identified.
+    causes: NotRequired[list[str]]
+
+
 class JobRequestCharacterise(TypedDict):
     kind: Literal['characterise']
     # Recordings, or a study that names them.
@@ -790,6 +805,8 @@ class JobRequestMember(TypedDict):
     kind: str
     inputs: JobRequestMemberInputs
     parameters: JobRequestMemberParameters
+    # Of a regression run: which look at the candidate label it is.
+    look: NotRequired[JobRequestMemberLook]
     algorithm_version: int
 
 
@@ -809,6 +826,16 @@ class JobRequestMemberInputs(TypedDict):
     scenario: NotRequired[str | dict[str, Any]]
     # Of an outage evaluation: what its stored simulation models say that the scenario does not hold.
     left_out: NotRequired[list[dict[str, Any]]]
+    # Of a regression run.
+    device_name: NotRequired[str]
+    # Of a regression run: label, and recordings with the results they are compared by.
+    baseline: NotRequired[dict[str, Any]]
+    # Of a regression run, as the baseline.
+    candidate: NotRequired[dict[str, Any]]
+    # Of a regression run: earlier releases.
+    history: NotRequired[list[dict[str, Any]]]
+    # Of a regression run: recordings left out, and why.
+    excluded: NotRequired[list[dict[str, Any]]]
 
 
 class JobRequestMemberInputsRecording(TypedDict):
@@ -816,6 +843,13 @@ class JobRequestMemberInputsRecording(TypedDict):
     revision: int
     # In the study of an investigation.
     name: NotRequired[str]
+
+
+class JobRequestMemberLook(TypedDict):
+    """Of a regression run: which look at the candidate label it is."""
+
+    number: NotRequired[int]
+    counted: NotRequired[bool]
 
 
 class JobRequestMemberParameters(TypedDict):
@@ -829,6 +863,18 @@ class JobRequestMemberParameters(TypedDict):
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
     baseline: NotRequired[dict[str, Any]]
+    # Of a regression run, as all that follow.
+    alpha: NotRequired[float]
+    margin: NotRequired[dict[str, Any]]
+    through_s: NotRequired[float]
+    min_edf: NotRequired[float]
+    design_power: NotRequired[float]
+    tau0: NotRequired[dict[str, Any]]
+    prior_df: NotRequired[float]
+    session_df: NotRequired[int]
+    fail_on: NotRequired[str]
+    two_sided: NotRequired[bool]
+    looks: NotRequired[int]
 
 
 class JobRequestOutageEvaluation(TypedDict):
@@ -867,6 +913,67 @@ class JobRequestPoolInputs(TypedDict):
 
 class JobRequestPoolParameters(TypedDict):
     pass
+
+
+class JobRequestRegress(TypedDict):
+    """Compares stored results of recordings before and after a change of one device: one verdict."""
+
+    kind: Literal['regress']
+    inputs: JobRequestRegressInputs
+    parameters: NotRequired[JobRequestRegressParameters]
+    priority: NotRequired[int]
+
+
+class JobRequestRegressInputs(TypedDict):
+    # Id or name.
+    device: str
+    baseline: JobRequestArm
+    candidate: JobRequestArm
+    # Earlier releases, oldest first.
+    history: NotRequired[list[JobRequestArm]]
+    excluded: NotRequired[list[JobRequestRegressInputsExcludedItem]]
+
+
+class JobRequestRegressInputsExcludedItem(TypedDict):
+    recording: str
+    reason: str
+
+
+class JobRequestRegressParameters(TypedDict):
+    alpha: NotRequired[float]
+    # Per cent of the deviation, at tau to 1 s, to 10 s, above; `sigma` and `slow`: levels of other processes than white
+    # noise.
+    margin: NotRequired[JobRequestRegressParametersMargin]
+    # Scales to here must be shown.
+    through_s: NotRequired[float]
+    min_edf: NotRequired[float]
+    design_power: NotRequired[float]
+    # Scatter between sessions [%]: of the device, of an axis, of a scale.
+    tau0: NotRequired[JobRequestRegressParametersTau0]
+    prior_df: NotRequired[float]
+    session_df: NotRequired[int]
+    fail_on: NotRequired[Literal['beyond_margin', 'worse']]
+    two_sided: NotRequired[bool]
+    looks: NotRequired[Literal[1, 3]]
+    inconclusive: NotRequired[Literal['inconclusive', 'pass', 'fail']]
+    seed: NotRequired[int]
+
+
+class JobRequestRegressParametersMargin(TypedDict):
+    """Per cent of the deviation, at tau to 1 s, to 10 s, above; `sigma` and `slow`: levels of other processes than
+    white noise."""
+
+    gyroscope: NotRequired[list[float]]
+    accelerometer: NotRequired[list[float]]
+    sigma: NotRequired[float]
+    slow: NotRequired[float]
+
+
+class JobRequestRegressParametersTau0(TypedDict):
+    """Scatter between sessions [%]: of the device, of an axis, of a scale."""
+
+    gyroscope: NotRequired[list[float]]
+    accelerometer: NotRequired[list[float]]
 
 
 class JobResult(TypedDict):
@@ -1865,6 +1972,24 @@ class RegressionNeeds(TypedDict):
     sentence: str | None
 
 
+class RegressionRun(TypedDict):
+    """Regression run in a list."""
+
+    # Of the run and of its job.
+    id: str
+    state: JobState
+    device: str | None
+    # Label.
+    baseline: str | None
+    # Label.
+    candidate: str | None
+    verdict: Literal['pass', 'fail', 'inconclusive', None]
+    summary: RegressionSummary | None
+    look: int | None
+    needs: RegressionNeeds | None
+    created_at: str
+
+
 class RegressionSummary(TypedDict):
     verdict: str
     details: list[str]
@@ -2178,7 +2303,8 @@ Condition: TypeAlias = (
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
-JobRequest: TypeAlias = "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool"
+JobRequest: TypeAlias = (
+    "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool | JobRequestRegress")
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"
 ModelChannels: TypeAlias = "dict[str, ModelChannel]"
 ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"
@@ -2293,6 +2419,10 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/investigations', ('limit', 'cursor', 'sort', 'device', 'study', 'job'), (), ('application/json',)),
     'getInvestigation': Operation(
         'GET', '/v1/investigations/{id}', (), (), ('application/json', 'text/markdown')),
+    'listRegressions': Operation(
+        'GET', '/v1/regressions', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+    'getRegression': Operation(
+        'GET', '/v1/regressions/{id}', (), (), ('application/json',)),
     'listModels': Operation(
         'GET', '/v1/models', ('limit', 'cursor', 'sort', 'device', 'parent'), (), ('application/json',)),
     'createModel': Operation(

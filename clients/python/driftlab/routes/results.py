@@ -1,10 +1,10 @@
-"""What was found: fits, parameter tables, trends and investigations."""
+"""What was found: fits, parameter tables, trends, investigations and regression runs."""
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Literal, cast
 
-from ..contract import Fit, GetImpliedCurvesAnswer, InvestigationSummary
+from ..contract import Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
 from ..contract import Investigation as InvestigationDocument
 from ..contract import ParameterTable as ParameterTableDocument
 from ..contract import Trends as TrendsDocument
@@ -80,3 +80,13 @@ class ResultRoutes(Routes):
     def investigation_markdown(self, id: str) -> str:
         """One report as a page for people."""
         return self._text("getInvestigation", "text/markdown", {"id": id})
+
+    @operation("listRegressions")
+    def regressions(self, *, page_size: int = PAGE) -> Iterator[RegressionRun]:
+        """Regression runs with their verdicts, oldest first. A run is a job of kind `regress`."""
+        return self._list("listRegressions", {}, page_size)
+
+    @operation("getRegression")
+    def regression(self, id: str) -> Regression:
+        """One run with every test."""
+        return cast(Regression, self._get("getRegression", {"id": id}))
