@@ -69,7 +69,7 @@ constexpr std::array<std::string_view, 20> kNoUnits{
     "raw",  "lsb",   "lsbs", "count", "counts", "adc",      "digit",         "digits", "bit",  "bits",
     "code", "codes", "tick", "ticks", "none",   "unitless", "dimensionless", "utc",    "unix", "gps"};
 
-constexpr std::array<std::string_view, 4> kTimeNames{"t", "ts", "time", "timestamp"};
+constexpr std::array<std::string_view, 7> kTimeNames{"t", "ts", "time", "timestamp", "zeit", "temps", "tiempo"};
 
 /// Whose time it is, before or behind the word: `TimestampGyro [ns]`, `imu_time (s)`, `device_timestamp_us`.
 constexpr std::array<std::string_view, 18> kClocks{

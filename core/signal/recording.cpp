@@ -49,18 +49,34 @@ std::string listed(const ColumnNames& names) {
   return names.size() > kMost ? text.append(", ...") : text;
 }
 
+/// The place of the column that the user calls `column`: by its name, else by its number from 0. `names.size()`: none.
+std::size_t place_of(const std::string& column, const ColumnNames& names) {
+  const auto found = std::find(names.begin(), names.end(), column);
+  const bool digits = !column.empty() && column.size() < 6 &&
+                      std::all_of(column.begin(), column.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (found != names.end() || !digits) {
+    return static_cast<std::size_t>(found - names.begin());
+  }
+  return std::min<std::size_t>(std::stoul(column), names.size());
+}
+
 Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec& spec, const ColumnNames& names) {
   std::vector<std::optional<ColumnRole>> roles(names.size());
   for (const auto& [column, role] : spec.columns) {
-    const auto found = std::find(names.begin(), names.end(), column);
-    if (found == names.end()) {
+    const std::size_t place = place_of(column, names);
+    if (place == names.size()) {
       return fail(ErrorCode::UnknownColumn, "The file has no column '" + column + "'; it has " + listed(names) + ".",
                   {{"column", column}});
     }
     if (auto status = check_role(column, role); !status) {
       return fail(status.error());
     }
-    roles[static_cast<std::size_t>(found - names.begin())] = role;
+    if (roles[place]) {
+      return fail(ErrorCode::DuplicateColumn,
+                  "The column '" + names[place] + "' is stated twice, by its name and by its number.",
+                  {{"column", column}});
+    }
+    roles[place] = role;
   }
   return roles;
 }

@@ -155,6 +155,21 @@ TEST(AssignRoles, KeepsTheTimeColumnWhoseUnitIsKnown) {
   EXPECT_EQ(described(*roles->at(1)), "time [s]");
 }
 
+TEST(AssignRoles, TakesAColumnByItsNumberUnderAHeaderToo) {
+  // `--columns 0=time::s` was refused as soon as the file had a header.
+  RecordingSpec spec;
+  spec.columns = {{"0", {Quantity::Time, "", unit("s")}}, {"rate", {Quantity::AngularRate, "z", unit("deg/s")}}};
+  const auto roles = assign_roles(spec, {"stamp", "rate", "2"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "time [s]");
+  EXPECT_FALSE(roles->at(2));
+  spec.columns = {{"2", {Quantity::Time, "", unit("s")}}};  // a name comes first
+  EXPECT_EQ(described(*assign_roles(spec, {"2", "a", "b"})->at(0)), "time [s]");
+  EXPECT_EQ(failure(assign_roles(spec, {"a", "b"})), "unknown_column column=2");
+  spec.columns = {{"1", {Quantity::AngularRate, "z", unit("deg/s")}}, {"b", {Quantity::AngularRate, "y", {}}}};
+  EXPECT_EQ(failure(assign_roles(spec, {"a", "b"})), "duplicate_column column=b");
+}
+
 TEST(AssignRoles, KnowsTheRatesOfRollPitchAndYaw) {
   const auto roles = assign_roles({}, {"rollrate", "pitch_rate [deg/s]", "YawRate", "roll"});
   ASSERT_TRUE(roles) << roles.error().message;
@@ -166,7 +181,8 @@ TEST(AssignRoles, KnowsTheRatesOfRollPitchAndYaw) {
 
 TEST(AssignRoles, KnowsTheTimeThatIsNamedAfterItsSensor) {
   // `TimestampGyro [ns]` was analysed as a sensor in unit 1, and the rate asked for.
-  for (const char* name : {"TimestampGyro [ns]", "timestamp_acc (ns)", "gyro_timestamp_ns", "IMU Time [ns]"}) {
+  for (const char* name :
+       {"TimestampGyro [ns]", "timestamp_acc (ns)", "gyro_timestamp_ns", "IMU Time [ns]", "Zeit [ns]"}) {
     const auto roles = assign_roles({}, {name, "gx"});
     ASSERT_TRUE(roles) << roles.error().message;
     EXPECT_EQ(described(*roles->at(0)), "time [ns]") << name;
