@@ -101,8 +101,10 @@ struct ModelFit {
   std::vector<std::string> warnings;
 };
 
-/// Coefficients of IEEE Std 952 read off the Allan variance by weighted regression. Empty: not identifiable, and
-/// `reasons` (same order Q N B K R) says why.
+/// Coefficients of IEEE Std 952: read off the Allan variance by weighted regression (core/fit/allan_regression.hpp), or
+/// those of the composite models that describe the curve (core/fit/ieee952_coefficients.hpp). Empty: not there or not
+/// identifiable, and its reason says why; its limit is what it is below with 95 % confidence where a model describes
+/// the curve without it (infinite: nothing bounds it).
 struct AllanParameters {
   std::optional<Estimate> q;  ///< quantization noise [channel unit * s]
   std::optional<Estimate> n;  ///< angle (velocity) random walk [channel unit * sqrt(s)]
@@ -110,6 +112,29 @@ struct AllanParameters {
   std::optional<Estimate> k;  ///< rate random walk [channel unit / sqrt(s)]
   std::optional<Estimate> r;  ///< rate ramp [channel unit / s]
   std::string q_reason, n_reason, b_reason, k_reason, r_reason;
+  double q_limit = std::numeric_limits<double>::infinity();
+  double n_limit = std::numeric_limits<double>::infinity();
+  double b_limit = std::numeric_limits<double>::infinity();
+  double k_limit = std::numeric_limits<double>::infinity();
+  double r_limit = std::numeric_limits<double>::infinity();
+  double b_tau_s = 0.0;  ///< averaging time at which B takes the largest share of the Allan variance; 0 without B
+};
+
+/// The composite model that describes the curve (core/fit/curve_description.hpp).
+struct CurveDescription {
+  std::string model;  ///< `MA+PL`, ...
+  /// `accepted`: not rejected at 1 % with no discrepancy; `described`: within `discrepancy`; `not_described`: by
+  /// nothing within 10 %.
+  std::string verdict;
+  double discrepancy = 0.0;  ///< of the variances that is left to the model, relative
+  double p = 0.0;            ///< of the squared distance; with a discrepancy a measure, no test
+  std::size_t parameters = 0;
+  std::size_t scales = 0;
+  std::vector<FittedProcess> processes;   ///< intervals from the curvature
+  std::vector<std::string> alternatives;  ///< models that describe the curve as well
+  /// What a reader must know: that nothing describes the curve, or what of the model none of the nine candidates of
+  /// Table 3 of the seed paper has (a resonance at 20 Hz). Empty where there is nothing to say.
+  std::string sentence;
 };
 
 struct ChannelCharacterisation {
@@ -122,10 +147,11 @@ struct ChannelCharacterisation {
   FurtherCurves further;  ///< on request
   Contamination contamination;
   AllanParameters allan_parameters;
-  std::vector<ModelFit> fits;                 ///< best first
-  std::size_t best = 0;                       ///< index into fits
-  Stationarity stationarity;                  ///< whether it is one noise; sizes of jumps in the channel unit
-  std::optional<DynamicAllan> dynamic_allan;  ///< where it was asked for
+  std::optional<CurveDescription> description;  ///< empty where the record is too short or constant
+  std::vector<ModelFit> fits;                   ///< best first
+  std::size_t best = 0;                         ///< index into fits
+  Stationarity stationarity;                    ///< whether it is one noise; sizes of jumps in the channel unit
+  std::optional<DynamicAllan> dynamic_allan;    ///< where it was asked for
   std::vector<std::string> warnings;
 };
 

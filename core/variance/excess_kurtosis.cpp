@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace driftlab {
 
@@ -72,18 +73,12 @@ double part_variance(const Model& model, double half, double dt_s, bool rough) {
   return sum;
 }
 
-void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<const double> half, std::size_t samples,
-                  double dt_s, const NoiseShape& shape) {
-  if (shape.kurtosis == 0.0) {
-    return;
-  }
+void add_kurtosis(Eigen::MatrixXd& covariance, const Eigen::VectorXd& part, std::span<const std::size_t> half,
+                  std::size_t samples, double kurtosis) {
   Eigen::VectorXd direction(covariance.rows());
   for (Eigen::Index j = 0; j < direction.size(); ++j) {
-    const double m = half[static_cast<std::size_t>(j)];
-    direction(j) =
-        part_variance(model, m, dt_s, shape.rough) * std::sqrt(kurtosis_share(static_cast<std::size_t>(m), samples));
+    direction(j) = part(j) * std::sqrt(kurtosis_share(half[static_cast<std::size_t>(j)], samples));
   }
-  double kurtosis = shape.kurtosis;
   if (kurtosis < 0.0) {  // C + k v v' stays positive while -k v' C^-1 v < 1
     const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
     const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
@@ -92,6 +87,21 @@ void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<con
     kurtosis = reach > 0.0 ? std::max(kurtosis, -0.9 / reach) : 0.0;
   }
   covariance += kurtosis * direction * direction.transpose();
+}
+
+void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<const double> half, std::size_t samples,
+                  double dt_s, const NoiseShape& shape) {
+  if (shape.kurtosis == 0.0) {
+    return;
+  }
+  Eigen::VectorXd part(covariance.rows());
+  std::vector<std::size_t> whole;
+  for (Eigen::Index j = 0; j < part.size(); ++j) {
+    const double m = half[static_cast<std::size_t>(j)];
+    part(j) = part_variance(model, m, dt_s, shape.rough);
+    whole.push_back(static_cast<std::size_t>(m));
+  }
+  add_kurtosis(covariance, part, whole, samples, shape.kurtosis);
 }
 
 }  // namespace driftlab

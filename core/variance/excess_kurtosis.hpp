@@ -40,5 +40,8 @@ struct NoiseShape {
 /// direction shrinks by more than nine tenths.
 void add_kurtosis(Eigen::MatrixXd& covariance, const Model& model, std::span<const double> half, std::size_t samples,
                   double dt_s, const NoiseShape& shape);
+/// The same for a part whose wavelet variances are given, one per half length.
+void add_kurtosis(Eigen::MatrixXd& covariance, const Eigen::VectorXd& part, std::span<const std::size_t> half,
+                  std::size_t samples, double kurtosis);
 
 }  // namespace driftlab
