@@ -144,17 +144,18 @@ void say_fit(const ReportedChannel& channel, Verdict& verdict) {
   }
 }
 
-void say_shape(const ReportedChannel& channel, const NoiseShape& shape, Verdict& verdict) {
+void say_shape(const ReportedChannel& channel, const GrossErrorEvidence& evidence, Verdict& verdict) {
   if (channel.contaminated()) {
     verdict.sentence += " Gross errors move its variances: the figures are from robust ones.";
     raise(verdict, VerdictLevel::Look);
-  } else if (shape.not_gaussian) {
+  } else if (evidence.not_gaussian) {
     verdict.sentence += " The noise is not Gaussian, so the robust figures do not replace the classical ones.";
     raise(verdict, VerdictLevel::Look);
   }
-  if (shape.disjoint_scales > 0) {
-    verdict.details.push_back("Classical and robust variance are disjoint at " + std::to_string(shape.disjoint_scales) +
-                              " of " + std::to_string(shape.scales) + " scales.");
+  if (evidence.disjoint_scales > 0) {
+    verdict.details.push_back("Classical and robust variance are disjoint at " +
+                              std::to_string(evidence.disjoint_scales) + " of " + std::to_string(evidence.scales) +
+                              " scales.");
   }
 }
 
@@ -241,7 +242,7 @@ std::string_view name_of(VerdictLevel level) {
   return level == VerdictLevel::Fine ? "fine" : level == VerdictLevel::Look ? "look" : "wrong";
 }
 
-Verdict verdict_of(const ReportedChannel& channel, const NoiseShape& shape) {
+Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evidence) {
   Verdict verdict;
   if (channel.fits.empty()) {
     verdict.sentence = "No model could be fitted to this channel.";
@@ -249,7 +250,7 @@ Verdict verdict_of(const ReportedChannel& channel, const NoiseShape& shape) {
     return verdict;
   }
   say_fit(channel, verdict);
-  say_shape(channel, shape, verdict);
+  say_shape(channel, evidence, verdict);
   say_rivals(channel, verdict);
   add_facts(channel.fits.front(), verdict);
   return verdict;

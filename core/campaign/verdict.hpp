@@ -33,7 +33,7 @@ struct Verdict {
 };
 
 /// What the test for gross errors said beside its verdict (core/variance/contamination.hpp).
-struct NoiseShape {
+struct GrossErrorEvidence {
   bool not_gaussian = false;
   std::size_t disjoint_scales = 0;
   std::size_t scales = 0;
@@ -43,7 +43,7 @@ struct NoiseShape {
 inline constexpr double kDoesNotFit = 0.01;
 
 /// Of one channel of one recording.
-[[nodiscard]] Verdict verdict_of(const ReportedChannel& channel, const NoiseShape& shape);
+[[nodiscard]] Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evidence);
 
 /// Of one sensor axis over its conditions.
 [[nodiscard]] Verdict verdict_of(const ParameterTable& table);

@@ -98,14 +98,14 @@ Result<Json> channel_summary(const Json& channel) {
   if (!reported) {
     return fail(reported.error());
   }
-  NoiseShape shape;
+  GrossErrorEvidence evidence;
   if (channel.contains("contamination") && channel["contamination"].is_object()) {
     const Json& contamination = channel["contamination"];
-    shape.not_gaussian = contamination.value("not_gaussian", false);
-    shape.disjoint_scales = contamination.value("disjoint_scales", Json::array()).size();
+    evidence.not_gaussian = contamination.value("not_gaussian", false);
+    evidence.disjoint_scales = contamination.value("disjoint_scales", Json::array()).size();
   }
-  shape.scales = reported->haar.scale.size();
-  return to_json(verdict_of(*reported, shape));
+  evidence.scales = reported->haar.scale.size();
+  return to_json(verdict_of(*reported, evidence));
 }
 
 Json implied_by(const Json& fit, const Json& channel) {
