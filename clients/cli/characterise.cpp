@@ -18,6 +18,7 @@ struct Flags {
   std::size_t bootstrap = 0;
   std::size_t dynamic = 0;
   FurtherRequest also;
+  double from_tau_s = 0.0;
   bool json = false;
 };
 
@@ -28,6 +29,7 @@ Exit run(const Flags& flags) {
   options.bootstrap = flags.bootstrap;
   options.dynamic = flags.dynamic;
   options.also = flags.also;
+  options.from_tau_s = flags.from_tau_s;
   if (!flags.models.empty()) {
     options.models = flags.models;
   }
@@ -88,6 +90,10 @@ void add_characterise(CLI::App& app, Command& chosen) {
   command->add_flag("--total", flags->also.total, "Total deviation for tau up to half of the recording");
   command->add_flag("--theo1", flags->also.theo1, "Theo1 for tau up to three quarters of the recording");
   command->add_flag("--psd", flags->also.psd, "Power spectral density with its lines");
+  command
+      ->add_option("--from-tau", flags->from_tau_s,
+                   "Fit models to the scales of tau from here on [s], where a filter rules the first ones")
+      ->capture_default_str();
   command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
   command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
   command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");

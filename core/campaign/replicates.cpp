@@ -24,7 +24,10 @@ struct Block {
   std::vector<Eigen::Index> scales;  ///< of the plan, those with a positive variance
   Eigen::VectorXd root_inflation;    ///< per row
   WaveletMoments moments;            ///< its own rows, in the unit of the stack
-  Eigen::Index first = 0;            ///< of its rows in the stack
+  Eigen::MatrixXd covariance;        ///< of its rows, under the mixture that describes them
+  Eigen::VectorXd described;         ///< variances of that mixture
+  double discrepancy = 0.0;
+  Eigen::Index first = 0;  ///< of its rows in the stack
 };
 
 Status check(const WaveletRecord& record) {
@@ -76,6 +79,8 @@ WaveletRecord record_of(const ReportedChannel& channel) {
   WaveletRecord record;
   record.samples = channel.samples + channel.missing;
   record.dt_s = channel.dt_s;
+  record.discrepancy = channel.discrepancy;
+  record.from_tau_s = channel.from_tau_s;
   const ReportedHaar& haar = channel.haar;
   const bool robust = channel.contaminated() && !haar.robust_variance.empty();
   const std::vector<double>& variances = robust ? haar.robust_variance : haar.variance;
@@ -98,6 +103,8 @@ struct Replicates::Blocks {
   Eigen::VectorXd sd;
   double samples = 0.0;
   double unit = 1.0;
+  std::shared_ptr<const WhitenedCurve> exact;      ///< at discrepancy 0
+  std::shared_ptr<const WhitenedCurve> forgiving;  ///< with the discrepancies of the recordings
 
   std::size_t plan_for(const WaveletRecord& record) {
     const auto found = std::find_if(plans.begin(), plans.end(), [&](const SharedPlan& plan) {
@@ -115,7 +122,8 @@ struct Replicates::Blocks {
     block.plan = plan_for(record);
     block.first = moments.nu.size();
     for (std::size_t j = 0; j < record.half.size(); ++j) {
-      if (record.variance[j] > 0.0) {
+      const double tau_s = static_cast<double>(record.half[j]) * record.dt_s;
+      if (record.variance[j] > 0.0 && tau_s >= record.from_tau_s * (1.0 - 1e-9)) {
         block.scales.push_back(static_cast<Eigen::Index>(j));
         block.moments.half.push_back(static_cast<double>(record.half[j]));
       }
@@ -127,7 +135,11 @@ struct Replicates::Blocks {
     for (double& variance : curve.variance) {
       variance = std::max(0.0, variance / (unit * unit));
     }
-    const VarianceIntervals intervals = variance_intervals(curve, plans[block.plan].covariance);
+    HaarCovariance& plan = plans[block.plan].covariance;
+    const VarianceIntervals intervals = variance_intervals(curve, plan);
+    const Eigen::MatrixXd whole = plan.matrix(intervals.mixture);
+    block.described.resize(rows);
+    block.discrepancy = record.discrepancy;
     sd.conservativeResize(block.first + rows);
     moments.nu.conservativeResize(block.first + rows);
     for (Eigen::Index row = 0; row < rows; ++row) {
@@ -138,7 +150,10 @@ struct Replicates::Blocks {
       }
       sd(block.first + row) =
           std::sqrt(intervals.estimate_variance(static_cast<Eigen::Index>(j))) * block.root_inflation(row);
+      block.described(row) = intervals.modelled(static_cast<Eigen::Index>(j));
     }
+    block.covariance =
+        block.root_inflation.asDiagonal() * whole(block.scales, block.scales) * block.root_inflation.asDiagonal();
     block.moments.samples = static_cast<double>(record.samples);
     block.moments.dt_s = record.dt_s;
     moments.nu.tail(rows) = block.moments.nu;
@@ -151,7 +166,19 @@ struct Replicates::Blocks {
     blocks.push_back(std::move(block));
   }
 
-  /// Block-diagonal covariance of the stacked variances under a model.
+  /// The stack as one curve: the covariance is block diagonal, for the recordings are independent.
+  [[nodiscard]] CurveCovariance curve() const {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(moments.nu.size(), moments.nu.size());
+    Eigen::VectorXd described(moments.nu.size());
+    for (const Block& block : blocks) {
+      const auto rows = block.moments.nu.size();
+      covariance.block(block.first, block.first, rows, rows) = block.covariance;
+      described.segment(block.first, rows) = block.described;
+    }
+    return curve_covariance(moments.nu, described, covariance);
+  }
+
+  /// Covariance of the stacked variances under one model of all.
   Eigen::MatrixXd covariance(const Model& model) {
     std::vector<Eigen::MatrixXd> by_plan;
     by_plan.reserve(plans.size());
@@ -161,15 +188,25 @@ struct Replicates::Blocks {
     Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(moments.nu.size(), moments.nu.size());
     for (const Block& block : blocks) {
       const auto rows = block.moments.nu.size();
-      for (Eigen::Index j = 0; j < rows; ++j) {
-        for (Eigen::Index i = 0; i < rows; ++i) {
-          stacked(block.first + i, block.first + j) = by_plan[block.plan](block.scales[static_cast<std::size_t>(i)],
-                                                                          block.scales[static_cast<std::size_t>(j)]) *
-                                                      block.root_inflation(i) * block.root_inflation(j);
-        }
-      }
+      stacked.block(block.first, block.first, rows, rows) = block.root_inflation.asDiagonal() *
+                                                            by_plan[block.plan](block.scales, block.scales) *
+                                                            block.root_inflation.asDiagonal();
     }
     return stacked;
+  }
+
+  [[nodiscard]] Eigen::VectorXd discrepancies() const {
+    Eigen::VectorXd delta(moments.nu.size());
+    for (const Block& block : blocks) {
+      delta.segment(block.first, block.moments.nu.size()).setConstant(block.discrepancy);
+    }
+    return delta;
+  }
+
+  void measure() {
+    exact = std::make_shared<const WhitenedCurve>(whitened(curve(), 0.0));
+    const Eigen::VectorXd delta = discrepancies();
+    forgiving = delta.maxCoeff() > 0.0 ? std::make_shared<const WhitenedCurve>(whitened(curve(), delta)) : exact;
   }
 };
 
@@ -194,6 +231,7 @@ Result<Replicates> Replicates::stack(const std::vector<WaveletRecord>& records) 
   for (const WaveletRecord& record : records) {
     blocks->add(record);
   }
+  blocks->measure();
   return Replicates(std::move(blocks));
 }
 
@@ -203,8 +241,16 @@ double Replicates::samples() const { return blocks_->samples; }
 double Replicates::unit() const { return blocks_->unit; }
 
 Candidate Replicates::fit(const ModelStructure& structure) {
-  return fit_candidate(blocks_->moments, structure, blocks_->sd,
-                       [&](const Model& model) { return blocks_->covariance(model); });
+  Candidate candidate = fit_candidate(blocks_->moments, structure, blocks_->sd, blocks_->exact);
+  if (!candidate.log_fit) {
+    return candidate;
+  }
+  if (blocks_->exact != blocks_->forgiving) {
+    return refit_candidate(blocks_->moments, candidate, blocks_->forgiving);
+  }
+  candidate.own_distance =
+      distance_under_own(blocks_->moments, candidate, [&](const Model& model) { return blocks_->covariance(model); });
+  return candidate;
 }
 
 std::optional<Agreement> Replicates::agreement(const Candidate& joint) const {
@@ -218,11 +264,11 @@ std::optional<Agreement> Replicates::agreement(const Candidate& joint) const {
   }
   double separate = 0.0;
   for (const Block& block : blocks_->blocks) {
-    const auto rows = block.moments.nu.size();
-    const Eigen::MatrixXd covariance = joint.covariance.block(block.first, block.first, rows, rows);
-    LogFit own(block.moments, active, covariance);
+    const auto curve = std::make_shared<const WhitenedCurve>(
+        whitened(curve_covariance(block.moments.nu, block.described, block.covariance), block.discrepancy));
+    LogFit own(block.moments, active, curve);
     own.improve(joint.log_fit->best());
-    const GmwmSolution alone = fit_gmwm(block.moments, structure, MomentWeights::from_covariance(covariance));
+    const GmwmSolution alone = fit_gmwm(block.moments, structure, MomentWeights::from_covariance(block.covariance));
     Eigen::VectorXd start = own.best();
     for (std::size_t k = 0; k < own.coordinates().size(); ++k) {
       const LogCoordinate& c = own.coordinates()[k];

@@ -5,8 +5,8 @@
 /// its own length, sample interval and covariance (Radi, Bakalli, Guerrier, El-Sheimy, Sesia and Molinari 2019, "A
 /// multisignal wavelet variance-based framework for inertial sensor stochastic error modeling"). The recordings are
 /// independent, so the covariance of the stacked wavelet variances is block diagonal, and the joint fit is that of one
-/// longer signal: fit_gmwm for the optimum, LogFit for criterion, test and profile intervals. One recording is the case
-/// R = 1 and gives what characterise_channel gives.
+/// longer signal (core/fit/candidate.hpp). Each recording keeps the covariance and the discrepancy of its own curve.
+/// One recording is the case R = 1 and gives what characterise_channel gives.
 ///
 /// Nothing but the wavelet variances, sample count and interval of each recording is needed: a stored result can be
 /// pooled without its samples.
@@ -37,6 +37,8 @@ struct WaveletRecord {
   std::vector<double> inflation = {};
   std::size_t samples = 0;  ///< of the grid: those that are missing count
   double dt_s = 0.0;
+  double from_tau_s = 0.0;   ///< scales of smaller tau describe the noise, but no model is fitted to them
+  double discrepancy = 0.0;  ///< by how much the curve may differ from every model (core/fit/discrepancy.hpp)
 };
 
 /// What a joint fit takes of a channel [SI]: its wavelet variances, the robust ones where gross errors move the

@@ -69,6 +69,8 @@ ReportedFit reported(const ModelFit& fit, const Unit& unit) {
   told_fit.intervals = fit.intervals;
   told_fit.plausible = fit.plausible;
   told_fit.j_test = fit.j_test;
+  told_fit.verdict = fit.verdict;
+  told_fit.described_within = fit.described_within;
   told_fit.status = fit.status;
   told_fit.warnings = fit.warnings;
   return told_fit;
@@ -94,6 +96,8 @@ ReportedChannel reported(const std::string& column, const ColumnRole& role, cons
   result.dt_s = channel.dt_s;
   result.haar = told(channel.haar, 1.0 / unit.factor);
   result.contamination = channel.contamination.verdict;
+  result.discrepancy = channel.discrepancy;
+  result.from_tau_s = channel.from_tau_s;
   result.allan = reported(channel.allan_parameters, unit.dimension);
   for (const ModelFit& fit : channel.fits) {
     result.fits.push_back(reported(fit, unit));

@@ -53,6 +53,8 @@ struct ReportedFit {
   std::string intervals;
   bool plausible = false;
   std::optional<JTest> j_test;
+  std::string verdict;            ///< `accepted`, `described`, `not_described`, `untested`; empty: nobody asked
+  double described_within = 0.0;  ///< relative error of the variances that the model leaves
   std::string status;
   std::vector<std::string> warnings;
 };
@@ -80,6 +82,8 @@ struct ReportedChannel {
   ReportedHaar haar;
   std::string contamination;      ///< verdict: `clean`, `contaminated`, `undecided`; empty where nobody looked
   ReportedValues allan;           ///< N B K Q R of IEEE Std 952
+  double discrepancy = 0.0;       ///< of the curve from every candidate; 0 where one is accepted
+  double from_tau_s = 0.0;        ///< models were fitted to the scales of tau from here on
   std::vector<ReportedFit> fits;  ///< best first
 
   /// Gross errors move the variances: the robust ones stand for it.

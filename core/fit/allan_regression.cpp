@@ -3,11 +3,12 @@
 #include "core/fit/fit_report.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace driftlab {
 
-AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::VectorXd& sd,
-                                 const CovarianceLaw& covariance_of, double unit) {
+AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::VectorXd& sd, CurveCovariance curve,
+                                 double unit) {
   AllanParameters result;
   // Fewer scales than terms: the steep ones go first, they need long records.
   const std::vector<std::string_view> names{"WN", "WN+RW", "QN+WN+RW", "QN+WN+FN+RW", "QN+WN+FN+RW+DR"};
@@ -18,17 +19,15 @@ AllanParameters allan_regression(const WaveletMoments& moments, const Eigen::Vec
     return result;
   }
   const Result<ModelStructure> structure = parse_model(names[choice - 1]);
-  Candidate candidate = fit_candidate(moments, *structure, sd, covariance_of);
+  Candidate candidate = fit_alone(moments, *structure, sd, std::move(curve));
   if (!candidate.log_fit) {
     return result;
   }
-  const double dof = static_cast<double>(moments.nu.size()) - static_cast<double>(candidate.parameters);
-  const double birge = dof >= 1.0 ? std::max(1.0, candidate.log_fit->minimum() / dof) : 1.0;
   const auto store = [&](const FittedParameter& parameter, std::optional<Estimate>& estimate, std::string& reason) {
     estimate = parameter.estimate;
     reason = parameter.reason;
   };
-  for (const FittedProcess& process : report_processes(candidate, unit, IntervalMethod::Profile, kRise95 * birge)) {
+  for (const FittedProcess& process : report_processes(candidate, unit, IntervalMethod::Profile, kRise95)) {
     const FittedParameter& level = process.parameters.front();
     if (level.name == "Q") {
       store(level, result.q, result.q_reason);

@@ -38,7 +38,14 @@ Result<std::vector<double>> bootstrap_rises(const Candidate& candidate, const Wa
     const HaarVariance curve = haar_variance(path, path.front());
     WaveletMoments drawn = moments;
     drawn.nu = Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales()));
-    LogFit fit(drawn, truth, candidate.covariance);
+    CurveCovariance redrawn = fitted.curve().curve;
+    for (Eigen::Index j = 0; j < redrawn.rows(); ++j) {
+      const Eigen::Index row = redrawn.used[static_cast<std::size_t>(j)];
+      const double discrepancy = fitted.curve().delta > 0.0 ? fitted.curve().delta * random.normal() : 0.0;
+      redrawn.log_variance(j) = std::log(drawn.nu(row)) - redrawn.bias(j) + discrepancy;
+    }
+    const auto curve_drawn = std::make_shared<const WhitenedCurve>(whitened(std::move(redrawn), fitted.curve().delta));
+    LogFit fit(drawn, truth, curve_drawn);
     for (std::size_t k = 0; k < count; ++k) {
       rises[k].push_back(fit.rise_at(k, fitted.best()(static_cast<Eigen::Index>(k))));
     }

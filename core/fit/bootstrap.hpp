@@ -6,7 +6,8 @@
 /// the 95 % quantile of the rise of L in series simulated from the fit itself. Each series has its own wavelet
 /// variances and its own minimum, and the rise is evaluated at the parameter value from which the series was simulated
 /// (Hall 1992, ch. 3: bootstrap calibration of a pivot). Percentiles of the estimates are not used: their intervals
-/// cover 69 to 100 % here. The covariance stays that of the fit. Processes are simulated as declared: Gaussian, except
+/// cover 69 to 100 % here. The covariance stays that of the curve;
+/// where it has a discrepancy, one is drawn for each scale too. Processes are simulated as declared: Gaussian, except
 /// for quantization errors, which are uniform.
 #include "core/fit/candidate.hpp"
 #include "core/signal/progress.hpp"

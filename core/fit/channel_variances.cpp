@@ -131,24 +131,23 @@ RobustVariances robust_variances(std::span<const double> samples, double mean, c
   return result;
 }
 
-CovarianceLaw FittedVariances::covariance(HaarCovariance& plan) const {
+Eigen::MatrixXd FittedVariances::covariance(HaarCovariance& plan, const Model& model) const {
   Eigen::VectorXd raise = Eigen::VectorXd::Ones(sd.size());
   for (std::size_t j = 0; j < efficiency.size(); ++j) {
     raise(static_cast<Eigen::Index>(j)) = 1.0 / std::sqrt(efficiency[j]);
   }
-  return [&plan, raise, kurtosis = shape, observed = scatter](const Model& model) -> Eigen::MatrixXd {
-    Eigen::MatrixXd covariance = plan.matrix(model);
-    add_kurtosis(covariance, model, plan.half(), plan.samples(), plan.dt_s(), kurtosis);
-    observed.apply(covariance);
-    return raise.asDiagonal() * covariance * raise.asDiagonal();
-  };
+  Eigen::MatrixXd covariance = plan.matrix(model);
+  add_kurtosis(covariance, model, plan.half(), plan.samples(), plan.dt_s(), shape);
+  scatter.apply(covariance);
+  return raise.asDiagonal() * covariance * raise.asDiagonal();
 }
 
 FittedVariances fitted_variances(const ClassicalVariances& classical, const VarianceIntervals& intervals,
                                  const RobustVariances& robust, HaarCovariance& plan) {
-  FittedVariances fitted{
-      classical.curve.variance, intervals.estimate_variance.cwiseSqrt(), classical.efficiency, intervals.shape, false,
-      intervals.scatter};
+  FittedVariances fitted{classical.curve.variance, intervals.estimate_variance.cwiseSqrt(),
+                         classical.efficiency,     intervals.shape,
+                         intervals.mixture,        false,
+                         intervals.scatter};
   if (!robust.sample_wise || robust.contamination.verdict != name_of(ContaminationVerdict::Contaminated)) {
     return fitted;
   }
@@ -166,6 +165,7 @@ FittedVariances fitted_variances(const ClassicalVariances& classical, const Vari
   fitted.efficiency = robust.efficiency;
   fitted.shape = own.shape;
   fitted.scatter = {};
+  fitted.mixture = std::move(own.mixture);
   fitted.robust = true;
   return fitted;
 }

@@ -7,7 +7,6 @@
 /// error, and sample by sample (core/fit/sample_wise_variance.hpp) as soon as one is. Fitted, that is, those to which
 /// models are fitted: the robust ones if the verdict of the contamination test is `contaminated`, with a covariance
 /// raised by their lower efficiency; otherwise the classical ones.
-#include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
 #include "core/signal/gappy_samples.hpp"
 #include "core/signal/progress.hpp"
@@ -63,18 +62,19 @@ struct RobustVariances {
                                                HaarCovariance& plan, std::uint64_t seed,
                                                const RunControl& control = {});
 
-/// The data of a model fit: wavelet variances, their standard deviations, and their covariance under a model.
+/// The data of a model fit: wavelet variances, their standard deviations, and what gives their covariance.
 struct FittedVariances {
   std::vector<double> variance;
   Eigen::VectorXd sd;
   std::vector<double> efficiency;  ///< empty: 1
   NoiseShape shape;                ///< kurtosis of the noise; that of robust variances is Gaussian
+  Model mixture;                   ///< of dictionary processes, which describes the curve
   bool robust = false;
   ScatterCorrection scatter = {};  ///< of the classical variances, where the record scatters more than linear noise
 
-  /// Covariance under a model: that of a complete Gaussian record, with each standard deviation divided by the square
-  /// root of its efficiency.
-  [[nodiscard]] CovarianceLaw covariance(HaarCovariance& plan) const;
+  /// Covariance of the variances under a model, the mixture or a fit: that of a complete record, with each standard
+  /// deviation divided by the square root of its efficiency. `plan` must be that of the scales.
+  [[nodiscard]] Eigen::MatrixXd covariance(HaarCovariance& plan, const Model& model) const;
 };
 
 /// The robust variances if the channel is contaminated and every scale has a robust value; else the classical ones.

@@ -84,13 +84,19 @@ struct ModelFit {
   bool robust = false;  ///< fitted to the robust wavelet variances
   std::vector<FittedProcess>
       processes;                ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
-  double objective = 0.0;       ///< weighted squared distance at the optimum (seed paper eq. 7)
+  double objective = 0.0;       ///< squared distance L on the logarithms at the optimum, which ranks
   double wic = 0.0;             ///< criterion that ranks (smaller is better)
   double eq8 = 0.0;             ///< seed paper's eq. 8 with optimism 2 tr(W C W D (D'WD)^-1 D'), diagonal W
   double optimism = 0.0;        ///< its second term, never negative
   std::size_t parameters = 0;   ///< free parameters of the fit (those of vanished components do not count)
   bool plausible = false;       ///< in the set of models that the data cannot tell apart (holds the truth in 85-98 %)
-  std::optional<JTest> j_test;  ///< empty where no degree of freedom is left
+  std::optional<JTest> j_test;  ///< at discrepancy 0; empty where no degree of freedom is left
+  /// `accepted`: the J test does not reject at 0.01. `described`: it does, but the variances are within 2 % of the
+  /// model's but for their scatter. `not_described`: they are not. `untested`: there is no J test.
+  std::string verdict = "untested";
+  /// The relative error of the variances that the model leaves (core/fit/discrepancy.hpp): 0 where it is accepted. The
+  /// intervals allow for it.
+  double described_within = 0.0;
   /// Ratio of the best to the worst known combination of the logarithms of the parameters (1: all equally well).
   double condition_number = 1.0;
   /// Parameters at an end of their range: `random_walk.K` where the component vanished, `gauss_markov.beta` where the
@@ -147,6 +153,10 @@ struct ChannelCharacterisation {
   FurtherCurves further;  ///< on request
   Contamination contamination;
   AllanParameters allan_parameters;
+  /// By how much, relative to its variances, the curve may differ from every candidate (core/fit/discrepancy.hpp): 0
+  /// where a candidate is accepted. It is in the weights of all fits.
+  double discrepancy = 0.0;
+  double from_tau_s = 0.0;                      ///< models were fitted to the scales of tau from here on
   std::optional<CurveDescription> description;  ///< empty where the record is too short or constant
   std::vector<ModelFit> fits;                   ///< best first
   std::size_t best = 0;                         ///< index into fits

@@ -2,7 +2,7 @@
 
 #include "core/fit/allan_regression.hpp"
 #include "core/fit/bootstrap.hpp"
-#include "core/fit/candidate.hpp"
+#include "core/fit/candidate_set.hpp"
 #include "core/fit/channel_variances.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -28,6 +29,9 @@ constexpr std::size_t kFewestSamples = 8;
 constexpr std::size_t kMostModels = 64;
 /// Models whose criterion with 2p is this close to the best cannot be told apart.
 constexpr double kPlausible = 6.0;
+constexpr int kMostRankings = 5;
+/// A tau written in decimals is that of its scale.
+constexpr double kRounding = 1e-9;
 
 /// Whether `samples` are one noise, and how their Allan variance moves where that is asked for.
 void look_along_time(std::span<const double> samples, const ChannelSamples& channel, std::size_t windows,
@@ -99,65 +103,77 @@ void store_robust(RobustVariances robust, double si_square, ChannelCharacterisat
   std::move(robust.warnings.begin(), robust.warnings.end(), std::back_inserter(result.warnings));
 }
 
+void leave_out_coefficients(const char* reason, ChannelCharacterisation& result) {
+  AllanParameters& all = result.allan_parameters;
+  all.q_reason = all.n_reason = all.b_reason = all.k_reason = all.r_reason = reason;
+}
+
 void store_constant(HaarVariance& curve, double dt_s, ChannelCharacterisation& result) {
   std::fill(curve.variance.begin(), curve.variance.end(), 0.0);
   store_curves(curve, nullptr, 0.0, dt_s, result);
   result.warnings.emplace_back("The channel is constant: every variance is zero and no model is fitted.");
-  result.allan_parameters.q_reason = result.allan_parameters.n_reason = result.allan_parameters.b_reason =
-      result.allan_parameters.k_reason = result.allan_parameters.r_reason = "The channel is constant.";
+  leave_out_coefficients("The channel is constant.", result);
 }
 
-/// Fits every candidate that the number of scales allows; the rest are named in a warning.
-Result<std::vector<Candidate>> fit_candidates(const WaveletMoments& moments, const CharacteriseOptions& options,
-                                              const Eigen::VectorXd& sd, const CovarianceLaw& covariance_of,
-                                              const RunControl& control, std::vector<std::string>& warnings) {
-  std::vector<Candidate> candidates;
+/// The models asked for that the number of scales allows, each once; the rest are named in a warning.
+std::vector<ModelStructure> structures_of(const WaveletMoments& moments, const CharacteriseOptions& options,
+                                          std::vector<std::string>& warnings) {
+  std::vector<ModelStructure> structures;
   std::string left_out;
   const auto usable = static_cast<std::size_t>((moments.nu.array() > 0.0).count());
-  for (std::size_t i = 0; i < options.models.size(); ++i) {
-    if (control.stop.stop_requested()) {
-      return cancelled();
-    }
-    const ModelStructure structure = *parse_model(options.models[i]);
-    const std::string name = model_name(structure);
-    control.report("fit " + name, 0.3 + 0.4 * static_cast<double>(i) / static_cast<double>(options.models.size()));
+  for (const std::string& model : options.models) {
+    ModelStructure structure = *parse_model(model);
     if (structure.parameter_count() > usable) {
-      left_out += (left_out.empty() ? "" : ", ") + name;
-      continue;
-    }
-    const bool repeated = std::any_of(candidates.begin(), candidates.end(),
-                                      [&](const Candidate& other) { return other.structure == structure; });
-    if (!repeated) {
-      candidates.push_back(fit_candidate(moments, structure, sd, covariance_of));
+      left_out += (left_out.empty() ? "" : ", ") + model_name(structure);
+    } else if (std::find(structures.begin(), structures.end(), structure) == structures.end()) {
+      structures.push_back(std::move(structure));
     }
   }
   if (!left_out.empty()) {
     warnings.push_back(
         "The record is too short for these models, which have more parameters than it has scales: " + left_out + ".");
   }
-  std::erase_if(candidates, [](const Candidate& candidate) { return candidate.log_fit == nullptr; });
-  if (options.search == ModelSearch::Stepwise && !candidates.empty()) {
-    const RunControl part = control.reporting(
-        [&](std::string_view stage, double fraction) { control.report(stage, 0.7 + 0.1 * fraction); });
-    return search_models(moments, sd, covariance_of, std::move(candidates), part);
-  }
-  return candidates;
+  return structures;
 }
 
-void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, const Eigen::VectorXd& sd) {
-  const auto largest =
-      std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        return a.structure.parameter_count() < b.structure.parameter_count();
-      });
-  const Eigen::MatrixXd common = largest->covariance;
+/// Fits the models, searches for more where asked to, and gives them the discrepancy they need.
+Result<CandidateSet> fit_set(const WaveletMoments& moments, const CharacteriseOptions& options,
+                             const Eigen::VectorXd& sd, const CurveCovariance& curve,
+                             const CovarianceLaw& covariance_of, const RunControl& control,
+                             std::vector<std::string>& warnings) {
+  const auto part = [&](double from, double share) {
+    return control.reporting([&control, from, share](std::string_view stage, double fraction) {
+      control.report(stage, from + share * fraction);
+    });
+  };
+  Result<CandidateSet> set =
+      fit_candidates(moments, structures_of(moments, options, warnings), sd, curve, part(0.3, 0.4));
+  if (!set) {
+    return cancelled();
+  }
+  if (options.search == ModelSearch::Stepwise && !set->candidates.empty() &&
+      !search_models(moments, sd, covariance_of, *set, part(0.7, 0.1))) {
+    return cancelled();
+  }
+  if (!forgive(moments, *set, control)) {
+    return cancelled();
+  }
+  return set;
+}
+
+void add_equation_8(std::vector<Candidate>& candidates, const WaveletMoments& moments, const Eigen::VectorXd& sd,
+                    const Eigen::MatrixXd& covariance) {
   for (Candidate& candidate : candidates) {
-    const Equation8 criterion = equation_8(moments, candidate.diagonal, sd, common);
+    const Equation8 criterion = equation_8(moments, candidate.diagonal, sd, covariance);
     candidate.eq8 = criterion.value();
     candidate.optimism = criterion.optimism;
   }
+}
+
+void rank(std::vector<Candidate>& candidates, double samples) {
   std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-    const double first = a.criterion(moments.samples);
-    const double second = b.criterion(moments.samples);
+    const double first = a.criterion(samples);
+    const double second = b.criterion(samples);
     if (first != second) {
       return first < second;
     }
@@ -169,18 +185,35 @@ void rank(std::vector<Candidate>& candidates, const WaveletMoments& moments, con
   });
 }
 
-void store_fits(std::vector<Candidate>& candidates, double unit, double samples, const std::vector<double>& rises,
-                ChannelCharacterisation& result) {
+/// Ranks the candidates and profiles the best. A profile may come upon a smaller distance than the search did: then the
+/// models that contain this one are looked at again, and the ranking is made anew.
+ModelFit rank_and_report_best(CandidateSet& set, const WaveletMoments& moments, const CovarianceLaw& covariance_of,
+                              double unit) {
+  for (int round = 0;; ++round) {
+    measure_by_own(moments, set, covariance_of);
+    rank(set.candidates, moments.samples);
+    Candidate& best = set.candidates.front();
+    ModelFit fit = report_fit(best, unit, moments.samples, IntervalMethod::Profile);
+    if (round == kMostRankings || !(best.log_fit->minimum() < best.fit.objective)) {
+      return fit;
+    }
+    spread(moments, set, 0);
+  }
+}
+
+void store_fits(CandidateSet& set, double unit, double samples, ModelFit best_fit, ChannelCharacterisation& result) {
+  std::vector<Candidate>& candidates = set.candidates;
   double best = std::numeric_limits<double>::infinity();
   const auto light = [](const Candidate& c) {
-    return c.log_fit->minimum() + 2.0 * static_cast<double>(c.structure.parameter_count());
+    return c.ranked_distance() + 2.0 * static_cast<double>(c.structure.parameter_count());
   };
   for (const Candidate& candidate : candidates) {
     best = std::min(best, light(candidate));
   }
+  result.discrepancy = set.curve->delta;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const IntervalMethod method = i == 0 ? IntervalMethod::Profile : IntervalMethod::Preview;
-    result.fits.push_back(report_fit(candidates[i], unit, samples, method, i == 0 ? rises : std::vector<double>{}));
+    result.fits.push_back(i == 0 ? std::move(best_fit)
+                                 : report_fit(candidates[i], unit, samples, IntervalMethod::Preview));
     result.fits.back().plausible = light(candidates[i]) <= best + kPlausible;
   }
 }
@@ -188,40 +221,57 @@ void store_fits(std::vector<Candidate>& candidates, double unit, double samples,
 /// Fits, ranks and reports models, and reads off the Allan coefficients.
 Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& options, double si_unit,
                   HaarCovariance& plan, const RunControl& control, ChannelCharacterisation& result) {
-  const WaveletMoments moments{
-      Eigen::Map<const Eigen::VectorXd>(fitted.variance.data(), static_cast<Eigen::Index>(fitted.variance.size())),
-      {plan.half().begin(), plan.half().end()},
-      static_cast<double>(plan.samples()),
-      plan.dt_s()};
-  const CovarianceLaw covariance_of = fitted.covariance(plan);
-  Result<std::vector<Candidate>> candidates =
-      fit_candidates(moments, options, fitted.sd, covariance_of, control, result.warnings);
-  if (!candidates) {
-    return fail(std::move(candidates.error()));
+  std::vector<Eigen::Index> rows;
+  for (std::size_t j = 0; j < plan.half().size(); ++j) {
+    if (plan.half()[j] * plan.dt_s() >= options.from_tau_s * (1.0 - kRounding)) {
+      rows.push_back(static_cast<Eigen::Index>(j));
+    }
+  }
+  result.from_tau_s = options.from_tau_s;
+  if (rows.empty()) {
+    result.warnings.emplace_back("No scale of the record is as long as the tau from which models were to be fitted.");
+    leave_out_coefficients("No scale of the record is long enough.", result);
+    return {};
+  }
+  const Eigen::Map<const Eigen::VectorXd> variance(fitted.variance.data(),
+                                                   static_cast<Eigen::Index>(fitted.variance.size()));
+  WaveletMoments moments{variance(rows), {}, static_cast<double>(plan.samples()), plan.dt_s()};
+  for (const Eigen::Index row : rows) {
+    moments.half.push_back(plan.half()[static_cast<std::size_t>(row)]);
+  }
+  const Eigen::VectorXd sd = fitted.sd(rows);
+  const CovarianceLaw covariance_of = [&](const Model& model) -> Eigen::MatrixXd {
+    return fitted.covariance(plan, model)(rows, rows);
+  };
+  const Eigen::MatrixXd covariance = covariance_of(fitted.mixture);
+  const CurveCovariance curve = curve_covariance(moments.nu, modelled_variance(moments, fitted.mixture), covariance);
+  Result<CandidateSet> set = fit_set(moments, options, sd, curve, covariance_of, control, result.warnings);
+  if (!set) {
+    return fail(std::move(set.error()));
   }
   control.report("allan regression", 0.8);
-  result.allan_parameters = allan_regression(moments, fitted.sd, covariance_of, si_unit);
+  result.allan_parameters = allan_regression(moments, sd, curve, si_unit);
   if (control.stop.stop_requested()) {
     return cancelled();
   }
   control.report("parameter intervals", 0.9);
-  if (candidates->empty()) {
+  if (set->candidates.empty()) {
     result.warnings.emplace_back("No model could be fitted.");
     return {};
   }
-  rank(*candidates, moments, fitted.sd);
-  std::vector<double> rises;
+  add_equation_8(set->candidates, moments, sd, covariance);
+  ModelFit best = rank_and_report_best(*set, moments, covariance_of, si_unit);
   if (options.bootstrap != 0) {
     const RunControl part = control.reporting(
         [&](std::string_view stage, double fraction) { control.report(stage, 0.9 + 0.09 * fraction); });
-    Result<std::vector<double>> found =
-        bootstrap_rises(candidates->front(), moments, options.bootstrap, options.seed, part);
-    if (!found) {
-      return fail(std::move(found.error()));
+    const Result<std::vector<double>> rises =
+        bootstrap_rises(set->candidates.front(), moments, options.bootstrap, options.seed, part);
+    if (!rises) {
+      return fail(rises.error());
     }
-    rises = std::move(*found);
+    best = report_fit(set->candidates.front(), si_unit, moments.samples, IntervalMethod::Profile, *rises);
   }
-  store_fits(*candidates, si_unit, moments.samples, rises, result);
+  store_fits(*set, si_unit, moments.samples, std::move(best), result);
   for (ModelFit& fit : result.fits) {
     fit.robust = fitted.robust;
   }
@@ -285,6 +335,10 @@ Status check_options(const CharacteriseOptions& options) {
   if (options.models.empty() || options.models.size() > kMostModels) {
     return fail(ErrorCode::InvalidArgument, "Between 1 and " + std::to_string(kMostModels) + " models can be compared.",
                 {{"parameter", "models"}, {"limit", std::to_string(kMostModels)}});
+  }
+  if (!(options.from_tau_s >= 0.0) || !std::isfinite(options.from_tau_s)) {
+    return fail(ErrorCode::InvalidArgument, "The tau from which models are fitted must be 0 s or more.",
+                {{"parameter", "from_tau_s"}});
   }
   for (const std::string& name : options.models) {
     if (Result<ModelStructure> structure = parse_model(name); !structure) {

@@ -13,7 +13,7 @@
 namespace driftlab {
 
 /// This number is raised whenever the same input and settings may give other figures. It is stored with every result.
-inline constexpr int kAlgorithmVersion = 7;
+inline constexpr int kAlgorithmVersion = 9;
 
 /// Which models are compared.
 enum class ModelSearch {
@@ -34,6 +34,9 @@ struct CharacteriseOptions {
   /// Windows of a dynamic Allan variance (core/variance/dynamic_allan.hpp); 0: none.
   std::size_t dynamic = 0;
   FurtherRequest also = {};  ///< curves beside the Allan and wavelet variances
+  /// Models are fitted to the scales of tau = m dt from here on [s]; 0: to all. For who knows that a filter of the
+  /// sensor rules the first scales. The curves are those of all scales.
+  double from_tau_s = 0.0;
 };
 
 /// Samples of one channel as they lie in the file, and the factor that makes them SI.

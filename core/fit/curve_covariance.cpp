@@ -38,6 +38,8 @@ double log_covariance(const LogTerms& a, const LogTerms& b, double correlation) 
 
 }  // namespace
 
+double CurveCovariance::bias(Eigen::Index j) const { return digamma(0.5 * edf(j)) - std::log(0.5 * edf(j)); }
+
 CurveCovariance curve_covariance(const Eigen::VectorXd& nu, const Eigen::VectorXd& described,
                                  const Eigen::MatrixXd& covariance) {
   CurveCovariance curve;
@@ -56,7 +58,7 @@ CurveCovariance curve_covariance(const Eigen::VectorXd& nu, const Eigen::VectorX
     const Eigen::Index row = curve.used[static_cast<std::size_t>(j)];
     const double half_edf = described(row) * described(row) / covariance(row, row);  // eta/2 = nu^2/Var
     curve.edf(j) = 2.0 * half_edf;
-    curve.log_variance(j) = std::log(nu(row)) - (digamma(half_edf) - std::log(half_edf));
+    curve.log_variance(j) = std::log(nu(row)) - curve.bias(j);
     terms.push_back(log_terms(half_edf));
     curve.covariance(j, j) = trigamma(half_edf);
     for (Eigen::Index i = 0; i < j; ++i) {

@@ -24,6 +24,9 @@ struct CurveCovariance {
   Eigen::MatrixXd covariance;      ///< S, rows used x rows used
   Eigen::VectorXd edf;             ///< eta, one entry per row used
 
+  /// psi(eta_j/2) - ln(eta_j/2): what the logarithm of entry j falls short of ln nu_j on average.
+  [[nodiscard]] double bias(Eigen::Index j) const;
+
   [[nodiscard]] Eigen::Index rows() const { return log_variance.size(); }
 };
 

@@ -1,11 +1,15 @@
 #include "core/fit/fit_report.hpp"
 
-#include "core/process/distributions.hpp"
+#include "core/fit/j_test.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+#include <system_error>
 
 namespace driftlab {
 namespace {
@@ -25,7 +29,7 @@ Interval coordinate_interval(LogFit& fit, std::size_t k, IntervalMethod method, 
     return fit.profile(k, rise);
   }
   const double error = fit.sandwich()(static_cast<Eigen::Index>(k));
-  if (!(error < 2.0 * kPreviewLimit)) {
+  if (!(error * std::sqrt(rise / kRise95) < 2.0 * kPreviewLimit)) {
     return {};
   }
   const double half_width = std::sqrt(rise) * error;
@@ -63,34 +67,20 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
     return reported;
   }
   Estimate estimate;
-  estimate.value = std::fabs(process.parameters[parameter]);
+  estimate.value = std::exp(scale * fit.best()(static_cast<Eigen::Index>(k)));
   estimate.ci95.low = bounded_below ? std::exp(scale * log_interval.low) : -kInfinity;
   estimate.ci95.high = bounded_above ? std::exp(scale * log_interval.high) : kInfinity;
-  if (!estimate.ci95.contains(estimate.value)) {  // the two distances disagree: the one the interval is made of speaks
-    const double at = fit.best()(static_cast<Eigen::Index>(k));
-    estimate.value = std::exp(scale * at);
-  }
   reported.estimate = estimate;
   return reported;
 }
 
-/// The longest two scales scatter less than the chi-squares they are taken for where they have few degrees of freedom:
-/// the distance falls short of its own by about 1.15 on average in models of noise, and by nothing where a drift rules
-/// those scales and makes their variance regular. The size of the test so corrected: column J of tests/ACCURACY.md.
-double shortfall(double longest_edf) {
-  constexpr double kShort = 1.15;
-  return kShort * std::clamp((6.0 - longest_edf) / 4.0, 0.0, 1.0);
-}
-
-std::optional<JTest> j_test(const Candidate& candidate) {
-  const double over = static_cast<double>(candidate.log_fit->scales()) - static_cast<double>(candidate.parameters);
-  if (over < 2.0) {
-    return std::nullopt;
-  }
-  const double dof = over - shortfall(candidate.log_fit->longest_edf());
-  const double statistic = candidate.log_fit->minimum();
-  const double p = chi_squared_tail(statistic, dof);
-  return JTest{statistic, dof, p};
+/// What y is taken to scatter with about a fit: S, the discrepancy of all candidates, and what the fit's own exceeds it
+/// by.
+Eigen::MatrixXd scatter_about(const LogFit& fit, double discrepancy) {
+  const WhitenedCurve& curve = fit.curve();
+  Eigen::MatrixXd scatter = curve.scatter;
+  scatter.diagonal().array() += std::max(0.0, discrepancy * discrepancy - curve.delta * curve.delta);
+  return scatter;
 }
 
 std::vector<FittedProcess> report_with(Candidate& candidate, double unit, IntervalMethod method,
@@ -156,10 +146,26 @@ void report_bounds(const Candidate& candidate, ModelFit& fit) {
   }
 }
 
+/// `1.2 %`, with two digits.
+std::string percent(double ratio) {
+  std::array<char, 32> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), 100.0 * ratio, std::chars_format::general, 2);
+  return std::string(text.data(), error == std::errc() ? end : text.data()) + " %";
+}
+
 }  // namespace
 
 std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method, double rise) {
-  return report_with(candidate, unit, method, [rise](std::size_t) { return rise; });
+  const LogFit& fit = *candidate.log_fit;
+  const Eigen::VectorXd assumed = fit.sandwich();
+  const Eigen::VectorXd actual = fit.sandwich(scatter_about(fit, own_discrepancy(candidate)));
+  // An interval of L is widened as its curvature interval is: by the ratio of the two standard errors.
+  return report_with(candidate, unit, method, [rise, assumed, actual](std::size_t k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double ratio = actual(i) / assumed(i);
+    return rise * std::max(1.0, ratio * ratio);
+  });
 }
 
 std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, const std::vector<double>& rises) {
@@ -176,6 +182,8 @@ ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalM
   fit.optimism = candidate.optimism;
   fit.parameters = candidate.parameters;
   fit.j_test = j_test(candidate);
+  fit.described_within = own_discrepancy(candidate);
+  fit.verdict = verdict_of(fit.j_test, fit.described_within);
   fit.intervals = !rises.empty() ? "bootstrap" : (method == IntervalMethod::Profile ? "profile" : "sandwich");
   fit.processes =
       rises.empty() ? report_processes(candidate, unit, method, kRise95) : report_processes(candidate, unit, rises);
@@ -206,9 +214,10 @@ ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalM
     fit.warnings.emplace_back(
         "Some combination of the parameters is hardly known (condition number above 1e4): see their intervals.");
   }
-  if (fit.j_test && fit.j_test->p < 0.01) {
-    fit.warnings.emplace_back(
-        "The model does not fit the wavelet variances (J-test p < 0.01); its intervals are too short.");
+  if (fit.described_within > 0.0) {
+    fit.warnings.push_back("The model does not fit the wavelet variances (J-test p < 0.01): they are described to " +
+                           std::string(fit.verdict == "described" ? "" : "no better than ") +
+                           percent(fit.described_within) + ", and the intervals allow for that.");
   }
   return fit;
 }

@@ -11,8 +11,8 @@ enum class IntervalMethod {
 };
 
 /// Parameters of a candidate's processes in canonical order. `unit` is the number of SI units in one unit of the
-/// candidate's moments. `rise` is how far L may exceed its minimum inside a 95 % interval: 3.84, or more if the model
-/// is known not to fit.
+/// candidate's moments. `rise` is how far L may exceed its minimum inside a 95 % interval: 3.84. Where the model's own
+/// discrepancy exceeds that of the candidates, the interval is widened as its sandwich is.
 [[nodiscard]] std::vector<FittedProcess> report_processes(Candidate& candidate, double unit, IntervalMethod method,
                                                           double rise);
 

@@ -295,7 +295,8 @@ double promised_fall(const ResidualFunction& residual, const Eigen::VectorXd& at
   return (jacobian * least_squares(jacobian, r)).squaredNorm();
 }
 
-/// Processes of one kind in a fixed order: the largest shape (fastest) first, vanished ones last.
+}  // namespace
+
 void sort_repeats(Model& model) {
   std::sort(model.begin(), model.end(), [](const Process& a, const Process& b) {
     if (a.kind != b.kind) {
@@ -310,8 +311,6 @@ void sort_repeats(Model& model) {
     return a.parameters[0] > b.parameters[0];  // equal in all parameters: interchangeable
   });
 }
-
-}  // namespace
 
 MomentWeights MomentWeights::from_sd(const Eigen::VectorXd& sd) {
   return {Eigen::MatrixXd(sd.cwiseInverse().asDiagonal())};

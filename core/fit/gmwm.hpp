@@ -50,6 +50,9 @@ struct GmwmSolution {
 [[nodiscard]] GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& structure,
                                     const MomentWeights& weights);
 
+/// Puts processes of one kind into a fixed order: the largest shape (fastest) first, vanished ones last.
+void sort_repeats(Model& model);
+
 /// nu(theta) of a model at every scale.
 [[nodiscard]] Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& model);
 

@@ -2,7 +2,6 @@
 
 #include "core/fit/levenberg_marquardt.hpp"
 #include "core/process/dense.hpp"
-#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,64 +15,14 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxRestarts = 20;
 
-/// Terms of the covariance of two logarithms of chi-squares of eta degrees of freedom, a = eta/2, in powers of the
-/// correlation of the chi-squares (Kibble's expansion): t_k = (k - 1)! Gamma(a)/(k Gamma(a + k)); all of them make
-/// psi'(a).
-constexpr std::size_t kTerms = 48;
-std::array<double, kTerms> log_terms(double a) {
-  std::array<double, kTerms> terms{};
-  double ratio = 1.0 / a;  // (k - 1)! Gamma(a)/Gamma(a + k)
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    const auto k = static_cast<double>(i + 1);
-    terms[i] = std::sqrt(ratio / k);  // the root: two scales give the product of theirs
-    ratio *= k / (a + k);
-  }
-  return terms;
-}
-
-double log_covariance(const std::array<double, kTerms>& a, const std::array<double, kTerms>& b, double correlation) {
-  double sum = 0.0;
-  double power = 1.0;
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    power *= correlation;
-    sum += power * a[i] * b[i];
-  }
-  return sum;
-}
-
 }  // namespace
 
-LogFit::LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd& covariance)
-    : moments_(moments), model_(std::move(model)) {
-  for (Eigen::Index j = 0; j < moments.nu.size(); ++j) {
-    if (moments.nu(j) > 0.0) {
-      used_.push_back(j);
-    }
-  }
-  const auto count = static_cast<Eigen::Index>(used_.size());
-  const Eigen::VectorXd fitted = modelled_variance(moments, model_);
-  Eigen::MatrixXd relative(count, count);
-  y_.resize(count);
-  std::vector<std::array<double, kTerms>> terms;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const double half_edf = fitted(used_[j]) * fitted(used_[j]) / covariance(used_[j], used_[j]);  // eta/2 = nu^2/Var
-    longest_edf_ = 2.0 * half_edf;
-    y_(j) = std::log(moments.nu(used_[j])) - (digamma(half_edf) - std::log(half_edf));
-    terms.push_back(log_terms(half_edf));
-    relative(j, j) = trigamma(half_edf);
-    for (Eigen::Index i = 0; i < j; ++i) {
-      const double correlation =
-          covariance(used_[i], used_[j]) / std::sqrt(covariance(used_[i], used_[i]) * covariance(used_[j], used_[j]));
-      relative(i, j) = log_covariance(terms[static_cast<std::size_t>(i)], terms.back(), correlation);
-      relative(j, i) = relative(i, j);
-    }
-  }
-  whitening_ = MomentWeights::from_covariance(relative).whitening;
-
+LogFit::LogFit(const WaveletMoments& moments, Model model, std::shared_ptr<const WhitenedCurve> curve)
+    : moments_(moments), model_(std::move(model)), curve_(std::move(curve)) {
   const auto contribution = [&](Process process) {  // largest and smallest share of the curve at level 1
     process.parameters[0] = 1.0;
     std::pair<double, double> extremes{0.0, kInfinity};
-    for (const Eigen::Index j : used_) {
+    for (const Eigen::Index j : curve_->curve.used) {
       const auto row = static_cast<std::size_t>(j);
       const double share = process.haar_variance(moments.half[row], moments.dt_at(row)) / moments.nu(j);
       extremes.first = std::max(extremes.first, share);
@@ -115,7 +64,8 @@ Model LogFit::model_at(const Eigen::VectorXd& coordinates) const {
 double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* residual,
                         Eigen::MatrixXd* jacobian) const {
   const Model model = model_at(coordinates);
-  const Eigen::Index count = y_.size();
+  const std::vector<Eigen::Index>& used = curve_->curve.used;
+  const Eigen::Index count = scales();
   Eigen::VectorXd raw(count);
   Eigen::MatrixXd slope;
   if (jacobian != nullptr) {
@@ -124,7 +74,7 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
   std::array<double, kMostParameters> gradient{};
   Eigen::MatrixXd part(count, static_cast<Eigen::Index>(model.size()));
   for (Eigen::Index j = 0; j < count; ++j) {
-    const auto row = static_cast<std::size_t>(used_[j]);
+    const auto row = static_cast<std::size_t>(used[static_cast<std::size_t>(j)]);
     const double half = moments_.half[row];
     const double dt_s = moments_.dt_at(row);
     double sum = 0.0;
@@ -133,7 +83,7 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
       part(j, static_cast<Eigen::Index>(p)) = share;
       sum += share;
     }
-    raw(j) = y_(j) - std::log(sum);
+    raw(j) = curve_->curve.log_variance(j) - std::log(sum);
     if (jacobian == nullptr) {
       continue;
     }
@@ -150,10 +100,10 @@ double LogFit::evaluate(const Eigen::VectorXd& coordinates, Eigen::VectorXd* res
       slope(j, static_cast<Eigen::Index>(k)) = at >= c.low && at <= c.high ? -value : 0.0;
     }
   }
-  Eigen::VectorXd whitened = whitening_ * raw;
+  Eigen::VectorXd whitened = curve_->whitening * raw;
   const double squared = whitened.squaredNorm();
   if (jacobian != nullptr) {
-    *jacobian = whitening_ * slope;
+    *jacobian = curve_->whitening * slope;
   }
   if (residual != nullptr) {
     *residual = std::move(whitened);
@@ -210,20 +160,31 @@ bool LogFit::improve(Eigen::VectorXd start) {
   return true;
 }
 
-Eigen::VectorXd LogFit::sandwich() const {
+bool LogFit::converged() const {
+  Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;
-  evaluate(best_, nullptr, &jacobian);
-  const SymmetricEigen eigen = symmetric_eigen(jacobian.transpose() * jacobian);
-  Eigen::VectorXd errors(static_cast<Eigen::Index>(coordinates_.size()));
-  for (Eigen::Index k = 0; k < errors.size(); ++k) {
-    double variance = 0.0;
-    for (Eigen::Index e = 0; e < errors.size(); ++e) {
-      const double loading = eigen.vectors(k, e);
-      variance += loading * loading / std::max(eigen.values(e), 1e-14);
-    }
-    errors(k) = std::sqrt(variance);
+  evaluate(best_, &residual, &jacobian);
+  return (jacobian * least_squares(jacobian, residual)).squaredNorm() <= 1e-6 * std::max(1.0, minimum_);
+}
+
+Eigen::VectorXd LogFit::residual() const {
+  const Model model = this->model();
+  Eigen::VectorXd residual = curve_->curve.log_variance;
+  for (Eigen::Index j = 0; j < residual.size(); ++j) {
+    const auto row = static_cast<std::size_t>(curve_->curve.used[static_cast<std::size_t>(j)]);
+    residual(j) -= std::log(haar_variance(model, moments_.half[row], moments_.dt_at(row)));
   }
-  return errors;
+  return residual;
+}
+
+Eigen::VectorXd LogFit::sandwich(const Eigen::MatrixXd& scatter) const {
+  Eigen::MatrixXd whitened_slope;
+  evaluate(best_, nullptr, &whitened_slope);
+  const Eigen::MatrixXd whitened_scatter = curve_->whitening * scatter * curve_->whitening.transpose();
+  const auto rows = whitened_slope.rows();
+  return sandwich_covariance(whitened_slope, Eigen::MatrixXd::Identity(rows, rows), whitened_scatter)
+      .diagonal()
+      .cwiseSqrt();
 }
 
 double LogFit::constrained(std::size_t k, double value, Eigen::VectorXd& warm) const {

@@ -1,20 +1,17 @@
 #pragma once
-/// Quasi-likelihood of a model on the logarithms of the wavelet variances.
+/// Squared distance of a model from the logarithms of the wavelet variances.
 ///
-/// When nu^_j is scaled chi-square with eta_j degrees of freedom, y_j = ln nu^_j - [psi(eta_j/2) - ln(eta_j/2)] is
-/// unbiased for ln nu_j. R is the covariance of the logarithms at the fit: psi'(eta_j/2) on the diagonal, and off the
-/// diagonal the covariance of the logarithms of correlated chi-square variables whose covariance is that of the nu^
-/// (Kibble 1941: a series in their correlation, whose first term is the relative covariance). With the first term alone
-/// the J test rejects 2.2 % of true models at a nominal 5 % (N = 9,000).
-///
-/// L(theta) = r' R^-1 r with r = y - ln nu(theta). At its minimum it is chi-square(scales - parameters) if the model is
-/// right. Its profile gives intervals that hold even at scales of a few degrees of freedom, where nu^ itself is far
-/// from Gaussian.
+/// L(theta) = r' (S + delta^2 I)^-1 r with r = y - ln nu(theta); y and S belong to the curve alone
+/// (core/fit/curve_covariance.hpp) and delta to all its candidates (core/fit/discrepancy.hpp). At delta = 0 the minimum
+/// of L is chi-square(scales - parameters) if the model is right. The profile of L gives intervals that hold even at
+/// scales of a few degrees of freedom, where nu^ itself is far from Gaussian.
+#include "core/fit/discrepancy.hpp"
 #include "core/fit/gmwm.hpp"
 #include "core/signal/estimate.hpp"
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -31,25 +28,31 @@ struct LogCoordinate {
 
 class LogFit {
  public:
-  /// `model` is the fit, with positive levels only; `covariance` is that of the wavelet variances under it. Scales
-  /// whose variance is 0 take no part.
-  LogFit(const WaveletMoments& moments, Model model, const Eigen::MatrixXd& covariance);
+  /// `model` is where the search starts, with positive levels only; `curve` is that of the moments.
+  LogFit(const WaveletMoments& moments, Model model, std::shared_ptr<const WhitenedCurve> curve);
 
   [[nodiscard]] const std::vector<LogCoordinate>& coordinates() const { return coordinates_; }
-  [[nodiscard]] Eigen::Index scales() const { return y_.size(); }
-  /// Degrees of freedom of the longest scale's variance under the fit.
-  [[nodiscard]] double longest_edf() const { return longest_edf_; }
+  [[nodiscard]] Eigen::Index scales() const { return curve_->curve.rows(); }
+  [[nodiscard]] const WhitenedCurve& curve() const { return *curve_; }
   /// The coordinates at which L is least, and its value there.
   [[nodiscard]] const Eigen::VectorXd& best() const { return best_; }
   [[nodiscard]] double minimum() const { return minimum_; }
-  /// ln det R.
-  [[nodiscard]] double log_det() const { return -2.0 * whitening_.diagonal().array().abs().log().sum(); }
   /// Minimises again from `start` and keeps the result if L is smaller there.
   bool improve(Eigen::VectorXd start);
   [[nodiscard]] Model model_at(const Eigen::VectorXd& coordinates) const;
 
-  /// Standard errors of the coordinates from the curvature, (D' R^-1 D)^-1: the fast preview. Infinite where singular.
-  [[nodiscard]] Eigen::VectorXd sandwich() const;
+  /// The model at best().
+  [[nodiscard]] Model model() const { return model_at(best_); }
+  /// Whether best() is where L is least to a relative 10^-6 of its fall by one more step.
+  [[nodiscard]] bool converged() const;
+  /// r at best(), not whitened.
+  [[nodiscard]] Eigen::VectorXd residual() const;
+
+  /// Standard errors of the coordinates if y scatters with `scatter` about the model (sandwich_covariance): the fast
+  /// preview. Some 10^7 where the data do not determine one.
+  [[nodiscard]] Eigen::VectorXd sandwich(const Eigen::MatrixXd& scatter) const;
+  /// The same with the scatter that L is whitened by.
+  [[nodiscard]] Eigen::VectorXd sandwich() const { return sandwich(curve_->scatter); }
 
   /// All values of coordinate `k` whose profiled L is within `rise` of the minimum. An end that lies beyond the search
   /// range is open (infinite). Lowers best() and minimum() if a constrained fit finds a smaller L.
@@ -76,13 +79,10 @@ class LogFit {
 
   const WaveletMoments& moments_;
   Model model_;
-  std::vector<Eigen::Index> used_;
-  Eigen::VectorXd y_;
-  Eigen::MatrixXd whitening_;
+  std::shared_ptr<const WhitenedCurve> curve_;
   std::vector<LogCoordinate> coordinates_;
   Eigen::VectorXd best_;
   double minimum_ = 0.0;
-  double longest_edf_ = 0.0;
   int restarts_ = 0;
 };
 

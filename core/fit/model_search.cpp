@@ -26,7 +26,8 @@ void append_larger(const ModelStructure& from, const ProcessKind* barred, std::s
                    std::vector<ModelStructure>& all) {
   for (const ProcessKind& kind : process_registry()) {
     const bool there = std::find(from.kinds.begin(), from.kinds.end(), &kind) != from.kinds.end();
-    if (!kind.in_octave_search || &kind == barred || (there && !kind.repeats) || from.kinds.size() == kMaxModelProcesses) {
+    if (!kind.in_octave_search || &kind == barred || (there && !kind.repeats) ||
+        from.kinds.size() == kMaxModelProcesses) {
       continue;
     }
     ModelStructure larger = from;
@@ -59,9 +60,10 @@ std::vector<ModelStructure> neighbouring_structures(const ModelStructure& from, 
   return all;
 }
 
-Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd,
-                                             const CovarianceLaw& covariance_of, std::vector<Candidate> known,
-                                             const RunControl& control) {
+Status search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd, const CovarianceLaw& covariance_of,
+                     CandidateSet& set, const RunControl& control) {
+  measure_by_own(moments, set, covariance_of);
+  std::vector<Candidate>& known = set.candidates;
   const auto usable = static_cast<std::size_t>((moments.nu.array() > 0.0).count());
   std::size_t best = best_of(known, moments.samples);
   for (int step = 0; step < kMostSteps; ++step) {
@@ -75,8 +77,9 @@ Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, cons
         continue;
       }
       control.report("fit " + model_name(structure), static_cast<double>(step) / kMostSteps);
-      Candidate candidate = fit_candidate(moments, structure, sd, covariance_of);
+      Candidate candidate = fit_candidate(moments, structure, sd, set.curve, known);
       if (candidate.log_fit) {
+        candidate.own_distance = distance_under_own(moments, candidate, covariance_of);
         known.push_back(std::move(candidate));
       }
     }
@@ -86,7 +89,7 @@ Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, cons
     }
     best = next;
   }
-  return known;
+  return {};
 }
 
 }  // namespace driftlab

@@ -8,7 +8,7 @@
 ///
 /// The search is local. A pair of processes that helps only together is not found; the listed candidates are there for
 /// such cases. The model found was chosen among some 30, and its intervals and J test take no account of that choice.
-#include "core/fit/candidate.hpp"
+#include "core/fit/candidate_set.hpp"
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 
@@ -22,11 +22,10 @@ namespace driftlab {
 [[nodiscard]] std::vector<ModelStructure> neighbouring_structures(const ModelStructure& from,
                                                                   std::size_t most_parameters);
 
-/// `known`, which must not be empty, and every model fitted on the way. Error: Cancelled, polled before each fit. The
-/// cost is 10 to 30 fits a step, with some 2 to 5 steps.
-[[nodiscard]] Result<std::vector<Candidate>> search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd,
-                                                           const CovarianceLaw& covariance_of,
-                                                           std::vector<Candidate> known,
-                                                           const RunControl& control = {});
+/// Adds every model fitted on the way to `set`, which must not be empty, and ranks by their own distances. Error:
+/// Cancelled, polled before each fit. The cost is 10 to 30 fits a step, with some 2 to 5 steps.
+[[nodiscard]] Status search_models(const WaveletMoments& moments, const Eigen::VectorXd& sd,
+                                   const CovarianceLaw& covariance_of, CandidateSet& set,
+                                   const RunControl& control = {});
 
 }  // namespace driftlab

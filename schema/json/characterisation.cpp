@@ -199,6 +199,10 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
     fits.push_back(to_json(reported(fit, unit)));
   }
   document["fits"] = std::move(fits);
+  document["discrepancy"] = number(channel.discrepancy);
+  if (channel.from_tau_s > 0.0) {
+    document["from_tau_s"] = number(channel.from_tau_s);
+  }
   document["equivalents"] = channel.fits.empty() ? Json::object() : equivalents_json(channel, unit.dimension);
   document["best"] = channel.fits.empty() ? Json(nullptr) : Json(channel.best);
   if (!channel.stationarity.changes.empty()) {

@@ -75,6 +75,9 @@ Json to_json(const CharacteriseOptions& options) {
   if (options.dynamic > 0) {
     settings["dynamic"] = options.dynamic;
   }
+  if (options.from_tau_s > 0.0) {
+    settings["from_tau_s"] = number(options.from_tau_s);
+  }
   return settings;
 }
 
@@ -112,11 +115,12 @@ CharacteriseOptions characterise_options_from_json(const Json& document, const s
   if (const Json* const also = reader.member("also")) {
     options.also = further_from_json(*also, reader.pointer("also"), faults);
   }
+  options.from_tau_s = reader.real("from_tau_s").value_or(0.0);
   reader.reject_unknown();
   if (auto checked = check_options(options); !checked) {
     const auto& fields = checked.error().fields;
-    const std::string named = fields.empty() ? "" : fields.front().value;
-    faults.add(reader.pointer(named == "bootstrap" || named == "dynamic" ? named : "models"), checked.error());
+    const std::string member = fields.empty() ? "models" : fields.front().value;
+    faults.add(reader.pointer(member), checked.error());
   }
   return options;
 }

@@ -68,6 +68,8 @@ ReportedFit fit_from_json(const Json& document) {
     fit.j_test = JTest{finite_member(*test, "statistic", kNotKnown), finite_member(*test, "dof", kNotKnown),
                        finite_member(*test, "p", kNotKnown)};
   }
+  fit.verdict = text_member(document, "verdict");
+  fit.described_within = finite_member(document, "described_within", 0.0);
   fit.status = text_member(document, "status");
   fit.warnings = texts(document, "warnings");
   return fit;
@@ -112,6 +114,8 @@ ReportedChannel channel_from_json(const Json& document) {
   if (const auto found = document.find("contamination"); found != document.end() && found->is_object()) {
     channel.contamination = text_member(*found, "verdict");
   }
+  channel.from_tau_s = finite_member(document, "from_tau_s", 0.0);
+  channel.discrepancy = finite_member(document, "discrepancy", 0.0);
   const Json& allan = document.at("allan_parameters");
   const Json reasons = allan.value("reasons", Json());
   for (const auto& [name, parameter] : allan.items()) {
@@ -172,6 +176,8 @@ Json to_json(const ReportedFit& fit) {
                                            {"dof", number(fit.j_test->dof)},
                                            {"p", number(fit.j_test->p)}}
                                     : Json(nullptr)},
+              {"verdict", text_or_null(fit.verdict)},
+              {"described_within", number(fit.described_within)},
               {"status", fit.status},
               {"warnings", fit.warnings}};
 }

@@ -1,11 +1,8 @@
 // Coverage of the 95 % intervals of fitted parameters; every repetition counts, a parameter not identified as an
 // interval from nothing to its upper limit.
-#include "core/fit/candidate.hpp"
-#include "core/fit/channel_variances.hpp"
+#include "core/fit/candidate_set.hpp"
 #include "core/fit/fit_report.hpp"
-#include "core/variance/haar_variance.hpp"
-#include "core/variance/samples.hpp"
-#include "core/variance/variance_intervals.hpp"
+#include "tests/accuracy/curve.hpp"
 #include "tests/accuracy/section.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +60,7 @@ void count(Candidate& candidate, const Model& truth, std::vector<Tally>& tally) 
 TEST(Accuracy, ParameterIntervalsCoverTheTruth) {
   Section section("parameters");
   section.print(
-      "\n## Intervals of fitted parameters\n\nCoverage [%%] of nominal 95 %%: profile of the log quasi-likelihood / "
+      "\n## Intervals of fitted parameters\n\nCoverage [%%] of nominal 95 %%: profile of the squared distance / "
       "sandwich preview (a miss where it gives none); in brackets how often [%%] the profile says \"not "
       "identifiable\". `J` is the share of J-tests below 0.05.\n\n| truth | N | repetitions | parameters | J |\n"
       "|---|---|---|---|---|\n");
@@ -78,16 +75,8 @@ TEST(Accuracy, ParameterIntervalsCoverTheTruth) {
       for (std::size_t run = 0; run < runs; ++run) {
         Random random(2000 + samples, run);
         const std::vector<double> x = simulate(one.model, random, kDt, samples);
-        const HaarVariance curve = haar_variance(x, summarise(x)->mean);
-        const VarianceIntervals intervals = variance_intervals(curve, plan, difference_excess_kurtosis(x));
-        const FittedVariances fitted{
-            curve.variance, intervals.estimate_variance.cwiseSqrt(), {}, intervals.shape, false};
-        const WaveletMoments moments{
-            Eigen::Map<const Eigen::VectorXd>(curve.variance.data(), static_cast<Eigen::Index>(curve.scales())),
-            {plan.half().begin(), plan.half().end()},
-            static_cast<double>(samples),
-            kDt};
-        Candidate candidate = fit_candidate(moments, structure, fitted.sd, fitted.covariance(plan));
+        const SimulatedCurve curve = curve_of(x, plan);
+        Candidate candidate = fit_alone(curve.moments, structure, curve.sd, curve.logarithms);
         const ModelFit fit = report_fit(candidate, 1.0, static_cast<double>(samples), IntervalMethod::Preview);
         rejected += fit.j_test && fit.j_test->p < 0.05 ? 1 : 0;
         count(candidate, one.model, tally);

@@ -1,5 +1,5 @@
 // Fits: nine ranked models from given variances, and whole recordings.
-#include "core/fit/candidate.hpp"
+#include "core/fit/candidate_set.hpp"
 #include "core/fit/characterise.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/kalman_likelihood.hpp"
@@ -38,7 +38,10 @@ void RankNineModels(benchmark::State& state) {  // NOLINT(readability-identifier
   HaarCovariance first(curve.half, samples, kDt);
   const VarianceIntervals intervals = variance_intervals(curve, first);
   const Eigen::VectorXd sd = intervals.estimate_variance.cwiseSqrt();
-  const CharacteriseOptions options;
+  std::vector<ModelStructure> structures;
+  for (const std::string& name : CharacteriseOptions{}.models) {
+    structures.push_back(*parse_model(name));
+  }
   for (auto _ : state) {
     HaarCovariance plan(curve.half, samples, kDt);
     const WaveletMoments moments{
@@ -46,10 +49,11 @@ void RankNineModels(benchmark::State& state) {  // NOLINT(readability-identifier
         {plan.half().begin(), plan.half().end()},
         static_cast<double>(samples),
         kDt};
-    std::vector<Candidate> candidates;
-    for (const std::string& name : options.models) {
-      candidates.push_back(fit_candidate(moments, *parse_model(name), sd, plan));
-    }
+    const CurveCovariance logarithms =
+        curve_covariance(moments.nu, modelled_variance(moments, intervals.mixture), plan.matrix(intervals.mixture));
+    CandidateSet set = *fit_candidates(moments, structures, sd, logarithms);
+    benchmark::DoNotOptimize(forgive(moments, set));
+    std::vector<Candidate>& candidates = set.candidates;
     std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
       return a.criterion(moments.samples) < b.criterion(moments.samples);
     });

@@ -136,6 +136,11 @@ class CharacterisationChannel(TypedDict):
     allan_parameters: CharacterisationChannelAllanParameters
     # Best first.
     fits: list[FitModelFit]
+    # By how much, relative to its variances, the curve may differ from every candidate; in the weights of all fits. 0:
+    # a candidate is accepted.
+    discrepancy: NotRequired[float | None]
+    # Models were fitted to the scales of tau from here on; absent: to all.
+    from_tau_s: NotRequired[float | None]
     # N and K of the best model as other conventions write them (schema/docs/conventions.md); empty where it has
     # neither.
     equivalents: NotRequired[CharacterisationChannelEquivalents]
@@ -438,6 +443,8 @@ class Fit(TypedDict):
     intervals: NotRequired[FitModelFitIntervals]
     plausible: NotRequired[bool]
     j_test: FitModelFitJTest | None
+    verdict: NotRequired[FitModelFitVerdict]
+    described_within: NotRequired[float | None]
     status: str
     warnings: list[str]
     created_at: str
@@ -447,7 +454,8 @@ class FitModelFit(TypedDict):
     model: str
     robust: bool
     processes: list[FitProcess]
-    # The value of the GMWM objective at its minimum.
+    # The least squared distance on the logarithms of the variances, under the covariance and the discrepancy of the
+    # curve.
     objective: float | None
     # The criterion that ranks (schema/docs/analysis.md); smaller is better.
     wic: float | None
@@ -466,6 +474,12 @@ class FitModelFit(TypedDict):
     plausible: NotRequired[bool]
     # The test of over-identifying restrictions; null where the model leaves no degrees of freedom.
     j_test: FitModelFitJTest | None
+    # accepted: the J test does not reject at 0.01; described: it does, but the model is within 2 % of the variances;
+    # null: of a result made before the verdict was.
+    verdict: NotRequired[Literal['accepted', 'described', 'not_described', 'untested', None]]
+    # Relative error of the variances that the model leaves beyond their scatter; 0 where it is accepted. The intervals
+    # allow for it.
+    described_within: NotRequired[float | None]
     status: str
     warnings: list[str]
 
@@ -781,6 +795,8 @@ class JobRequestCharacteriseParameters(TypedDict):
     # Curves beside the Allan and wavelet variances: total deviation and Theo1 for the longest tau, power spectral
     # density with lines.
     also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
+    # Models are fitted to the scales of tau from here on, where a filter of the sensor rules the first ones; 0: all.
+    from_tau_s: NotRequired[float]
 
 
 class JobRequestInvestigate(TypedDict):
@@ -2303,6 +2319,7 @@ Condition: TypeAlias = (
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
+FitModelFitVerdict: TypeAlias = "Literal['accepted', 'described', 'not_described', 'untested', None]"
 JobRequest: TypeAlias = (
     "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool | JobRequestRegress")
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"

@@ -1,7 +1,7 @@
 #include "core/campaign/regression/pooled_unit.hpp"
 
 #include "core/campaign/replicates.hpp"
-#include "core/fit/candidate.hpp"
+#include "core/fit/candidate_set.hpp"
 #include "core/fit/curve_covariance.hpp"
 #include "core/process/distributions.hpp"
 #include "core/variance/variance_intervals.hpp"
@@ -239,7 +239,8 @@ void fit_levels(const Grid& grid, const Pool& pool, const std::string& model, Po
   moments.half.assign(plan.half().begin(), plan.half().end());
   moments.samples = static_cast<double>(pool.curve.samples);
   moments.dt_s = grid.dt_s;
-  const Candidate fitted = fit_candidate(moments, *structure, intervals.estimate_variance.cwiseSqrt(), plan);
+  const Candidate fitted = fit_alone(moments, *structure, intervals.estimate_variance.cwiseSqrt(),
+                                     curve_covariance(moments.nu, intervals.modelled, plan.matrix(intervals.mixture)));
   const Model active = fitted.log_fit != nullptr ? fitted.log_fit->model_at(fitted.log_fit->best()) : Model{};
   if (active.empty()) {
     return;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 namespace driftlab {
 namespace {
@@ -51,7 +52,8 @@ TEST(TwoShapes, AreFoundFromTheCurveOfTheModelItself) {
 TEST(TwoShapes, HaveAnIntervalEach) {
   const Octaves octaves(truth());
   HaarCovariance plan(octaves.half, kSamples, kDt);
-  LogFit fit(octaves.moments, truth(), plan.matrix(truth()));
+  const CurveCovariance curve = curve_covariance(octaves.moments.nu, octaves.moments.nu, plan.matrix(truth()));
+  LogFit fit(octaves.moments, truth(), std::make_shared<const WhitenedCurve>(whitened(curve, 0.0)));
   ASSERT_EQ(fit.coordinates().size(), 5U);
   EXPECT_EQ(fit.coordinates()[3].parameter, 1U);
   EXPECT_EQ(fit.coordinates()[4].parameter, 2U);
