@@ -28,20 +28,44 @@ std::string common_best_model(const std::vector<TableSource>& sources) {
   return best;
 }
 
+/// p of the J-test above which a model needs no other description.
+constexpr double kAccepted = 0.01;
+
 /// A row on its way into the table.
 struct OpenRow {
   TableRow shown;
   std::string key;  ///< the condition in one word
   std::string channel_unit;
   std::vector<ReportedValues> replicates;
+  std::vector<ReportedValue> densities;   ///< N of each recording
+  std::vector<std::string> descriptions;  ///< of recordings whose fit is rejected
   std::vector<std::string> members;
 };
 
+void note(TableRow& row, const std::string& text) {
+  if (!text.empty() && std::find(row.warnings.begin(), row.warnings.end(), text) == row.warnings.end()) {
+    row.warnings.push_back(text);
+  }
+}
+
+/// Where the white noise of a model is not the density that the curve has.
+void note_disagreement(TableRow& row, const std::vector<ReportedValues>& replicates) {
+  const ReportedValue& density = row.density.estimate;
+  for (const ReportedValues& cells : replicates) {
+    for (const auto& [name, cell] : cells) {
+      if (name == "white_noise.N" && density.low && density.high && cell.low && cell.high &&
+          (*cell.low > *density.high || *cell.high < *density.low)) {
+        note(row,
+             "The white noise of the model is not the low-frequency density N of the curve: the model lacks the "
+             "process that makes the difference.");
+      }
+    }
+  }
+}
+
 void note_warnings(TableRow& row, const ReportedFit& fit) {
   for (const std::string& warning : fit.warnings) {
-    if (std::find(row.warnings.begin(), row.warnings.end(), warning) == row.warnings.end()) {
-      row.warnings.push_back(warning);
-    }
+    note(row, warning);
   }
 }
 
@@ -63,12 +87,16 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
     shown.recordings.push_back(source.recording_id);
     row->members.push_back(source.member_id());
     shown.contamination = worse_verdict(shown.contamination, source.channel.contamination);
+    row->densities.push_back(allan_cells(source.channel).front().second);
     if (method == TableMethod::Av) {
       row->replicates.push_back(allan_cells(source.channel));
     } else if (const ReportedFit* const fit = find_fit(source.channel.fits, model)) {
       row->replicates.push_back(model_cells(*fit, row->channel_unit));
       shown.robust = shown.robust || fit->robust;
       note_warnings(shown, *fit);
+      if (!fit->j_test || !(fit->j_test->p > kAccepted)) {
+        row->descriptions.push_back(source.channel.description);
+      }
     }
   }
   // No two rows have the same text, so the order is complete.
@@ -261,12 +289,20 @@ Result<ParameterTable> build_parameter_table(const TableRequest& request, const 
   ParameterTable table{request.device, request.quantity, request.axis, request.method, model, {}, {}};
   table.columns = columns_of(rows, request.method);
   for (OpenRow& row : rows) {
+    row.shown.density.estimate = averaged(row.densities);
+    note_disagreement(row.shown, row.replicates);
+    for (const std::string& description : row.descriptions) {
+      note(row.shown, description);
+    }
     fill_cells(row, table.columns);
     table.rows.push_back(std::move(row.shown));
   }
-  for (TableRow& row : table.rows) {
-    for (std::size_t c = 0; &row != &table.rows.front() && c < table.columns.size(); ++c) {
-      row.cells[c].change = change_between(table.rows.front().cells[c].estimate, row.cells[c].estimate);
+  const TableRow& first = table.rows.front();
+  for (std::size_t r = 1; r < table.rows.size(); ++r) {
+    TableRow& row = table.rows[r];
+    row.density.change = change_between(first.density.estimate, row.density.estimate);
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      row.cells[c].change = change_between(first.cells[c].estimate, row.cells[c].estimate);
     }
   }
   return table;

@@ -66,7 +66,9 @@ struct TableRow {
   bool robust = false;  ///< the values come from robust variances
   std::optional<RecordingAgreement> agreement;
   std::vector<std::string> warnings;  ///< what the fits shown say against themselves, each once
-  std::vector<TableCell> cells;       ///< one per column
+  /// The density N of rate at low frequencies, whatever the model: the averaged coefficients N of the recordings.
+  TableCell density;
+  std::vector<TableCell> cells;  ///< one per column
 };
 
 struct ParameterTable {

@@ -102,6 +102,7 @@ ReportedChannel reported(const std::string& column, const ColumnRole& role, cons
   for (const ModelFit& fit : channel.fits) {
     result.fits.push_back(reported(fit, unit));
   }
+  result.description = channel.description ? channel.description->sentence : "";
   return result;
 }
 

@@ -85,6 +85,7 @@ struct ReportedChannel {
   double discrepancy = 0.0;       ///< of the curve from every candidate; 0 where one is accepted
   double from_tau_s = 0.0;        ///< models were fitted to the scales of tau from here on
   std::vector<ReportedFit> fits;  ///< best first
+  std::string description;        ///< what describes the curve, where there is something to say (CurveDescription)
 
   /// Gross errors move the variances: the robust ones stand for it.
   [[nodiscard]] bool contaminated() const { return contamination == "contaminated"; }

@@ -107,10 +107,9 @@ struct ModelFit {
   std::vector<std::string> warnings;
 };
 
-/// Coefficients of IEEE Std 952: read off the Allan variance by weighted regression (core/fit/allan_regression.hpp), or
-/// those of the composite models that describe the curve (core/fit/ieee952_coefficients.hpp). Empty: not there or not
-/// identifiable, and its reason says why; its limit is what it is below with 95 % confidence where a model describes
-/// the curve without it (infinite: nothing bounds it).
+/// Coefficients of IEEE Std 952, those of the composite models that describe the curve
+/// (core/fit/ieee952_coefficients.hpp). Empty: not there or not to be told, and its reason says why; its limit is what
+/// it is below with 95 % confidence where a model describes the curve without it (infinite: nothing bounds it).
 struct AllanParameters {
   std::optional<Estimate> q;  ///< quantization noise [channel unit * s]
   std::optional<Estimate> n;  ///< angle (velocity) random walk [channel unit * sqrt(s)]

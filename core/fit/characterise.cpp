@@ -1,9 +1,9 @@
 #include "core/fit/characterise.hpp"
 
-#include "core/fit/allan_regression.hpp"
 #include "core/fit/bootstrap.hpp"
 #include "core/fit/candidate_set.hpp"
 #include "core/fit/channel_variances.hpp"
+#include "core/fit/curve_description.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
 #include "core/fit/stationarity.hpp"
@@ -218,7 +218,7 @@ void store_fits(CandidateSet& set, double unit, double samples, ModelFit best_fi
   }
 }
 
-/// Fits, ranks and reports models, and reads off the Allan coefficients.
+/// Fits, ranks and reports models.
 Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& options, double si_unit,
                   HaarCovariance& plan, const RunControl& control, ChannelCharacterisation& result) {
   std::vector<Eigen::Index> rows;
@@ -230,7 +230,6 @@ Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& opti
   result.from_tau_s = options.from_tau_s;
   if (rows.empty()) {
     result.warnings.emplace_back("No scale of the record is as long as the tau from which models were to be fitted.");
-    leave_out_coefficients("No scale of the record is long enough.", result);
     return {};
   }
   const Eigen::Map<const Eigen::VectorXd> variance(fitted.variance.data(),
@@ -248,11 +247,6 @@ Status fit_models(const FittedVariances& fitted, const CharacteriseOptions& opti
   Result<CandidateSet> set = fit_set(moments, options, sd, curve, covariance_of, control, result.warnings);
   if (!set) {
     return fail(std::move(set.error()));
-  }
-  control.report("allan regression", 0.8);
-  result.allan_parameters = allan_regression(moments, sd, curve, si_unit);
-  if (control.stop.stop_requested()) {
-    return cancelled();
   }
   control.report("parameter intervals", 0.9);
   if (set->candidates.empty()) {
@@ -317,6 +311,18 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   }
   const FittedVariances fitted = fitted_variances(classical, intervals, robust, plan);
   store_robust(std::move(robust), si_unit * si_unit, result);
+  control.report("description", 0.28);
+  describe_curve({.samples = samples,
+                  .mean = mean,
+                  .dt_s = channel.dt_s,
+                  .unit = std::fabs(channel.si_factor),
+                  .unit_square = largest,
+                  .half = curve.half,
+                  .gaps = !classical.efficiency.empty()},
+                 fitted, control, result);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   return fit_models(fitted, options, si_unit, plan, control, result);
 }
 

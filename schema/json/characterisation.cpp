@@ -113,6 +113,44 @@ Json allan_parameters_json(const ReportedValues& parameters) {
   return document;
 }
 
+/// Upper limits of the coefficients that the description does without, in the units of the field.
+Json limits_json(const AllanParameters& parameters, Dimension dimension) {
+  Json document = Json::object();
+  const auto add = [&](const char* name, const std::optional<Estimate>& estimate, double limit, int halves) {
+    const ParameterUnit unit = lab_unit(dimension, halves);
+    if (!estimate && std::isfinite(limit)) {
+      document[name] = Json{{"value", number(limit * unit.per_si)}, {"unit", unit.symbol}};
+    }
+  };
+  add("N", parameters.n, parameters.n_limit, 1);
+  add("B", parameters.b, parameters.b_limit, 0);
+  add("K", parameters.k, parameters.k_limit, -1);
+  add("Q", parameters.q, parameters.q_limit, 2);
+  add("R", parameters.r, parameters.r_limit, -2);
+  return document;
+}
+
+Json description_json(const ChannelCharacterisation& channel, const Unit& unit) {
+  if (!channel.description) {
+    return nullptr;
+  }
+  const CurveDescription& description = *channel.description;
+  ModelFit fit;
+  fit.model = description.model;
+  fit.processes = description.processes;
+  return Json{{"model", description.model},
+              {"verdict", description.verdict},
+              {"discrepancy", number(description.discrepancy)},
+              {"p", number(description.p)},
+              {"parameters", description.parameters},
+              {"scales", description.scales},
+              {"processes", to_json(reported(fit, unit)).at("processes")},
+              {"alternatives", description.alternatives},
+              {"upper_limits", limits_json(channel.allan_parameters, unit.dimension)},
+              {"B_tau_s", channel.allan_parameters.b ? number(channel.allan_parameters.b_tau_s) : Json(nullptr)},
+              {"sentence", description.sentence}};
+}
+
 /// N and K of the best model in the numbers of other books.
 Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimension) {
   Json document = Json::object();
@@ -194,6 +232,7 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
   if (channel.further.psd) {
     document["psd"] = psd_json(*channel.further.psd, factor);
   }
+  document["description"] = description_json(channel, unit);
   Json fits = Json::array();
   for (const ModelFit& fit : channel.fits) {
     fits.push_back(to_json(reported(fit, unit)));

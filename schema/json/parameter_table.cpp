@@ -7,24 +7,41 @@
 namespace driftlab {
 namespace {
 
-Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
-  Json reasons = Json::object();
+/// Named values with how each changed against the first row; null where there is none, and why in `reasons`.
+Json cells_to_json(const std::vector<std::pair<std::string, const TableCell*>>& cells, Json& reasons) {
   ReportedValues estimates;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    estimates.emplace_back(columns[c].key, row.cells[c].estimate);
+  for (const auto& [name, cell] : cells) {
+    estimates.emplace_back(name, cell->estimate);
   }
   Json values = to_json(estimates, reasons);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (Json& cell = values[columns[c].key]; cell.is_object()) {
-      const std::optional<Change>& change = row.cells[c].change;
-      cell["change"] = change ? Json(name_of(*change)) : Json(nullptr);
+  for (const auto& [name, cell] : cells) {
+    if (Json& value = values[name]; value.is_object()) {
+      value["change"] = cell->change ? Json(name_of(*cell->change)) : Json(nullptr);
     }
   }
-  return Json{{"condition", to_json(row.condition)}, {"label", row.label},
-              {"recordings", row.recordings},        {"contamination", text_or_null(row.contamination)},
-              {"pooling", name_of(row.pooling)},     {"robust", row.robust},
-              {"agreement", to_json(row.agreement)}, {"warnings", row.warnings},
-              {"values", std::move(values)},         {"reasons", std::move(reasons)}};
+  return values;
+}
+
+Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
+  std::vector<std::pair<std::string, const TableCell*>> cells;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    cells.emplace_back(columns[c].key, &row.cells[c]);
+  }
+  Json reasons = Json::object();
+  Json values = cells_to_json(cells, reasons);
+  Json density_reasons = Json::object();
+  Json density = cells_to_json({{"N", &row.density}}, density_reasons).at("N");
+  return Json{{"condition", to_json(row.condition)},
+              {"label", row.label},
+              {"density", std::move(density)},
+              {"recordings", row.recordings},
+              {"contamination", text_or_null(row.contamination)},
+              {"pooling", name_of(row.pooling)},
+              {"robust", row.robust},
+              {"agreement", to_json(row.agreement)},
+              {"warnings", row.warnings},
+              {"values", std::move(values)},
+              {"reasons", std::move(reasons)}};
 }
 
 }  // namespace

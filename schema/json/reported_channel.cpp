@@ -124,6 +124,9 @@ ReportedChannel channel_from_json(const Json& document) {
     }
   }
   channel.fits = fits_from_json(document.at("fits"));
+  if (const auto found = document.find("description"); found != document.end() && found->is_object()) {
+    channel.description = text_member(*found, "sentence");
+  }
   return channel;
 }
 

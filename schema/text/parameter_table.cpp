@@ -28,12 +28,13 @@ std::string rounded(double x) {
 
 std::string rounded(const std::optional<double>& end) { return end ? rounded(*end) : "…"; }
 
+std::string value_text(const ReportedValue& estimate) {
+  return estimate.value ? rounded(*estimate.value) + " [" + rounded(estimate.low) + ", " + rounded(estimate.high) + "]"
+                        : "…";
+}
+
 std::string cell_text(const TableCell& cell) {
-  const ReportedValue& estimate = cell.estimate;
-  if (!estimate.value) {
-    return "…";
-  }
-  std::string text = rounded(*estimate.value) + " [" + rounded(estimate.low) + ", " + rounded(estimate.high) + "]";
+  std::string text = value_text(cell.estimate);
   if (cell.change == Change::Up) {
     text += " ↑";
   } else if (cell.change == Change::Down) {
@@ -96,16 +97,33 @@ std::string heading_of(const ParameterTable& table) {
                                                  : ", GMWM, model " + (table.model.empty() ? "?" : table.model));
 }
 
+/// The unit of N; empty where no row has it.
+std::string density_unit(const ParameterTable& table) {
+  const auto known =
+      std::find_if(table.rows.begin(), table.rows.end(), [](const TableRow& row) { return !row.density.estimate.unit.empty(); });
+  return known == table.rows.end() ? "" : known->density.estimate.unit;
+}
+
+/// Method av has N among its columns.
+bool shows_density(const ParameterTable& table) { return table.method == TableMethod::Gmwm; }
+
 /// Lines of the table: keys, units, one per row.
 std::vector<std::vector<std::string>> grid_of(const ParameterTable& table) {
   std::vector<std::vector<std::string>> grid(2, {"condition"});
   grid[1] = {""};
+  if (shows_density(table)) {
+    grid[0].emplace_back("N");
+    grid[1].push_back(density_unit(table));
+  }
   for (const TableColumn& column : table.columns) {
     grid[0].push_back(column.key);
     grid[1].push_back(column.unit);
   }
   for (const TableRow& row : table.rows) {
     std::vector<std::string> line{marked_label(row)};
+    if (shows_density(table)) {
+      line.push_back(cell_text(row.density));
+    }
     for (const TableCell& cell : row.cells) {
       line.push_back(cell_text(cell));
     }
@@ -122,11 +140,21 @@ std::string exact(const std::optional<double>& value) { return value ? to_text(*
 
 std::string table_to_csv(const ParameterTable& table) {
   std::string text = "condition,recordings";
-  for (const TableColumn& column : table.columns) {
-    const std::string unit = column.unit.empty() ? "" : " [" + column.unit + "]";
+  const auto head = [&](const std::string& key, const std::string& symbol) {
+    const std::string unit = symbol.empty() ? "" : " [" + symbol + "]";
     for (const char* const part : {"", " low", " high"}) {
-      text.append(",").append(csv_field(std::string(column.key).append(part).append(unit)));
+      text.append(",").append(csv_field(std::string(key).append(part).append(unit)));
     }
+  };
+  const auto figures = [&](const ReportedValue& estimate) {
+    text +=
+        estimate.value ? "," + exact(estimate.value) + "," + exact(estimate.low) + "," + exact(estimate.high) : ",,,";
+  };
+  if (shows_density(table)) {
+    head("N", density_unit(table));
+  }
+  for (const TableColumn& column : table.columns) {
+    head(column.key, column.unit);
   }
   text += "\r\n";
   for (const TableRow& row : table.rows) {
@@ -135,10 +163,11 @@ std::string table_to_csv(const ParameterTable& table) {
       recordings += (recordings.empty() ? "" : " ") + id;
     }
     text += csv_field(row.label) + "," + csv_field(recordings);
+    if (shows_density(table)) {
+      figures(row.density.estimate);
+    }
     for (const TableCell& cell : row.cells) {
-      const ReportedValue& estimate = cell.estimate;
-      text +=
-          estimate.value ? "," + exact(estimate.value) + "," + exact(estimate.low) + "," + exact(estimate.high) : ",,,";
+      figures(cell.estimate);
     }
     text += "\r\n";
   }

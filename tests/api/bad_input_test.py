@@ -85,7 +85,7 @@ class Refused(DaemonTest):
         self.refused(csv, 400, "unknown_quantity", where={"parameter": "columns", "column": "gz"}, says="spin", columns="gz=spin:z:deg/s")
         self.refused(csv, 400, "unit_mismatch", where={"column": "gz"}, columns="gz=angular_rate:z:m/s^2")
         self.refused(csv, 400, "unknown_condition", where={"parameter": "condition"}, says="asleep", condition="asleep")
-        self.refused(csv, 400, "unknown_unit", where={"parameter": "condition"}, condition="constant_rate:z:9:rpm")
+        self.refused(csv, 400, "unknown_unit", where={"parameter": "condition"}, condition="constant_rate:z:9:turns")
         self.refused(csv, 422, "unknown_column", where={"column": "nobody"}, columns="nobody=angular_rate:z:deg/s")
         self.refused(b"gz,gz\n1,2\n3,4\n", 422, "duplicate_column", where={"column": "gz"})
 

@@ -314,9 +314,12 @@ class Tables(JobTest):
             for row, line in zip(table["rows"], rows):
                 self.assertEqual(line[0], row["label"])
                 self.assertEqual(line[1].split(), row["recordings"])
-                for i, column in enumerate(table["columns"]):
+                # Before the parameters of a model stands the low-frequency density N, whatever the model.
+                cells = [(column, row["values"][column["key"]]) for column in table["columns"]]
+                if method == "gmwm":
+                    cells.insert(0, ({"key": "N", "unit": row["density"]["unit"]}, row["density"]))
+                for i, (column, cell) in enumerate(cells):
                     self.assertEqual(header[2 + 3 * i:5 + 3 * i], [f"{column['key']}{part} [{column['unit']}]" for part in ("", " low", " high")])
-                    cell = row["values"][column["key"]]
                     wanted = ["", "", ""] if cell is None else [cell["value"], *cell["ci95"]]
                     self.assertEqual([float(x) if x else "" for x in line[2 + 3 * i:5 + 3 * i]], ["" if w is None else w for w in wanted])
 

@@ -2,7 +2,8 @@
 """Fails on what may not be in the repository: secrets, paths of one machine, big files, shared recordings.
 
 Shared recordings carry licences that forbid shipping them. Where $DRIFTLAB_SHARED (default ../shared) is there, every
-file is compared with them by content; elsewhere that part is skipped, loudly.
+file is compared with them by content; elsewhere that part is skipped, loudly. Fonts under the Open Font License may be
+shipped, with its text beside them.
 """
 from __future__ import annotations
 
@@ -33,6 +34,8 @@ def shared_digests(root: Path) -> dict[int, set[str]]:
     shared = Path(os.environ.get("DRIFTLAB_SHARED") or root.parent / "shared")
     digests: dict[int, set[str]] = {}
     for path in (shared.rglob("*") if shared.is_dir() else []):
+        if path.suffix == ".woff2" or path.name.endswith("-OFL.txt"):
+            continue
         if path.is_file() and 0 < path.stat().st_size <= LARGEST:
             digests.setdefault(path.stat().st_size, set()).add(hashlib.sha256(path.read_bytes()).hexdigest())
     if not digests:

@@ -252,6 +252,12 @@ class Everything(ClientTest):
         self.assertEqual(client.investigation(listed["id"]).findings, report.findings)
         self.assertIn("# ", client.investigation_markdown(listed["id"]))
 
+        client.characterise(second)
+        compared = client.wait(client.create_job({"kind": "regress", "inputs": {
+            "device": "all-07", "baseline": {"recordings": [{"recording": first}]}, "candidate": {"recordings": [{"recording": second}]}}}))
+        self.assertEqual([run["id"] for run in client.regressions()], [compared["id"]])
+        self.assertIn(client.regression(compared["id"])["verdict"], ("pass", "inconclusive"))
+
         model = client.create_model({"name": "sheet", "processes": [
             {"process": "white_noise", "params": {"N": {"value": 0.3, "unit": "deg/sqrt(h)"}}}]})
         self.assertEqual(client.model(model["id"]), model)

@@ -132,8 +132,13 @@ class CharacterisationChannel(TypedDict):
     reference: NotRequired[CharacterisationChannelReference]
     # Whether gross errors move the variances.
     contamination: NotRequired[CharacterisationChannelContamination]
-    # Angle or velocity random walk N, bias instability B, rate random walk K, quantization Q, rate ramp R.
+    # Angle or velocity random walk N, the root of the density of rate at low frequencies whatever the model, bias
+    # instability B, rate random walk K, quantization Q, rate ramp R: those of the composite models that describe the
+    # curve (`description`); empty with a reason where these have none or differ about it.
     allan_parameters: CharacterisationChannelAllanParameters
+    # The composite model that describes the curve of variances, found by a stepwise search over all processes on four
+    # scales to the octave; null where the record is too short or constant.
+    description: NotRequired[CharacterisationDescription | None]
     # Best first.
     fits: list[FitModelFit]
     # By how much, relative to its variances, the curve may differ from every candidate; in the weights of all fits. 0:
@@ -164,7 +169,9 @@ class CharacterisationChannelAllan(TypedDict):
 
 
 class CharacterisationChannelAllanParameters(TypedDict):
-    """Angle or velocity random walk N, bias instability B, rate random walk K, quantization Q, rate ramp R."""
+    """Angle or velocity random walk N, the root of the density of rate at low frequencies whatever the model, bias
+    instability B, rate random walk K, quantization Q, rate ramp R: those of the composite models that describe the
+    curve (`description`); empty with a reason where these have none or differ about it."""
 
     N: QuantityIdentified
     B: QuantityIdentified
@@ -261,6 +268,34 @@ class CharacterisationChannelStationarityChange(TypedDict):
     scale_s: float
     # Standard deviations of the levels; or supremum of a Brownian bridge.
     statistic: float | None
+
+
+class CharacterisationDescription(TypedDict):
+    model: str
+    # accepted: not rejected at 1 % as it stands; described: within `discrepancy`; not_described: by nothing within 10
+    # %.
+    verdict: Literal['accepted', 'described', 'not_described']
+    # Of the variances, relative.
+    discrepancy: float
+    # Of the squared distance; with a discrepancy a measure and no test.
+    p: float | None
+    parameters: int
+    scales: int
+    processes: list[dict[str, Any]]
+    # Models that describe the curve as well.
+    alternatives: list[str]
+    # Of coefficients without a value: below this with 95 % confidence.
+    upper_limits: dict[str, CharacterisationDescriptionUpperLimit]
+    # Averaging time at which B takes the largest share of the Allan variance.
+    B_tau_s: float | None
+    # What of the model none of the nine candidates has, or that nothing describes the curve; empty where there is
+    # nothing to say.
+    sentence: str
+
+
+class CharacterisationDescriptionUpperLimit(TypedDict):
+    value: float | None
+    unit: str
 
 
 class CharacterisationEquivalent(TypedDict):
@@ -1569,6 +1604,9 @@ class ParameterTableRow(TypedDict):
     # The values come from robust variances.
     robust: NotRequired[bool]
     agreement: NotRequired[PooledSensorAgreement | None]
+    # N, the root of the density of rate at low frequencies (angle or velocity random walk), whatever the model; null
+    # where no model describes the curve.
+    density: NotRequired[ParameterTableCell | None]
     # Keyed by column; null where the parameter is not identifiable.
     values: dict[str, ParameterTableCell | None]
     # Why a value is null.

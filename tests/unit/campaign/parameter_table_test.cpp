@@ -153,5 +153,25 @@ TEST(ParameterTable, RefusesWhatCannotBeShown) {
   EXPECT_EQ(parse_table_method(name_of(TableMethod::Av)).value(), TableMethod::Av);
 }
 
+TEST(ParameterTable, ShowsTheLowFrequencyDensityWhateverTheModel) {
+  // Story: the interval of the white noise of a rejected model excluded that of the Allan variance without a remark.
+  ReportedChannel other = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  other.allan[0].second = cell(1.5, 1.4, 1.6);
+  other.description = "The curve shows a resonance at 20 Hz.";
+  const ParameterTable found =
+      table(request(), {{"rec_a", "static", channel(cell(1.0, 0.9, 1.1), 1, 2)}, {"rec_b", "drive", other}});
+  ASSERT_EQ(found.rows.size(), 2U);
+  EXPECT_EQ(found.rows[0].density.estimate, cell(1.0, 0.9, 1.1));
+  EXPECT_TRUE(found.rows[0].warnings.empty());
+  EXPECT_EQ(found.rows[1].density.estimate, cell(1.5, 1.4, 1.6));
+  EXPECT_EQ(found.rows[0].density.change, std::nullopt);
+  EXPECT_EQ(found.rows[1].density.change, Change::Up);
+  ASSERT_EQ(found.rows[1].warnings.size(), 2U);
+  EXPECT_NE(found.rows[1].warnings[0].find("not the low-frequency density N"), std::string::npos);
+  EXPECT_EQ(found.rows[1].warnings[1], other.description);
+  other.fits[0].j_test = JTest{3.0, 5.0, 0.7};
+  EXPECT_EQ(table(request(), {{"rec_b", "drive", other}}).rows[0].warnings.size(), 1U) << "an accepted model says it";
+}
+
 }  // namespace
 }  // namespace driftlab

@@ -36,9 +36,9 @@ TEST(TableCsv, QuotesWhatNeedsItAndLeavesUnknownCellsEmpty) {
 }
 
 TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
-  const ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05)),
-                                      row("9 deg/s about z", {"rec_b"}, cell(1234.6, 1200.0)),
-                                      row("40 deg/s about z", {"rec_c"}, cell(2.0, 1.9, 2.1, Change::Up))});
+  const ParameterTable found =
+      table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05)), row("9 deg/s about z", {"rec_b"}, cell(1234.6, 1200.0)),
+             row("40 deg/s about z", {"rec_c"}, cell(2.0, 1.9, 2.1, Change::Up))});
   EXPECT_EQ(table_to_text(found),
             "phone-07, gyroscope z, Allan variance (value [95 % interval]; … not identifiable; ↑ ↓ changed against the "
             "first row)\n\n"
@@ -48,6 +48,30 @@ TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
             "static            1.000 [0.9500, 1.050]   …      …\n"
             "9 deg/s about z   1235 [1200, …]          …      …\n"
             "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
+}
+
+TEST(TableText, PutsTheLowFrequencyDensityBeforeTheParametersOfAModel) {
+  ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05)), row("drive", {"rec_b"}, cell(2.0))});
+  found.method = TableMethod::Gmwm;
+  found.model = "WN";
+  found.columns = {{"white_noise.N", "deg/sqrt(h)"}};
+  for (TableRow& one : found.rows) {
+    one.cells.resize(1);
+  }
+  found.rows[0].density = cell(1.2, 1.1, 1.3);
+  EXPECT_EQ(table_to_text(found),
+            "phone-07, gyroscope z, GMWM, model WN (value [95 % interval]; … not identifiable; ↑ ↓ changed against the "
+            "first row)\n\n"
+            "condition  N                     white_noise.N\n"
+            "           deg/sqrt(h)           deg/sqrt(h)\n"
+            "---------  --------------------  ---------------------\n"
+            "static     1.200 [1.100, 1.300]  1.000 [0.9500, 1.050]\n"
+            "drive      …                     2.000 […, …]\n");
+  EXPECT_EQ(table_to_csv(found),
+            "condition,recordings,N [deg/sqrt(h)],N low [deg/sqrt(h)],N high [deg/sqrt(h)],white_noise.N [deg/sqrt(h)],"
+            "white_noise.N low [deg/sqrt(h)],white_noise.N high [deg/sqrt(h)]\r\n"
+            "static,rec_a,1.2,1.1,1.3,1,0.95,1.05\r\n"
+            "drive,rec_b,,,,2,,\r\n");
 }
 
 TEST(TableText, SaysBelowWhatSpeaksAgainstARow) {
