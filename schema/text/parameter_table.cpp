@@ -99,8 +99,8 @@ std::string heading_of(const ParameterTable& table) {
 
 /// The unit of N; empty where no row has it.
 std::string density_unit(const ParameterTable& table) {
-  const auto known =
-      std::find_if(table.rows.begin(), table.rows.end(), [](const TableRow& row) { return !row.density.estimate.unit.empty(); });
+  const auto known = std::find_if(table.rows.begin(), table.rows.end(),
+                                  [](const TableRow& row) { return !row.density.estimate.unit.empty(); });
   return known == table.rows.end() ? "" : known->density.estimate.unit;
 }
 

@@ -1,7 +1,6 @@
-#include "schema/json/characterise.hpp"
-
 #include "core/process/random.hpp"
 #include "schema/json/characterisation.hpp"
+#include "schema/json/characterise.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -19,7 +19,9 @@ Result<Response> get_toy(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_toy_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/v1/toys/{id}", "getToy", {}, Handler([&](const Request& request) { return get_toy(context, request); })});
+  router.add({"GET", "/v1/toys/{id}", "getToy", {}, Handler([&](const Request& request) {
+                return get_toy(context, request);
+              })});
 }
 
 }  // namespace driftlab::server

@@ -32,13 +32,15 @@ class Toy final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    return Json{{"kind", name()}, {"inputs", {{"recordings", std::move(pinned)}}}, {"parameters", Json::object()}, {"algorithm_version", 1}};
+    return Json{{"kind", name()},
+                {"inputs", {{"recordings", std::move(pinned)}}},
+                {"parameters", Json::object()},
+                {"algorithm_version", 1}};
   }
 
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
-    StoredRecordings recordings(context.store, context.blobs,
-                                recordings_from_request(request["inputs"]["recordings"]));
+    StoredRecordings recordings(context.store, context.blobs, recordings_from_request(request["inputs"]["recordings"]));
     const auto report = toy(recordings, control);
     if (!report) {
       return fail(report.error());
