@@ -5,9 +5,9 @@ import {writeP, writeQuantity, writeTick} from '../../format/number';
 import {conditionName, plural, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 import {Segments} from '../../shell/states';
-import {colours, columnName, type Cell, type ParameterTable, type TableRow} from './documents';
+import {colours, columnName, withDensity, type Cell, type ParameterTable, type TableRow} from './documents';
 
-const WIDTH = 132;
+const WIDTH = 88;
 const ARROWS: Record<string, string> = {up: '↑', down: '↓'};
 const CHANGES: Record<string, string> = {up: 'rose', down: 'fell', none: 'no change shown'};
 
@@ -65,7 +65,8 @@ function RowHead({row, axis, colour, isReference, onReference, chosen, onChoose}
   </th>;
 }
 
-export function Parameters({table}: {table: ParameterTable}): JSX.Element {
+export function Parameters({table: given}: {table: ParameterTable}): JSX.Element {
+  const table = withDensity(given);
   const {query} = usePlace();
   const [phoneColumn, setPhoneColumn] = useState(0);
   const named = table.rows.findIndex(row => row.label === query.get('ref'));

@@ -3,7 +3,7 @@ import type {Condition, Ends, Quantity, Summary} from '../../api/documents';
 export interface Cell extends Quantity { value: number; unit: string; ci95: Ends; change: 'up' | 'down' | 'none' | null }
 export interface TableRow {
   condition: Condition; label: string; contamination?: string | null; warnings?: string[]; recordings: string[]; pooling?: string; robust?: boolean;
-  agreement?: {p: number | null} | null; values: Record<string, Cell | null>; reasons: Record<string, string>;
+  agreement?: {p: number | null} | null; density?: Cell | null; values: Record<string, Cell | null>; reasons: Record<string, string>;
 }
 export interface ParameterTable {
   device: string; sensor: string; axis: string | null; method: string; model: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
@@ -29,7 +29,16 @@ export function colours(rows: readonly {condition: Condition}[]): string[] {
   });
 }
 
-const NAMES: Record<string, string> = {white_noise: 'White noise', gauss_markov: 'Gauss-Markov', random_walk: 'Random walk', linear_drift: 'Drift', quantization_noise: 'Quantization', flicker_noise: 'Flicker noise', resonance: 'Resonance'};
+const NAMES: Record<string, string> = {white_noise: 'White noise', gauss_markov: 'Gauss-Markov', random_walk: 'Random walk', linear_drift: 'Drift', quantization_noise: 'Quantization', flicker_noise: 'Flicker noise', resonance: 'Resonance', low_pass_1: 'Low-pass noise', low_pass_2: 'Low-pass noise', moving_average: 'Averaged noise', decimation: 'Decimated noise', power_law: 'Power law', low_frequency: 'At low frequencies'};
+const DENSITY = 'low_frequency.N';
+
+// The table of a model begins with N, the density at low frequencies whatever the model; that of the Allan variance has N among its columns.
+export function withDensity(table: ParameterTable): ParameterTable {
+  const unit = table.rows.find(row => row.density)?.density?.unit;
+  if (table.method !== 'gmwm' || !unit) return table;
+  const rows = table.rows.map(row => ({...row, values: {[DENSITY]: row.density ?? null, ...row.values}, reasons: {[DENSITY]: 'No model describes the curve.', ...row.reasons}}));
+  return {...table, columns: [{key: DENSITY, unit}, ...table.columns], rows};
+}
 
 // gauss_markov_1.beta -> Gauss-Markov β
 export function columnName(key: string): {process: string; symbol: string} {
