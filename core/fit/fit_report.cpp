@@ -19,7 +19,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPreviewLimit = 2.0;
 constexpr double kPoorlyConditioned = 1e4;
 
+/// Fast noise that a filter or a quick process has coloured is no absence of noise: N at low frequencies is what it is.
 std::string vanished(const ProcessKind& kind) {
+  if (kind.white_square != nullptr) {
+    return "The best fit of this model has no white noise of its own, for a faster process stands in its place; the "
+           "density N at low frequencies is given beside it.";
+  }
   return "The data show no " + std::string(kind.title) + ": the best fit has none of it.";
 }
 
