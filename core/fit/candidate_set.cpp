@@ -1,6 +1,7 @@
 #include "core/fit/candidate_set.hpp"
 
 #include "core/fit/j_test.hpp"
+#include "core/signal/sort_keeping_ties.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,7 @@ Result<CandidateSet> fit_candidates(const WaveletMoments& moments, std::span<con
   CandidateSet set;
   set.curve = std::make_shared<const WhitenedCurve>(whitened(std::move(curve), 0.0));
   std::vector<ModelStructure> rising(structures.begin(), structures.end());
-  std::stable_sort(rising.begin(), rising.end(), [](const ModelStructure& a, const ModelStructure& b) {
+  sort_keeping_ties(rising, [](const ModelStructure& a, const ModelStructure& b) {
     return a.parameter_count() < b.parameter_count();
   });
   for (std::size_t i = 0; i < rising.size(); ++i) {
@@ -133,7 +134,7 @@ void measure_by_own(const WaveletMoments& moments, CandidateSet& set, const Cova
     }
     rising.push_back(&candidate);
   }
-  std::stable_sort(rising.begin(), rising.end(), [](const Candidate* a, const Candidate* b) {
+  sort_keeping_ties(rising, [](const Candidate* a, const Candidate* b) {
     return a->structure.parameter_count() < b->structure.parameter_count();
   });
   for (std::size_t i = 0; i < rising.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "core/fit/composite_search.hpp"
 
 #include "core/process/distributions.hpp"
+#include "core/signal/sort_keeping_ties.hpp"
 #include "core/variance/haar_covariance.hpp"
 #include "core/variance/nonnegative_least_squares.hpp"
 
@@ -426,8 +427,8 @@ CompositeSearchResult search_composite(const CompositeBasis& basis, const Compos
     result.fits.push_back(search.polished(distance, std::move(other.model)));
   }
   // The pruned model stands first unless another is better by more than the difference of the two penalties.
-  std::stable_sort(result.fits.begin(), result.fits.end(),
-                   [&](const CompositeFit& a, const CompositeFit& b) { return pruned_cost(a) < pruned_cost(b); });
+  sort_keeping_ties(result.fits,
+                    [&](const CompositeFit& a, const CompositeFit& b) { return pruned_cost(a) < pruned_cost(b); });
   std::vector<CompositeFit> kept;
   for (CompositeFit& fit : result.fits) {
     const bool again = std::any_of(kept.begin(), kept.end(), [&](const CompositeFit& other) {

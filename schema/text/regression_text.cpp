@@ -1,4 +1,5 @@
 /// Terminal text and Markdown page of a regression run.
+#include "core/signal/sort_keeping_ties.hpp"
 #include "schema/text/regression.hpp"
 
 #include <algorithm>
@@ -32,8 +33,7 @@ std::vector<ListedTest> by_distance(const regression::Report& report) {
     const double beyond = listed.test->outcome.finding == regression::Finding::Beyond ? 10.0 : 0.0;
     return beyond + (listed.test->gated ? 1.0 : 0.0) + listed.test->outcome.upper_one - listed.test->test.margin;
   };
-  std::stable_sort(tests.begin(), tests.end(),
-                   [&](const ListedTest& a, const ListedTest& b) { return score(a) > score(b); });
+  sort_keeping_ties(tests, [&](const ListedTest& a, const ListedTest& b) { return score(a) > score(b); });
   return tests;
 }
 

@@ -1,6 +1,7 @@
 #include "core/campaign/regression/event_checks.hpp"
 
 #include "core/campaign/regression/gross_errors.hpp"
+#include "core/signal/sort_keeping_ties.hpp"
 
 #include <algorithm>
 #include <array>
@@ -85,9 +86,8 @@ std::vector<Excess> exceeding(const std::vector<PowerUp>& baseline, const std::v
   for (auto& [name, excess] : found) {
     list.push_back(std::move(excess));
   }
-  std::stable_sort(list.begin(), list.end(), [](const Excess& a, const Excess& b) {
-    return a.candidate - a.baseline > b.candidate - b.baseline;
-  });
+  sort_keeping_ties(
+      list, [](const Excess& a, const Excess& b) { return a.candidate - a.baseline > b.candidate - b.baseline; });
   return list;
 }
 
