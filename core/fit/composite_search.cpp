@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kMostComponents = 8;
 constexpr double kRejected = 0.01;
-constexpr double kPerParameter = 4.0;
 constexpr double kPrune = 5.0;
 constexpr double kNearlyAsGood = 4.5;
 /// Difference of L below which two fits of one structure are one.
