@@ -169,7 +169,7 @@ TEST(CompositeSearch, RecordedGyroscopesAreAcceptedAndAccelerometersDescribed) {
   // line at 0.56 Hz.
   const auto shared = shared_data::folder();
   if (!shared) {
-    GTEST_SKIP();
+    GTEST_SKIP() << "SKIPPED: no recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
   const auto columns = shared_data::read_npy_xz(*shared / "data" / "adis_16405_imu1.npy.xz", 6);
   const std::shared_ptr<const CompositeBasis> basis = basis_of(columns[0].size());
