@@ -1,5 +1,6 @@
 #include "core/campaign/parameter_table.hpp"
 
+#include "core/fit/j_test.hpp"
 #include "core/process/distributions.hpp"
 
 #include <algorithm>
@@ -27,9 +28,6 @@ std::string common_best_model(const std::vector<TableSource>& sources) {
   }
   return best;
 }
-
-/// p of the J-test above which a model needs no other description.
-constexpr double kAccepted = 0.01;
 
 /// A row on its way into the table.
 struct OpenRow {
@@ -94,7 +92,7 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
       row->replicates.push_back(model_cells(*fit, row->channel_unit));
       shown.robust = shown.robust || fit->robust;
       note_warnings(shown, *fit);
-      if (!fit->j_test || !(fit->j_test->p > kAccepted)) {
+      if (!fit->j_test || !(fit->j_test->p > kRejected)) {
         row->descriptions.push_back(source.channel.description);
       }
     }

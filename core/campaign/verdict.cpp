@@ -31,7 +31,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 std::string p_text(double p) {
-  if (p < kDoesNotFit) {
+  if (p < kRejected) {
     return "p < 0.01";
   }
   std::array<char, 32> buffer{};
@@ -82,7 +82,7 @@ std::string phrase_of(const ReportedProcess& process) {
          written(*level);
 }
 
-bool fits(const ReportedFit& fit) { return fit.j_test && fit.j_test->p >= kDoesNotFit; }
+bool fits(const ReportedFit& fit) { return fit.j_test && fit.j_test->p >= kRejected; }
 
 std::string figures_of(const ReportedFit& fit) {
   std::vector<std::string> phrases;

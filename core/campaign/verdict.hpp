@@ -8,6 +8,7 @@
 /// that its interval lets stand (core/signal/significant.hpp).
 #include "core/campaign/parameter_table.hpp"
 #include "core/campaign/reported_channel.hpp"
+#include "core/fit/j_test.hpp"
 
 #include <string>
 #include <utility>
@@ -38,9 +39,6 @@ struct GrossErrorEvidence {
   std::size_t disjoint_scales = 0;
   std::size_t scales = 0;
 };
-
-/// Below this p the J test rejects a model.
-inline constexpr double kDoesNotFit = 0.01;
 
 /// Of one channel of one recording.
 [[nodiscard]] Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evidence);

@@ -1,5 +1,6 @@
 #include "core/fit/composite_search.hpp"
 
+#include "core/fit/j_test.hpp"
 #include "core/process/distributions.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
 #include "core/variance/haar_covariance.hpp"
@@ -16,7 +17,6 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kMostComponents = 8;
-constexpr double kRejected = 0.01;
 constexpr double kPrune = 5.0;
 constexpr double kNearlyAsGood = 4.5;
 /// Difference of L below which two fits of one structure are one.

@@ -1,6 +1,7 @@
 // What stands on the front of a lab: how much there is, and how each device is.
 #include "server/api/overviews.hpp"
 
+#include "core/campaign/verdict.hpp"
 #include "core/signal/condition.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
@@ -12,7 +13,6 @@ namespace driftlab::server {
 namespace {
 
 constexpr int kMostFits = 500;
-constexpr double kDoesNotFit = 0.01;
 
 Json condition_json(const std::string& text) {
   const auto condition = parse_condition(text);
@@ -34,7 +34,7 @@ Json axis_summary(const Fit& fit) {
   const Json document = stored(fit.document_json);
   const Json test = document.value("j_test", Json(nullptr));
   const Json p = test.is_object() ? test.value("p", Json(nullptr)) : Json(nullptr);
-  const bool fits = p.is_number() && p.get<double>() >= kDoesNotFit;
+  const bool fits = p.is_number() && p.get<double>() >= kRejected;
   const auto condition = parse_condition(fit.condition);
   return Json{{"quantity", fit.quantity},
               {"axis", fit.axis.empty() ? Json(nullptr) : Json(fit.axis)},
