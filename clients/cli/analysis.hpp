@@ -19,7 +19,7 @@ namespace driftlab::cli {
 /// Error: Internal, for a document that driftlab has not written.
 [[nodiscard]] Result<std::string> tables_of(const Json& document, const std::string& device);
 
-/// The curves asked for with --total, --theo1 and --psd, as text: one line per tau, density or spectral line.
+/// The curves asked for with --taus, --total, --theo1 and --psd, as text: one line per tau, density or spectral line.
 [[nodiscard]] std::string further_to_text(const Json& document);
 
 }  // namespace driftlab::cli

@@ -87,6 +87,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_flag("--dynamic{32}", flags->dynamic,
                     "Add the Allan deviation of 32 windows that move along time (--dynamic=N of N) to --json");
+  command->add_option("--taus", flags->also.taus, "Allan deviation at so many tau, evenly spaced in the logarithm")
+      ->default_val(0);
   command->add_flag("--total", flags->also.total, "Total deviation for tau up to half of the recording");
   command->add_flag("--theo1", flags->also.theo1, "Theo1 for tau up to three quarters of the recording");
   command->add_flag("--psd", flags->also.psd, "Power spectral density with its lines");

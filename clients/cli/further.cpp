@@ -63,6 +63,7 @@ std::string further_to_text(const Json& document) {
   std::string text;
   for (const Json& recording : document["recordings"]) {
     for (const Json& channel : recording["channels"]) {
+      text += curve(channel, "allan_fine", "Allan deviation");
       text +=
           curve(channel, "total", "Total deviation") + curve(channel, "theo1", "Theo1 deviation") + spectrum(channel);
     }

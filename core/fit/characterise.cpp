@@ -302,8 +302,7 @@ Status analyse(ClassicalVariances& classical, std::span<const double> samples, c
   }
   store_curves(curve, &intervals, si_unit * si_unit, channel.dt_s, result);
   result.haar.efficiency = classical.efficiency;
-  result.further =
-      further_curves(options.also, samples, mean, largest, channel.si_factor, intervals.mixture, channel.dt_s, control);
+  result.further = further_curves(options.also, samples, mean, largest, channel.si_factor, {intervals, plan}, control);
   control.report("robust variance", 0.25);
   RobustVariances robust = robust_variances(samples, mean, grid, classical, gaussian, plan, options.seed, control);
   if (control.stop.stop_requested()) {
@@ -337,6 +336,12 @@ Status check_options(const CharacteriseOptions& options) {
                 "A dynamic Allan variance takes " + std::to_string(kFewestWindows) + " to " +
                     std::to_string(kMostWindows) + " windows; 0 is none.",
                 {{"parameter", "dynamic"}, {"limit", std::to_string(kMostWindows)}});
+  }
+  if (options.also.taus != 0 && (options.also.taus < kFewestTaus || options.also.taus > kMostTaus)) {
+    return fail(ErrorCode::InvalidArgument,
+                "A finer Allan curve takes " + std::to_string(kFewestTaus) + " to " + std::to_string(kMostTaus) +
+                    " averaging times; 0 is none.",
+                {{"parameter", "taus"}, {"limit", std::to_string(kMostTaus)}});
   }
   if (options.models.empty() || options.models.size() > kMostModels) {
     return fail(ErrorCode::InvalidArgument, "Between 1 and " + std::to_string(kMostModels) + " models can be compared.",

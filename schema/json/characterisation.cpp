@@ -223,6 +223,9 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"haar", haar_json(channel.haar, factor)},
                 {"contamination", contamination_json(channel.contamination)},
                 {"allan_parameters", allan_parameters_json(reported(channel.allan_parameters, unit.dimension))}};
+  if (channel.further.allan) {
+    document["allan_fine"] = allan_json(*channel.further.allan, factor);
+  }
   if (channel.further.total) {
     document["total"] = allan_json(*channel.further.total, factor);
   }

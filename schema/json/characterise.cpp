@@ -72,6 +72,9 @@ Json to_json(const CharacteriseOptions& options) {
       settings["also"].push_back(name);
     }
   }
+  if (options.also.taus > 0) {
+    settings["taus"] = options.also.taus;
+  }
   if (options.dynamic > 0) {
     settings["dynamic"] = options.dynamic;
   }
@@ -114,6 +117,9 @@ CharacteriseOptions characterise_options_from_json(const Json& document, const s
   }
   if (const Json* const also = reader.member("also")) {
     options.also = further_from_json(*also, reader.pointer("also"), faults);
+  }
+  if (const auto taus = reader.integer("taus")) {
+    options.also.taus = *taus < 0 ? 1 : static_cast<std::size_t>(*taus);  // 1 is refused below
   }
   options.from_tau_s = reader.real("from_tau_s").value_or(0.0);
   reader.reject_unknown();

@@ -64,11 +64,11 @@ class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoute
 
     def characterise(self, *recordings: str, study: str | None = None, models: Sequence[str] | None = None, seed: int | None = None,
                      search: Literal["listed", "stepwise"] | None = None, bootstrap: int | None = None, dynamic: int | None = None,
-                     also: Sequence[Literal["total", "theo1", "psd"]] | None = None, priority: int | None = None,
-                     timeout_s: float | None = None, progress: JobProgress | None = None) -> Characterisation:
+                     also: Sequence[Literal["total", "theo1", "psd"]] | None = None, taus: int | None = None,
+                     priority: int | None = None, timeout_s: float | None = None, progress: JobProgress | None = None) -> Characterisation:
         """Characterises uploaded recordings, or those of a study, and waits for the result."""
         parameters = given(models=None if models is None else list(models), seed=seed, search=search, bootstrap=bootstrap,
-                           dynamic=dynamic, also=None if also is None else list(also))
+                           dynamic=dynamic, also=None if also is None else list(also), taus=taus)
         inputs = given(recordings=list(recordings) or None, study=study)
         request = given(kind="characterise", inputs=inputs, parameters=parameters or None, priority=priority)
         return Characterisation(cast(CharacterisationDocument, self._result(request, timeout_s, progress)))

@@ -120,6 +120,8 @@ class CharacterisationChannel(TypedDict):
     mean: float | None
     # Overlapping Allan deviation at octaves.
     allan: CharacterisationChannelAllan
+    # Overlapping Allan deviation at the averaging times asked for (`taus`), evenly spaced in the logarithm.
+    allan_fine: NotRequired[CharacterisationLongTau]
     # Total deviation, corrected for its bias, on request (`also`).
     total: NotRequired[CharacterisationLongTau]
     # Root of Theo1, corrected for its bias to the Allan variance, on request (`also`).
@@ -830,6 +832,8 @@ class JobRequestCharacteriseParameters(TypedDict):
     # Curves beside the Allan and wavelet variances: total deviation and Theo1 for the longest tau, power spectral
     # density with lines.
     also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
+    # Averaging times (2 or more) of a finer Allan curve, evenly spaced in the logarithm; 0: none.
+    taus: NotRequired[int]
     # Models are fitted to the scales of tau from here on, where a filter of the sensor rules the first ones; 0: all.
     from_tau_s: NotRequired[float]
 
@@ -910,6 +914,7 @@ class JobRequestMemberParameters(TypedDict):
     bootstrap: NotRequired[int]
     dynamic: NotRequired[int]
     also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
+    taus: NotRequired[int]
     runs: NotRequired[int]
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
