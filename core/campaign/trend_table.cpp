@@ -1,5 +1,6 @@
 #include "core/campaign/trend_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -38,19 +39,21 @@ std::optional<Estimate> closed_estimate(const ReportedValue& cell) {
   return usable ? std::optional(Estimate{*cell.value, {*cell.low, *cell.high}}) : std::nullopt;
 }
 
-/// One column against one kind of dynamics; nothing where fewer than two rows tell.
-std::optional<ColumnTrend> trend_of(const ParameterTable& table, std::size_t column, Dynamics against) {
+/// One column of the rows against one kind of dynamics; nothing where fewer than two rows tell.
+template <class CellOf>
+std::optional<ColumnTrend> trend_of(const std::vector<TableRow>& rows, TableColumn column, CellOf cell_of,
+                                    Dynamics against) {
   ColumnTrend followed;
-  followed.column = table.columns[column];
+  followed.column = std::move(column);
   followed.against = against;
   std::vector<TrendPoint> points;
   bool moving = false;
-  for (const TableRow& row : table.rows) {
+  for (const TableRow& row : rows) {
     const auto at = magnitude(row.condition, against);
     if (!at) {
       continue;
     }
-    const ReportedValue& cell = row.cells[column].estimate;
+    const ReportedValue& cell = cell_of(row).estimate;
     const auto estimate = closed_estimate(cell);
     if (!estimate) {
       followed.left_out.push_back({row.label, *at, cell.value ? "The interval is open." : cell.reason});
@@ -71,6 +74,13 @@ std::optional<ColumnTrend> trend_of(const ParameterTable& table, std::size_t col
   return followed;
 }
 
+/// N, the density at low frequencies; its unit is that of the first row that has one.
+TableColumn density_column(const std::vector<TableRow>& rows) {
+  const auto known =
+      std::find_if(rows.begin(), rows.end(), [](const TableRow& row) { return !row.density.estimate.unit.empty(); });
+  return {"N", known == rows.end() ? "" : known->density.estimate.unit};
+}
+
 }  // namespace
 
 std::string_view name_of(Dynamics dynamics) { return dynamics == Dynamics::Rate ? "rate" : "angular_acceleration"; }
@@ -78,11 +88,21 @@ std::string_view unit_of(Dynamics dynamics) { return dynamics == Dynamics::Rate 
 
 TrendTable build_trends(const ParameterTable& table) {
   TrendTable result{table.device, table.quantity, table.axis, table.method, table.model, {}};
+  const auto keep = [&result](std::optional<ColumnTrend> trend) {
+    if (trend) {
+      result.trends.push_back(std::move(*trend));
+    }
+  };
   for (const Dynamics against : {Dynamics::Rate, Dynamics::AngularAcceleration}) {
+    if (table.method == TableMethod::Gmwm) {  // a column of its own by the other method
+      keep(trend_of(
+          table.rows, density_column(table.rows), [](const TableRow& row) -> const TableCell& { return row.density; },
+          against));
+    }
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
-      if (auto trend = trend_of(table, column, against)) {
-        result.trends.push_back(std::move(*trend));
-      }
+      keep(trend_of(
+          table.rows, table.columns[column],
+          [column](const TableRow& row) -> const TableCell& { return row.cells[column]; }, against));
     }
   }
   return result;

@@ -3,8 +3,9 @@
 ///
 /// Every column of a parameter table is followed against |rate|, over the table's static and constant-rate rows, and
 /// against |angular acceleration|, over its static and constant-angular-acceleration rows, wherever two such rows
-/// identify it. Values keep the unit of their column; the abscissa is in deg/s or deg/s^2. Rows marked as contaminated
-/// without robust values, and rows whose recordings disagree, take part; the marks are kept with their points.
+/// identify it. So is the density N of rate at low frequencies, whatever the model, under the key `N`. Values keep the
+/// unit of their column; the abscissa is in deg/s or deg/s^2. Rows marked as contaminated without robust values, and
+/// rows whose recordings disagree, take part; the marks are kept with their points.
 #include "core/campaign/parameter_table.hpp"
 #include "core/campaign/trends.hpp"
 
@@ -52,7 +53,7 @@ struct TrendTable {
   std::string axis;
   TableMethod method = TableMethod::Gmwm;
   std::string model;
-  std::vector<ColumnTrend> trends;  ///< against the rate first, in the order of the columns
+  std::vector<ColumnTrend> trends;  ///< against the rate first; N, then the columns in their order
 };
 
 [[nodiscard]] TrendTable build_trends(const ParameterTable& table);

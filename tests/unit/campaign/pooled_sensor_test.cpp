@@ -187,7 +187,8 @@ TEST(CampaignSummary, HoldsReplicatesAndTrendsOfEveryAxisAndItsProgressEndsAtOne
   ASSERT_EQ(summary->replicates.size(), 2U);
   EXPECT_EQ(summary->replicates[1].sensor_axis, "y");
   ASSERT_EQ(summary->trends.size(), 4U);  // av and gmwm of both
-  const ColumnTrend& trend = summary->trends[1].trends[0];
+  EXPECT_EQ(summary->trends[1].trends[0].column.key, "N");
+  const ColumnTrend& trend = summary->trends[1].trends[1];
   EXPECT_EQ(trend.column.key, "white_noise.N");
   EXPECT_EQ(trend.against, Dynamics::Rate);
   EXPECT_EQ(trend.trend.direction, 1);

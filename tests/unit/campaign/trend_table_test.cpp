@@ -48,6 +48,25 @@ TEST(TrendTable, SaysWhichConditionsItLeavesOut) {
   EXPECT_EQ(left_out[1].reason, "The interval is open.");
 }
 
+/// A filtered sensor whose model holds no white noise: its angle random walk is followed all the same.
+TEST(TrendTable, FollowsTheOneDensityWhateverTheModel) {
+  std::vector<TableRow> rows{row("static", cell(1.0)), row("constant_rate:z:9:deg/s", cell(1.0)),
+                             row("constant_rate:z:36:deg/s", cell(1.0))};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double value = 0.3 + 0.1 * static_cast<double>(i);
+    rows[i].density.estimate = {value, value / 1.02, value * 1.02, "deg/sqrt(h)", ""};
+  }
+  ParameterTable with = table(rows);
+  const TrendTable found = build_trends(with);
+  ASSERT_EQ(found.trends.size(), 2U);
+  EXPECT_EQ(found.trends[0].column.key, "N");
+  EXPECT_EQ(found.trends[0].column.unit, "deg/sqrt(h)");
+  EXPECT_EQ(found.trends[0].trend.direction, 1);
+  EXPECT_EQ(found.trends[1].column.key, "beta");
+  with.method = TableMethod::Av;
+  EXPECT_EQ(build_trends(with).trends.size(), 1U) << "method av has N among its columns";
+}
+
 TEST(TrendTable, IsEmptyWhereNothingMoves) {
   EXPECT_TRUE(build_trends(table({row("static", cell(1.0))})).trends.empty());
 }
