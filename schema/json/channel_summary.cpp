@@ -108,6 +108,15 @@ Result<Json> channel_summary(const Json& channel) {
   return to_json(verdict_of(*reported, evidence));
 }
 
+std::optional<Model> model_of(const Json& fit, Dimension dimension) {
+  Faults faults;
+  Model model = model_from_json(present(fit.at("processes")), dimension, "/processes", faults);
+  if (!faults.none() || model.empty()) {
+    return std::nullopt;
+  }
+  return model;
+}
+
 Json implied_by(const Json& fit, const Json& channel) {
   const auto unit = parse_unit(channel.at("unit").get<std::string>());
   const double dt_s = channel.at("dt_s").get<double>();
@@ -115,11 +124,11 @@ Json implied_by(const Json& fit, const Json& channel) {
   if (!unit || allan.at("tau_s").empty()) {
     return nullptr;
   }
-  Faults faults;
-  const Model model = model_from_json(present(fit.at("processes")), unit->dimension, "/processes", faults);
-  if (!faults.none() || model.empty()) {
-    return nullptr;  // a parameter is open
+  const std::optional<Model> fitted = model_of(fit, unit->dimension);
+  if (!fitted) {
+    return nullptr;
   }
+  const Model& model = *fitted;
   const double longest = allan.at("tau_s").back().get<double>();
   const ImpliedCurves curves = implied_curves(model, dt_s, octave_grid(longest * 1.25 / dt_s, kCurvePointsPerOctave),
                                               frequencies(longest, dt_s));

@@ -1,7 +1,10 @@
 #pragma once
 /// What stored results say and imply, as documents (GET /v1/recordings/{id}/characterisation, /v1/fits/{id}/implied).
 #include "core/campaign/verdict.hpp"
+#include "core/process/model.hpp"
 #include "schema/json/json.hpp"
+
+#include <optional>
 
 namespace driftlab {
 
@@ -11,6 +14,9 @@ namespace driftlab {
 /// The summary of one member of `channels` of a characterisation document. Error: Internal, for a document that
 /// driftlab has not written.
 [[nodiscard]] Result<Json> channel_summary(const Json& channel);
+
+/// The error model of a fit, without the processes that it has nothing of; nothing where it leaves a parameter open.
+[[nodiscard]] std::optional<Model> model_of(const Json& fit, Dimension dimension);
 
 /// What a fit of that channel implies: curves on a grid, the deviation at the times that were measured, and the
 /// measured deviation over it. Null where the fit leaves a parameter open. `fit`: one member of `fits`, or a stored

@@ -1,0 +1,79 @@
+#include "schema/json/channel_look.hpp"
+
+#include <cmath>
+
+namespace driftlab {
+namespace {
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) {
+    list.push_back(number(value));
+  }
+  return list;
+}
+
+Json head_of(const ChannelLook& look) {
+  return Json{{"unit", look.unit().symbol},
+              {"dt_s", number(look.dt_s())},
+              {"samples", look.samples()},
+              {"first_s", number(look.first_s())}};
+}
+
+}  // namespace
+
+Json spectrum_to_json(const ChannelLook& look, const BinnedSpectrum& spectrum) {
+  Json document = head_of(look);
+  Json ci95 = Json::array();
+  for (const Interval& ends : spectrum.ci95) {
+    ci95.push_back(interval(ends));
+  }
+  document["f_hz"] = numbers(spectrum.frequency_hz);
+  document["density"] = numbers(spectrum.density);
+  document["ci95"] = std::move(ci95);
+  document["max"] = numbers(spectrum.greatest);
+  document["segments"] = spectrum.segments;
+  document["segment_samples"] = spectrum.segment_samples;
+  document["window"] = "five sine tapers";
+  return document;
+}
+
+Json histogram_to_json(const ChannelLook& look, const std::optional<RobustHistogram>& histogram) {
+  Json document = head_of(look);
+  if (!histogram) {
+    document["median"] = nullptr;
+    document["sigma"] = nullptr;
+    document["reason"] = "More than half of the values are equal: they have no robust width.";
+    return document;
+  }
+  document["median"] = number(histogram->median);
+  document["sigma"] = number(histogram->sigma);
+  document["edges"] = numbers(histogram->edges);
+  document["counts"] = histogram->counts;
+  document["gaussian"] = numbers(histogram->gaussian);
+  document["below"] = histogram->below;
+  document["above"] = histogram->above;
+  return document;
+}
+
+Json spectrogram_to_json(const ChannelLook& look, const ChannelLook::Ratio& ratio) {
+  Json document = head_of(look);
+  const Spectrogram& found = ratio.spectrogram;
+  const std::size_t bands = found.frequency_hz.size();
+  Json rows = Json::array();
+  for (std::size_t cell = 0; cell < found.time_s.size(); ++cell) {
+    Json row = Json::array();
+    for (std::size_t band = 0; band < bands; ++band) {
+      row.push_back(number(std::round(1000.0 * std::log10(found.density[cell * bands + band])) / 1000.0));
+    }
+    rows.push_back(std::move(row));
+  }
+  document["expected"] = ratio.of_model ? "model" : "median";
+  document["time_s"] = numbers(found.time_s);
+  document["f_hz"] = numbers(found.frequency_hz);
+  document["log10_ratio"] = std::move(rows);
+  document["window_samples"] = found.window_samples;
+  return document;
+}
+
+}  // namespace driftlab
