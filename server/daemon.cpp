@@ -67,8 +67,11 @@ struct Daemon::Parts {
       : clock(std::move(clock_in)),
         blobs(std::move(blobs_in)),
         store(std::move(store_in)),
-        workers({*store, *blobs, *clock}, std::move(worker_options), [this](const std::string& id) { bell.ring(id); }),
-        api{*store, *blobs, *clock, bell, [this] { workers.wake(); }, [this] { return not_ready_why(); }},
+        workers({*store, *blobs, *clock}, std::move(worker_options), [this](const std::string& id) {
+          bell.ring(id);
+          announce_job(api, id);
+        }),
+        api{*store, *blobs, *clock, bell, events, [this] { workers.wake(); }, [this] { return not_ready_why(); }},
         dispatcher(api) {
     add_all_routes(router, api);
   }
@@ -92,6 +95,7 @@ struct Daemon::Parts {
   std::unique_ptr<BlobStore> blobs;
   std::unique_ptr<SqliteStore> store;
   Bell bell;
+  EventLog events{bell, make_id("run", clock->now()).substr(14)};
   WorkerPool workers;
   ApiContext api;
   Dispatcher dispatcher;

@@ -1,5 +1,6 @@
 #pragma once
 /// The HTTP resources. One file per resource declares its routes and handlers; routes.cpp lists them.
+#include "server/api/event_log.hpp"
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -20,9 +21,13 @@ struct ApiContext {
   BlobStore& blobs;
   const Clock& clock;
   Bell& bell;
+  EventLog& events;
   std::function<void()> wake_workers;          ///< a job was queued or cancelled
   std::function<std::string()> not_ready_why;  ///< empty text: ready
 };
+
+/// Tells who listens to all events how a job stands, and of its result when it has one.
+void announce_job(ApiContext& context, const std::string& job_id);
 
 /// Every route of the daemon.
 void add_all_routes(Router& router, ApiContext& context);

@@ -69,6 +69,9 @@ Result<Response> create_device(ApiContext& context, const Request& request) {
                     kept.id + ".",
                 {{"device_id", kept.id}});
   }
+  if (outcome->created) {
+    context.events.add("devices", "device.created", Json{{"device", kept.id}, {"name", kept.name}});
+  }
   Response response = device_response(outcome->created ? 201 : 200, kept);
   response.headers.emplace_back("Location", "/v1/devices/" + kept.id);
   return response;
@@ -123,6 +126,7 @@ Result<Response> patch_device(ApiContext& context, const Request& request) {
   if (!changed) {
     return fail(changed.error());
   }
+  context.events.add("devices", "device.changed", Json{{"device", changed->id}, {"name", changed->name}});
   return device_response(200, *changed);
 }
 

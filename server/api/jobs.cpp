@@ -55,6 +55,7 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
     return fail(queued.error());
   }
   if (queued->created) {
+    announce_job(context, queued->job.id);
     context.wake_workers();
   }
   // The same job again: 200 with the one that exists (service-conventions section 2, natural keys).
@@ -112,6 +113,7 @@ Result<Response> cancel_job(ApiContext& context, const Request& request) {
   }
   context.wake_workers();
   context.bell.ring(job->id);
+  announce_job(context, job->id);
   return job_response(202, *job);
 }
 
@@ -120,7 +122,7 @@ class JobEvents final : public EventSource {
   JobEvents(Store& store, std::string job_id, std::int64_t after)
       : store_(store), job_id_(std::move(job_id)), after_(after) {}
 
-  [[nodiscard]] const std::string& job_id() const override { return job_id_; }
+  [[nodiscard]] const std::string& subject() const override { return job_id_; }
 
   [[nodiscard]] Result<Batch> next() override {
     constexpr int kMost = 200;

@@ -92,6 +92,7 @@ Result<Response> create(ApiContext& context, const Request& request) {
     return fail(queued.error());
   }
   if (queued->created) {
+    announce_job(context, queued->job.id);
     context.wake_workers();
   }
   auto document = complete(context, queued->job);

@@ -113,6 +113,8 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   if (!revised) {
     return fail(revised.error());
   }
+  context.events.add("recordings", "recording.changed",
+                     Json{{"recording", revised->id}, {"device", revised->device_id}});
   context.wake_workers();  // what its results took part in is pooled anew
   return recording_response(context, 200, *revised);
 }
@@ -129,6 +131,8 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
   if (auto removed = context.store.remove_recording(recording->id, *revision); !removed) {
     return fail(removed.error());
   }
+  context.events.add("recordings", "recording.deleted",
+                     Json{{"recording", recording->id}, {"device", recording->device_id}});
   context.wake_workers();  // what its results took part in is pooled anew
   // The files stay: another device's recording may hold the same bytes, and an upload of them may be running. Without a
   // row the sweeper removes them after a day.

@@ -9,9 +9,11 @@
   RESOURCE(add_recording_routes)        \
   RESOURCE(add_characterisation_routes) \
   RESOURCE(add_trace_routes)            \
+  RESOURCE(add_look_routes)             \
   RESOURCE(add_overview_routes)         \
   RESOURCE(add_sample_routes)           \
   RESOURCE(add_job_routes)              \
+  RESOURCE(add_event_routes)            \
   RESOURCE(add_fit_routes)              \
   RESOURCE(add_parameter_table_routes)  \
   RESOURCE(add_study_routes)            \

@@ -209,6 +209,10 @@ class RecordingUpload final : public UploadSession {
       return fail(naming_patch(outcome.error()));
     }
     crash_point("upload.recorded");
+    if (outcome->created) {
+      context_.events.add("recordings", "recording.created",
+                          Json{{"recording", outcome->recording.id}, {"device", outcome->recording.device_id}});
+    }
     Response response = json_response(outcome->created ? 201 : 200, to_json(outcome->recording, &*blob));
     response.headers.emplace_back("Location", "/v1/recordings/" + outcome->recording.id);
     response.headers.emplace_back("ETag", etag_of(outcome->recording.id, outcome->recording.revision));

@@ -24,17 +24,17 @@ void Bell::Listener::notify() {
   });
 }
 
-std::shared_ptr<Bell::Listener> Bell::listen(const std::string& job_id, const asio::any_io_executor& executor) {
+std::shared_ptr<Bell::Listener> Bell::listen(const std::string& subject, const asio::any_io_executor& executor) {
   auto listener = std::make_shared<Listener>(executor);
   const std::lock_guard lock(mutex_);
   std::erase_if(listeners_, [](const auto& entry) { return entry.second.expired(); });
-  listeners_.emplace(job_id, listener);
+  listeners_.emplace(subject, listener);
   return listener;
 }
 
-void Bell::ring(const std::string& job_id) {
+void Bell::ring(const std::string& subject) {
   const std::lock_guard lock(mutex_);
-  const auto [first, last] = listeners_.equal_range(job_id);
+  const auto [first, last] = listeners_.equal_range(subject);
   for (auto entry = first; entry != last; ++entry) {
     if (const auto listener = entry->second.lock()) {
       listener->notify();
@@ -44,7 +44,7 @@ void Bell::ring(const std::string& job_id) {
 
 void Bell::ring_all() {
   const std::lock_guard lock(mutex_);
-  for (const auto& [job_id, weak] : listeners_) {
+  for (const auto& [subject, weak] : listeners_) {
     if (const auto listener = weak.lock()) {
       listener->notify();
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Wakes the connections that wait for a job: SSE streams and `Prefer: wait=`. A ring is a hint; waiters look at the
+/// Wakes the connections that wait for a subject, a job by its id or the log of events: SSE streams and `Prefer: wait=`. A ring is a hint; waiters look at the
 /// store and have a deadline of their own, so a lost ring costs time and never correctness.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -29,10 +29,10 @@ class Bell {
     bool rung_ = false;
   };
 
-  [[nodiscard]] std::shared_ptr<Listener> listen(const std::string& job_id,
+  [[nodiscard]] std::shared_ptr<Listener> listen(const std::string& subject,
                                                  const boost::asio::any_io_executor& executor);
-  /// Something happened to this job. Thread safe.
-  void ring(const std::string& job_id);
+  /// Something happened to it. Thread safe.
+  void ring(const std::string& subject);
   /// Wakes everybody, for the stop of the daemon. Thread safe.
   void ring_all();
 

@@ -286,7 +286,7 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
   }
   const std::unique_ptr<EventSource> source = std::move(*settled);
   const auto executor = co_await asio::this_coro::executor;
-  const auto listener = shared_.bell.listen(source->job_id(), executor);
+  const auto listener = shared_.bell.listen(source->subject(), executor);
   std::string text =
       "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-cache\r\nX-Accel-Buffering: no\r\n"
       "X-Content-Type-Options: nosniff\r\nConnection: close\r\nX-Request-Id: " +

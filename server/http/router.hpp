@@ -30,7 +30,7 @@ class UploadSession {
 };
 using UploadHandler = std::function<Result<std::unique_ptr<UploadSession>>(const Request&)>;
 
-/// A server-sent event stream (HTML standard 9.2) about one job.
+/// A server-sent event stream (HTML standard 9.2).
 class EventSource {
  public:
   EventSource() = default;
@@ -43,7 +43,8 @@ class EventSource {
   };
   /// Events since the last call. On a pool thread.
   [[nodiscard]] virtual Result<Batch> next() = 0;
-  [[nodiscard]] virtual const std::string& job_id() const = 0;
+  /// What the bell rings for when there may be more: a job's id, or EventLog::kSubject.
+  [[nodiscard]] virtual const std::string& subject() const = 0;
 };
 using EventHandler = std::function<Result<std::unique_ptr<EventSource>>(const Request&)>;
 

@@ -163,12 +163,16 @@ class Operations(DaemonTest):
                   "/v1/regressions/{id}": regression.json["id"],
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
-                  "/v1/recordings/{id}/trace": first.json["id"], "/v1/fits/{id}/implied": fit["id"]}
+                  **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("trace", "spectrum", "histogram", "spectrogram")},
+                  "/v1/fits/{id}/implied": fit["id"]}
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
-                target += "?channel=gz" if path.endswith("/trace") else ""
+                target += "?channel=gz" if path.endswith(("/trace", "/spectrum", "/histogram", "/spectrogram")) else ""
+                if path == "/v1/events":  # does not end by itself
+                    self.expect(200, daemon.request("HEAD", target))
+                    continue
                 answer = self.expect(200, daemon.get(target))
                 if "etag" in answer.headers:
                     self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))

@@ -38,8 +38,13 @@ after(async () => { await browser?.close(); await daemon?.end(); });
 
 const settled = async page => {
   await page.locator('h1').first().waitFor();
-  await page.waitForLoadState('networkidle').catch(() => undefined);  // a page that asks again every few seconds may never be idle
-  await page.waitForFunction(() => !document.querySelector('[aria-busy=true]'), undefined, {timeout: 20000});
+  // Nothing is being read, for a while: what was read may show a part that reads more. The stream of events never ends.
+  await page.waitForFunction(() => {
+    const now = performance.now();
+    if (document.querySelector('[aria-busy=true]')) window.calmSince = undefined;
+    else window.calmSince ??= now;
+    return window.calmSince !== undefined && now - window.calmSince > 300;
+  }, undefined, {timeout: 20000});
 };
 
 for (const colorScheme of ['light', 'dark']) {

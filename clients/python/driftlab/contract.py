@@ -558,6 +558,28 @@ class HealthAnswer(TypedDict):
     version: str
 
 
+class Histogram(TypedDict):
+    """Histogram. How the values of a channel's error series are distributed, in robust standard deviations (1.4826
+    times the median absolute deviation) from the median."""
+
+    unit: str
+    dt_s: float
+    samples: int
+    first_s: float
+    median: float | None
+    # Robust standard deviation; null where there is none, with the reason, and without the members below.
+    sigma: float | None
+    reason: NotRequired[str]
+    # Of the bins, in robust standard deviations; one more than counts.
+    edges: NotRequired[list[float]]
+    counts: NotRequired[list[int]]
+    # What Gaussian noise of that width would give.
+    gaussian: NotRequired[list[float]]
+    # Values under the first edge.
+    below: NotRequired[int]
+    above: NotRequired[int]
+
+
 class Investigation(TypedDict):
     """Investigation. What a simulation gets wrong about the recordings of a study, and why."""
 
@@ -2104,6 +2126,48 @@ class RegressionVersusPrevious(TypedDict):
     sentence: NotRequired[str]
 
 
+class Spectrogram(TypedDict):
+    """Spectrogram. The density of a channel's error series in time and frequency over the density expected: of a fitted
+    model, or the median over time of each frequency."""
+
+    unit: str
+    dt_s: float
+    samples: int
+    first_s: float
+    expected: Literal['model', 'median']
+    # Middle of each cell since the first sample looked at.
+    time_s: list[float]
+    # Mean frequency of each band, rising.
+    f_hz: list[float]
+    # One row per time, one number per band: 0 as expected, 1 ten times as much.
+    log10_ratio: list[list[float | None]]
+    window_samples: int
+
+
+class Spectrum(TypedDict):
+    """Spectrum. The power spectral density of a channel's error series, two-sided, in the bins that were asked for. Of
+    a channel with gaps: of its longest run without one."""
+
+    # Of the channel; densities are in its square over Hz.
+    unit: str
+    dt_s: float
+    # Looked at.
+    samples: int
+    # Time of the first of them since the first of the file.
+    first_s: float
+    # Mean of the Fourier frequencies of each bin, rising.
+    f_hz: list[float]
+    # Mean over the bin.
+    density: list[float | None]
+    # Chi-square, for Gaussian noise.
+    ci95: list[list[float | None]]
+    # The greatest ordinate of the bin: a line that the mean hides.
+    max: list[float | None]
+    segments: int
+    segment_samples: int
+    window: str
+
+
 class StoredRecording(TypedDict):
     """Stored recording."""
 
@@ -2429,6 +2493,12 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/recordings/{id}/characterisation', ('channel',), (), ('application/json',)),
     'getTrace': Operation(
         'GET', '/v1/recordings/{id}/trace', ('channel', 't0', 't1', 'points'), (), ('application/json',)),
+    'getSpectrum': Operation(
+        'GET', '/v1/recordings/{id}/spectrum', ('channel', 'scale', 'points'), (), ('application/json',)),
+    'getHistogram': Operation(
+        'GET', '/v1/recordings/{id}/histogram', ('channel', 'bins'), (), ('application/json',)),
+    'getSpectrogram': Operation(
+        'GET', '/v1/recordings/{id}/spectrogram', ('channel', 'times', 'bands', 'fit'), (), ('application/json',)),
     'listJobs': Operation(
         'GET', '/v1/jobs', ('limit', 'cursor', 'sort', 'kind', 'state'), (), ('application/json',)),
     'createJob': Operation(
@@ -2441,6 +2511,8 @@ OPERATIONS: dict[str, Operation] = {
         'POST', '/v1/jobs/{id}/cancel', (), ('Idempotency-Key',), ('application/json',)),
     'streamJobEvents': Operation(
         'GET', '/v1/jobs/{id}/events', (), ('Last-Event-ID',), ('text/event-stream',)),
+    'streamEvents': Operation(
+        'GET', '/v1/events', ('topics',), ('Last-Event-ID',), ('text/event-stream',)),
     'listFits': Operation(
         'GET', '/v1/fits',
         ('limit', 'cursor', 'sort', 'device', 'recording', 'job', 'quantity', 'axis', 'model', 'best'),

@@ -165,12 +165,13 @@ class Transport:
             pass  # the daemon may have answered, and closed, before it read everything: what it said is what counts
         return connection.getresponse()
 
-    def lines(self, operation: str, path: Mapping[str, str], headers: Mapping[str, str]) -> Iterator[str]:
+    def lines(self, operation: str, path: Mapping[str, str] | None, headers: Mapping[str, str],
+              query: Query | None = None) -> Iterator[str]:
         """The lines of an answer as they come, until the daemon closes."""
         described = OPERATIONS[operation]
         connection = self._connect(self.timeout)
         try:
-            response = self._exchange(connection, described.method, self.target(described, path, None), None,
+            response = self._exchange(connection, described.method, self.target(described, path, query), None,
                                       {"Accept": ", ".join(described.media), **headers})
             if response.status >= 400:
                 checked(Answer(response.status, {name.lower(): value for name, value in response.getheaders()}, response.read()))

@@ -17,7 +17,7 @@ struct World {
     store = std::move(open_sqlite_store(directory, clock).value());
     blobs = std::move(open_blob_directory(directory).value());
     context = std::make_unique<ApiContext>(
-        ApiContext{*store, *blobs, clock, bell, [this] { ++wake_ups; }, [this] { return not_ready; }});
+        ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; }, [this] { return not_ready; }});
     add_all_routes(router, *context);
     dispatcher = std::make_unique<Dispatcher>(*context);
   }
@@ -53,6 +53,7 @@ struct World {
   std::filesystem::path directory;
   SystemClock clock;
   Bell bell;
+  EventLog events{bell, "run"};
   std::unique_ptr<SqliteStore> store;
   std::unique_ptr<BlobStore> blobs;
   std::unique_ptr<ApiContext> context;

@@ -1,5 +1,6 @@
 // The daemon as the page sees it: documents, problems, and whether it answers at all.
 import {useEffect, useRef, useState} from 'preact/hooks';
+import {listening, onEvents, useEvents, whenBroken} from './events';
 
 export interface ProblemDocument {
   type: string;
@@ -109,7 +110,8 @@ function keep(path: string, data: unknown): void {
   if (kept.size > MOST_KEPT && oldest !== undefined) kept.delete(oldest);
 }
 
-// Reads a path, again whenever it changes, `again` is called, the daemon is back, or `everyMs` have passed. null reads nothing.
+// Reads a path, again whenever it changes, `again` is called, the daemon is back, or something happened in the lab, but then at most
+// every `everyMs`; where no events come, every `everyMs`. null reads nothing.
 export function useRead<T>(path: string | null, everyMs?: number): Read<T> {
   const [turn, setTurn] = useState(0);
   const [state, setState] = useState<{path: string | null; data?: T | undefined; problem?: Problem | undefined}>({path: null});
@@ -129,28 +131,25 @@ export function useRead<T>(path: string | null, everyMs?: number): Read<T> {
   }, [path, turn, isOffline]);
   useEffect(() => {
     if (!everyMs || path === null) return undefined;
-    const timer = setInterval(() => { if (!document.hidden) setTurn(n => n + 1); }, everyMs);
-    return () => clearInterval(timer);
+    let due = false;
+    const read = (): void => { due = false; setTurn(n => n + 1); };
+    let waiting = 0;
+    const stop = onEvents(() => {
+      if (waiting) { due = true; return; }
+      read();
+      waiting = window.setTimeout(() => { waiting = 0; if (due) read(); }, everyMs);
+    });
+    const timer = setInterval(() => { if (!document.hidden && !listening()) read(); }, everyMs);
+    return () => { stop(); clearInterval(timer); clearTimeout(waiting); };
   }, [path, everyMs]);
   const mine = state.path === path;
   const data = mine && state.data !== undefined ? state.data : path === null ? undefined : kept.get(path) as T | undefined;
   return {data, problem: mine ? state.problem : undefined, loading: path !== null && data === undefined && !(mine && state.problem), again: () => setTurn(n => n + 1)};
 }
 
-// Live jobs: one stream for the job that a page shows.
+// What moves of one job.
 export function useJobEvents(job: string | null, onEvent: () => void): void {
-  const handler = useRef(onEvent);
-  handler.current = onEvent;
-  useEffect(() => {
-    if (!job) return undefined;
-    const stream = new EventSource(`/v1/jobs/${job}/events`);
-    const heard = (event: Event): void => {
-      handler.current();
-      const state = JSON.parse((event as MessageEvent<string>).data).state as string;
-      if (state !== 'queued' && state !== 'running') stream.close();
-    };
-    stream.addEventListener('state', heard);
-    stream.addEventListener('progress', heard);
-    return () => stream.close();
-  }, [job]);
+  useEvents(event => { if (job && (event.type === 'ready' || event.type === 'reset' || event.data.job === job)) onEvent(); });
 }
+
+whenBroken(() => { ask('/healthz', {cache: 'no-store'}).catch(() => undefined); });

@@ -11,6 +11,7 @@ type None<Names extends never> = Names;
 export type Checked = [
   None<Missing<documents.Device, Ok<'getDevice'>>>, None<Missing<documents.DeviceSummary, Ok<'getDeviceSummary'>>>, None<Missing<documents.Recording, Ok<'getRecording'>>>,
   None<Missing<documents.Characterisation, Ok<'getCharacterisation'>>>, None<Missing<documents.CharacterisedChannel, Ok<'getCharacterisation'>['channels'][number]>>,
-  None<Missing<documents.Channel, Ok<'getCharacterisation'>['channels'][number]['result']>>, None<Missing<documents.Trace, Ok<'getTrace'>>>, None<Missing<documents.Job, Ok<'getJob'>>>,
+  None<Missing<documents.Channel, Ok<'getCharacterisation'>['channels'][number]['result']>>, None<Missing<documents.Trace, Ok<'getTrace'>>>, None<Missing<documents.Spectrum, Ok<'getSpectrum'>>>,
+  None<Missing<documents.Histogram, Ok<'getHistogram'>>>, None<Missing<documents.Spectrogram, Ok<'getSpectrogram'>>>, None<Missing<documents.Job, Ok<'getJob'>>>,
   None<Missing<documents.Counts, Ok<'getCounts'>>>, None<Missing<documents.Implied, Ok<'getImpliedCurves'>['implied']>>,
 ];

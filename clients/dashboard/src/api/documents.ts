@@ -62,6 +62,10 @@ export interface Characterisation {
 }
 export interface Trace { unit: string | null; duration_s: number | null; rate_hz: number | null; samples_per_bucket: number; time_s: number[]; min: Nullable; max: Nullable; mean: Nullable }
 
+export interface Spectrum { unit: string; dt_s: number; samples: number; first_s: number; f_hz: number[]; density: Nullable; ci95: Ends[]; max: Nullable; segments: number; segment_samples: number; window: string }
+export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number }
+export interface Spectrogram { unit: string; dt_s: number; samples: number; first_s: number; expected: 'model' | 'median'; time_s: number[]; f_hz: number[]; log10_ratio: Nullable[]; window_samples: number }
+
 export interface StoredProblem { title?: string; detail: string; type?: string; retryable?: boolean }
 export interface Job {
   id: string; kind: string; state: string; stage: string | null; progress: number; attempt: number; cancel_requested: boolean;

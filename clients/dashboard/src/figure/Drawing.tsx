@@ -2,7 +2,7 @@
 import type {ComponentChildren, JSX} from 'preact';
 import {writeTick} from '../format/number';
 import {type Area, type Layout} from './layout';
-import {Band, Curve, Points, Sample} from './marks';
+import {Band, Bars, Curve, Points, Sample} from './marks';
 import type {Note, Series} from './spec';
 
 const half = (x: number): number => Math.round(x * 2) / 2;
@@ -40,12 +40,27 @@ function Guides({place}: {place: Area}): JSX.Element {
   })}</g>;
 }
 
-function NoteMark({note, place}: {note: Note; place: Area}): JSX.Element {
+// How far the text of a note that drops to the axis is lifted, so that neighbours do not lie on each other.
+const NOTE_WIDTH = 124;
+const NOTE_LINES = 34;
+function lifts(notes: readonly Note[], place: Area): Map<Note, number> {
+  const lifted = new Map<Note, number>();
+  let before = -Infinity;
+  let level = 0;
+  for (const note of notes.filter(each => each.drop).sort((a, b) => a.x - b.x)) {
+    level = place.x(note.x) - before < NOTE_WIDTH ? level + 1 : 0;
+    before = place.x(note.x);
+    lifted.set(note, level * NOTE_LINES);
+  }
+  return lifted;
+}
+
+function NoteMark({note, place, lift}: {note: Note; place: Area; lift: number}): JSX.Element {
   const x = place.x(note.x);
   const y = place.y(note.y);
   const colour = note.colour ?? 'var(--ink)';
   const textX = note.drop ? x + 6 : note.line === undefined ? x : place.right;
-  const textY = note.drop ? place.bottom - (note.sub ? 22 : 8) : y - 10;
+  const textY = note.drop ? place.bottom - lift - (note.sub ? 22 : 8) : y - 10;
   const anchor = note.drop ? 'start' : note.line === undefined ? note.anchor ?? 'start' : 'end';
   return <g>
     {note.drop && <line x1={x} x2={x} y1={y} y2={place.bottom} stroke={colour} stroke-width="1" stroke-dasharray="1 2" />}
@@ -88,17 +103,18 @@ export interface DrawingProps {
 
 export function Drawing({plan, id, cursor}: DrawingProps): JSX.Element {
   return <>
-    {plan.areas.map(place => <g key={place.plot.id}>
+    {plan.areas.map(place => { const lifted = lifts(place.plot.notes ?? [], place); return <g key={place.plot.id}>
       <clipPath id={`${id}-${place.plot.id}`}><rect x={place.left} y={place.top - 6} width={place.right - place.left + 6} height={place.bottom - place.top + 6} /></clipPath>
       <Axes place={place} />
       <Guides place={place} />
       <g clip-path={`url(#${id}-${place.plot.id})`}>
+        {drawn(place).map(series => <Bars key={series.id} series={series} place={place} />)}
         {drawn(place).map(series => <Band key={series.id} series={series} place={place} />)}
         {drawn(place).map(series => <Curve key={series.id} series={series} place={place} />)}
         {drawn(place).map(series => <Points key={series.id} series={series} place={place} />)}
       </g>
-      {(place.plot.notes ?? []).map(note => <NoteMark key={note.text} note={note} place={place} />)}
-    </g>)}
+      {(place.plot.notes ?? []).map(note => <NoteMark key={note.text} note={note} place={place} lift={lifted.get(note) ?? 0} />)}
+    </g>; })}
     <Keys plan={plan} />
     {cursor}
   </>;

@@ -62,9 +62,18 @@ export function Points({series, place}: {series: Series; place: Area}): JSX.Elem
   })}</g>;
 }
 
+export function Bars({series, place}: {series: Series; place: Area}): JSX.Element | null {
+  if (!series.bars) return null;
+  const [first = 0, second = 1] = series.x;
+  const width = Math.max(0.5, Math.abs(place.x(second) - place.x(first)) - 0.6);
+  const path = visible(series, place).map(i => { const top = round(Math.min(place.y(series.y[i]!), place.bottom)); return `M${round(place.x(series.x[i]!) - width / 2)},${place.bottom}V${top}h${round(width)}V${place.bottom}Z`; }).join('');
+  return <path d={path} fill={series.colour} stroke="none" />;
+}
+
 // The sample of a series in a key, 22 px wide.
 export function Sample({series, x, y}: {series: Series; x: number; y: number}): JSX.Element {
   return <g>
+    {series.bars && <rect x={x + 4} width="14" y={y - 5} height="10" fill={series.colour} />}
     {series.line && <line x1={x} x2={x + 22} y1={y} y2={y} stroke={series.colour} stroke-width={series.width ?? 1.3} {...(series.dash ? {'stroke-dasharray': series.dash} : {})} />}
     {series.mark && <>
       {series.low && <line x1={x + 11} x2={x + 11} y1={y - 7} y2={y + 7} stroke={series.colour} stroke-width="1.3" />}

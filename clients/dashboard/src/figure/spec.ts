@@ -13,6 +13,7 @@ export interface Series {
   high?: Numbers;
   mark?: Mark;           // points are drawn
   line?: boolean;        // joined
+  bars?: boolean;        // from the foot of the plot, as wide as the points are apart
   colour: string;        // a token: var(--model)
   band?: string;         // fill between low and high, a token
   width?: number;

@@ -1,6 +1,6 @@
 // One recording: what it says, the evidence, the method.
 import type {JSX} from 'preact';
-import {useMemo} from 'preact/hooks';
+import {useMemo, useState} from 'preact/hooks';
 import {useJobEvents, useRead} from '../api/client';
 import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List, Recording} from '../api/documents';
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
@@ -16,7 +16,10 @@ import {Hairlines, Panel, Progress, Refusal, Segments, Shown} from '../shell/sta
 import {useTitle} from '../shell/title';
 import {describe, variancePlots, type Curve} from './recording/plots';
 import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Side';
+import {Leftover} from './recording/Leftover';
+import {Shape} from './recording/Shape';
 import {Signal} from './recording/Signal';
+import {Spectrum} from './recording/Spectrum';
 
 const SENSORS = ['angular_rate', 'specific_force'];
 
@@ -76,7 +79,12 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
     const next = (['robust', 'components', 'guides'] as const).filter(each => each === name ? !shown[each] : shown[each]).join(',');
     choose({show: next === 'robust,components' ? null : next || 'none'});
   };
-  const tau = Number(query.get('tau')) || null;
+  const [hovered, setHovered] = useState<number | null>(null);
+  const tau = hovered ?? (Number(query.get('tau')) || null);
+  const point = (x: number | null, pinned: boolean): void => {
+    setHovered(pinned ? null : x);
+    if (pinned) hover({tau: x === null ? null : String(Number(x.toPrecision(6)))});
+  };
   const path = `/v1/recordings/${recording.id}/characterisation?channel=${encodeURIComponent(c.channel)}`;
   const lastEdf = c.allan.edf?.[c.allan.edf.length - 1];
   return <div class="grid main-side">
@@ -85,10 +93,12 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
         controls={<Segments label="Curve" options={[['allan', 'Allan'], ['haar', 'Haar wavelet']] as const} value={curve} onChange={value => choose({curve: value === 'allan' ? null : value})} />}
         sub={<><label><span class="visually-hidden">Unit </span><select value={unit} onChange={event => choose({unit: event.currentTarget.value === units[0] ? null : event.currentTarget.value})}>{units.map(each => <option key={each} value={each}>{writeUnit(each)}</option>)}</select></label>{' '}
           {(['robust', 'components', 'guides'] as const).map(name => <label key={name} class="nowrap"> <input type="checkbox" checked={shown[name]} onChange={() => toggle(name)} /> {name}</label>)}</>}
-        describe={describe(c, fit, unit, curve)} plots={plots} cursor={tau} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }}
+        describe={describe(c, fit, unit, curve)} plots={plots} cursor={tau} onCursor={point}
         readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}<span>{writeUnit(unit)}</span></>}
         source={`driftlab, ${recording.id} ${c.channel}, algorithm ${result.algorithm_version}, seed ${result.parameters.seed ?? 1}`} curl={curlOf(path)} how={() => <How result={result} channel={channel} />}
         note={<>Equal decades on both axes, so that a slope of −½ looks like one.{lastEdf ? ` The last point has ${writeNumber(lastEdf, 2)} equivalent degrees of freedom; its interval says so.` : ''}{chosen > 0 && other.problem ? ` ${other.problem.document.detail}` : ''}</>} />
+      <Spectrum recording={recording} channel={c} fit={fit} implied={implied} unit={unit} components={shown.components} tau={tau} onTau={point} />
+      <Leftover recording={recording} channel={c} fit={fit} fitId={channel.fit_ids[chosen]} />
       <div class="grid two no-top">
         <OtherNames channel={c} />
         <FilePanel recording={recording} result={result} />
@@ -98,6 +108,7 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
       {fit && <FittedModel fit={fit} />}
       {c.fits.length > 0 && <Ranking fits={c.fits} chosen={chosen} onChoose={i => choose({model: i === 0 ? null : c.fits[i]!.model})} />}
       <Ieee channel={c} />
+      <Shape recording={recording} channel={c} />
     </div>
   </div>;
 }

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import cast
+from typing import Any, cast
 
 from ..contract import Characterisation, Investigation, Job, JobEvent, JobRequest, JobState, NewOutageEvaluation
 from ..contract import OutageEvaluation, OutageEvaluationResource, OutageEvaluationSummary
@@ -49,6 +49,23 @@ class JobRoutes(Routes):
                 data += value.removeprefix(" ")
             elif not line and data:
                 yield number, cast(JobEvent, json.loads(data))
+                data = ""
+
+    @operation("streamEvents")
+    def events(self, *, topics: str | None = None, last_event_id: str | None = None) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """(id, type, data) of everything that happens from now on, or from after `last_event_id`; `reset` says that some are lost."""
+        id, kind, data = "", "", ""
+        headers = {} if last_event_id is None else {"Last-Event-ID": last_event_id}
+        for line in self._transport.lines("streamEvents", None, headers, {"topics": topics}):
+            name, _, value = line.partition(":")
+            if name == "id":
+                id = value.strip()
+            elif name == "event":
+                kind = value.strip()
+            elif name == "data":
+                data += value.removeprefix(" ")
+            elif not line and data:
+                yield id, kind, json.loads(data)
                 data = ""
 
     @operation("listOutageEvaluations")

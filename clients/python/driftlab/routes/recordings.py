@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Literal, cast
 
-from ..contract import Condition, Device, DeviceChange, DeviceSummary, RecordingChange, RecordingCharacterisation, StoredRecording, Trace
+from ..contract import Condition, Device, DeviceChange, DeviceSummary, Histogram, RecordingChange, RecordingCharacterisation, Spectrogram, Spectrum, StoredRecording, Trace
 from ..transport import Body
 from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query
 from .base import PAGE, Routes, given, operation
@@ -57,6 +57,21 @@ class RecordingRoutes(Routes):
     def trace(self, id: str, channel: str, *, t0: float | None = None, t1: float | None = None, points: int | None = None) -> Trace:
         """A column as a screen can show it: least, greatest and mean value of every stretch between two times [s]."""
         return cast(Trace, self._get("getTrace", {"id": id}, {"channel": channel, "t0": t0, "t1": t1, "points": points}))
+
+    @operation("getSpectrum")
+    def spectrum(self, id: str, channel: str, *, scale: Literal["log", "linear"] | None = None, points: int | None = None) -> Spectrum:
+        """Two-sided power spectral density of a channel, in bins of equal width on the scale asked for."""
+        return cast(Spectrum, self._get("getSpectrum", {"id": id}, {"channel": channel, "scale": scale, "points": points}))
+
+    @operation("getHistogram")
+    def histogram(self, id: str, channel: str, *, bins: int | None = None) -> Histogram:
+        """How the values of a channel are distributed, in robust standard deviations from the median."""
+        return cast(Histogram, self._get("getHistogram", {"id": id}, {"channel": channel, "bins": bins}))
+
+    @operation("getSpectrogram")
+    def spectrogram(self, id: str, channel: str, *, times: int | None = None, bands: int | None = None, fit: str | None = None) -> Spectrogram:
+        """The density in time and frequency over that of a fit, or over the median in time of each frequency."""
+        return cast(Spectrogram, self._get("getSpectrogram", {"id": id}, {"channel": channel, "times": times, "bands": bands, "fit": fit}))
 
     @operation("getSample")
     def sample(self, preset: str = "iphone5s-z", *, condition: str | None = None, seed: int | None = None) -> str:

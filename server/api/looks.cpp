@@ -1,0 +1,127 @@
+// One channel of a recording as a person looks at it: spectrum, histogram, spectrogram.
+#include "schema/json/channel_look.hpp"
+#include "schema/json/channel_summary.hpp"
+#include "server/api/api.hpp"
+#include "server/api/documents.hpp"
+#include "server/jobs/stored_recordings.hpp"
+
+#include <charconv>
+
+namespace driftlab::server {
+namespace {
+
+/// A parameter as a whole number from `least` to `most`; `otherwise` where it is not given.
+Result<std::size_t> whole(const Request& request, std::string_view name, std::size_t least, std::size_t most,
+                          std::size_t otherwise) {
+  const auto text = request.parameter(name);
+  if (!text) {
+    return otherwise;
+  }
+  std::size_t value = 0;
+  const auto [stop, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+  if (error != std::errc{} || stop != text->data() + text->size() || value < least || value > most) {
+    return fail(ErrorCode::InvalidArgument,
+                "The parameter " + std::string(name) + " is a whole number from " + std::to_string(least) + " to " +
+                    std::to_string(most) + ".",
+                {{"parameter", std::string(name)}});
+  }
+  return value;
+}
+
+Result<ChannelLook> look_of(ApiContext& context, const Request& request) {
+  const auto channel = request.parameter("channel");
+  if (!channel) {
+    return fail(ErrorCode::InvalidArgument, "Name a column of the recording: ?channel=…", {{"parameter", "channel"}});
+  }
+  StoredRecordings source(context.store, context.blobs, {{request.parameters[0], std::nullopt, ""}});
+  return ChannelLook::open(source, *channel);
+}
+
+Result<Response> get_spectrum(ApiContext& context, const Request& request) {
+  const auto points = whole(request, "points", 10, 2000, 200);
+  if (!points) {
+    return fail(points.error());
+  }
+  const std::string_view scale = request.parameter("scale").value_or("log");
+  if (scale != "log" && scale != "linear") {
+    return fail(ErrorCode::InvalidArgument, "The scale is log or linear.", {{"parameter", "scale"}});
+  }
+  const auto look = look_of(context, request);
+  if (!look) {
+    return fail(look.error());
+  }
+  const auto spectrum = look->spectrum(scale == "log" ? FrequencyScale::Log : FrequencyScale::Linear, *points);
+  return spectrum ? Result<Response>(json_response(200, spectrum_to_json(*look, *spectrum))) : fail(spectrum.error());
+}
+
+Result<Response> get_histogram(ApiContext& context, const Request& request) {
+  const auto bins = whole(request, "bins", 8, 512, 64);
+  if (!bins) {
+    return fail(bins.error());
+  }
+  const auto look = look_of(context, request);
+  return look ? Result<Response>(json_response(200, histogram_to_json(*look, look->histogram(*bins))))
+              : fail(look.error());
+}
+
+/// The model that the parameter `fit` names, of a fit of that very channel.
+Result<std::optional<driftlab::Model>> model_asked(ApiContext& context, const Request& request, const ChannelLook& look) {
+  const auto id = request.parameter("fit");
+  if (!id) {
+    return std::optional<driftlab::Model>();
+  }
+  const auto fit = context.store.fit(*id);
+  if (!fit) {
+    return fail(fit.error());
+  }
+  if (fit->recording_id != request.parameters[0] || fit->channel != request.parameter("channel").value_or("")) {
+    return fail(ErrorCode::InvalidArgument, "The fit " + fit->id + " is one of another channel.",
+                {{"parameter", "fit"}});
+  }
+  auto model = model_of(stored(fit->document_json), look.unit().dimension);
+  if (!model) {
+    return fail(ErrorCode::InvalidArgument, "The fit " + fit->id + " leaves a parameter open: it implies no density.",
+                {{"parameter", "fit"}});
+  }
+  return model;
+}
+
+Result<Response> get_spectrogram(ApiContext& context, const Request& request) {
+  const auto times = whole(request, "times", 1, 512, 160);
+  const auto bands = whole(request, "bands", 1, 128, 48);
+  if (!times || !bands) {
+    return fail(!times ? times.error() : bands.error());
+  }
+  const auto look = look_of(context, request);
+  if (!look) {
+    return fail(look.error());
+  }
+  const auto model = model_asked(context, request, *look);
+  if (!model) {
+    return fail(model.error());
+  }
+  const auto ratio = look->ratio(*model ? &**model : nullptr, *times, *bands);
+  return ratio ? Result<Response>(json_response(200, spectrogram_to_json(*look, *ratio))) : fail(ratio.error());
+}
+
+}  // namespace
+
+void add_look_routes(Router& router, ApiContext& context) {
+  router.add({"GET",
+              "/v1/recordings/{id}/spectrum",
+              "getSpectrum",
+              {"channel", "scale", "points"},
+              Handler([&](const Request& request) { return get_spectrum(context, request); })});
+  router.add({"GET",
+              "/v1/recordings/{id}/histogram",
+              "getHistogram",
+              {"channel", "bins"},
+              Handler([&](const Request& request) { return get_histogram(context, request); })});
+  router.add({"GET",
+              "/v1/recordings/{id}/spectrogram",
+              "getSpectrogram",
+              {"channel", "times", "bands", "fit"},
+              Handler([&](const Request& request) { return get_spectrogram(context, request); })});
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,70 @@
+"""A channel as a person looks at it: spectrum, histogram, spectrogram; and what they refuse."""
+from __future__ import annotations
+
+import math
+import unittest
+
+import samples
+from suite import DaemonTest
+
+RATE = 100.0
+
+
+class Looks(DaemonTest):
+    def upload(self, values: list[float]) -> str:
+        return str(self.expect(201, self.daemon.upload(samples.csv([values], ["gz"]), rate_hz=RATE, columns=samples.GYRO_Z)).json["id"])
+
+    def test_white_noise_has_its_density_and_a_line_stands_out(self) -> None:
+        """Unit variance at 100 Hz is 0.01 per hertz, two-sided; a sinusoid of 10 Hz shows in the greatest ordinate of its bin."""
+        (noise,) = samples.noise(20000, seed=5)
+        id = self.upload([value + 0.3 * math.sin(2 * math.pi * 10 * t / RATE) for t, value in enumerate(noise)])
+        for scale in ("log", "linear"):
+            found = self.expect(200, self.daemon.get(f"/v1/recordings/{id}/spectrum?channel=gz&scale={scale}&points=50")).json
+            middle = sorted(found["density"])[len(found["density"]) // 2]
+            self.assertAlmostEqual(middle, 0.01, delta=0.002)
+            at = max(range(len(found["max"])), key=lambda i: float(found["max"][i]))
+            self.assertAlmostEqual(found["f_hz"][at], 10, delta=1.5)
+            self.assertGreater(found["max"][at], 20 * 0.01)
+            self.assertEqual((found["unit"], found["segments"]), ("deg/s", 1))
+
+    def test_the_histogram_stands_against_gaussian_noise_of_its_core(self) -> None:
+        (noise,) = samples.noise(10000, seed=6)
+        id = self.upload([value + (40 if t % 500 == 0 else 0) for t, value in enumerate(noise)])
+        found = self.expect(200, self.daemon.get(f"/v1/recordings/{id}/histogram?channel=gz&bins=32")).json
+        self.assertAlmostEqual(found["sigma"], 1, delta=0.05)
+        self.assertEqual(found["above"], 20)
+        self.assertEqual(sum(found["counts"]) + found["above"] + found["below"], 10000)
+        for count, expected in zip(found["counts"], found["gaussian"]):
+            self.assertLess(abs(count - expected), 5 * math.sqrt(expected) + 5)
+
+    def test_the_spectrogram_says_when(self) -> None:
+        """Noise three times as strong in the second half: against the model of all of it the ratio steps up by a decade."""
+        (noise,) = samples.noise(20000, seed=7)
+        id = self.upload([value * (1 if t < 10000 else 3) for t, value in enumerate(noise)])
+        self.daemon.finished(self.daemon.characterise(id).json["id"])
+        fit = next(fit["id"] for fit in self.daemon.items(f"/v1/fits?recording={id}&model=WN"))
+        for query, expected in (("", "median"), (f"&fit={fit}", "model")):
+            found = self.expect(200, self.daemon.get(f"/v1/recordings/{id}/spectrogram?channel=gz&times=20&bands=10{query}")).json
+            self.assertEqual(found["expected"], expected)
+            rows = [row[-1] for row in found["log10_ratio"]]
+            self.assertAlmostEqual(sum(rows[10:]) / 10 - sum(rows[:10]) / 10, math.log10(9), delta=0.1)
+
+    def test_what_cannot_be_looked_at_is_refused_with_the_parameter(self) -> None:
+        id = self.upload(samples.noise(70, seed=8)[0])
+        base = f"/v1/recordings/{id}"
+        self.problem(400, "invalid_argument", self.daemon.get(f"{base}/spectrum"), parameter="channel")
+        self.problem(422, "unknown_column", self.daemon.get(f"{base}/spectrum?channel=gx"), parameter="channel")
+        self.problem(400, "invalid_argument", self.daemon.get(f"{base}/spectrum?channel=gz&scale=root"), parameter="scale")
+        for look, name in (("spectrum", "points"), ("histogram", "bins"), ("spectrogram", "times"), ("spectrogram", "bands")):
+            for value in ("0", "9999", "x"):
+                self.problem(400, "invalid_argument", self.daemon.get(f"{base}/{look}?channel=gz&{name}={value}"), parameter=name)
+        self.problem(404, "not_found", self.daemon.get(f"{base}/spectrogram?channel=gz&fit=fit_nobody"))
+        self.problem(404, "not_found", self.daemon.get("/v1/recordings/rec_nobody/histogram?channel=gz"))
+        even = self.upload([1.0] * 60 + [2.0] * 40)
+        found = self.expect(200, self.daemon.get(f"/v1/recordings/{even}/histogram?channel=gz")).json
+        self.assertIsNone(found["sigma"])
+        self.assertIn("equal", found["reason"])
+
+
+if __name__ == "__main__":
+    unittest.main()
