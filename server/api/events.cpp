@@ -61,9 +61,9 @@ void announce_result(ApiContext& context, const Job& job) {
 
 class AllEvents final : public EventSource {
  public:
-  AllEvents(EventLog& log, std::vector<std::string> topics, std::optional<std::string> last_id)
-      : log_(log), topics_(std::move(topics)), after_(log.latest()) {
-    const auto number = last_id ? log.number_of(*last_id) : std::nullopt;
+  AllEvents(ApiContext& context, std::vector<std::string> topics, const std::optional<std::string>& last_id)
+      : store_(context.store), log_(context.events), topics_(std::move(topics)), after_(log_.latest()) {
+    const auto number = last_id ? log_.number_of(*last_id) : std::nullopt;
     reset_ = last_id.has_value() && !number;
     after_ = number.value_or(after_);
   }
@@ -87,7 +87,7 @@ class AllEvents final : public EventSource {
     }
     for (const LoggedEvent& event : since.events) {
       after_ = event.number;
-      if (std::find(topics_.begin(), topics_.end(), event.topic) != topics_.end()) {
+      if (std::find(topics_.begin(), topics_.end(), event.topic) != topics_.end() && is_visible(event)) {
         batch.text += "id: " + log_.id_of(event.number) + "\nevent: " + event.type + "\ndata: " + event.data + "\n\n";
       }
     }
@@ -95,6 +95,15 @@ class AllEvents final : public EventSource {
   }
 
  private:
+  /// What the listener could not read it does not hear of either.
+  bool is_visible(const LoggedEvent& event) {
+    const Json data = stored(event.data);
+    const auto names = [&data](const char* member) { return data.contains(member) && data[member].is_string(); };
+    return (!names("device") || store_.device(data["device"].get<std::string>())) &&
+           (!names("job") || store_.job(data["job"].get<std::string>()));
+  }
+
+  Store& store_;
   EventLog& log_;
   const std::string subject_{EventLog::kSubject};
   std::vector<std::string> topics_;
@@ -121,7 +130,7 @@ Result<std::unique_ptr<EventSource>> all_events(ApiContext& context, const Reque
     rest.remove_prefix(comma + 1);
   }
   const auto last = request.header("last-event-id");
-  return std::make_unique<AllEvents>(context.events, std::move(topics),
+  return std::make_unique<AllEvents>(context, std::move(topics),
                                      last ? std::optional<std::string>(*last) : std::nullopt);
 }
 

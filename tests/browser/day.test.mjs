@@ -66,7 +66,8 @@ test('the address holds the view: back undoes, reload restores, a second tab sho
   await page.keyboard.press('Home');
   await page.keyboard.press('ArrowRight');
   await page.waitForURL(/tau=/);
-  assert.match(await page.locator('.readout').innerText(), /τ 0\.02.*classical/s);
+  assert.match(await page.locator('.readout', {hasText: 'τ '}).first().innerText(), /τ 0\.02.*classical/s);
+  await page.locator('.readout', {hasText: /f 2[3-6][.0-9]* Hz.*measured/s}).waitFor();  // the spectrum shows the same place
   const other = await open(browser, daemon, new URL(page.url()).pathname + new URL(page.url()).search);
   await other.getByRole('heading', {name: 'Haar wavelet deviation'}).waitFor();
   await other.locator('.readout', {hasText: 'τ 0.02'}).waitFor();

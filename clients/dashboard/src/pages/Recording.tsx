@@ -1,8 +1,9 @@
 // One recording: what it says, the evidence, the method.
 import type {JSX} from 'preact';
 import {useMemo, useState} from 'preact/hooks';
-import {useJobEvents, useRead} from '../api/client';
+import {get, useJobEvents, useRead} from '../api/client';
 import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List, Recording} from '../api/documents';
+import {useEvents} from '../api/events';
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
 import {writeDuration} from '../format/time';
 import {unitsFor} from '../format/units';
@@ -119,8 +120,18 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   const read = useRead<Characterisation>(`/v1/recordings/${recording.id}/characterisation`);
   const live = useLiveJob(recording.id);
   const liveJob = useRead<Job>(live ? `/v1/jobs/${live.id}` : null);
-  useJobEvents(live?.id ?? null, () => { liveJob.again(); read.again(); });
-  const job = liveJob.data ?? live;
+  useJobEvents(live?.id ?? null, liveJob.again);
+  const job = liveJob.data?.finished_at ? undefined : liveJob.data ?? live;
+  // The first result is shown when it is there; one that follows is offered, never put under a reader's eyes.
+  const [newer, setNewer] = useState(false);
+  useEvents(event => {
+    if (event.type === 'result.created' && event.data.kind === 'characterise') {
+      if (!read.data) read.again();
+      else get<Job>(`/v1/jobs/${event.data.job}`).then(made => { if (made.request.inputs.recordings?.some(one => one.id === recording.id)) setNewer(true); }, () => undefined);
+    } else if (!read.data && (event.type === 'ready' || event.type === 'reset')) {
+      read.again();
+    }
+  });
   const channels = read.data?.channels ?? [];
   const columns = (recording.quality.channels ?? []).map(channel => channel.column);
   const named = query.get('ch');
@@ -142,6 +153,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
         <a class="btn" href={`/compare?with=${recording.id}`}>Compare <kbd>c</kbd></a>
         <Report />
       </>} />
+    {newer && <p class="note" role="status">Newer result. <button type="button" class="link" onClick={() => { setNewer(false); read.again(); }}>Show it</button></p>}
     {read.data?.stale && <p class="note">The recording was changed after it was characterised. <Characterise recordings={[recording.id]} label="Characterise again" onQueued={() => undefined} /></p>}
     {job && <div role="status"><p class="verdict">Characterising: {job.state === 'queued' ? 'waiting for a worker' : `${job.stage ?? 'starting'}, ${Math.round(job.progress * 100)} %`}</p><Progress share={job.progress} label="Characterising" /></div>}
     {channel && !job && <Verdict summary={channel.summary} />}
