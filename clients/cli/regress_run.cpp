@@ -141,6 +141,10 @@ Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultRead
     }
   }
   if (!earlier.empty()) {
+    const std::vector<std::string> known = state.labels();
+    const auto place = std::find(known.begin(), known.end(), run.baseline.label);
+    request.before_baseline = static_cast<std::size_t>(
+        std::count_if(known.begin(), place, [&](const std::string& label) { return label != run.candidate.label; }));
     prepared.request.previous = request.history.back();
   }
   for (const WrittenArm& release : run.history) {

@@ -94,6 +94,18 @@ Json regression_unit_json(const regression::Report& report, const regression::Un
               {"tests", std::move(tests)}};
 }
 
+Json regression_trend_json(const regression::TrendReport& told) {
+  const regression::ReleaseTrend& trend = told.trend;
+  return Json{{"unit", told.unit},
+              {"of", told.name.empty() ? "scales" : told.name},
+              {"releases", trend.releases},
+              {"per_release", number(std::exp(trend.slope))},
+              {"ci95", {number(std::exp(trend.ci95.low)), number(std::exp(trend.ci95.high))}},
+              {"total", number(std::exp(trend.total))},
+              {"p", number(trend.p)},
+              {"warning", told.warns()}};
+}
+
 Json regression_arm_json(const regression::ArmReport& arm) {
   Json sessions = Json::array();
   for (const regression::ArmReport::Session& session : arm.sessions) {
@@ -165,6 +177,10 @@ Json to_json(const RegressReport& run) {
   for (const regression::UnitReport& unit : report.units) {
     units.push_back(regression_unit_json(report, unit));
   }
+  Json trend = Json::array();
+  for (const regression::TrendReport& told : report.trends) {
+    trend.push_back(regression_trend_json(told));
+  }
   Json findings = Json::array();
   for (const regression::EventCheck& check : report.checks) {
     findings.push_back(Json{{"check", check.check},
@@ -219,6 +235,7 @@ Json to_json(const RegressReport& run) {
                  {{"sessions_per_arm", needs.sessions_per_arm ? Json(*needs.sessions_per_arm) : Json(nullptr)},
                   {"length_s", report.needed_length_s ? number(*report.needed_length_s) : Json(nullptr)},
                   {"sentence", text_or_null(report.needs)}}},
+                {"trend", std::move(trend)},
                 {"versus_previous", nullptr},
                 {"algorithm_version", kRegressionVersion}};
   if (run.versus_previous) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Simulated regression runs: six axes whose sessions scatter by the law that the comparison assumes, with a scale of
 /// the rig's own, ln k ~ N(0, 0.5), and Student's t5 over the sessions (spec/regression.md, section 10).
+#include "core/campaign/regression/release_trend.hpp"
 #include "core/campaign/regression/verdict.hpp"
 #include "core/process/distributions.hpp"
 #include "core/process/model.hpp"
@@ -154,6 +155,42 @@ class Rig {
   Eigen::MatrixXd common_;
   Eigen::MatrixXd local_;
 };
+
+/// Releases of one device, each of some sessions; the anchor is the first, the candidate the last.
+struct Releases {
+  regression::Design design;
+  regression::ReleaseOrder order;
+};
+
+/// What is added to the rows of a release, counted from 0.
+using ReleaseChange = std::function<double(const regression::Row&, double)>;
+
+inline Releases draw_releases(const Rig& rig, Random& random, std::size_t releases, std::size_t sessions,
+                              const ReleaseChange& change) {
+  const auto last = static_cast<double>(releases - 1);
+  Releases drawn{
+      rig.draw(random, sessions, sessions, (releases - 2) * sessions, [](const regression::Row&) { return 0.0; }),
+      {{}, 0.0, last}};
+  for (regression::Unit& unit : drawn.design.units) {  // what is fitted to the pooled curve of baseline and candidate
+    for (std::size_t j = 0; j < unit.count; ++j) {
+      const regression::Row& row = drawn.design.rows[unit.first + j];
+      unit.modelled(static_cast<Eigen::Index>(j)) += 0.5 * (change(row, 0.0) + change(row, last));
+    }
+  }
+  std::size_t earlier = 0;
+  for (regression::Session& session : drawn.design.sessions) {
+    double at = session.arm == regression::Arm::Baseline ? 0.0 : last;
+    if (session.arm == regression::Arm::History) {
+      session.release = earlier++ / sessions;
+      at = static_cast<double>(session.release) + 1.0;
+    }
+    drawn.order.position.push_back(at);
+    for (Eigen::Index row = 0; row < drawn.design.size(); ++row) {
+      session.x(row) += change(drawn.design.rows[static_cast<std::size_t>(row)], at);
+    }
+  }
+  return drawn;
+}
 
 /// Shares of verdicts.
 struct Shares {

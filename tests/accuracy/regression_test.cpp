@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 
 namespace driftlab::accuracy {
 namespace {
@@ -125,6 +126,48 @@ TEST(Accuracy, RegressionRunsKeepTheirPromises) {
                     100.0 - shares.percent(shares.pass) - shares.percent(shares.fail), shares.percent(shares.fail));
     }
     section.print("\n");
+  }
+}
+
+/// Whether a unit's trend over the releases warns, and how often its interval holds the truth.
+TEST(Accuracy, ReleaseTrendsWarnOfDriftsAlone) {
+  Section section("release trends");
+  section.print(
+      "\n## Drifts over releases\n\nThe same six axes, 5 min a session; gyro z drifts by so much a release, the other "
+      "axes "
+      "stay. Warnings at p < 0.01, intervals of 95 %%, scales to 1 s.\n\n| releases x sessions | drift | runs | "
+      "warned: gyro "
+      "z | warned: others | interval holds |\n|---|---|---|---|---|---|\n");
+  const Rig rig(300.0);
+  for (const auto& [releases, sessions, share] :
+       {std::tuple{6U, 1U, 0.0}, {6U, 3U, 0.0}, {13U, 3U, 0.0}, {6U, 3U, 0.03}, {13U, 3U, 0.015}}) {
+    const double step = std::log1p(share);
+    std::size_t drifting = 0;
+    std::size_t others = 0;
+    std::size_t held = 0;
+    const std::size_t runs = repetitions(200);
+    for (std::size_t run = 0; run < runs; ++run) {
+      Random random(120, run);
+      const Releases drawn = draw_releases(rig, random, releases, sessions, [&](const Row& row, double release) {
+        return row.unit == 2 ? step * release : 0.0;
+      });
+      const regression::Comparison comparison = regression::compare(drawn.design, table_settings());
+      for (const regression::ReleaseTrend& trend : release_trends(
+               drawn.design, scatter_terms(drawn.design), comparison.scatter, comparison.contrast, drawn.order, 1.0)) {
+        if (trend.level) {
+          continue;
+        }
+        const bool warned = trend.p < regression::kTrendWarning;
+        (trend.unit == 2 ? drifting : others) += warned ? 1U : 0U;
+        held += trend.ci95.contains(trend.unit == 2 ? step : 0.0) ? 1U : 0U;
+      }
+    }
+    const auto count = static_cast<double>(runs);
+    const double false_share = 100.0 * static_cast<double>(others) / (5.0 * count);
+    section.print("| %u x %u | %.1f %% | %zu | %.1f %% | %.1f %% | %.1f %% |\n", releases, sessions, 100.0 * share,
+                  runs, 100.0 * static_cast<double>(drifting) / count, false_share,
+                  100.0 * static_cast<double>(held) / (6.0 * count));
+    EXPECT_LE(false_share, 2.5);
   }
 }
 

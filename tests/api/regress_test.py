@@ -123,6 +123,25 @@ class Regress(unittest.TestCase):
         self.regress(2, *state, "--accept", "firmware=1.1")
         self.assertIn("firmware=1.1", self.regress(0, *state, "--accept", "firmware=1.1", "--reason", "meant so"))
 
+    def test_a_drift_over_releases_is_told(self) -> None:
+        """Five releases, each 6 % noisier than the one before, listed oldest first: the trend says so, and by how much since the baseline."""
+        releases = []
+        for release in range(5):
+            name = f"drift_{release}.csv"
+            (self.folder / name).write_text(recording(60 + release, 0.1, 1.06 ** release))
+            releases.append({"labels": {"firmware": f"1.{release}"}, "recordings": [{"file": name}]})
+        run = {"device": {"id": "imu-07"}, "baseline": releases[3], "candidate": releases[4], "history": releases[:3]}
+        (self.folder / "drift.json").write_text(json.dumps(run))
+        document = self.document(0, "drift.json", "--inconclusive", "pass")
+        [scales, *others] = [trend for trend in document["trend"] if trend["of"] == "scales"]
+        self.assertEqual((scales["unit"], scales["releases"], others), ("gyroscope z", 5, []))
+        self.assertAlmostEqual(scales["per_release"], 1.06, delta=0.02)
+        self.assertTrue(scales["warning"])
+        self.assertIn("drifts over 5 releases", " ".join(document["summary"]["details"]))
+        del run["history"]
+        (self.folder / "pair.json").write_text(json.dumps(run))
+        self.assertEqual(self.document(0, "pair.json", "--inconclusive", "pass")["trend"], [])
+
     def test_run_json_names_sessions_exclusions_and_settings(self) -> None:
         run: dict[str, Any] = {"device": {"id": "imu-07"},
                "baseline": {"labels": {"firmware": "1.0"}, "recordings": [{"id": f"b{i}", "file": f"baseline/{i}.csv"} for i in range(3)]},

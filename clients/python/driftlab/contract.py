@@ -1976,6 +1976,9 @@ class Regression(TypedDict):
     findings: list[RegressionFinding]
     comparability: list[RegressionComparabilityItem]
     needs: RegressionNeeds
+    # Drift over three releases or more: the scales to through_s, and N, regressed on the order of the releases. Ratios
+    # of deviations.
+    trend: list[RegressionTrendItem]
     versus_previous: RegressionVersusPrevious | None
     algorithm_version: int
 
@@ -2093,6 +2096,19 @@ class RegressionTest(TypedDict):
     verdict: Literal['ok', 'worse_within_margin', 'beyond', 'open', 'improved']
     # That unchanged noise shows this much beyond the margin anywhere.
     p_adjusted: float
+
+
+class RegressionTrendItem(TypedDict):
+    unit: str
+    of: str
+    releases: int
+    per_release: float
+    ci95: list[float]
+    # From the baseline to the candidate.
+    total: float
+    p: float
+    # p below 0.01.
+    warning: bool
 
 
 class RegressionUnit(TypedDict):

@@ -79,6 +79,8 @@ struct Request {
   Recordings baseline;
   Recordings candidate;
   std::vector<Recordings> history;  ///< earlier releases, oldest first
+  /// How many of them came before the baseline; left out: all. Where every recording has a time, times decide.
+  std::optional<std::size_t> before_baseline = std::nullopt;
   std::vector<Exclusion> excluded;
   Settings settings;
 };

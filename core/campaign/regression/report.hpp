@@ -1,6 +1,7 @@
 #pragma once
 /// The use of it all: a request in, a verdict in sentences out.
 #include "core/campaign/regression/event_checks.hpp"
+#include "core/campaign/regression/release_trend.hpp"
 #include "core/campaign/regression/verdict.hpp"
 
 #include <array>
@@ -43,6 +44,13 @@ struct UnitReport {
   std::vector<ScaleReport> tests;
 };
 
+struct TrendReport {
+  std::string unit;  ///< `gyroscope z`
+  std::string name;  ///< of a level: `white_noise.N`; empty for the scales
+  ReleaseTrend trend;
+  [[nodiscard]] bool warns() const { return trend.p < kTrendWarning; }
+};
+
 /// The verdict as the dashboard shows it (dashboard/api-needs.md, A1).
 struct Summary {
   std::string verdict;  ///< one sentence
@@ -63,6 +71,7 @@ struct Report {
   std::vector<Exclusion> excluded;
   Comparison comparison;
   std::vector<UnitReport> units;
+  std::vector<TrendReport> trends;  ///< empty with fewer than three releases
   std::vector<EventCheck> checks;
   std::vector<Incomparable> comparability;
   std::vector<std::string> notes;

@@ -147,6 +147,21 @@ void note_scatter(Report& report) {
 }
 
 /// All axes move by one factor: so does a clock that is off (a clock error d moves N by d/2).
+/// Drifts over the releases, each unit once: by its scales where these show it, else by N.
+void note_trends(Report& report) {
+  std::string told;
+  for (const TrendReport& one : report.trends) {
+    if (!one.warns() || one.unit == told) {
+      continue;
+    }
+    told = one.unit;
+    const std::string since = report.baseline.label.empty() ? "the baseline" : report.baseline.label;
+    report.notes.push_back(short_name(one.unit) + " drifts over " + std::to_string(one.trend.releases) +
+                           " releases: " + interval_text(one.trend.slope, one.trend.ci95.low, one.trend.ci95.high) +
+                           " a release, " + percent_text(one.trend.total) + " since " + since + ".");
+  }
+}
+
 void note_time_base(Report& report) {
   std::vector<double> shifts;
   for (const UnitReport& unit : report.units) {
@@ -211,6 +226,7 @@ void tell(Report& report) {
   note_improvement(report);
   note_scatter(report);
   note_time_base(report);
+  note_trends(report);
   const Told beyond = largest(
       report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Beyond; },
       [](const ScaleReport& test) { return test.outcome.lower - test.test.margin; });
