@@ -1,0 +1,11 @@
+#pragma once
+/// What is known of a recording while it grows, as the data of an event.
+#include "core/analysis/growing_recording.hpp"
+#include "schema/json/json.hpp"
+
+namespace driftlab {
+
+/// Deviations in the channel's own unit, N in that of the laboratory.
+[[nodiscard]] Json growing_recording_to_json(const GrowingRecording& look, const Unit& unit);
+
+}  // namespace driftlab
