@@ -1,0 +1,46 @@
+// The history of what was asked: is a change of firmware, board or mounting no worse? One row per device and baseline, its runs in a strip.
+import type {JSX} from 'preact';
+import {useRead} from '../api/client';
+import type {List} from '../api/documents';
+import {writeWhen} from '../format/time';
+import {plural} from '../format/words';
+import {choose, pageOf, usePlace} from '../route';
+import {Head} from '../shell/Head';
+import {Panel, Shown} from '../shell/states';
+import {useTitle} from '../shell/title';
+import {VERDICT_MARKS, type RegressionRun} from './regression/documents';
+
+const SHOWN = 50;
+
+function Strip({runs}: {runs: readonly RegressionRun[]}): JSX.Element {
+  return <span class="run-strip">{runs.slice().reverse().map(run => <a key={run.id} href={pageOf('regressions', run.id)} class={run.verdict === 'fail' ? 'bad' : ''} title={`${run.candidate || 'candidate'}: ${run.verdict ?? run.state}, ${writeWhen(run.created_at)}`} aria-label={`${run.candidate || 'candidate'}: ${run.verdict ?? run.state}`}>{VERDICT_MARKS[run.verdict ?? ''] ?? '·'}</a>)}</span>;
+}
+
+function History({runs}: {runs: readonly RegressionRun[]}): JSX.Element {
+  const groups = new Map<string, RegressionRun[]>();
+  for (const run of runs) {
+    const key = `${run.device ?? '–'} against ${run.baseline || 'its baseline'}`;
+    groups.set(key, [...groups.get(key) ?? [], run]);
+  }
+  return <table class="stacked"><thead><tr><th scope="col">device and baseline</th><th scope="col">runs, the last at the right</th><th scope="col">latest candidate</th><th scope="col">what it says</th><th scope="col">when</th></tr></thead>
+    <tbody>{[...groups].map(([key, list]) => { const last = list[0]!; return <tr key={key}>
+      <th scope="row">{key}</th><td><Strip runs={list} /></td>
+      <td><a href={pageOf('regressions', last.id)}>{last.candidate || 'candidate'}</a></td>
+      <td>{last.summary ? <><span class={`g ${last.verdict === 'fail' ? 'bad' : last.verdict === 'pass' ? 'good' : 'warn'}`} aria-hidden="true">{last.verdict === 'fail' ? '✗ ' : last.verdict === 'pass' ? '✓ ' : '△ '}</span>{last.summary.verdict}</> : last.state}</td>
+      <td class="sec nowrap">{writeWhen(last.created_at)}</td></tr>; })}</tbody></table>;
+}
+
+export default function Regressions(): JSX.Element {
+  const {query} = usePlace();
+  useTitle('Regressions');
+  const after = query.get('after');
+  const read = useRead<List<RegressionRun>>(`/v1/regressions?sort=-created_at&limit=${SHOWN}${after ? `&cursor=${after}` : ''}`, 5000);
+  return <>
+    <Head title="Regressions" facts={['is the noise no worse than before the change?', read.data && plural(read.data.items.length, 'run')]} />
+    <Shown read={read}>{list => list.items.length === 0
+      ? <Panel title="None yet"><p>A run compares recordings after a change with recordings before it, and passes, fails or says how many sessions would decide. Ask for one by the command line or by the API:</p>
+        <pre tabIndex={0}><code>{`curl --json '{"kind": "regress", "inputs": {"device": "phone-07", "baseline": {"recordings": [{"recording": "rec_…"}]},\n  "candidate": {"recordings": [{"recording": "rec_…"}]}}}' ${window.location.origin}/v1/jobs`}</code></pre><p><a href="/docs/regression">How it is decided</a></p></Panel>
+      : <Panel title="History" sub="● pass ■ fail ○ inconclusive"><History runs={list.items} />
+        {(after || list.next_cursor) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Next {SHOWN}</button>}</p>}</Panel>}</Shown>
+  </>;
+}
