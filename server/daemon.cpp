@@ -63,7 +63,7 @@ Status charge_faults(Store& store, const std::filesystem::path& file) {
 /// Members in the order of construction; destruction is the reverse.
 struct Daemon::Parts {
   Parts(std::unique_ptr<BlobStore> blobs_in, std::unique_ptr<SqliteStore> store_in,
-        std::unique_ptr<SystemClock> clock_in, WorkerOptions worker_options)
+        std::unique_ptr<SystemClock> clock_in, WorkerOptions worker_options, std::filesystem::path data)
       : clock(std::move(clock_in)),
         blobs(std::move(blobs_in)),
         store(std::move(store_in)),
@@ -71,7 +71,8 @@ struct Daemon::Parts {
           bell.ring(id);
           announce_job(api, id);
         }),
-        api{*store, *blobs, *clock, bell, events, [this] { workers.wake(); }, [this] { return not_ready_why(); }},
+        api{*store, *blobs, *clock, bell, events, [this] { workers.wake(); }, [this] { return not_ready_why(); },
+            std::move(data)},
         dispatcher(api) {
     add_all_routes(router, api);
   }
@@ -145,7 +146,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   settle_threads(settings, worker_options);
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
   auto parts =
-      std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(worker_options));
+      std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(worker_options), settings.data);
 
   HttpOptions options;
   options.address = address->address;

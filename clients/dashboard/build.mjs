@@ -28,7 +28,7 @@ await build({
   outdir: join(out, 'assets'), outbase: join(here, 'src'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
   assetNames: '[name]-[hash]', bundle: true, splitting: true, format: 'esm', minify: true, target: 'es2021',
   jsx: 'automatic', jsxImportSource: 'preact', loader: {'.woff2': 'file', '.svg': 'file'}, legalComments: 'none',
-  logLevel: 'warning',
+  logLevel: 'warning', define: {DRIFTLAB_VERSION: JSON.stringify(JSON.parse(readFileSync(join(here, 'package.json'), 'utf8')).version)},
 });
 
 const assets = readdirSync(join(out, 'assets')).sort();

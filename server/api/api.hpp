@@ -7,6 +7,7 @@
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
 
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -24,6 +25,7 @@ struct ApiContext {
   EventLog& events;
   std::function<void()> wake_workers;          ///< a job was queued or cancelled
   std::function<std::string()> not_ready_why;  ///< empty text: ready
+  std::filesystem::path data;                  ///< the daemon's directory
 };
 
 /// Tells who listens to all events how a job stands, and of its result when it has one.

@@ -2,6 +2,7 @@
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/api/record_blob.hpp"
 #include "server/api/upload.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/recording_calibration.hpp"
@@ -155,8 +156,7 @@ void add_recording_routes(Router& router, ApiContext& context) {
   router.add({"POST",
               "/v1/recordings",
               "uploadRecording",
-              {"device", "id", "condition", "axis", "value", "unit", "direction", "rate_hz", "columns", "trim_start_s",
-               "trim_end_s", "calibration"},
+              metadata_parameters(),
               UploadHandler([&](const Request& request) { return begin_upload(context, request); })});
   router.add({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
                 return get_recording(context, request);

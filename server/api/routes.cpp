@@ -7,10 +7,13 @@
   RESOURCE(add_service_routes)          \
   RESOURCE(add_device_routes)           \
   RESOURCE(add_recording_routes)        \
+  RESOURCE(add_upload_routes)           \
+  RESOURCE(add_live_recording_routes)   \
   RESOURCE(add_characterisation_routes) \
   RESOURCE(add_trace_routes)            \
   RESOURCE(add_look_routes)             \
   RESOURCE(add_overview_routes)         \
+  RESOURCE(add_search_routes)           \
   RESOURCE(add_sample_routes)           \
   RESOURCE(add_job_routes)              \
   RESOURCE(add_event_routes)            \

@@ -1,17 +1,12 @@
 #include "server/api/upload.hpp"
 
-#include "core/read/format.hpp"
-#include "core/read/open_recording.hpp"
 #include "core/signal/text.hpp"
-#include "schema/json/recording_spec.hpp"
 #include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
-#include "server/api/upload_metadata.hpp"
+#include "server/api/record_blob.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
-#include "server/jobs/recording_calibration.hpp"
-#include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
 
 #include <openssl/evp.h>
@@ -22,8 +17,6 @@ namespace driftlab::server {
 namespace {
 
 constexpr std::size_t kLongestMetadata = 1024UL * 1024;
-/// Uploads need this much room beyond nothing at all, so that the database can still write.
-constexpr std::uintmax_t kLeastFreeBytes = 64ULL * 1024 * 1024;
 
 /// `sha-256=:<base64>:` of Repr-Digest (RFC 9530) as lower-case hex; nothing where the header has no SHA-256.
 std::optional<std::string> stated_digest(std::string_view header) {
@@ -153,112 +146,12 @@ class RecordingUpload final : public UploadSession {
     return response;
   }
 
-  /// The blob row of these bytes: known already, or decoded now.
-  Result<Blob> decode() {
-    auto known = context_.store.blob(blob_->sha256());
-    if (!known) {
-      return fail(known.error());
-    }
-    const std::optional<Blob>& blob = *known;
-    if (blob && ColumnFile::open(context_.blobs.columns_path(blob_->sha256()))) {
-      columns_ = context_.blobs.columns_path(blob_->sha256());
-      return *blob;
-    }
-    auto decoded = decode_file(blob_->path(), blob_->columns_path());
-    if (!decoded) {
-      return fail(decoded.error());
-    }
-    columns_ = blob_->columns_path();
-    Blob row;
-    row.sha256 = blob_->sha256();
-    row.bytes = static_cast<std::int64_t>(blob_->size());
-    row.format = decoded->format;
-    row.compression = driftlab::name_of(decoded->compression);
-    row.rows = static_cast<std::int64_t>(decoded->rows);
-    row.columns_json = to_text(Json(decoded->names));
-    row.notes_json = to_text(Json(decoded->notes));
-    row.created_at = context_.clock.now();
-    return row;
-  }
-
-  Result<Response> record() {
-    auto blob = decode();
-    if (!blob) {
-      return fail(blob.error());
-    }
-    crash_point("upload.decoded");
-    auto quality = check_against_columns();
-    if (!quality) {
-      return fail(quality.error());
-    }
-    if (auto kept = blob_->keep(); !kept) {
-      return fail(kept.error());
-    }
-    auto device = context_.store.ensure_device(metadata_.device);
-    if (!device) {
-      return fail(device.error());
-    }
-    Recording recording;
-    recording.device_id = device->device.id;
-    recording.blob_sha256 = blob->sha256;
-    recording.metadata_json = canonical_text(driftlab::to_json(metadata_.spec));
-    recording.condition = driftlab::to_text(metadata_.spec.condition);
-    recording.quality_json = *quality;
-    auto outcome = context_.store.add_recording(*blob, recording);
-    if (!outcome) {
-      return fail(naming_patch(outcome.error()));
-    }
-    crash_point("upload.recorded");
-    if (outcome->created) {
-      context_.events.add("recordings", "recording.created",
-                          Json{{"recording", outcome->recording.id}, {"device", outcome->recording.device_id}});
-    }
-    Response response = json_response(outcome->created ? 201 : 200, to_json(outcome->recording, &*blob));
-    response.headers.emplace_back("Location", "/v1/recordings/" + outcome->recording.id);
-    response.headers.emplace_back("ETag", etag_of(outcome->recording.id, outcome->recording.revision));
-    return response;
-  }
-
-  /// A conflict with a recording that is there says by which request that one is changed.
-  static Error naming_patch(Error error) {
-    for (const ErrorField& field : error.fields) {
-      if (error.code == ErrorCode::Conflict && field.name == "recording_id") {
-        error.message =
-            "The device has these bytes already with other metadata; change those with PATCH /v1/recordings/" +
-            field.value + ".";
-        break;
-      }
-    }
-    return error;
-  }
-
-  /// Metadata and samples must fit together before anything is kept. The recording's quality as JSON text.
-  Result<std::string> check_against_columns() {
-    const bool calibrated = !metadata_.spec.calibration.empty();
-    auto opened = open_recording(columns_, metadata_.spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
-    if (!opened) {
-      return fail(opened.error());
-    }
-    std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
-    if (!calibrated) {
-      return quality;
-    }
-    const auto device = context_.store.device(metadata_.device.name);
-    auto calibration = calibration_of(context_.store, metadata_.spec, device ? device->id : "");
-    if (!calibration) {
-      return fail(calibration.error());
-    }
-    if (auto applied = apply_calibration(*calibration, opened->view); !applied) {
-      return fail(applied.error());
-    }
-    return quality;
-  }
+  Result<Response> record() { return record_blob(context_, *blob_, metadata_); }
 
   ApiContext& context_;
   Request request_;
   std::unique_ptr<IncomingBlob> blob_;
   std::optional<MultipartReader> multipart_;
-  std::filesystem::path columns_;
   UploadMetadata metadata_;
   std::string metadata_text_;
   bool in_file_ = false;
@@ -289,8 +182,8 @@ Result<std::unique_ptr<UploadSession>> begin_upload(ApiContext& context, const R
       return fail(resolved.error());
     }
   }
-  if (const auto space = context.blobs.space(); space && space->free_bytes < kLeastFreeBytes) {
-    return fail(ErrorCode::DiskFull, "Less than 64 MiB are free where the daemon keeps its data.");
+  if (auto room = require_space(context); !room) {
+    return fail(room.error());
   }
   auto blob = context.blobs.begin();
   if (!blob) {

@@ -101,6 +101,7 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   started_ = std::chrono::steady_clock::now();
   route_.clear();
   bytes_in_ = 0;
+  broken_ = false;
   stream_.expires_after(10s);
   co_await http::async_read_header(stream_, buffer_, parser, into(error));
   if (!error) {
@@ -193,17 +194,21 @@ asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& p
     body_started_ = std::chrono::steady_clock::now();
   }
   while (!parser.is_done()) {
+    if (broken_) {
+      co_return std::nullopt;
+    }
     auto& body = parser.get().body();
     body.data = chunk_.data();
     body.size = chunk_.size();
     boost::system::error_code error;
     stream_.expires_after(kBodyGrace);
     co_await http::async_read(stream_, buffer_, parser, into(error));
-    if (error && error != http::error::need_buffer) {
-      co_return std::nullopt;
-    }
     const std::size_t count = chunk_.size() - body.size;
     bytes_in_ += count;
+    if (error && error != http::error::need_buffer) {
+      broken_ = true;
+      co_return count > 0 ? std::optional(count) : std::nullopt;
+    }
     const auto elapsed = std::chrono::steady_clock::now() - body_started_;
     const double seconds = std::chrono::duration<double>(elapsed).count();
     if (elapsed > kBodyGrace && static_cast<double>(bytes_in_) < kSlowestBytesPerSecond * seconds) {

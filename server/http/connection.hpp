@@ -85,6 +85,7 @@ class HttpConnection {
   std::chrono::steady_clock::time_point body_started_;
   bool keep_alive_ = true;  ///< the client and the limit of requests allow another one
   bool wants_continue_ = false;
+  bool broken_ = false;  ///< the body ended early; what came before was handed on
   bool idle_ = false;
 };
 

@@ -48,6 +48,8 @@ std::string_view slug_of(HttpFault fault) {
       return "header-too-large";
     case HttpFault::DigestMismatch:
       return "digest-mismatch";
+    case HttpFault::ChecksumMismatch:
+      return "checksum-mismatch";
     case HttpFault::IncompleteBody:
       return "incomplete-body";
     case HttpFault::IdempotencyKeyReused:
@@ -201,6 +203,8 @@ const std::vector<ProblemType>& problem_types() {
       {"header-too-large", 431, "Header too large", false, "The request header is larger than 16 KiB."},
       {"digest-mismatch", 400, "Digest mismatch", false,
        "The bytes received do not have the digest that Repr-Digest states. Nothing was stored; send them again."},
+      {"checksum-mismatch", 460, "Checksum mismatch", true,
+       "The bytes of this piece do not have the checksum that Upload-Checksum states (tus 1.0). The piece was taken back; send it again."},
       {"incomplete-body", 400, "Incomplete body", true,
        "The connection ended, or stalled, before Content-Length bytes had arrived. Nothing was stored."},
       {"idempotency-key-reused", 422, "Idempotency key used for another request", false,

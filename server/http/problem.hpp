@@ -38,6 +38,7 @@ enum class HttpFault {
   PreconditionRequired,
   HeaderTooLarge,
   DigestMismatch,
+  ChecksumMismatch,
   IncompleteBody,
   IdempotencyKeyReused,
   IdempotencyInFlight,

@@ -1,6 +1,7 @@
 """The daemon against its contract: schemas and examples are sound, and every operation gives what it lists."""
 from __future__ import annotations
 
+import struct
 import unittest
 from typing import Any
 
@@ -165,12 +166,28 @@ class Operations(DaemonTest):
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
                   **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("trace", "spectrum", "histogram", "spectrogram")},
                   "/v1/fits/{id}/implied": fit["id"]}
+        tus = {"Tus-Resumable": "1.0.0"}
+        content = samples.gyro_csv(seed=4)
+        offered = [daemon.request("POST", "/v1/uploads", headers={**tus, "Upload-Length": str(len(content))}).headers["location"] for _ in range(4)]
+        for upload in offered[:2]:
+            daemon.request("PATCH", upload, content, {**tus, "Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"})
+            daemon.request("POST", upload + "/recording?device=phone-07&condition=static&rate_hz=100")
+        daemon.request("DELETE", offered[2], headers=tus)
+        about = {"device": "phone-07", "condition": {"kind": "static"}, "columns": {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}}
+        lives = [daemon.post("/v1/live-recordings", about) for _ in range(2)]
+        token = {"Live-Token": lives[0].json["token"], "Content-Type": "application/octet-stream"}
+        rows = b"".join(struct.pack("<df", i / 100, i % 7) for i in range(200))
+        daemon.request("POST", lives[0].headers["location"] + "/samples?sequence=0", rows, token)
+        daemon.request("POST", lives[0].headers["location"] + "/finish", headers=token)
+        values["/v1/uploads/{id}"] = offered[3].rpartition("/")[2]
+        values["/v1/live-recordings/{id}"] = values["/v1/live-recordings/{id}/events"] = lives[1].json["id"]
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
+                target += "?q=phone" if path == "/v1/search" else ""
                 target += "?channel=gz" if path.endswith(("/trace", "/spectrum", "/histogram", "/spectrogram")) else ""
-                if path == "/v1/events":  # does not end by itself
+                if path in ("/v1/events", "/v1/live-recordings/{id}/events"):  # they do not end by themselves
                     self.expect(200, daemon.request("HEAD", target))
                     continue
                 answer = self.expect(200, daemon.get(target))

@@ -1,6 +1,6 @@
 // A day in the lab, in a real browser before the real daemon.
 import assert from 'node:assert/strict';
-import {readFileSync} from 'node:fs';
+import {readFileSync, rmSync, utimesSync, writeFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
 import {Daemon, csv, launch, open} from './world.mjs';
 
@@ -76,6 +76,32 @@ test('the address holds the view: back undoes, reload restores, a second tab sho
   assert.deepEqual([...page.loud, ...other.loud], []);
   await page.context().close();
   await other.context().close();
+});
+
+test('a large upload goes in pieces, is paused, survives a reload and goes on where it was', async () => {
+  const page = await open(browser, daemon, '/upload');
+  const file = {name: 'long bench.csv', mimeType: 'text/csv', buffer: Buffer.from(csv(1900000, 11))};
+  const sent = [];
+  page.on('request', request => { if (request.method() === 'PATCH') sent.push(Number(request.headers()['upload-offset'])); });
+  await page.route('**/v1/uploads/*', async route => { if (route.request().method() === 'PATCH' && sent.length === 2) await new Promise(resolve => setTimeout(resolve, 1500)); await route.continue(); });
+  const [path, stamp] = [`/tmp/driftlab-long-${process.pid}.csv`, new Date(1700000000000)];
+  writeFileSync(path, file.buffer);
+  utimesSync(path, stamp, stamp);
+  await page.locator('input[type=file]').setInputFiles(path);
+  await page.getByLabel(/^Rate in Hz of/).fill('100');
+  await page.getByRole('button', {name: 'Upload only'}).click();
+  while (sent.length < 2) await page.waitForTimeout(20);  // the first piece is stored, the second on its way
+  await page.getByRole('button', {name: /^Pause/}).click();
+  await page.getByText(/^paused at/).waitFor();
+  await page.reload();
+  await page.locator('input[type=file]').setInputFiles(path);
+  await page.getByLabel(/^Rate in Hz of/).fill('100');
+  await page.getByRole('button', {name: 'Upload only'}).click();
+  await page.getByRole('link', {name: 'stored'}).waitFor();
+  rmSync(path);
+  assert.deepEqual(sent.slice(0, 3), [0, 8 * 2 ** 20, 8 * 2 ** 20], `${sent} were the offsets`);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
 });
 
 test('what people name things is text on every page', async () => {

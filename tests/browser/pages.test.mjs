@@ -1,7 +1,7 @@
 // Every page: nothing for axe to find in either theme, nothing in the console, nothing wider than a phone. With
 // $DRIFTLAB_SCREENS each is also pictured at 390, 1440 and 2560 px, light and dark, for a person to look at.
 import assert from 'node:assert/strict';
-import {mkdirSync} from 'node:fs';
+import {mkdirSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Daemon, accessibilityFaults, csv, launch, open} from './world.mjs';
@@ -25,13 +25,17 @@ before(async () => {
   const waiting = await daemon.upload(csv(4000, 9), {device: 'new-01', condition: 'static', rate_hz: 100});
   await daemon.finished(investigate.id);
   await daemon.finished(outages.id);
+  const other = await daemon.upload(await (await fetch(`${daemon.address}/v1/samples/iphone5s-z?seed=8&condition=static`)).text(), {device: 'phone-07', condition: 'static', rate_hz: 100, id: 'run-8'});
+  await daemon.characterise(other.id);
+  const regress = await daemon.json('/v1/jobs', {kind: 'regress', inputs: {device: 'phone-07', baseline: {recordings: [{recording: ids[0]}]}, candidate: {recordings: [{recording: other.id}]}}});
+  await daemon.finished(regress.id);
   const [investigation] = (await daemon.json('/v1/investigations')).items;
   const [model] = (await daemon.json('/v1/models')).items;
   paths = {
     lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
     compare: `/compare?with=${ids[0]},${ids[2]}`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
     outages: '/outages', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
-    model: `/models/${model.id}`, absent: '/regressions',
+    model: `/models/${model.id}`, regressions: '/regressions', regression: `/regressions/${regress.id}`, record: '/record', absent: '/devices/nobody/nothing',
   };
 });
 after(async () => { await browser?.close(); await daemon?.end(); });
@@ -72,6 +76,28 @@ test('no page is wider than a phone', async () => {
     if (width > 390) wide.push(`${name}: ${width}`);
   }
   assert.deepEqual(wide, []);
+  await page.context().close();
+});
+
+test('a report on paper has verdict, figures, method, seeds and versions, and none of the controls', async () => {
+  const page = await open(browser, daemon, '/');
+  const most = {device: 4, recording: 4, investigation: 12, outage: 5, regression: 3};
+  for (const [name, pages] of Object.entries(most)) {
+    await page.goto(daemon.address + paths[name], {waitUntil: 'domcontentloaded'});
+    await settled(page);
+    await page.emulateMedia({media: 'print'});
+    const text = await page.locator('main').innerText();
+    assert.match(text, /seed|algorithm|version/i, `${name}: method`);
+    assert.ok(await page.locator('.method').first().isVisible(), `${name}: method`);
+    assert.equal(await page.locator('.bar, .tools, .actions').filter({visible: true}).count(), 0, name);
+    assert.ok(await page.locator('.verdict').isVisible(), name);
+    const paper = await page.pdf({format: 'A4'});
+    const count = paper.toString('latin1').match(/\/Type\s*\/Page\b/g).length;
+    assert.ok(count <= pages, `${name}: ${count} pages`);
+    if (process.env.DRIFTLAB_SCREENS) { mkdirSync(process.env.DRIFTLAB_SCREENS, {recursive: true}); writeFileSync(join(process.env.DRIFTLAB_SCREENS, `${name}-report.pdf`), paper); }
+    await page.emulateMedia({media: null});
+  }
+  assert.deepEqual(page.loud, []);
   await page.context().close();
 });
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import math
+import struct
 import tempfile
 import unittest
 from collections.abc import Iterator
@@ -243,6 +245,14 @@ class Everything(ClientTest):
         with contextlib.suppress(NotFound):  # a fit may leave a parameter open
             self.assertIn("allan", client.implied(next(client.fits(best=True))["id"])["implied"])
         self.assertTrue(client.sample(seed=2).startswith("gz"))
+        column = client.recording(first)["file"]["columns"][0]
+        self.assertGreater(len(client.spectrum(first, column, scale="linear")["density"]), 50)
+        self.assertEqual(len(client.histogram(first, column, bins=16)["counts"]), 16)
+        self.assertEqual(client.spectrogram(first, column, times=4)["expected"], "median")
+        self.assertEqual(next(iter(client.events(topics="jobs")))[1], "ready")
+        self.assertEqual(client.search("ALL-0", limit=1)[0]["title"], "all-07")
+        self.pieces(client)
+        self.live(client)
 
         study = client.create_study("all-07", [first, {"recording": second}])
         self.assertEqual(client.study(study["id"])["id"], study["id"])
@@ -278,6 +288,32 @@ class Everything(ClientTest):
         with self.assertRaises(NotFound):
             client.recording(second)
         self.assertEqual(recorder.seen, set(OPERATIONS))
+
+    def pieces(self, client: Client) -> None:
+        """A file that is large enough goes piece by piece, and is the recording that one request makes."""
+        content = samples.gyro_csv(seed=40)
+        whole = client.upload(content, device="all-07", rate_hz=100, columns=samples.GYRO_Z)
+        told: list[int] = []
+        client.resumable_from = 1000
+        try:
+            again = client.upload(content, device="all-07", rate_hz=100, columns=samples.GYRO_Z,
+                                  progress=lambda sent, size: told.append(sent))
+        finally:
+            del client.resumable_from
+        self.assertEqual((again["id"], told[-1]), (whole["id"], len(content)))
+        upload = client.create_upload(10, file_name="ten.csv")
+        self.assertEqual(client.append_to_upload(upload["id"], 0, b"gz"), 2)
+        self.assertEqual(client.upload_state(upload["id"])["offset"], 2)
+        client.delete_upload(upload["id"])
+
+    def live(self, client: Client) -> None:
+        made = client.create_live_recording({"device": "all-07", "condition": {"kind": "static"}, "columns": {
+            "gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}})
+        rows = b"".join(struct.pack("<df", i / 100, math.sin(i)) for i in range(400))
+        client.add_live_samples(made["id"], made["token"], 0, rows)
+        self.assertEqual(client.live_recording(made["id"])["samples"], 400)
+        self.assertEqual(next(iter(client.live_growth(made["id"])))["samples"], 400)
+        self.assertEqual(client.finish_live_recording(made["id"], made["token"])["recording"]["quality"]["samples"], 400)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,9 @@ import {Said} from './shell/say';
 import {Hairlines} from './shell/states';
 import {startTheme} from './shell/theme';
 
+declare const DRIFTLAB_VERSION: string;
+const VERSION = DRIFTLAB_VERSION;
+
 type Page = () => JSX.Element;
 const PAGES: Record<string, () => Promise<{default: Page}>> = {
   '': () => import('./pages/Lab'),
@@ -24,6 +27,9 @@ const PAGES: Record<string, () => Promise<{default: Page}>> = {
   jobs: () => import('./pages/Jobs'),
   'jobs/*': () => import('./pages/Job'),
   upload: () => import('./pages/Upload'),
+  record: () => import('./pages/Record'),
+  regressions: () => import('./pages/Regressions'),
+  'regressions/*': () => import('./pages/Regression'),
   docs: () => import('./pages/Docs'),
   'docs/*': () => import('./pages/Docs'),
   'problems/*': () => import('./pages/Docs'),
@@ -51,7 +57,7 @@ function App(): JSX.Element {
   const Page = shown?.key === key ? shown.Page : null;
   return <>
     <Bar />
-    <main id="main" tabIndex={-1} ref={main} data-source={`${window.location.href}, driftlab`}>{Page ? <Page key={place.path} /> : <Hairlines />}</main>
+    <main id="main" tabIndex={-1} ref={main} data-source={`${window.location.href.replace(/[?&]print=1/, '')}, driftlab ${VERSION}, ${new Date().toISOString().slice(0, 16).replace('T', ' ')} UTC`}>{Page ? <Page key={place.path} /> : <Hairlines />}</main>
     <Drawer />
     <Said />
   </>;

@@ -453,6 +453,11 @@ class DeviceSummaryLatest(TypedDict):
     at: str
 
 
+class FinishLiveRecordingAnswer(TypedDict):
+    recording: StoredRecording
+    job: Job | None
+
+
 class Fit(TypedDict):
     """Stored fit. One model fitted to one channel, with where it comes from."""
 
@@ -1075,6 +1080,20 @@ class ListDocumentationAnswerProblem(TypedDict):
     href: str
 
 
+class LiveRecording(TypedDict):
+    id: str
+    device: str
+    condition: Condition
+    columns: list[str]
+    samples: int
+    pieces: int
+    touched_at: str
+    # Only where it was just made.
+    token: NotRequired[str]
+    # The page that records into it. Only where it was just made.
+    href: NotRequired[str]
+
+
 class Model(TypedDict):
     """Simulation model. What simulators, filters and investigations are given. It never changes; a changed one is a
     child."""
@@ -1167,6 +1186,28 @@ class NewDevice(TypedDict):
     imu: NotRequired[str]
     serial: NotRequired[str]
     labels: NotRequired[dict[str, str]]
+
+
+class NewLiveRecording(TypedDict):
+    """A recording as an upload describes it, with the device and with columns that all have a unit; values come in the
+    order of the columns."""
+
+    # The user's name of the recording.
+    id: NotRequired[str]
+    # The file beside the study; an upload carries its bytes itself and ignores it.
+    file: NotRequired[str]
+    # Samples per second; required without a time column.
+    rate_hz: NotRequired[float]
+    # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
+    # a note.
+    columns: dict[str, RecordingColumn]
+    condition: Condition
+    # Seconds to leave out at the ends.
+    trim: NotRequired[RecordingTrim]
+    # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
+    # HTTP the id of a stored one.
+    calibration: NotRequired[str]
+    device: NotRequired[str | RecordingDevice]
 
 
 class NewOutageEvaluation(TypedDict):
@@ -2142,6 +2183,14 @@ class RegressionVersusPrevious(TypedDict):
     sentence: NotRequired[str]
 
 
+class SearchItem(TypedDict):
+    kind: Literal['device', 'recording', 'job', 'model', 'investigation']
+    id: str
+    title: str
+    subtitle: str
+    href: str
+
+
 class Spectrogram(TypedDict):
     """Spectrogram. The density of a channel's error series in time and frequency over the density expected: of a fitted
     model, or the median over time of each frequency."""
@@ -2435,6 +2484,14 @@ class TrendsTrendPoint(TypedDict):
     robust: NotRequired[bool]
 
 
+class Upload(TypedDict):
+    id: str
+    length: int
+    offset: int
+    file_name: str | None
+    expires_at: str
+
+
 CalibrationEstimates: TypeAlias = "dict[str, Quantity]"
 Condition: TypeAlias = (
     "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
@@ -2480,6 +2537,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
     'getCounts': Operation(
         'GET', '/v1/counts', (), (), ('application/json',)),
+    'search': Operation(
+        'GET', '/v1/search', ('q', 'limit'), (), ('application/json',)),
     'getSample': Operation(
         'GET', '/v1/samples/{preset}', ('condition', 'seed'), (), ('text/csv',)),
     'listDevices': Operation(
@@ -2515,6 +2574,31 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/recordings/{id}/histogram', ('channel', 'bins'), (), ('application/json',)),
     'getSpectrogram': Operation(
         'GET', '/v1/recordings/{id}/spectrogram', ('channel', 'times', 'bands', 'fit'), (), ('application/json',)),
+    'createUpload': Operation(
+        'POST', '/v1/uploads',
+        (),
+        ('Tus-Resumable', 'Upload-Length', 'Upload-Metadata', 'Idempotency-Key'), ('application/json',)),
+    'getUpload': Operation(
+        'GET', '/v1/uploads/{id}', (), (), ('application/json',)),
+    'appendToUpload': Operation(
+        'PATCH', '/v1/uploads/{id}', (), ('Tus-Resumable', 'Upload-Offset', 'Upload-Checksum'), ()),
+    'deleteUpload': Operation(
+        'DELETE', '/v1/uploads/{id}', (), ('Tus-Resumable',), ()),
+    'recordUpload': Operation(
+        'POST', '/v1/uploads/{id}/recording',
+        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
+         'trim_end_s', 'calibration'),
+        ('Idempotency-Key',), ('application/json',)),
+    'createLiveRecording': Operation(
+        'POST', '/v1/live-recordings', (), ('Idempotency-Key',), ('application/json',)),
+    'getLiveRecording': Operation(
+        'GET', '/v1/live-recordings/{id}', (), (), ('application/json',)),
+    'addLiveSamples': Operation(
+        'POST', '/v1/live-recordings/{id}/samples', ('sequence',), ('Live-Token', 'Idempotency-Key'), ()),
+    'finishLiveRecording': Operation(
+        'POST', '/v1/live-recordings/{id}/finish', (), ('Live-Token', 'Idempotency-Key'), ('application/json',)),
+    'streamLiveRecording': Operation(
+        'GET', '/v1/live-recordings/{id}/events', ('channel',), (), ('text/event-stream',)),
     'listJobs': Operation(
         'GET', '/v1/jobs', ('limit', 'cursor', 'sort', 'kind', 'state'), (), ('application/json',)),
     'createJob': Operation(

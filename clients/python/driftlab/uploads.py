@@ -16,6 +16,7 @@ from .contract import Condition, RecordingColumn
 from .transport import Body
 
 PIECE = 1 << 18
+LARGE_PIECE = 8 << 20
 Progress = Callable[[int, int], None]  # bytes sent, bytes in all
 Source = Union[str, "os.PathLike[str]", bytes, BinaryIO, "numpy.ndarray[Any, numpy.dtype[Any]]"]
 Columns = Union[str, Mapping[str, RecordingColumn]]
@@ -61,6 +62,18 @@ class Upload:
     def body(self) -> Body:
         return Body(self.size, "application/octet-stream", self._pieces)
 
+    def large_pieces(self) -> Iterator[tuple[int, bytes]]:
+        """Where each piece of a resumable upload begins, and the piece."""
+        offset = 0
+        with self._open() as file:
+            while piece := file.read(LARGE_PIECE):
+                yield offset, piece
+                offset += len(piece)
+
+    def tell(self, sent: int) -> None:
+        if self._progress is not None:
+            self._progress(sent, self.size)
+
     def _pieces(self) -> Iterator[bytes]:
         """`progress` is told of a piece once the one after it is asked for, which is when the system has taken it."""
         sent = 0
@@ -68,8 +81,7 @@ class Upload:
             while piece := file.read(PIECE):
                 yield piece
                 sent += len(piece)
-                if self._progress is not None:
-                    self._progress(sent, self.size)
+                self.tell(sent)
 
 
 def condition_query(condition: str | Condition) -> dict[str, str | float]:

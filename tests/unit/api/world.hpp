@@ -17,7 +17,7 @@ struct World {
     store = std::move(open_sqlite_store(directory, clock).value());
     blobs = std::move(open_blob_directory(directory).value());
     context = std::make_unique<ApiContext>(
-        ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; }, [this] { return not_ready; }});
+        ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; }, [this] { return not_ready; }, directory});
     add_all_routes(router, *context);
     dispatcher = std::make_unique<Dispatcher>(*context);
   }

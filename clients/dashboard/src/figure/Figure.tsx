@@ -71,13 +71,13 @@ export interface ToolsProps {
 }
 
 export function Tools({onTable, tableShown, onSvg, onCsv, curl, how, title}: ToolsProps): JSX.Element {
-  return <div class="tools">
+  return <><div class="tools">
     {onTable && <button type="button" class="quiet" aria-pressed={tableShown ?? false} onClick={onTable}>Table</button>}
     {onSvg && <button type="button" class="quiet" onClick={onSvg}>SVG</button>}
     {onCsv && <button type="button" class="quiet" onClick={onCsv}>CSV</button>}
     {curl && <button type="button" class="quiet" onClick={() => copy(curl, 'The command is')}>curl</button>}
     {how && <button type="button" class="quiet" onClick={() => openDrawer(`${title}: how it is computed`, how)}>How computed</button>}
-  </div>;
+  </div>{how && <div class="print-only method"><h3>How computed</h3>{how()}</div>}</>;
 }
 
 // The x that the cursor snaps to: those of the points, or of the first curve.

@@ -95,7 +95,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
         <Segments label="Method" options={[['gmwm', 'GMWM'], ['av', 'Allan']] as const} value={method} onChange={value => choose({method: value === 'gmwm' ? null : value})} />
         {read.data?.model && <span class="sub">model <b>{read.data.model}</b>{model ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>}
         <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button></div>
-        <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows.</p>} />
+        <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. Seed, algorithm version and revision of each recording stand on its own page and in the table’s document.</p>} />
       </div>
       {read.data?.pooling.state === 'pending' && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
       <Shown read={read}>{table => <Parameters table={table} />}</Shown>

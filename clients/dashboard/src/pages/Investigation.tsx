@@ -8,7 +8,7 @@ import {capital, countWord, listWords, plural, processName, symbolOf, writeSente
 import {csvOf, save} from '../figure/export';
 import {curlOf, Tools} from '../figure/Figure';
 import {choose, pageOf, usePlace} from '../route';
-import {Head, Report} from '../shell/Head';
+import {Head, MadeBy, Report} from '../shell/Head';
 import {Panel, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Checks} from './investigation/Checks';
@@ -99,6 +99,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
       <NotExamined found={found} />
     </div>
     {(found.notes ?? []).map(note => <p key={note} class="note">{note}</p>)}
+    <MadeBy job={found.job} />
   </>;
 }
 

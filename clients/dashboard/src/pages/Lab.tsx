@@ -136,7 +136,7 @@ export default function Lab(): JSX.Element {
   const recent = jobs.data?.items ?? [];
   const wants = attention(list, recent);
   return <>
-    <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} />
+    <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} actions={<a class="btn" href="/record">Record this phone</a>} />
     {devices.data && jobs.data && <p class="verdict">{opening(recent, wants.length)}</p>}
     <div class="grid wide-side">
       <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}>

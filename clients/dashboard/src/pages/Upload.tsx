@@ -14,21 +14,28 @@ import {Columns} from './upload/Columns';
 import {ConditionField} from './upload/ConditionField';
 import {DropZone} from './upload/DropZone';
 import {addFiles, change, pending, remember, remove, usePending, type Pending} from './upload/pending';
-import {commandOf, upload} from './upload/send';
+import {commandOf, Paused, upload} from './upload/send';
 
 // Which field mends a refusal.
 const wantsRate = (problem: Problem | null): boolean => /rate|sampling|time column/i.test(problem?.document.detail ?? '');
 
+const running = new Map<number, AbortController>();
+
 async function sendOne(each: Pending): Promise<string | null> {
-  change(each.key, {state: 'sending', share: 0, problem: null});
+  change(each.key, {state: 'sending', problem: null});
+  const pause = new AbortController();
+  running.set(each.key, pause);
   try {
-    const recording = await upload(each, share => change(each.key, {share}));
+    const recording = await upload(each, share => change(each.key, {share}), pause.signal);
     remember(each);
     change(each.key, {state: 'sent', share: 1, recording: recording.id});
     return recording.id;
   } catch (error) {
-    change(each.key, {state: 'refused', problem: error as Problem});
+    if (error instanceof Paused) change(each.key, {state: 'paused'});
+    else change(each.key, {state: 'refused', problem: error as Problem});
     return null;
+  } finally {
+    running.delete(each.key);
   }
 }
 
@@ -62,7 +69,8 @@ function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
     <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, 'by time')}</td>
     <td>
       {each.state === 'ready' && <span class="sec">{each.look ? each.look.columns.length > 0 ? `${each.look.columns.length} column${each.look.columns.length === 1 ? '' : 's'} seen` : 'ready' : 'reading'}</span>}
-      {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)}</span></>}
+      {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Pause ${name}`} onClick={() => running.get(each.key)?.abort()}>Pause</button></span></>}
+      {each.state === 'paused' && <span class="sec">paused at {writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Go on with ${name}`} onClick={() => { void sendOne(each); }}>Go on</button></span>}
       {each.state === 'sent' && <><span class="g good" aria-hidden="true">✓ </span><a href={pageOf('recordings', each.recording ?? '')}>stored</a>{each.job && <>, <a href={pageOf('jobs', each.job)}>characterising</a></>}</>}
       {each.state === 'refused' && each.problem && <><Refusal problem={each.problem} />
         {wantsRate(each.problem) && <label class="row">rate <input type="text" size={7} placeholder="Hz" aria-label={`Rate in Hz that repairs ${name}`} value={each.rate} onInput={event => change(each.key, {rate: event.currentTarget.value})} /></label>}

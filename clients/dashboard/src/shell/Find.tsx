@@ -2,7 +2,6 @@
 import type {JSX} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {get} from '../api/client';
-import type {Device, List} from '../api/documents';
 import {go, pageOf} from '../route';
 
 interface Hit { title: string; subtitle: string; href: string }
@@ -18,8 +17,8 @@ async function hitsFor(text: string): Promise<Hit[]> {
   const wanted = text.trim().toLowerCase();
   const id = IDS.find(([prefix]) => text.trim().startsWith(prefix));
   if (id) return [{title: text.trim(), subtitle: `open by id`, href: pageOf(id[1], text.trim())}];
-  const devices = await get<List<Device>>('/v1/devices?sort=-created_at&limit=500');
-  const named = devices.items.filter(device => device.name.toLowerCase().includes(wanted)).map(device => ({title: device.name, subtitle: 'device', href: pageOf('devices', device.name)}));
+  const found = await get<{items: {kind: string; title: string; subtitle: string}[]}>(`/v1/search?q=${encodeURIComponent(text.trim())}&limit=10`);
+  const named = found.items.filter(hit => hit.kind === 'device').map(hit => ({title: hit.title, subtitle: hit.subtitle, href: pageOf('devices', hit.title)}));
   return [...named, ...PLACES.filter(place => place.title.toLowerCase().startsWith(wanted))].slice(0, 10);
 }
 

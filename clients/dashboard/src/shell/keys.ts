@@ -2,7 +2,7 @@
 import {useEffect} from 'preact/hooks';
 import {go} from '../route';
 
-const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', j: '/jobs'};
+const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', r: '/regressions', j: '/jobs'};
 const GO_MS = 1200;
 
 const typing = (target: EventTarget | null): boolean => target instanceof HTMLElement && (target.isContentEditable || ['INPUT', 'SELECT', 'TEXTAREA'].includes(target.tagName));

@@ -2,15 +2,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
-from ..contract import Condition, Device, DeviceChange, DeviceSummary, Histogram, RecordingChange, RecordingCharacterisation, Spectrogram, Spectrum, StoredRecording, Trace
+from ..contract import Condition, Device, DeviceChange, DeviceSummary, Histogram, RecordingChange, RecordingCharacterisation
+from ..contract import Spectrogram, Spectrum, StoredRecording, Trace
+from ..problems import Problem
 from ..transport import Body
 from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query
-from .base import PAGE, Routes, given, operation
+from .base import PAGE, given, operation
+from .uploads import UploadRoutes
 
 
-class RecordingRoutes(Routes):
+class RecordingRoutes(UploadRoutes):
+    resumable_from = 64 << 20  # bytes from which an upload goes in pieces
+
     @operation("listDevices")
     def devices(self, *, include: Literal["summary"] | None = None, page_size: int = PAGE) -> Iterator[Device]:
         """Every device, oldest first; with `include` each with its summary."""
@@ -27,6 +32,11 @@ class RecordingRoutes(Routes):
     def device(self, id: str) -> Device:
         """One device by id or name."""
         return cast(Device, self._get("getDevice", {"id": id}))
+
+    @operation("search")
+    def search(self, q: str, *, limit: int | None = None) -> list[dict[str, str]]:
+        """What a few letters may mean: devices by their names, and whatever has them as its id; the best first."""
+        return cast("list[dict[str, str]]", self._get("search", None, {"q": q, "limit": limit})["items"])
 
     @operation("getDeviceSummary")
     def device_summary(self, id: str) -> DeviceSummary:
@@ -69,9 +79,11 @@ class RecordingRoutes(Routes):
         return cast(Histogram, self._get("getHistogram", {"id": id}, {"channel": channel, "bins": bins}))
 
     @operation("getSpectrogram")
-    def spectrogram(self, id: str, channel: str, *, times: int | None = None, bands: int | None = None, fit: str | None = None) -> Spectrogram:
+    def spectrogram(self, id: str, channel: str, *, times: int | None = None, bands: int | None = None,
+                    fit: str | None = None) -> Spectrogram:
         """The density in time and frequency over that of a fit, or over the median in time of each frequency."""
-        return cast(Spectrogram, self._get("getSpectrogram", {"id": id}, {"channel": channel, "times": times, "bands": bands, "fit": fit}))
+        query = {"channel": channel, "times": times, "bands": bands, "fit": fit}
+        return cast(Spectrogram, self._get("getSpectrogram", {"id": id}, query))
 
     @operation("getSample")
     def sample(self, preset: str = "iphone5s-z", *, condition: str | None = None, seed: int | None = None) -> str:
@@ -88,15 +100,38 @@ class RecordingRoutes(Routes):
         columns and condition are given as in the manual (gz=angular_rate:z:deg/s; constant_rate:z:9:deg/s) or as documents; axis,
         value, unit and direction stand beside a condition of which only the kind is given. `progress` is called with the bytes sent
         and the bytes in all. An upload that the network cuts off is sent again under the same Idempotency-Key; the daemon checks the
-        digest, and stores the recording once.
+        digest, and stores the recording once. One of 64 MiB or more goes in pieces that are kept as they arrive, so that a broken
+        connection costs one piece.
         """
         upload = Upload(source, progress)
-        query = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns), "trim_start_s": trim_start_s,
-                 "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis, "value": value, "unit": unit,
-                 "direction": direction, **condition_query(condition)}
+        if upload.size >= self.resumable_from:
+            return self.record_upload(self._sent_in_pieces(upload), device=device, condition=condition, rate_hz=rate_hz, columns=columns,
+                                      name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
+                                      value=value, unit=unit, direction=direction, idempotency_key=idempotency_key)
+        query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns),
+                                 "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
+                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition)}
         answer = self._transport.call("uploadRecording", None, query, upload.body(), idempotency_key=idempotency_key,
                                       headers={"Repr-Digest": upload.digest})
         return cast(StoredRecording, answer.json)
+
+    def _sent_in_pieces(self, upload: Upload) -> str:
+        """The id of the complete upload. What became of a piece whose answer was lost is asked; it is sent again if it did not arrive."""
+        id = self.create_upload(upload.size)["id"]
+        for offset, piece in upload.large_pieces():
+            for attempt in range(self._transport.retry.attempts):
+                try:
+                    self.append_to_upload(id, offset, piece)
+                    break
+                except Problem as problem:
+                    lost = problem.retryable or problem.status == 409
+                    if not lost or attempt + 1 == self._transport.retry.attempts:
+                        raise
+                    self._transport.retry.sleep(self._transport.retry.pause(attempt, problem.retry_after))
+                    if self.upload_state(id)["offset"] == offset + len(piece):
+                        break
+            upload.tell(offset + len(piece))
+        return id
 
     @operation("getRecording")
     def recording(self, id: str) -> StoredRecording:

@@ -52,14 +52,15 @@ function Picture({spectrogram, name}: {spectrogram: Spectrogram; name: string}):
   const high = Math.log10(f[f.length - 1] ?? 10);
   const decades = Array.from({length: Math.max(0, Math.floor(high) - Math.ceil(low) + 1)}, (_, i) => Math.ceil(low) + i);
   const end = t[t.length - 1] ?? 1;
-  const ticks = [0, 0.25, 0.5, 0.75, 1];
+  const step = [1, 2, 5, 10].map(digit => digit * 10 ** Math.floor(Math.log10(end / 5))).find(each => end / each <= 6) ?? end;
+  const ticks = Array.from({length: Math.floor(end / step) + 1}, (_, i) => i * step);
   const right = width - 12;
   return <div ref={box} class="spectrogram">
     {width > 0 && <>
       <canvas ref={canvas} role="img" aria-label={`${name}: time to the right to ${writeTick(Number(end.toPrecision(3)))} s, frequency upwards; orange is more than expected, blue less.`} />
       <svg width={width} height={HEIGHT + 40} viewBox={`0 0 ${width} ${HEIGHT + 40}`} aria-hidden="true">
         {decades.map(e => { const y = HEIGHT * (high - e) / (high - low || 1); return <text key={e} x={LEFT - 8} y={Math.max(y + 4, 10)} text-anchor="end">{writeTick(10 ** e)}</text>; })}
-        {ticks.map(share => <text key={share} x={LEFT + (right - LEFT) * share} y={HEIGHT + 16} text-anchor={share === 0 ? 'start' : share === 1 ? 'end' : 'middle'}>{writeTick(Number((end * share).toPrecision(3)))}</text>)}
+        {ticks.map(tick => <text key={tick} x={LEFT + (right - LEFT) * tick / end} y={HEIGHT + 16} text-anchor="middle">{writeTick(Number(tick.toPrecision(3)))}</text>)}
         <text class="t" x={right} y={HEIGHT + 34} text-anchor="end">time, s</text>
         <text class="t" x={0} y={HEIGHT + 34}>frequency, Hz</text>
       </svg>

@@ -34,7 +34,10 @@ function spectrumPlots(spectrum: SpectrumDocument, fit: ModelFit | undefined, im
     return {id: `component-${i}`, name: processName(component.process), x: implied.spectrum.f_hz, y: times(component.density, square), line: true, colour: style.colour, dash: style.dash};
   }) : [];
   const model: Series[] = implied && fit ? [{id: 'model', name: fit.model, detail: 'from the fit', x: implied.spectrum.f_hz, y: times(implied.spectrum.density, square), line: true, colour: 'var(--model)', width: 2}] : [];
-  return [{id: 'spectrum', height: 240, x: {scale: 'log', name: 'frequency, Hz', domain: [spectrum.f_hz[0] ?? 1e-3, spectrum.f_hz[spectrum.f_hz.length - 1] ?? 1]}, y: {scale: 'log', name: `two-sided density, (${writeUnit(unit)})²/Hz`, write: writePower}, series: [measured, ...model, ...parts, greatest]}];
+  // What was measured decides the heights; a component that fades out below it is cut.
+  const heights = [...measured.y, ...greatest.y].filter((value): value is number => value !== null && value > 0);
+  const domain: [number, number] = heights.length > 0 ? [Math.min(...heights) / 2.5, Math.max(...heights) * 2] : [1e-3, 1];
+  return [{id: 'spectrum', height: 240, x: {scale: 'log', name: 'frequency, Hz', domain: [spectrum.f_hz[0] ?? 1e-3, spectrum.f_hz[spectrum.f_hz.length - 1] ?? 1]}, y: {scale: 'log', name: `two-sided density, (${writeUnit(unit)})²/Hz`, domain, write: writePower}, series: [measured, ...model, ...parts, greatest]}];
 }
 
 interface SpectrumProps {

@@ -33,6 +33,7 @@ export function DropZone({onFiles, onSample, tall}: {onFiles: (files: File[]) =>
     <div class="actions">
       <button type="button" class={`btn${tall ? ' primary' : ''}`} onClick={() => chooser.current?.click()}>Choose files</button>
       <input ref={chooser} type="file" multiple class="visually-hidden" tabIndex={-1} aria-label="Recordings" onChange={event => { onFiles([...event.currentTarget.files ?? []]); event.currentTarget.value = ''; }} />
+      <a class="btn" href="/record">Record this phone</a>
       {onSample && <button type="button" class="btn" onClick={onSample}>Try the sample</button>}
     </div>
   </div>;

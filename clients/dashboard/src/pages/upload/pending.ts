@@ -4,7 +4,7 @@ import type {Problem} from '../../api/client';
 import {lookAt, type Look} from './look';
 
 export interface Role { quantity: string; axis: string; unit: string }
-export type State = 'ready' | 'sending' | 'sent' | 'refused';
+export type State = 'ready' | 'sending' | 'paused' | 'sent' | 'refused';
 
 export interface Pending {
   key: number;

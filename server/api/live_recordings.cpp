@@ -1,0 +1,415 @@
+// Recordings that are still being made: a phone or a board sends its samples second by second, and what they say so far
+// is followed live. What was acknowledged is on the disk; finished, it is a recording like any other.
+#include "core/signal/number.hpp"
+#include "schema/json/growing_recording.hpp"
+#include "schema/json/recording_spec.hpp"
+#include "server/api/device_name.hpp"
+#include "server/api/documents.hpp"
+#include "server/api/record_blob.hpp"
+#include "server/http/problem.hpp"
+#include "server/store/digest.hpp"
+#include "server/store/live_recordings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <condition_variable>
+#include <thread>
+
+namespace driftlab::server {
+namespace {
+
+constexpr UtcMicros kTokenMicros = 24LL * 3600 * 1'000'000;
+constexpr UtcMicros kUnfinishedMicros = 3600LL * 1'000'000;
+constexpr std::size_t kMostColumns = 32;
+constexpr std::size_t kLongestPiece = 1024UL * 1024;
+constexpr std::string_view kTime = "time";
+
+/// What `about_json` of a live recording holds.
+struct About {
+  UploadMetadata metadata;
+  std::vector<std::string> columns;  ///< in the order of the values
+};
+
+Result<About> about_of(const LiveRecording& recording) {
+  const Json document = stored(recording.about_json);
+  auto metadata = metadata_from_json(to_text(document.at("metadata")), Request{});
+  if (!metadata) {
+    return fail(metadata.error());
+  }
+  return About{std::move(*metadata), document.at("columns").get<std::vector<std::string>>()};
+}
+
+Unit unit_of(const About& about, const std::string& column) {
+  return about.metadata.spec.columns.at(column).unit.value_or(Unit{});
+}
+
+/// Names of the columns as the body has them, in its order; all of them sensors or a temperature with their unit.
+std::vector<std::string> column_names(const Json& body, Faults& faults) {
+  std::vector<std::string> names;
+  if (!body.is_object() || !body.contains("columns") || !body["columns"].is_object() || body["columns"].empty() ||
+      body["columns"].size() > kMostColumns) {
+    faults.add("/columns", ErrorCode::InvalidArgument, "Name 1 to 32 columns with their quantity, axis and unit.");
+    return names;
+  }
+  for (const auto& [name, role] : body["columns"].items()) {
+    const bool plain = name.find_first_of(",\"\n\r") == std::string::npos && name != kTime;
+    if (!plain || !role.is_object() || !role.contains("unit")) {
+      faults.add("/columns", ErrorCode::InvalidArgument,
+                 "The column '" + name + "' needs a unit, and a name other than time without comma and quote.");
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+class Live {
+ public:
+  explicit Live(ApiContext& context)
+      : context_(context), recordings_(context.data / "live", context.clock), sweeper_([this] { sweep(); }) {}
+  Live(const Live&) = delete;
+  Live& operator=(const Live&) = delete;
+  ~Live() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    stopped_.notify_all();
+    sweeper_.join();
+  }
+
+  LiveRecordings& recordings() { return recordings_; }
+  ApiContext& context() { return context_; }
+
+  /// Makes a recording of what is there and queues its characterisation. `job` is null where it could not be queued.
+  Result<Json> finish(const std::string& id) {
+    const std::lock_guard finishing(finish_);
+    const auto live = recordings_.find(id);
+    if (!live) {
+      return fail(live.error());
+    }
+    auto about = about_of(*live);
+    const auto samples = recordings_.samples(id);
+    if (!about || !samples) {
+      return fail(!about ? about.error() : samples.error());
+    }
+    auto blob = context_.blobs.begin();
+    if (!blob) {
+      return fail(blob.error());
+    }
+    if (Status written = write_csv(**blob, *about, *samples); !written) {
+      return fail(written.error());
+    }
+    about->metadata.spec.columns[std::string(kTime)] = {Quantity::Time, "", parse_unit("s").value()};
+    about->metadata.spec.rate_hz.reset();  // the stamps say it
+    auto made = record_blob(context_, **blob, about->metadata);
+    if (!made) {
+      return fail(made.error());
+    }
+    Json recording = stored(made->body);
+    const Json job = characterise(recording.at("id").get<std::string>());
+    (void)recordings_.remove(id);
+    context_.bell.ring(id);
+    return Json{{"recording", std::move(recording)}, {"job", job}};
+  }
+
+ private:
+  static Status write_csv(IncomingBlob& blob, const About& about, const LiveSamples& samples) {
+    std::string text(kTime);
+    for (const std::string& column : about.columns) {
+      text += ',' + column;
+    }
+    text += '\n';
+    for (std::size_t row = 0; row < samples.time_s.size(); ++row) {
+      text += driftlab::to_text(samples.time_s[row] - samples.time_s.front());
+      for (const std::vector<double>& column : samples.columns) {
+        text += ',';
+        if (std::isfinite(column[row])) {
+          std::array<char, 32> buffer{};
+          const auto [stop, error] =
+              std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<float>(column[row]));
+          text.append(buffer.data(), error == std::errc{} ? stop : buffer.data());
+        }
+      }
+      text += '\n';
+      if (text.size() > kLongestPiece || row + 1 == samples.time_s.size()) {
+        if (Status added = blob.append(std::as_bytes(std::span(text))); !added) {
+          return added;
+        }
+        text.clear();
+      }
+    }
+    if (samples.time_s.empty()) {
+      return fail(ErrorCode::NoSamples, "No samples came; there is nothing to record.");
+    }
+    return blob.seal();
+  }
+
+  Json characterise(const std::string& recording) {
+    JobContext job_context{context_.store, context_.blobs, context_.clock};
+    const auto job =
+        new_job(*find_job_kind("characterise"), Json{{"recordings", Json::array({recording})}}, Json::object(), job_context);
+    const auto queued = job ? context_.store.enqueue(*job) : Result<EnqueuedJob>(fail(job.error()));
+    if (!queued) {
+      return nullptr;
+    }
+    announce_job(context_, queued->job.id);
+    context_.wake_workers();
+    return to_json(queued->job);
+  }
+
+  /// What nobody has added to for an hour is finished as it is; what cannot be a recording is dropped after a day.
+  void sweep() {
+    std::unique_lock lock(mutex_);
+    while (!stopped_.wait_for(lock, std::chrono::minutes(1), [this] { return stopping_; })) {
+      lock.unlock();
+      const UtcMicros now = context_.clock.now();
+      for (const std::string& id : recordings_.untouched_since(now - kUnfinishedMicros)) {
+        (void)finish(id);
+      }
+      for (const std::string& id : recordings_.untouched_since(now - kTokenMicros)) {
+        (void)recordings_.remove(id);
+      }
+      lock.lock();
+    }
+  }
+
+  ApiContext& context_;
+  LiveRecordings recordings_;
+  std::mutex finish_;
+  std::mutex mutex_;
+  std::condition_variable stopped_;
+  bool stopping_ = false;
+  std::thread sweeper_;
+};
+
+/// The recording that the path names, for whoever has its token.
+Result<LiveRecording> admitted(Live& live, const Request& request) {
+  auto recording = live.recordings().find(request.parameters[0]);
+  if (!recording) {
+    return recording;
+  }
+  const auto token = request.header("live-token");
+  const UtcMicros made = stored(recording->about_json).at("created_at").get<UtcMicros>();
+  const bool fresh = live.context().clock.now() < made + kTokenMicros;
+  if (!token || sha256_hex(*token) != recording->token_sha256 || !fresh) {
+    return fail(ErrorCode::NotFound,
+                fresh ? "Send the token of this live recording in the header Live-Token."
+                      : "The token of this live recording is older than a day.",
+                {{"parameter", "Live-Token"}});
+  }
+  return recording;
+}
+
+Json to_json(const LiveRecording& recording) {
+  const Json about = stored(recording.about_json);
+  return Json{{"id", recording.id},
+              {"device", about.at("device")},
+              {"condition", about.at("metadata").at("condition")},
+              {"columns", about.at("columns")},
+              {"samples", recording.samples},
+              {"pieces", recording.pieces},
+              {"touched_at", rfc3339(recording.touched_at)}};
+}
+
+Result<Response> create(Live& live, const Request& request) {
+  auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  const std::vector<std::string> columns = column_names(*body, faults);
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  auto metadata = metadata_from_json(request.body, Request{});
+  if (!metadata) {
+    return fail(metadata.error());
+  }
+  if (auto resolved = resolve_device_name(live.context().store, metadata->device); !resolved) {
+    return fail(resolved.error());
+  }
+  if (auto room = require_space(live.context()); !room) {
+    return fail(room.error());
+  }
+  const UtcMicros now = live.context().clock.now();
+  // Two ids hold 160 random bits; nothing else of them is secret.
+  const std::string token = "lt_" + make_id("t", now).substr(12) + make_id("t", now).substr(12);
+  if (body->at("device").is_string()) {
+    (*body)["device"] = metadata->device.name;  // an id was resolved
+  }
+  const Json about{{"metadata", *body}, {"device", metadata->device.name}, {"columns", columns}, {"created_at", now}};
+  const auto made = live.recordings().create(to_text(about), sha256_hex(token), columns.size());
+  if (!made) {
+    return fail(made.error());
+  }
+  Json document = to_json(*made);
+  document["token"] = token;
+  document["href"] = "/record?live=" + made->id + "#" + token;
+  Response response = json_response(201, document);
+  response.headers.emplace_back("Location", "/v1/live-recordings/" + made->id);
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
+Result<Response> get(Live& live, const Request& request) {
+  const auto recording = live.recordings().find(request.parameters[0]);
+  return recording ? Result<Response>(json_response(200, to_json(*recording))) : fail(recording.error());
+}
+
+Result<Response> finish(Live& live, const Request& request) {
+  if (const auto recording = admitted(live, request); !recording) {
+    return fail(recording.error());
+  }
+  auto made = live.finish(request.parameters[0]);
+  if (!made) {
+    return fail(made.error());
+  }
+  Response response = json_response(201, *made);
+  response.headers.emplace_back("Location", "/v1/recordings/" + made->at("recording").at("id").get<std::string>());
+  return response;
+}
+
+class SamplesUpload final : public UploadSession {
+ public:
+  SamplesUpload(Live& live, std::string id, std::uint32_t number)
+      : live_(live), id_(std::move(id)), number_(number) {}
+
+  [[nodiscard]] Status append(std::span<const std::byte> bytes) override {
+    if (bytes_.size() + bytes.size() > kLongestPiece) {
+      return fail(ErrorCode::LimitExceeded, "A piece of a live recording has 1 MiB at most.");
+    }
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return {};
+  }
+
+  [[nodiscard]] Result<Response> finish() override {
+    const auto added = live_.recordings().add(id_, number_, bytes_);
+    if (!added) {
+      return fail(added.error());
+    }
+    live_.context().bell.ring(id_);
+    Response response;
+    response.status = 204;
+    return response;
+  }
+
+ private:
+  Live& live_;
+  std::string id_;
+  std::uint32_t number_;
+  std::vector<std::byte> bytes_;
+};
+
+Result<std::unique_ptr<UploadSession>> begin_samples(Live& live, const Request& request) {
+  const auto recording = admitted(live, request);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  const std::string_view text = request.parameter("sequence").value_or("");
+  std::uint32_t number = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc{} || stop != text.data() + text.size()) {
+    return fail(ErrorCode::InvalidArgument, "Number the pieces from 0: ?sequence=…", {{"parameter", "sequence"}});
+  }
+  return std::make_unique<SamplesUpload>(live, recording->id, number);
+}
+
+/// What the samples say so far, every two seconds at most, and less often where that takes long.
+class LiveEvents final : public EventSource {
+ public:
+  LiveEvents(Live& live, std::string id, About about, std::string channel)
+      : live_(live), id_(std::move(id)), about_(std::move(about)), channel_(std::move(channel)) {}
+
+  [[nodiscard]] const std::string& subject() const override { return id_; }
+
+  [[nodiscard]] Result<Batch> next() override {
+    const auto now = std::chrono::steady_clock::now();
+    const auto recording = live_.recordings().find(id_);
+    if (!recording) {
+      return Batch{"event: finished\ndata: {}\n\n", true};
+    }
+    if (now < due_ || recording->samples == told_) {
+      return Batch{};
+    }
+    const auto samples = live_.recordings().samples(id_);
+    if (!samples) {
+      return Batch{};
+    }
+    const auto column = static_cast<std::size_t>(
+        std::find(about_.columns.begin(), about_.columns.end(), channel_) - about_.columns.begin());
+    const GrowingRecording look = look_at_growth(samples->time_s, samples->columns[column]);
+    Json data = growing_recording_to_json(look, unit_of(about_, channel_));
+    data["channel"] = channel_;
+    data["still"] = still(*samples);
+    told_ = recording->samples;
+    const auto took = std::chrono::steady_clock::now() - now;
+    due_ = now + std::max<std::chrono::steady_clock::duration>(std::chrono::seconds(2), 20 * took);
+    return Batch{"id: " + std::to_string(told_) + "\nevent: growth\ndata: " + to_text(data) + "\n\n", false};
+  }
+
+ private:
+  /// False as soon as one sensor moves; null where none can tell.
+  [[nodiscard]] Json still(const LiveSamples& samples) const {
+    Json answer = nullptr;
+    for (std::size_t c = 0; c < about_.columns.size(); ++c) {
+      const auto rests = lies_still(samples.time_s, samples.columns[c], unit_of(about_, about_.columns[c]));
+      if (rests && (answer.is_null() || !*rests)) {
+        answer = *rests;
+      }
+    }
+    return answer;
+  }
+
+  Live& live_;
+  std::string id_;
+  About about_;
+  std::string channel_;
+  std::size_t told_ = 0;
+  std::chrono::steady_clock::time_point due_{};
+};
+
+Result<std::unique_ptr<EventSource>> events(Live& live, const Request& request) {
+  const auto recording = live.recordings().find(request.parameters[0]);
+  if (!recording) {
+    return fail(recording.error());
+  }
+  auto about = about_of(*recording);
+  if (!about) {
+    return fail(about.error());
+  }
+  std::string channel(request.parameter("channel").value_or(about->columns.front()));
+  if (std::find(about->columns.begin(), about->columns.end(), channel) == about->columns.end()) {
+    return fail(ErrorCode::UnknownColumn, "The live recording has no column '" + channel + "'.",
+                {{"parameter", "channel"}});
+  }
+  return std::make_unique<LiveEvents>(live, recording->id, std::move(*about), std::move(channel));
+}
+
+}  // namespace
+
+void add_live_recording_routes(Router& router, ApiContext& context) {
+  const auto live = std::make_shared<Live>(context);
+  router.add({"POST", "/v1/live-recordings", "createLiveRecording", {}, Handler([live](const Request& request) {
+                return create(*live, request);
+              })});
+  router.add({"GET", "/v1/live-recordings/{id}", "getLiveRecording", {}, Handler([live](const Request& request) {
+                return get(*live, request);
+              })});
+  router.add({"POST",
+              "/v1/live-recordings/{id}/samples",
+              "addLiveSamples",
+              {"sequence"},
+              UploadHandler([live](const Request& request) { return begin_samples(*live, request); })});
+  router.add({"POST", "/v1/live-recordings/{id}/finish", "finishLiveRecording", {}, Handler([live](const Request& request) {
+                return finish(*live, request);
+              })});
+  router.add({"GET",
+              "/v1/live-recordings/{id}/events",
+              "streamLiveRecording",
+              {"channel"},
+              EventHandler([live](const Request& request) { return events(*live, request); })});
+}
+
+}  // namespace driftlab::server

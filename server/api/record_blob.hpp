@@ -1,0 +1,19 @@
+#pragma once
+/// From bytes on disk to a recording: recognised, decoded once, checked against their metadata and recorded. Every way
+/// in ends here: an upload in one request, a resumable one, a live recording. Whatever goes wrong before the row is
+/// written leaves nothing behind.
+#include "server/api/api.hpp"
+#include "server/api/upload_metadata.hpp"
+
+namespace driftlab::server {
+
+/// `blob` is sealed and not empty. 201 with the recording, or 200 with the one that exists already.
+[[nodiscard]] Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata);
+
+/// Refuses while less than 64 MiB are free, so that the database can still write. Error: DiskFull.
+[[nodiscard]] Status require_space(const ApiContext& context);
+
+/// The query parameters that say what a file is, as POST /v1/recordings takes them.
+[[nodiscard]] std::vector<std::string_view> metadata_parameters();
+
+}  // namespace driftlab::server
