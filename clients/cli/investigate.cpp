@@ -4,13 +4,12 @@
 #include "clients/cli/input.hpp"
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
+#include "clients/cli/study_request.hpp"
 #include "schema/json/investigation.hpp"
-#include "schema/json/simulation_model.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -24,33 +23,12 @@ struct Flags {
   bool json = false;
 };
 
-Result<InvestigationRequest> request_of(const Inputs& inputs) {
-  InvestigationRequest request;
-  request.study = inputs.study.is_string() ? inputs.study.get<std::string>() : inputs.device;
-  request.device = inputs.device;
-  if (!inputs.baseline.is_null()) {
-    Faults faults;
-    request.baseline = baseline_from_json(inputs.baseline, "/baseline", faults);
-    if (!faults.none()) {
-      return fail(faults.error());
-    }
-  }
-  return request;
-}
-
-bool write_file(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  return static_cast<bool>(out);
-}
-
 Exit run(const Flags& flags) {
   auto inputs = read_inputs({flags.study}, {});
   if (!inputs) {
     return complain(inputs.error());
   }
-  const auto request = request_of(*inputs);
+  const auto request = investigation_request(*inputs);
   if (!request) {
     return complain(request.error());
   }

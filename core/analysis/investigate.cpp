@@ -1,36 +1,15 @@
 #include "core/analysis/investigate.hpp"
 
-#include "core/investigate/report/explain.hpp"
+#include "core/analysis/load_study.hpp"
+#include "core/investigate/report/page.hpp"
 
 #include <deque>
-#include <utility>
 
 namespace driftlab {
 namespace {
 
 /// Of the progress; the rest is the search.
 constexpr double kLoadShare = 0.1;
-
-/// Puts one recording into the study. `columns` keeps what it points into.
-Status load(std::size_t index, RecordingSource& recordings, const RunControl& control, std::deque<ColumnFile>& columns,
-            investigate::Study& study) {
-  auto opened = recordings.open(index, control);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  columns.push_back(std::move(opened->columns));
-  const ColumnFile& table = columns.back();
-  auto recording = investigate::make_study_recording(opened->spec, table.names(), table.rows(),
-                                                     [&](std::size_t i) { return table.column(i); });
-  if (!recording) {
-    return fail(recording.error());
-  }
-  for (const std::string& note : recording->notes) {
-    study.notes.push_back(opened->spec.id + ": " + note);
-  }
-  study.recordings.push_back(std::move(*recording));
-  return {};
-}
 
 }  // namespace
 
@@ -41,19 +20,9 @@ Result<investigate::Report> investigate_study(const InvestigationRequest& reques
   study.id = request.study;
   study.device = request.device;
   study.baseline = request.baseline;
-  const auto count = static_cast<double>(recordings.count());
-  for (std::size_t i = 0; i < recordings.count(); ++i) {
-    if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "The investigation was stopped.");
-    }
-    const double done = static_cast<double>(i);
-    control.report("load", kLoadShare * done / count);
-    const RunControl opening = part_of(control, kLoadShare * done / count, kLoadShare * (done + 1.0) / count);
-    if (const Status loaded = load(i, recordings, opening, columns, study); !loaded) {
-      return fail(recordings.located(i, loaded.error()));
-    }
+  if (const Status loaded = load_study(recordings, columns, study, part_of(control, 0.0, kLoadShare)); !loaded) {
+    return fail(loaded.error());
   }
-  investigate::settle_channels(study);
   return investigate::investigate(study, request.options, part_of(control, kLoadShare, 1.0));
 }
 

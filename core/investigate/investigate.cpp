@@ -3,15 +3,18 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/checks.hpp"
 #include "core/investigate/report/explain.hpp"
+#include "core/investigate/report/figures.hpp"
+#include "core/investigate/report/order.hpp"
 #include "core/investigate/report/outage_gain.hpp"
-#include "core/investigate/report/series.hpp"
+#include "core/investigate/report/verdict.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/group_search.hpp"
 #include "core/investigate/search/join_axes.hpp"
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
+#include <numeric>
 
 namespace driftlab::investigate {
 namespace {
@@ -88,6 +91,77 @@ std::vector<std::string> channels_of(const Evidence& evidence, const std::vector
   return names;
 }
 
+void list_findings(std::vector<Evidence> found, const std::vector<ChannelGroup>& groups, Report& report) {
+  for (Evidence& evidence : found) {
+    Finding finding;
+    finding.channels = channels_of(evidence, groups);
+    finding.everywhere = evidence.members.size() == groups[evidence.group].members.size();
+    finding.because = checks_behind(evidence, groups, report);
+    finding.gain.of_the_file = evidence.cause->as<FileFact>() != nullptr;
+    if (evidence.heldout && evidence.heldout_samples > 0.0) {
+      finding.gain.log_score_per_sample = evidence.heldout_gain / evidence.heldout_samples;
+      finding.gain.heldout = true;
+      finding.gain.share = evidence.share_heldout;
+      finding.gain.samples = evidence.heldout_samples;
+    }
+    finding.evidence = std::move(evidence);
+    report.findings.push_back(std::move(finding));
+  }
+  put_in_order(report.findings);
+  settle_ends(report);
+}
+
+/// Log likelihood [nat] that the checks which still fail are worth: of each recording the largest, for its checks look
+/// at the same samples.
+double left_over(const Report& report) {
+  std::map<std::string, double> worth;
+  for (const Check& check : report.checks) {
+    if (check.failed_after) {
+      double& most = worth[check.recording + "/" + check.channel];
+      most = std::max(most, check.excess_after);
+    }
+  }
+  return std::accumulate(worth.begin(), worth.end(), 0.0, [](double sum, const auto& one) { return sum + one.second; });
+}
+
+/// The gain of the extension is that of its findings on the noise and the mean; what tells of the file alone is no part
+/// of it. The misfit left is that of the innovations under the extended model.
+void settle_gains(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes, Report& report) {
+  double samples = 0.0;
+  for (const GroupOutcome& outcome : outcomes) {
+    for (const auto& e : outcome.after.residual) {
+      samples += static_cast<double>(e.size());
+    }
+  }
+  const auto gained = [](const Finding& finding) {
+    return finding.gain.heldout && !finding.gain.of_the_file ? std::max(0.0, finding.evidence.heldout_gain) : 0.0;
+  };
+  double sum = 0.0;
+  for (const Finding& finding : report.findings) {
+    sum += gained(finding);
+  }
+  const double all = sum + left_over(report);
+  report.explained = all > 0.0 ? sum / all : 0.0;
+  report.misfit_before = report.misfit_after + sum / std::max(1.0, samples);
+  for (Finding& finding : report.findings) {
+    finding.gain.explained = all > 0.0 ? gained(finding) / all : 0.0;
+    finding.gain.misfit_after = report.misfit_after;
+    finding.gain.misfit_before = report.misfit_after + (finding.gain.of_the_file ? 0.0 : finding.gain.log_score_per_sample);
+    finding.explanation = explain(finding, groups[finding.evidence.group]);
+    finding.next_measurement = next_measurement(finding);
+  }
+}
+
+/// The recording whose course is drawn: the first that a finding of the channel names, else the first.
+std::size_t first_shown(const Report& report, std::size_t group) {
+  for (const Finding& finding : report.findings) {
+    if (finding.evidence.group == group && !finding.evidence.members.empty()) {
+      return finding.evidence.members.front();
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 Result<Report> investigate(const Study& study, const InvestigateOptions& options, const RunControl& control) {
@@ -150,40 +224,14 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   examine_together(outcomes, groups, found, examined);
   join_axes(found);
   drop_confirmed(study.baseline, groups, found, report.notes);
-  std::sort(found.begin(), found.end(), [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
   control.report("checks", 0.95);
   make_checks(groups, outcomes, examined, report);
-  double samples = 0.0;
-  for (const GroupOutcome& outcome : outcomes) {
-    for (const auto& e : outcome.after.residual) {
-      samples += static_cast<double>(e.size());
+  list_findings(std::move(found), groups, report);
+  settle_gains(groups, outcomes, report);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (outcomes[g].usable) {
+      report.figures.push_back(figures_of(groups[g], outcomes[g], first_shown(report, g), report.checks));
     }
-  }
-  double gained = 0.0;
-  for (Evidence& evidence : found) {
-    Finding finding;
-    finding.channels = channels_of(evidence, groups);
-    finding.everywhere = evidence.members.size() == groups[evidence.group].members.size();
-    const std::size_t shown = evidence.members.empty() ? 0 : evidence.members.front();
-    finding.series = series_of(groups[evidence.group], outcomes[evidence.group], shown);
-    finding.because = checks_behind(evidence, groups, report);
-    if (evidence.heldout && evidence.heldout_samples > 0.0) {
-      finding.gain.log_score_per_sample = evidence.heldout_gain / evidence.heldout_samples;
-      finding.gain.heldout = true;
-      finding.gain.share = evidence.share_heldout;
-      finding.gain.samples = evidence.heldout_samples;
-      gained += evidence.heldout_gain / std::max(1.0, samples);
-    }
-    finding.evidence = std::move(evidence);
-    report.findings.push_back(std::move(finding));
-  }
-  // The misfit left is that of the innovations under the extended model; each finding's gain stands before it.
-  report.misfit_before = report.misfit_after + std::max(0.0, gained);
-  for (Finding& finding : report.findings) {
-    finding.gain.misfit_after = report.misfit_after;
-    finding.gain.misfit_before = report.misfit_after + finding.gain.log_score_per_sample;
-    finding.explanation = explain(finding, groups[finding.evidence.group]);
-    finding.next_measurement = next_measurement(finding);
   }
   if (options.predict_outages) {
     auto outages = outage_gain(report, groups, control.reporting([&](std::string_view, double fraction) {
@@ -194,6 +242,7 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     }
     report.outages = *std::move(outages);
   }
+  report.summary = verdict_of(report);
   return report;
 }
 

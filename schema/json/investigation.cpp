@@ -1,26 +1,51 @@
 #include "schema/json/investigation.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/report/figures.hpp"
+#include "core/investigate/report/order.hpp"
+#include "schema/json/channel_summary.hpp"
 #include "schema/json/simulation_model.hpp"
 
 namespace driftlab {
 namespace {
 
 using investigate::Check;
+using investigate::CheckEnd;
 using investigate::Evidence;
 using investigate::Finding;
 using investigate::Report;
 
+const char* end_name(CheckEnd end) {
+  switch (end) {
+    case CheckEnd::Finding:
+      return "finding";
+    case CheckEnd::Mended:
+      return "mended";
+    case CheckEnd::Unexplained:
+      return "unexplained";
+    case CheckEnd::None:
+      break;
+  }
+  return nullptr;
+}
+
 Json check_json(const Check& check) {
+  const char* const end = end_name(check.end);
   return Json{
       {"id", check.id},
+      {"title", check.title},
       {"recording", check.recording.empty() ? Json(nullptr) : Json(check.recording)},
       {"channel", check.channel},
       {"observed", number(check.observed)},
       {"simulated", {{"q025", number(check.q025)}, {"median", number(check.median)}, {"q975", number(check.q975)}}},
       {"p", number(check.p)},
       {"p_adjusted", number(check.p_adjusted)},
-      {"failed", check.failed}};
+      {"failed", check.failed},
+      {"observed_after", number(check.observed_after)},
+      {"p_after", number(check.p_after)},
+      {"p_after_adjusted", number(check.p_after_adjusted)},
+      {"failed_after", check.failed_after},
+      {"end", end == nullptr ? Json(nullptr) : Json(end)}};
 }
 
 Json numbers(const std::vector<double>& values, double factor = 1.0) {
@@ -37,28 +62,58 @@ Json band_json(const investigate::Band& band, double factor) {
               {"q975", numbers(band.high, factor)}};
 }
 
-Json series_json(const investigate::FindingSeries& series) {
-  const investigate::LabUnit unit = investigate::level_unit(series.unit);
+Json ratios_json(const std::vector<investigate::InnovationRatio>& ratios) {
+  Json list = Json::array();
+  for (const investigate::InnovationRatio& ratio : ratios) {
+    list.push_back(Json{{"recording", ratio.recording},
+                        {"scale_s", number(ratio.scale_s)},
+                        {"before", number(ratio.before)},
+                        {"after", number(ratio.after)},
+                        {"q025", number(ratio.low)},
+                        {"q975", number(ratio.high)}});
+  }
+  return list;
+}
+
+Json allan_json(const investigate::ChannelFigures& figures, double level) {
+  Json list{{"tau_s", Json::array()}, {"measured", Json::array()}, {"baseline", Json::array()},
+            {"extended", Json::array()}};
+  for (const investigate::AllanChange& change : allan_changes(figures)) {
+    list["tau_s"].push_back(number(change.tau_s));
+    list["measured"].push_back(number(change.measured * level));
+    list["baseline"].push_back(number(change.baseline * level));
+    list["extended"].push_back(number(change.extended * level));
+  }
+  return list;
+}
+
+Json figures_json(const investigate::ChannelFigures& figures) {
+  const investigate::LabUnit unit = investigate::level_unit(figures.unit);
   const double level = unit.per_si;
   const double density = level * level;
-  return Json{{"recording", series.recording},
-              {"channel", series.channel},
+  return Json{{"channel", figures.channel},
+              {"recording", figures.recording},
               {"unit", unit.symbol},
+              {"allan", allan_json(figures, level)},
               {"wavelet",
-               {{"scale_s", numbers(series.scale_s)},
-                {"measured", numbers(series.deviation_before, level)},
-                {"baseline", band_json(series.baseline, level)},
-                {"remaining", numbers(series.deviation_after, level)},
-                {"extended", band_json(series.extended, level)}}},
+               {{"scale_s", numbers(figures.scale_s)},
+                {"measured", numbers(figures.deviation_before, level)},
+                {"baseline", band_json(figures.baseline, level)},
+                {"remaining", numbers(figures.deviation_after, level)},
+                {"extended", band_json(figures.extended, level)}}},
+              {"innovations", ratios_json(figures.ratios)},
               {"spectrum",
-               {{"f_hz", numbers(series.f_hz)},
-                {"measured", numbers(series.density_before, density)},
-                {"baseline", numbers(series.density_baseline, density)},
-                {"remaining", numbers(series.density_after, density)}}},
+               {{"f_hz", numbers(figures.f_hz)},
+                {"measured", numbers(figures.density_before, density)},
+                {"highest", numbers(figures.highest_before, density)},
+                {"baseline", band_json(figures.density_baseline, density)},
+                {"chance", numbers(figures.chance, density)},
+                {"remaining", numbers(figures.density_after, density)},
+                {"highest_remaining", numbers(figures.highest_after, density)}}},
               {"course",
-               {{"time_s", numbers(series.time_s)},
-                {"error", numbers(series.error, level)},
-                {"effect", numbers(series.effect, level)}}}};
+               {{"time_s", numbers(figures.time_s)},
+                {"error", numbers(figures.error, level)},
+                {"effect", numbers(figures.effect, level)}}}};
 }
 
 /// Predicted mean horizontal errors; `measured` needs a reference trajectory, which a study of causes has none of.
@@ -80,13 +135,20 @@ Json outages_json(const std::optional<investigate::OutageGain>& outages) {
 
 Json finding_json(const Finding& finding) {
   Json alternatives = Json::array();
+  Json rivals = Json::array();
   for (const Evidence& rival : finding.evidence.rivals) {
     alternatives.push_back(std::string(rival.cause->name));
+    rivals.push_back(Json{{"cause", std::string(rival.cause->name)},
+                          {"title", std::string(rival.cause->title)},
+                          {"score", number(rival.score)}});
   }
   Json next = finding.next_measurement.empty() ? Json(nullptr) : Json(finding.next_measurement);
   return Json{{"cause", std::string(finding.evidence.cause->name)},
+              {"title", std::string(finding.evidence.cause->title)},
+              {"concern", std::string(name_of(concern_of(*finding.evidence.cause)))},
               {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
               {"alternatives", std::move(alternatives)},
+              {"rivals", std::move(rivals)},
               {"channels", finding.channels},
               {"because", finding.because},
               {"explanation", finding.explanation},
@@ -98,9 +160,22 @@ Json finding_json(const Finding& finding) {
                 {"misfit_after", number(finding.gain.misfit_after)},
                 {"heldout", finding.gain.heldout},
                 {"heldout_share", number(finding.gain.share)},
-                {"heldout_samples", number(finding.gain.samples)}}},
-              {"next_measurement", std::move(next)},
-              {"series", series_json(finding.series)}};
+                {"heldout_samples", number(finding.gain.samples)},
+                {"of_the_file", finding.gain.of_the_file},
+                {"explained", number(finding.gain.explained)}}},
+              {"next_measurement", std::move(next)}};
+}
+
+Json groups_json(const Report& report) {
+  Json list = Json::array();
+  for (const investigate::FindingGroup& group : groups_of(report.findings)) {
+    list.push_back(Json{{"cause", std::string(group.cause->name)},
+                        {"title", std::string(group.cause->title)},
+                        {"concern", std::string(name_of(concern_of(*group.cause)))},
+                        {"findings", group.findings},
+                        {"channels", group.columns}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -122,16 +197,24 @@ Json to_json(const Report& report) {
   for (const auto& item : report.not_examined) {
     not_examined.push_back({{"cause", item.cause}, {"channel", item.channel}, {"needs", item.needs}});
   }
+  Json figures = Json::array();
+  for (const auto& of_channel : report.figures) {
+    figures.push_back(figures_json(of_channel));
+  }
   return Json{{"study", report.study},
+              {"summary", to_json(report.summary)},
               {"baseline", baseline_json(report)},
               {"checks", std::move(checks)},
               {"findings", std::move(findings)},
+              {"groups", groups_json(report)},
+              {"figures", std::move(figures)},
               {"extended_model", extended_json(report)},
               {"gain",
                {{"misfit_before", number(report.misfit_before)},
                 {"misfit_after", number(report.misfit_after)},
                 {"checks_failed_before", report.failed_before},
                 {"checks_failed_after", report.failed_after},
+                {"explained", number(report.explained)},
                 {"outage_error_m", outages_json(report.outages)}}},
               {"unexplained", std::move(unexplained)},
               {"not_examined", std::move(not_examined)},

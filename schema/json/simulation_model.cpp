@@ -14,6 +14,7 @@ namespace {
 using investigate::Baseline;
 using investigate::Cause;
 using investigate::CauseParameter;
+using investigate::ChannelBase;
 using investigate::ChannelModel;
 using investigate::Finding;
 using investigate::GivenEffect;
@@ -274,7 +275,10 @@ Baseline baseline_from_json(const Json& document, const std::string& pointer, Fa
   return simulation_model_from_json(document, pointer, faults);
 }
 
-Json baseline_json(const Report& report) {
+namespace {
+
+/// The members of a model, from the base of each channel that `base` points to.
+Json bases_json(const Report& report, ChannelBase ChannelModel::*base) {
   Json document{{"processes", Json::array()}, {"deterministic", Json::object()}};
   if (report.models.empty()) {
     return document;
@@ -282,15 +286,15 @@ Json baseline_json(const Report& report) {
   Json channels = Json::object();
   for (const ChannelModel& model : report.models) {
     const Dimension dimension = model.unit.dimension;
-    const Json processes = to_json(noise_processes(model), dimension);
+    const Json processes = to_json(noise_processes(model, model.*base), dimension);
     if (channels.empty()) {
       document["processes"] = processes;
     }
     const investigate::LabUnit unit = investigate::level_unit(model.unit);
-    document["deterministic"][model.channel] = Json{{"bias", value_json(model.bias, unit.per_si, unit.symbol)}};
-    if (model.drift != 0.0) {
+    document["deterministic"][model.channel] = Json{{"bias", value_json((model.*base).bias, unit.per_si, unit.symbol)}};
+    if ((model.*base).drift != 0.0) {
       const investigate::LabUnit slope = investigate::level_unit(model.unit, "/s");
-      document["deterministic"][model.channel]["drift"] = value_json(model.drift, slope.per_si, slope.symbol);
+      document["deterministic"][model.channel]["drift"] = value_json((model.*base).drift, slope.per_si, slope.symbol);
     }
     channels[model.channel] = Json{{"processes", processes}};
   }
@@ -301,8 +305,12 @@ Json baseline_json(const Report& report) {
   return document;
 }
 
+}  // namespace
+
+Json baseline_json(const Report& report) { return bases_json(report, &ChannelModel::alone); }
+
 Json extended_json(const Report& report) {
-  Json document = baseline_json(report);
+  Json document = bases_json(report, &ChannelModel::beside);
   Json effects = document.value("effects", Json::array());
   for (const Finding& finding : report.findings) {
     effects.push_back(found_effect_json(finding));

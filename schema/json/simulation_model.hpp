@@ -24,7 +24,7 @@ namespace driftlab {
 
 /// The model that was criticised.
 [[nodiscard]] Json baseline_json(const investigate::Report& report);
-/// The same with the effects that were found.
+/// The same with the effects that were found, and with the base as it stands beside them.
 [[nodiscard]] Json extended_json(const investigate::Report& report);
 
 /// {"name": {"value", "unit", "ci95"}} of what was found.

@@ -247,6 +247,9 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
   const std::vector<std::string> axes = axes_of(world);
   const double dt = 1.0 / world.rate_hz;
   const double bias = 0.3 * random.normal() * (accelerometer ? 0.05 : kDegree);
+  if (world.replicate != 0) {
+    random = Random(world.seed, world.replicate);
+  }
   for (std::size_t m = 0; m < motions.size(); ++m) {
     const Motion& motion = motions[m];
     const auto samples = static_cast<std::size_t>(world.duration_s * world.rate_hz);

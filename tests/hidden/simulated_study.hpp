@@ -30,6 +30,7 @@ struct World {
   double rate_hz = 50.0;
   double duration_s = 600.0;
   std::uint64_t seed = 1;
+  std::uint64_t replicate = 0;  ///< other noise of the same base, motion and bias
 };
 
 /// An effect to be hidden: values SI in declared order, and the recordings it acts in (empty: all).

@@ -29,7 +29,8 @@ FLOORS: dict[str, list[str]] = {
     "core/calibrate": CORE,
     "core/navigate": CORE,
     **{room: [*CORE, *INVESTIGATE[:floor]] for floor, room in enumerate(INVESTIGATE)},
-    "core/investigate/report": [*CORE, "core/navigate", *INVESTIGATE[:-1]],  # what a finding costs in navigation
+    # what a result says in a sentence, what a finding costs in navigation
+    "core/investigate/report": [*CORE, "core/campaign", "core/navigate", *INVESTIGATE[:-1]],
     "core/investigate": [*CORE, "core/campaign", "core/calibrate", "core/navigate", *INVESTIGATE],
     "core/analysis": [*ANALYSIS, "core/read"],  # one file per use case: what the command line and the jobs ask for
     "schema/json": USE_CASES,

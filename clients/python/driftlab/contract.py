@@ -93,6 +93,54 @@ class CalibrationSensors(TypedDict):
     notes: NotRequired[list[str]]
 
 
+class CampaignPlan(TypedDict):
+    """Plan of a measurement campaign. What an investigation left open, and the recordings that would decide most of
+    it."""
+
+    study: NotRequired[str]
+    open: list[CampaignPlanOpenItem]
+    # Those that decide something, most first.
+    proposals: list[CampaignPlanProposal]
+    # Places in `open` of what no proposal decides.
+    undecided: list[int]
+
+
+class CampaignPlanOpenItem(TypedDict):
+    cause: str
+    # The column.
+    channel: str
+    kind: Literal['ambiguous', 'not_examined']
+    rivals: list[str]
+    needs: str
+
+
+class CampaignPlanProposal(TypedDict):
+    title: str
+    channel: str
+    # One recording for each.
+    conditions: list[Condition]
+    # Of each recording.
+    duration_s: float | None
+    rate_hz: float | None
+    # What the recordings must hold.
+    columns: list[str]
+    # Questions that it is expected to decide.
+    expected: float | None
+    decides: list[CampaignPlanProposalDecide]
+
+
+class CampaignPlanProposalDecide(TypedDict):
+    # Place in `open`.
+    question: int
+    cause: str
+    rivals: list[str]
+    # At which the cause was simulated.
+    sizes: dict[str, ModelNumber]
+    decided: int
+    runs: int
+    probability: Quantity
+
+
 class Characterisation(TypedDict):
     """Characterisation. Variances with intervals, Allan parameters and ranked models of every channel of some
     recordings: the result of a characterise job and of `driftlab characterise --json`."""
@@ -589,6 +637,9 @@ class Investigation(TypedDict):
     """Investigation. What a simulation gets wrong about the recordings of a study, and why."""
 
     study: str
+    # What it comes to: one sentence, what stands behind it, how much a person should care, and the members that the
+    # sentence rests on.
+    summary: NotRequired[RecordingCharacterisationSummary]
     # From here on, of stored investigations alone.
     id: NotRequired[str]
     job: NotRequired[str]
@@ -600,12 +651,20 @@ class Investigation(TypedDict):
     created_at: NotRequired[str]
     baseline: InvestigationModel
     checks: list[InvestigationCheck]
+    # In the order in which a laboratory would act on them: by concern, then the strongest cause first; findings of one
+    # cause stand together.
     findings: list[InvestigationFinding]
+    # The findings of each cause, in order.
+    groups: NotRequired[list[InvestigationGroup]]
+    # One for each examined channel.
+    figures: NotRequired[list[InvestigationFigures]]
     extended_model: InvestigationModel
     gain: InvestigationGain
     unexplained: list[InvestigationUnexplainedItem]
     not_examined: NotRequired[list[InvestigationNotExaminedItem]]
     notes: NotRequired[list[str]]
+    # Of reports that `driftlab plan` writes: the recordings to make next.
+    plan: NotRequired[CampaignPlan]
 
 
 class InvestigationBand(TypedDict):
@@ -623,6 +682,16 @@ class InvestigationCheck(TypedDict):
     p: float | None
     p_adjusted: float | None
     failed: bool
+    # For people.
+    title: NotRequired[str]
+    # The same under the extended model.
+    observed_after: NotRequired[float | None]
+    p_after: NotRequired[float | None]
+    p_after_adjusted: NotRequired[float | None]
+    failed_after: NotRequired[bool]
+    # Where a check that fails comes to rest: a finding rests on it, the extended model mends it though no finding names
+    # it, or it stands under `unexplained`.
+    end: NotRequired[Literal['finding', 'mended', 'unexplained', None]]
 
 
 class InvestigationCheckSimulated(TypedDict):
@@ -631,10 +700,88 @@ class InvestigationCheckSimulated(TypedDict):
     q975: float | None
 
 
+class InvestigationFigures(TypedDict):
+    """What the figures of a channel need, over all its recordings: measured against simulated by the baseline that
+    knows of no effect, and what remains against the extended model."""
+
+    # The column.
+    channel: str
+    # The recording of the course.
+    recording: str
+    unit: str
+    # Allan deviation [unit]; extended: with the effects that were taken off put back.
+    allan: InvestigationFiguresAllan
+    # Haar wavelet deviation by scale.
+    wavelet: InvestigationFiguresWavelet
+    # What the checks judge: wavelet variance of a recording's innovations over that of a right model, and where 95 % of
+    # right models lie.
+    innovations: list[InvestigationFiguresInnovation]
+    # Two-sided density [unit^2/Hz], mean over stretches of equal length of all recordings, in bins of equal width.
+    # highest: the largest ordinate of each bin; chance: what the largest of all ordinates exceeds in one spectrum of
+    # twenty without a line.
+    spectrum: InvestigationFiguresSpectrum
+    # Means over stretches of time of one recording; `effect` is what the extended model puts into the mean.
+    course: InvestigationFiguresCourse
+
+
+class InvestigationFiguresAllan(TypedDict):
+    """Allan deviation [unit]; extended: with the effects that were taken off put back."""
+
+    tau_s: NotRequired[list[float | None]]
+    measured: NotRequired[list[float | None]]
+    baseline: NotRequired[list[float | None]]
+    extended: NotRequired[list[float | None]]
+
+
+class InvestigationFiguresCourse(TypedDict):
+    """Means over stretches of time of one recording; `effect` is what the extended model puts into the mean."""
+
+    time_s: NotRequired[list[float | None]]
+    error: NotRequired[list[float | None]]
+    effect: NotRequired[list[float | None]]
+
+
+class InvestigationFiguresInnovation(TypedDict):
+    recording: str
+    scale_s: float | None
+    before: float | None
+    after: float | None
+    q025: float | None
+    q975: float | None
+
+
+class InvestigationFiguresSpectrum(TypedDict):
+    """Two-sided density [unit^2/Hz], mean over stretches of equal length of all recordings, in bins of equal width.
+    highest: the largest ordinate of each bin; chance: what the largest of all ordinates exceeds in one spectrum of
+    twenty without a line."""
+
+    f_hz: NotRequired[list[float | None]]
+    measured: NotRequired[list[float | None]]
+    highest: NotRequired[list[float | None]]
+    baseline: NotRequired[InvestigationBand]
+    chance: NotRequired[list[float | None]]
+    remaining: NotRequired[list[float | None]]
+    highest_remaining: NotRequired[list[float | None]]
+
+
+class InvestigationFiguresWavelet(TypedDict):
+    """Haar wavelet deviation by scale."""
+
+    scale_s: NotRequired[list[float | None]]
+    measured: NotRequired[list[float | None]]
+    baseline: NotRequired[InvestigationBand]
+    remaining: NotRequired[list[float | None]]
+    extended: NotRequired[InvestigationBand]
+
+
 class InvestigationFinding(TypedDict):
     cause: str
+    title: NotRequired[str]
+    concern: NotRequired[InvestigationConcern]
     status: Literal['identified', 'ambiguous']
     alternatives: list[str]
+    # The alternatives with their scores.
+    rivals: NotRequired[list[InvestigationFindingRival]]
     channels: list[str]
     because: list[str]
     explanation: str
@@ -642,7 +789,6 @@ class InvestigationFinding(TypedDict):
     score: NotRequired[float | None]
     gain: InvestigationFindingGain
     next_measurement: str | None
-    series: NotRequired[InvestigationSeries]
 
 
 class InvestigationFindingGain(TypedDict):
@@ -652,6 +798,16 @@ class InvestigationFindingGain(TypedDict):
     heldout: bool
     heldout_share: NotRequired[float | None]
     heldout_samples: NotRequired[float | None]
+    # It tells how the file was written; no sum of gains holds it.
+    of_the_file: NotRequired[bool]
+    # Share of the misfit.
+    explained: NotRequired[float | None]
+
+
+class InvestigationFindingRival(TypedDict):
+    cause: str
+    title: str
+    score: float | None
 
 
 class InvestigationGain(TypedDict):
@@ -659,6 +815,9 @@ class InvestigationGain(TypedDict):
     misfit_after: float | None
     checks_failed_before: int
     checks_failed_after: int
+    # Share of the misfit that the findings explain on samples they were not fitted to; what facts of the file tell is
+    # no part of it.
+    explained: NotRequired[float | None]
     # Mean horizontal position error [m] at the end of two simulated outages of 10 s. null: no axis of an inertial unit
     # was examined.
     outage_error_m: InvestigationGainOutageErrorM
@@ -689,6 +848,16 @@ class InvestigationGainOutageErrorMCi95(TypedDict):
     adopted: NotRequired[list[float | None]]
 
 
+class InvestigationGroup(TypedDict):
+    cause: str
+    title: str
+    concern: InvestigationConcern
+    # Places in `findings`.
+    findings: list[int]
+    # Columns.
+    channels: list[str]
+
+
 class InvestigationModel(TypedDict):
     processes: list[dict[str, Any]]
     deterministic: dict[str, Any]
@@ -708,48 +877,6 @@ class InvestigationNotExaminedItem(TypedDict):
     cause: str
     channel: str
     needs: str
-
-
-class InvestigationSeries(TypedDict):
-    """What a figure needs, of the first recording: measured against simulated by the baseline, and what remains against
-    the extended model."""
-
-    recording: str
-    channel: str
-    unit: str
-    # Haar wavelet deviation by scale.
-    wavelet: InvestigationSeriesWavelet
-    # Two-sided density [unit^2/Hz].
-    spectrum: InvestigationSeriesSpectrum
-    # Means over stretches of time; `effect` is what the extended model puts into the mean.
-    course: InvestigationSeriesCourse
-
-
-class InvestigationSeriesCourse(TypedDict):
-    """Means over stretches of time; `effect` is what the extended model puts into the mean."""
-
-    time_s: NotRequired[list[float | None]]
-    error: NotRequired[list[float | None]]
-    effect: NotRequired[list[float | None]]
-
-
-class InvestigationSeriesSpectrum(TypedDict):
-    """Two-sided density [unit^2/Hz]."""
-
-    f_hz: NotRequired[list[float | None]]
-    measured: NotRequired[list[float | None]]
-    baseline: NotRequired[list[float | None]]
-    remaining: NotRequired[list[float | None]]
-
-
-class InvestigationSeriesWavelet(TypedDict):
-    """Haar wavelet deviation by scale."""
-
-    scale_s: NotRequired[list[float | None]]
-    measured: NotRequired[list[float | None]]
-    baseline: NotRequired[InvestigationBand]
-    remaining: NotRequired[list[float | None]]
-    extended: NotRequired[InvestigationBand]
 
 
 class InvestigationSummary(TypedDict):
@@ -2500,6 +2627,7 @@ ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
 FitModelFitVerdict: TypeAlias = "Literal['accepted', 'described', 'not_described', 'untested', None]"
+InvestigationConcern: TypeAlias = "Literal['recording', 'calibration', 'noise', 'format']"
 JobRequest: TypeAlias = (
     "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool | JobRequestRegress")
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"

@@ -181,10 +181,11 @@ class Investigation(Frame):
         return self.document["findings"]
 
     def series(self, cause: str) -> dict[str, Numbers]:
-        """The arrays of the figures of a finding: measured against simulated `wavelet.…`, `spectrum.…` and `course.…`."""
+        """The arrays of the figures of a finding's channel: measured against simulated `allan.…`, `wavelet.…`, `spectrum.…` and `course.…`."""
         for finding in self.findings:
             if finding["cause"] == cause:
-                return arrays(finding.get("series", {}))
+                columns = [channel.rpartition("/")[2] for channel in finding["channels"]]
+                return arrays(next((f for f in self.document.get("figures", []) if f["channel"] in columns), {}))
         raise KeyError(f"{cause!r} was not found; {', '.join(f['cause'] for f in self.findings) or 'nothing'} was.")
 
     def rows(self) -> list[Row]:

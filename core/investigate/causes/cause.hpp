@@ -13,6 +13,7 @@
 #include "core/investigate/causes/family.hpp"
 #include "core/investigate/causes/showing.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,10 @@ struct CauseParameter {
   LabUnit (*unit)(const Unit& channel) = nullptr;
 };
 
+/// What a finding asks a laboratory to do, in the order in which it would: record anew or mend the file, calibrate,
+/// model the noise, know the format.
+enum class Concern { Recording, Calibration, Noise, Format };
+
 struct Cause {
   std::string_view name;
   std::string_view title;  ///< "a bias that follows the temperature"
@@ -43,6 +48,8 @@ struct Cause {
   std::vector<CauseParameter> parameters;
   /// The registered process that it is, parameter for parameter; empty: it is none.
   std::string_view process = {};
+  /// Empty: as its family has it (`concern_of`).
+  std::optional<Concern> concern = {};
   /// Why the cause cannot be examined in this group; empty: it can.
   std::string (*lacks)(const Study& study, const ChannelGroup& group) = nullptr;
   /// Puts the effect into a simulated recording (draft.hpp), with `values` in the order of `parameters`, SI. Null for a
@@ -62,6 +69,10 @@ struct Cause {
   /// True for mean effects and slow noise, which explain the same slow misfit.
   [[nodiscard]] bool is_slow() const { return as<MeanEffect>() != nullptr || as<SlowNoise>() != nullptr; }
 };
+
+/// Its own; else facts of the file concern the recording, its lattice the format, mean effects the calibration, and all
+/// others the noise.
+[[nodiscard]] Concern concern_of(const Cause& cause);
 
 /// The function that looks for a cause at full rate; null for causes that are not looked for there.
 using Examine = std::vector<Evidence> (*)(const FullRate& data);

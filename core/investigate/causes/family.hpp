@@ -61,6 +61,7 @@ struct NoiseLevel {
   /// The deviation changes within one recording; with an automatic baseline that recording's own level is free, for the
   /// change says how much louder one part is than the other and not which of them is the usual one.
   bool within_recording = false;
+  bool scales_slow = false;  ///< the slow part grows with the white one: the whole error is scaled
   /// The first parameter is the density of the white noise in place of the baseline's.
   bool replaces_white = false;
 };
@@ -87,6 +88,8 @@ struct NoiseTails {
   double (*log_gain)(const FullRate& data, const Evidence& found);  ///< as DifferencedNoise::log_gain
   /// Chance of an innovation beyond e >= 0 on one side, under the symmetric distribution found.
   std::function<double(double)> (*tail)(const FullRate& data, const Evidence& found);
+  /// Variance that it adds to the white noise's own [SI^2]; null: none, the variance stays.
+  double (*added_variance)(const Evidence& found) = nullptr;
 };
 
 /// A sinusoid. `Evidence::shape` is its frequency [Hz]; each half is held out in turn. It is sought beside the mean

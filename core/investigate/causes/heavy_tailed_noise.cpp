@@ -15,10 +15,13 @@ namespace driftlab::investigate {
 namespace {
 
 std::vector<Evidence> examine(const FullRate& data) {
-  const InnovationHistogram histogram = histogram_of(data);
-  const TailFit fit = fit_student(histogram, data.given);
+  const InnovationHistogram histogram = histogram_of(data, !data.given);
+  TailFit fit = fit_student(histogram, data.given);
   if (!(fit.value > 0.0)) {
     return {};
+  }
+  if (data.given) {
+    fit.gain_free_scale = fit_student(histogram_of(data, true), false).gain;
   }
   Evidence evidence;
   evidence.members = all_members(*data.group);
@@ -42,7 +45,7 @@ std::vector<Evidence> examine(const FullRate& data) {
 }
 
 double log_gain(const FullRate& data, const Evidence& found) {
-  return student_gain(histogram_of(data), found.shape, data.given);
+  return student_gain(histogram_of(data, !data.given), found.shape, data.given);
 }
 
 /// The scale by the median of |e|, which no tail moves.

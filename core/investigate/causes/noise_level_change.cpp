@@ -150,7 +150,7 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 Cause noise_level_change() {
   return {.name = "noise_level_change",
           .title = "noise that changes its level within a recording",
-          .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true},
+          .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true, .scales_slow = true},
           .rivals = {"white_noise_level", "outliers"},
           .needs = "any recording",
           .separates = "more recordings of the same condition",

@@ -14,10 +14,13 @@ namespace driftlab::investigate {
 namespace {
 
 std::vector<Evidence> examine(const FullRate& data) {
-  const InnovationHistogram histogram = histogram_of(data);
-  const MixtureFit fit = fit_mixture(histogram, data.given);
+  const InnovationHistogram histogram = histogram_of(data, !data.given);
+  MixtureFit fit = fit_mixture(histogram, data.given);
   if (!(fit.fraction > 0.0)) {
     return {};
+  }
+  if (data.given) {
+    fit.gain_free_scale = fit_mixture(histogram_of(data, true), false).gain;
   }
   Evidence evidence;
   evidence.members = all_members(*data.group);
@@ -41,7 +44,7 @@ std::vector<Evidence> examine(const FullRate& data) {
 }
 
 double log_gain(const FullRate& data, const Evidence& found) {
-  return mixture_gain(histogram_of(data), found.parameters[0].estimate.value, found.shape, data.given);
+  return mixture_gain(histogram_of(data, !data.given), found.parameters[0].estimate.value, found.shape, data.given);
 }
 
 std::function<double(double)> tail(const FullRate& /*data*/, const Evidence& found) {
@@ -51,6 +54,11 @@ std::function<double(double)> tail(const FullRate& /*data*/, const Evidence& fou
     return (1.0 - fraction) * normal_tail(e) +
            0.5 * fraction * (normal_tail(e - magnitude) + normal_tail(e + magnitude));
   };
+}
+
+double added_variance(const Evidence& found) {
+  const double magnitude = found.parameters[1].estimate.value;
+  return found.parameters[0].estimate.value * magnitude * magnitude;
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
@@ -70,7 +78,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause outliers() {
   return {.name = "outliers",
           .title = "gross errors in single samples",
-          .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail},
+          .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail, .added_variance = added_variance},
           .rivals = {"heavy_tailed_noise"},
           .needs = "any recording",
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",

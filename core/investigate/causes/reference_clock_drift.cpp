@@ -21,6 +21,7 @@ Cause reference_clock_drift() {
           .needs = "a profile with a reference column",
           .separates = "the same motion early and late in a long recording",
           .parameters = {{"eps", units::ppm}},
+          .concern = Concern::Recording,
           .lacks = lacks_profile,
           .showing = {.scenario = Scenario::Profile}};
 }

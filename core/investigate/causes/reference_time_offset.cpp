@@ -21,6 +21,7 @@ Cause reference_time_offset() {
           .needs = "a profile with a reference column",
           .separates = "the same motion early and late in a long recording",
           .parameters = {{"delta_s", units::seconds}},
+          .concern = Concern::Recording,
           .lacks = lacks_profile,
           .showing = {.scenario = Scenario::Profile}};
 }

@@ -69,6 +69,16 @@ const Cause* cause_of_process(std::string_view process) {
   return nullptr;
 }
 
+Concern concern_of(const Cause& cause) {
+  if (cause.concern) {
+    return *cause.concern;
+  }
+  if (const FileFact* const fact = cause.as<FileFact>()) {
+    return fact->gives_lattice_step ? Concern::Format : Concern::Recording;
+  }
+  return cause.as<MeanEffect>() != nullptr ? Concern::Calibration : Concern::Noise;
+}
+
 Examine examine_of(const Cause& cause) {
   return std::visit(
       [](const auto& family) -> Examine {

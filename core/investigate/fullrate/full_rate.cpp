@@ -68,6 +68,7 @@ void whiten_further(FullRate& data) {
   if (a.empty()) {
     return;
   }
+  data.further = a;
   double squares = 0.0;
   for (const double coefficient : a) {
     squares += coefficient * coefficient;

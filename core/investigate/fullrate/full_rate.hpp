@@ -37,6 +37,7 @@ struct FullRate {
   /// 1 + 2 n kLevelRepeats^2 (study/measured_constants.hpp): a sensor does not repeat its noise level to 1/sqrt(2 n).
   /// 1 elsewhere.
   double repeatability = 1.0;
+  std::vector<double> further;  ///< coefficients of the autoregression that whitens once more; empty: none
   double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }

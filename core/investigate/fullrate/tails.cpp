@@ -58,7 +58,37 @@ double gaussian_binned(const InnovationHistogram& h, double variance) { return m
 
 }  // namespace
 
-InnovationHistogram histogram_of(const FullRate& data) {
+namespace {
+
+/// What each recording's innovations are divided by.
+std::vector<double> levels_of(const FullRate& data) {
+  std::vector<double> level(data.members(), 1.0);
+  std::vector<double> samples(data.members(), 0.0);
+  double square = 0.0;
+  double count = 0.0;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    double own = 0.0;
+    for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+      if (data.used[r][i] != 0) {
+        own += std::min(data.innovation[r][i] * data.innovation[r][i], 25.0);
+        samples[r] += 1.0;
+      }
+    }
+    square += own;
+    count += samples[r];
+    level[r] = own;
+  }
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    const bool known = samples[r] > 0.0 && level[r] > 0.0;
+    level[r] = known ? std::sqrt(level[r] / samples[r] / (square / count)) : 1.0;
+  }
+  return level;
+}
+
+}  // namespace
+
+InnovationHistogram histogram_of(const FullRate& data, bool own_levels) {
+  const std::vector<double> level = own_levels ? levels_of(data) : std::vector<double>(data.members(), 1.0);
   InnovationHistogram h;
   const auto bins = static_cast<std::size_t>(kTop / kWidth);
   std::vector<double> square(bins, 0.0);
@@ -69,7 +99,7 @@ InnovationHistogram histogram_of(const FullRate& data) {
       if (data.used[r][i] == 0) {
         continue;
       }
-      const double e = std::min(kCut, std::fabs(data.innovation[r][i]));
+      const double e = std::min(kCut, std::fabs(data.innovation[r][i] / level[r]));
       h.samples += 1.0;
       h.square += e * e;
       const auto bin = static_cast<std::size_t>(e / kWidth);

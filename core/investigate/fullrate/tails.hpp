@@ -13,7 +13,9 @@ struct InnovationHistogram {
   double samples = 0.0;
   double square = 0.0;  ///< sum of e^2
 };
-[[nodiscard]] InnovationHistogram histogram_of(const FullRate& data);
+/// `own_levels`: each recording over its own root mean square (gross values cut at five) times that of all. Levels that
+/// differ from recording to recording, all of them Gaussian, would together look like heavy tails.
+[[nodiscard]] InnovationHistogram histogram_of(const FullRate& data, bool own_levels);
 
 struct TailFit {
   double value = 0.0;  ///< 1/nu of the innovations; 0: Gaussian

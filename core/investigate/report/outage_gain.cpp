@@ -23,10 +23,10 @@ std::optional<std::size_t> imu_channel(const ColumnRole& role) {
   return role.quantity == Quantity::SpecificForce ? std::optional(3 + *axis) : std::nullopt;
 }
 
-Model base_model(const ChannelModel& channel) {
-  Model model = noise_processes(channel);
-  if (!channel.given && channel.drift != 0.0) {
-    model.push_back({&registered<LinearDrift>(), {channel.drift}});
+Model base_model(const ChannelModel& channel, const ChannelBase& base) {
+  Model model = noise_processes(channel, base);
+  if (!channel.given && base.drift != 0.0) {
+    model.push_back({&registered<LinearDrift>(), {base.drift}});
   }
   return model;
 }
@@ -72,8 +72,8 @@ SensorModels sensor_models(const Report& report, const std::vector<ChannelGroup>
       continue;
     }
     const double bias_sd = scenario.truth.axes[*number].bias_sd;
-    UnitAxis axis{.channel = *number, .model = base_model(channel), .bias_sd = bias_sd};
-    models.baseline.axes[*number] = AxisModel{ModelSchedule::constant(axis.model), bias_sd};
+    UnitAxis axis{.channel = *number, .model = base_model(channel, channel.beside), .bias_sd = bias_sd};
+    models.baseline.axes[*number] = AxisModel{ModelSchedule::constant(base_model(channel, channel.alone)), bias_sd};
     for (const Finding& finding : report.findings) {
       if (acts_on(finding.evidence, static_cast<std::size_t>(group - groups.begin())) &&
           !extend(finding.evidence, axis)) {

@@ -1,5 +1,6 @@
 #pragma once
 /// The result of an investigation as values; schema/json/investigation.hpp writes it down (spec/causes.md).
+#include "core/campaign/verdict.hpp"
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/study/study.hpp"
@@ -10,18 +11,37 @@
 
 namespace driftlab::investigate {
 
-/// One statistic compared with what the baseline model gives for the same recording.
+/// Where a check that fails comes to rest; none of them is left without a word.
+enum class CheckEnd {
+  None,         ///< it does not fail
+  Finding,      ///< a finding rests on it
+  Mended,       ///< the extended model mends it, though no finding names it
+  Unexplained,  ///< it fails with the extended model too
+};
+
+/// One statistic compared with what the baseline model gives for the same recording, and with the extended model.
 struct Check {
   std::string id;
+  std::string title;      ///< for people
   std::string recording;  ///< empty: the whole channel
   std::string channel;
   double observed = 0.0;
   double q025 = 0.0, median = 0.0, q975 = 0.0;  ///< under the model
   double p = 1.0;
-  double p_adjusted = 1.0;  ///< over all checks of the study together (Holm 1979)
+  double p_adjusted = 1.0;  ///< over all checks of the study together, before and after (Holm 1979)
   bool failed = false;      ///< p_adjusted is below 0.05
+  double excess = 0.0;      ///< log likelihood that the misfit it shows is worth [nat], 0 for checks of causes
+  double scale_s = 0.0;         ///< of a wavelet variance; 0 for others
+  double observed_after = 0.0;  ///< the same under the extended model
+  double p_after = 1.0;
+  double p_after_adjusted = 1.0;
+  bool failed_after = false;
+  double excess_after = 0.0;
+  CheckEnd end = CheckEnd::None;
 };
 
+/// What a finding gains on data that it was not fitted to. Nats belong to the details: people read the share of the
+/// misfit.
 struct FindingGain {
   double log_score_per_sample = 0.0;  ///< [nat]
   double misfit_before = 0.0;         ///< [nat per sample]
@@ -29,6 +49,10 @@ struct FindingGain {
   bool heldout = false;
   double share = 0.0;  ///< of the samples held out at a time
   double samples = 0.0;
+  /// It tells how the file was written (its digits, its absent rows) and not how the sensor errs: it is no part of any
+  /// sum of gains. The gain of a lattice is ln(step / last printed digit) per sample, however little it disturbs.
+  bool of_the_file = false;
+  double explained = 0.0;  ///< share of the misfit that the checks can see, 0 to 1; 0 where `of_the_file`
 };
 
 /// 95 % band of a simulated statistic.
@@ -36,15 +60,31 @@ struct Band {
   std::vector<double> low, median, high;
 };
 
-/// What a figure of a finding shows (core/investigate/report/series.hpp).
-struct FindingSeries {
+/// Wavelet variance of a recording's innovations at one scale over that of a right model.
+struct InnovationRatio {
   std::string recording;
+  double scale_s = 0.0;
+  double before = 0.0, after = 0.0;
+  double low = 0.0, high = 0.0;  ///< where 95 % of right models lie
+};
+
+/// What the figures of a channel show (core/investigate/report/figures.hpp).
+struct ChannelFigures {
   std::string channel;
+  std::string recording;  ///< whose course it is
   Unit unit;
   std::vector<double> scale_s, deviation_before, deviation_after;  ///< deviations [SI]
   Band baseline, extended;
-  std::vector<double> f_hz, density_before, density_after, density_baseline;  ///< [SI^2/Hz]
-  std::vector<double> time_s, error, effect;                                  ///< [SI]; effect: what was taken off
+  std::vector<InnovationRatio> ratios;
+  std::vector<double> f_hz, density_before, density_after, highest_before, highest_after, chance;  ///< [SI^2/Hz]
+  Band density_baseline;
+  std::vector<double> time_s, error, effect;  ///< [SI]; effect: what was taken off
+};
+
+/// Allan deviation of a channel at one averaging time [SI].
+struct AllanChange {
+  double tau_s = 0.0;
+  double measured = 0.0, baseline = 0.0, extended = 0.0;
 };
 
 struct Finding {
@@ -55,9 +95,9 @@ struct Finding {
   std::string explanation;
   std::string next_measurement;
   FindingGain gain;
-  FindingSeries series;  ///< of the first recording it acts in
 };
 
+/// What the extended model does not describe; every check that fails with it stands in one of these.
 struct Unexplained {
   std::string channel;
   std::string sentence;
@@ -81,6 +121,7 @@ struct OutageGain {
 
 struct Report {
   std::string study;
+  Verdict summary;  ///< what it comes to, in a sentence (report/verdict.hpp)
   bool automatic = true;
   Baseline baseline;                 ///< as the study gave it
   std::vector<ChannelModel> models;  ///< one per examined channel
@@ -89,7 +130,9 @@ struct Report {
   std::size_t failed_after = 0;
   double misfit_before = 0.0;
   double misfit_after = 0.0;
-  std::vector<Finding> findings;  ///< strongest first
+  double explained = 0.0;         ///< share of the misfit that the findings explain, 0 to 1
+  std::vector<Finding> findings;  ///< in the order in which a laboratory would act on them (report/order.hpp)
+  std::vector<ChannelFigures> figures;  ///< one per examined channel
   std::optional<OutageGain>
       outages;  ///< nothing where no gyroscope or accelerometer axis was examined, or not asked for
   std::vector<Unexplained> unexplained;

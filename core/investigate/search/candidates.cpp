@@ -60,6 +60,15 @@ void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fre
   }
 }
 
+void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh) {
+  std::erase_if(remaining, [&](const Evidence& old) {
+    return std::any_of(fresh.begin(), fresh.end(), [&](const Evidence& e) { return e.cause == old.cause; });
+  });
+  std::vector<Evidence> latest;
+  keep_best(latest, fresh);
+  remaining.insert(remaining.end(), latest.begin(), latest.end());
+}
+
 std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates) {
   for (;;) {
     const Evidence* const best = strongest(candidates);
@@ -70,7 +79,7 @@ std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& cand
     if (!winner.cause->is_slow()) {
       hold_out(data, winner);
       if (winner.heldout && winner.heldout_gain < 0.0) {
-        candidates.erase(candidates.begin() + (best - candidates.data()));
+        candidates[static_cast<std::size_t>(best - candidates.data())].score = 0.0;
         continue;
       }
     }

@@ -15,9 +15,12 @@ namespace driftlab::investigate {
 /// Keeps in `examined` the best evidence of every cause.
 void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh);
 
+/// Keeps in `remaining` the best evidence of every cause as the last look saw it.
+void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh);
+
 /// The strongest candidate beyond kThreshold, with those of its declared rivals that come within kMargin. Candidates
-/// found at full rate are evaluated on samples to which they were not fitted, and dropped if they are worse than
-/// nothing there. Slow ones are held out once the search has ended.
+/// found at full rate are evaluated on samples to which they were not fitted, and their score is 0 if they are worse
+/// than nothing there. Slow ones are held out once the search has ended.
 [[nodiscard]] std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates);
 
 }  // namespace driftlab::investigate

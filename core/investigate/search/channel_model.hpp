@@ -1,5 +1,5 @@
 #pragma once
-/// The noise model of a channel after the search, without the effects that were found.
+/// The noise model of a channel after the search: with the effects that were found, and as if there were none.
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
@@ -8,14 +8,23 @@
 
 namespace driftlab::investigate {
 
-/// The noise model of one channel, and what it cannot hold.
+/// What a channel shows besides effects.
+struct ChannelBase {
+  SlowModel noise;            ///< N^2 and the slow processes
+  double quantization = 0.0;  ///< Q^2 of differenced noise [SI^2 s^2], of an automatic baseline
+  double drift = 0.0;         ///< [SI/s], of an automatic baseline
+  double bias = 0.0;          ///< [SI]
+};
+
+/// The noise model of one channel, and what it cannot hold. An automatic baseline has two: as the recordings give it to
+/// somebody who knows of no effect, and as it stands in the extended model, fitted together with the effects. A gain is
+/// the difference between these two.
 struct ChannelModel {
   std::string channel;
   Unit unit;
   Quantity quantity = Quantity::AngularRate;
-  SlowModel base;      ///< N^2 and the slow processes without the effects
-  double drift = 0.0;  ///< [SI/s], of an automatic baseline
-  double bias = 0.0;   ///< [SI]
+  ChannelBase alone;   ///< no effect is known
+  ChannelBase beside;  ///< beside the effects found
   bool given = false;
   Model given_processes;  ///< of a given baseline, as they came
 };

@@ -2,6 +2,7 @@
 
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/constant_offset.hpp"
+#include "core/process/quantization_noise.hpp"
 #include "core/process/registry.hpp"
 #include "core/process/white_noise.hpp"
 
@@ -193,12 +194,15 @@ Status check_processes(const Baseline& baseline) {
   return status;
 }
 
-Model noise_processes(const ChannelModel& model) {
+Model noise_processes(const ChannelModel& model, const ChannelBase& base) {
   if (model.given) {
     return model.given_processes;
   }
-  Model list{{&registered<WhiteNoise>(), {std::sqrt(model.base.white)}}};
-  for (const SlowComponent& component : model.base.components) {
+  Model list{{&registered<WhiteNoise>(), {std::sqrt(base.noise.white)}}};
+  if (base.quantization > 0.0) {
+    list.push_back({&registered<QuantizationNoise>(), {std::sqrt(base.quantization)}});
+  }
+  for (const SlowComponent& component : base.noise.components) {
     if (component.kind != &constant_offset()) {
       list.push_back(component.process());
     }

@@ -43,7 +43,8 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
 /// that no law takes out (a sinusoid) and is what the cause adds, every value within its interval.
 [[nodiscard]] bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence);
 
-/// The processes of a channel's noise: as they were given, or as they were fitted. Constant offsets are none of them.
-[[nodiscard]] Model noise_processes(const ChannelModel& model);
+/// The processes of a channel's noise: as they were given, or as they were fitted in `base`, one of the model's own.
+/// Constant offsets are none of them.
+[[nodiscard]] Model noise_processes(const ChannelModel& model, const ChannelBase& base);
 
 }  // namespace driftlab::investigate

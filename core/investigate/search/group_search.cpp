@@ -1,10 +1,12 @@
 #include "core/investigate/search/group_search.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/search/base_quantization.hpp"
 #include "core/investigate/search/candidates.hpp"
 #include "core/investigate/search/fact_gain.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/hold_out.hpp"
+#include "core/investigate/search/joint_refit.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/search/take_out.hpp"
 #include "core/investigate/search/thresholds.hpp"
@@ -42,6 +44,9 @@ class GroupSearch {
     if (!stopped()) {
       control_.report("noise of " + group_.column, 0.9);
       search_full_rate();
+    }
+    if (!given_ && !stopped() && shares_in_noise(outcome_.found)) {
+      outcome_.model.beside.noise = base_of(refit_jointly(outcome_.after, mask_, quantization_, outcome_.found, control_.stop));
     }
     for (Evidence& evidence : outcome_.found) {
       evidence.group = index_;
@@ -125,7 +130,9 @@ class GroupSearch {
     outcome_.examined = outcome_.found;
   }
 
-  [[nodiscard]] FullRate full_rate(const SlowSearch& search, bool whiten_further) const {
+  /// `error[r]`, over the grid of member r, less what the search has accepted, under the null of the search.
+  [[nodiscard]] FullRate full_rate(const SlowSearch& search, const std::vector<std::vector<double>>& error,
+                                   bool whiten_further) const {
     FullRateOptions options;
     options.given = given_.has_value();
     options.whiten_further = whiten_further;
@@ -139,12 +146,13 @@ class GroupSearch {
         options.given = false;
         options.whiten_further = true;
       }
-      return look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+      return look_at_full_rate(study_, group_, model, search.residuals(error), mask_, options);
     }
     options.whiten_further = false;
-    FullRate data = look_at_full_rate(study_, group_, model, search.residuals(error_), mask_, options);
+    options.quantization = quantization_;
+    FullRate data = look_at_full_rate(study_, group_, model, search.residuals(error), mask_, options);
     model.white = white_at_full_rate(data);
-    options.whiten_further = whiten_further;
+    options.whiten_further = whiten_further || quantization_ > 0.0;
     return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }
 
@@ -170,16 +178,22 @@ class GroupSearch {
     search.set_data(error_, mask_);
     search.fit_null();
     std::vector<Evidence> slow_found;
+    bool levels_in_question = false;
     for (int round = 0; round < kRounds && !stopped(); ++round) {
       control_.report("search " + group_.column, 0.1 + 0.6 * round / kRounds);
-      FullRate data = full_rate(search, false);
-      if (round == 0) {
+      FullRate data = full_rate(search, error_, false);
+      if (round == 0 || levels_in_question) {
+        levels_in_question = false;
         const std::vector<double> scale = white_scale_of(data);
         if (!scale.empty()) {
           search.set_white_scale(scale);
           search.fit_null();
-          data = full_rate(search, false);
+          data = full_rate(search, error_, false);
         }
+      }
+      if (round == 0 && !given_) {
+        quantization_ = quantization_of_base(data);
+        data = quantization_ > 0.0 ? full_rate(search, error_, false) : std::move(data);
       }
       std::vector<Evidence> candidates = lines_in(data);
       // A line far above anything slow could be is taken before the slower search is made.
@@ -190,8 +204,9 @@ class GroupSearch {
           candidates.push_back(std::move(evidence));
         }
       }
-      keep_best(outcome_.examined, candidates);
       std::optional<Evidence> winner = choose(data, candidates);
+      keep_best(outcome_.examined, candidates);
+      keep_last(outcome_.remaining, candidates);
       if (!winner) {
         break;
       }
@@ -207,7 +222,9 @@ class GroupSearch {
         search.fit_null();
         outcome_.found.push_back(*std::move(winner));
       } else {
+        const bool had_levels = search.has_white_scale();
         search.accept(*winner);
+        levels_in_question = had_levels && !search.has_white_scale();
         slow_found.push_back(*std::move(winner));
       }
     }
@@ -220,6 +237,8 @@ class GroupSearch {
       search.hold_out(slow_found[i]);
       if (slow_found[i].heldout_gain <= 0.0) {
         search.reject(slow_found[i]);
+        search.fit_null();
+        refuse(*slow_found[i].cause);
         slow_found.erase(slow_found.begin() + static_cast<std::ptrdiff_t>(i));
       }
     }
@@ -229,7 +248,7 @@ class GroupSearch {
       const bool shared = evidence.members.size() == group_.members.size() && !evidence.parameters.empty();
       const MeanEffect* const mean = evidence.cause->as<MeanEffect>();
       if (!given_ && shared && mean != nullptr && mean->drift_of_baseline) {
-        outcome_.model.drift = evidence.parameters[0].estimate.value;
+        outcome_.model.beside.drift = evidence.parameters[0].estimate.value;
       } else {
         outcome_.found.push_back(std::move(evidence));
       }
@@ -238,36 +257,65 @@ class GroupSearch {
     model.channel = group_.column;
     model.unit = group_.unit;
     model.quantity = group_.role.quantity;
-    outcome_.after = full_rate(search, !given_);
-    outcome_.before = outcome_.after;
-    if (!outcome_.found.empty()) {  // the recordings as they came, under the base alone
-      std::vector<std::vector<double>> whole;
-      for (const auto& member : group_.members) {
-        whole.push_back(member.channel->error);
-      }
-      if (given_) {
-        take_given_means(study_.baseline, group_, whole);
-      }
-      std::vector<std::vector<double>> raw;
-      for (std::size_t r = 0; r < whole.size(); ++r) {
-        const StudyRecording& recording = *group_.members[r].recording;
-        raw.emplace_back(whole[r].begin() + static_cast<std::ptrdiff_t>(recording.begin),
-                         whole[r].begin() + static_cast<std::ptrdiff_t>(recording.end));
-        for (double& v : raw.back()) {
-          v -= search.null_fit().amplitude[0];
-        }
-      }
-      FullRateOptions options;
-      options.given = given_.has_value();
-      options.whiten_further = !given_;
-      const SlowModel base = outcome_.after.model;
-      outcome_.before = look_at_full_rate(study_, group_, base, std::move(raw), mask_, options);
-    }
+    outcome_.after = full_rate(search, error_, !given_);
     model.given = given_.has_value();
     model.given_processes = given_ ? processes_of(study_.baseline, group_) : Model{};
-    model.base = search.base();
-    model.base.white = outcome_.after.model.white;
-    model.bias = search.null_fit().amplitude[0];
+    model.beside.noise = search.base();
+    model.beside.noise.white = outcome_.after.model.white;
+    model.beside.bias = search.null_fit().amplitude[0];
+    model.beside.quantization = given_ ? 0.0 : quantization_;
+    settle_alone(search);
+  }
+
+  /// What gains nothing on data it was not fitted to has not been seen.
+  void refuse(const Cause& cause) {
+    for (std::vector<Evidence>* const list : {&outcome_.examined, &outcome_.remaining}) {
+      for (Evidence& evidence : *list) {
+        evidence.score = evidence.cause == &cause ? std::min(0.0, evidence.score) : evidence.score;
+      }
+    }
+  }
+
+  /// The base of somebody who knows of no effect, fitted to the recordings as they came, and they under it. The search
+  /// is at its end: it forgets what it has accepted.
+  void settle_alone(SlowSearch& search) {
+    ChannelModel& model = outcome_.model;
+    model.alone = model.beside;
+    if (outcome_.found.empty()) {
+      outcome_.before = outcome_.after;
+      return;
+    }
+    std::vector<std::vector<double>> whole;
+    for (const auto& member : group_.members) {
+      whole.push_back(member.channel->error);
+    }
+    if (given_) {
+      take_given_means(study_.baseline, group_, whole);
+    }
+    search.set_data(whole, mask_);
+    bool any = false;
+    for (const Evidence& evidence : outcome_.found) {
+      if (evidence.cause->is_slow()) {
+        search.reject(evidence);
+      }
+      any = any || evidence.cause->is_slow() || evidence.cause->as<SpectralLine>() != nullptr;
+    }
+    if (any) {
+      search.fit_null();
+    }
+    outcome_.before = full_rate(search, whole, !given_);
+    model.alone.noise = search.base();
+    model.alone.noise.white = outcome_.before.model.white;
+    model.alone.bias = search.null_fit().amplitude[0];
+  }
+
+  /// A noise model without the slow processes that are findings, which stand last in it.
+  [[nodiscard]] SlowModel base_of(SlowModel noise) const {
+    const auto extras = static_cast<std::size_t>(
+        std::count_if(outcome_.found.begin(), outcome_.found.end(),
+                      [](const Evidence& evidence) { return evidence.cause->as<SlowNoise>() != nullptr; }));
+    noise.components.resize(noise.components.size() - std::min(extras, noise.components.size()));
+    return noise;
   }
 
   /// Sinusoids in the innovations, each with its cause.
@@ -301,36 +349,45 @@ class GroupSearch {
         take_band_limit(data, cause);
       }
     }
-    bool tails_known = false;
-    for (int round = 0; round < 2; ++round) {
-      std::vector<Evidence> candidates;
-      for (const Cause& cause : cause_registry()) {
-        const bool tails = cause.as<NoiseTails>() != nullptr;
-        const bool wanted = tails || cause.as<NoiseLevel>() != nullptr || cause.as<DifferencedNoise>() != nullptr;
-        const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
-        if (!wanted || (tails && tails_known) || looks_like_fact(cause) || lacking || stopped()) {
-          continue;
-        }
-        for (Evidence& evidence : examine_of(cause)(data)) {
-          evidence.cause = &cause;
-          candidates.push_back(std::move(evidence));
-        }
-      }
-      if (round == 0) {
+    constexpr int kMost = 2;
+    for (int found = 0;; ++found) {
+      std::vector<Evidence> candidates = noise_candidates(data);
+      const std::optional<Evidence> winner = choose(data, candidates);
+      if (found == 0) {
         keep_best(outcome_.examined, candidates);
       }
-      const std::optional<Evidence> winner = choose(data, candidates);
-      if (!winner) {
+      keep_last(outcome_.remaining, candidates);
+      if (!winner || found == kMost || whitened_) {
         break;
       }
       outcome_.found.push_back(*winner);
       take_out(data, *winner);
-      tails_known = tails_known || winner->cause->as<NoiseTails>() != nullptr;
       if (winner->cause->as<DifferencedNoise>() != nullptr) {
         whiten_quantization(data, *winner);
-        break;
+        whitened_ = true;
       }
     }
+  }
+
+  /// What can be said of the noise of single samples; tails only until some are found.
+  [[nodiscard]] std::vector<Evidence> noise_candidates(const FullRate& data) const {
+    const bool tails_known =
+        std::any_of(outcome_.found.begin(), outcome_.found.end(),
+                    [](const Evidence& evidence) { return evidence.cause->as<NoiseTails>() != nullptr; });
+    std::vector<Evidence> candidates;
+    for (const Cause& cause : cause_registry()) {
+      const bool tails = cause.as<NoiseTails>() != nullptr;
+      const bool wanted = tails || cause.as<NoiseLevel>() != nullptr || cause.as<DifferencedNoise>() != nullptr;
+      const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
+      if (!wanted || (tails && tails_known) || looks_like_fact(cause) || lacking || stopped()) {
+        continue;
+      }
+      for (Evidence& evidence : examine_of(cause)(data)) {
+        evidence.cause = &cause;
+        candidates.push_back(std::move(evidence));
+      }
+    }
+    return candidates;
   }
 
   /// Differenced noise that all recordings share is whitened with the model, so that the checks see what it leaves.
@@ -340,7 +397,7 @@ class GroupSearch {
     }
     FullRateOptions options;
     options.lattice_step = lattice_step_;
-    options.quantization = found.shape;
+    options.quantization = quantization_ + found.shape;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }
@@ -366,7 +423,7 @@ class GroupSearch {
     const std::vector<Evidence> found = limit.examine(without);
     if (!found.empty() && found[0].score > kThreshold) {
       data = std::move(without);
-      outcome_.model.base = plain;
+      outcome_.model.beside.noise = base_of(plain);
     }
   }
 
@@ -379,16 +436,18 @@ class GroupSearch {
     }
     found[0].cause = &cause;
     keep_best(outcome_.examined, found);
+    keep_last(outcome_.remaining, found);
     if (found[0].score < kThreshold) {
       return;
     }
     hold_out(data, found[0]);
     outcome_.found.push_back(found[0]);
     if (!given_) {
-      outcome_.model.base.white = white_below(data, found[0].shape);
+      outcome_.model.beside.noise.white = white_below(data, found[0].shape);
     }
     FullRateOptions options;
     options.given = false;  // the level behind the filter is the autoregression's
+    options.quantization = given_ ? 0.0 : quantization_;
     options.lattice_step = lattice_step_;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
@@ -406,6 +465,7 @@ class GroupSearch {
   double lattice_step_ = 0.0;
   double given_white_ = 0.0;
   double quantization_ = 0.0;
+  bool whitened_ = false;  ///< differenced noise that was found is part of the model that whitens
   GroupOutcome& outcome_;
 };
 

@@ -1,6 +1,7 @@
 /// One look at a group: slow processes of their own, and the mean effects that screening proposes.
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/search/slow_search.hpp"
+#include "core/investigate/search/thresholds.hpp"
 #include "core/investigate/slow/screening.hpp"
 #include "core/process/constant_offset.hpp"
 
@@ -9,6 +10,8 @@
 
 namespace driftlab::investigate {
 namespace {
+
+constexpr double kLevelCost = 3.0;  ///< log likelihood that the free level of one recording has to gain
 
 constexpr std::size_t kJointFits = 7;  ///< candidates that are fitted jointly with the base
 
@@ -49,6 +52,20 @@ SlowFit SlowSearch::fit_extra(const ProcessKind& kind, const std::vector<std::si
     }
   }
   return fit_slow(series_, columns, best, freedom());
+}
+
+SlowFit SlowSearch::fit_extra_freely(const ProcessKind& kind, const std::vector<std::size_t>& scope,
+                                     const SlowModel& base, const BlockColumns& columns) const {
+  SlowFit fit = fit_extra(kind, scope, base, columns);
+  if (base.white_scale.empty()) {
+    return fit;
+  }
+  SlowModel level = base;
+  level.white_scale.clear();
+  SlowFit without = fit_extra(kind, scope, level, columns);
+  // Levels were chosen one by one at full rate: each must be worth its freedom.
+  const auto levels = static_cast<double>(base.white_scale.size());
+  return without.log_likelihood + kLevelCost * levels > fit.log_likelihood ? without : fit;
 }
 
 bool SlowSearch::has_extra(const Cause& cause, const std::vector<std::size_t>& scope) const {
@@ -107,7 +124,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
   parallel_for(threads_, jobs.size(), [&](std::size_t i) {
     const Job& job = jobs[i];
     const ProcessKind& kind = *job.cause->as<SlowNoise>()->kind;
-    const SlowFit fit = fit_extra(kind, job.scope, job.base, columns);
+    const SlowFit fit = fit_extra_freely(kind, job.scope, job.base, columns);
     SlowModel base = fit.model;
     const SlowComponent extra = base.components.back();
     base.components.pop_back();
@@ -116,6 +133,10 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
     evidence.members = job.scope;
     evidence.freedom = kind.has_shape() ? 2.0 : 1.0;
     evidence.gain = 2.0 * fit.log_likelihood - cost(base) - null_score_;
+    // What needs no nuisance of levels, and is far better than it, is compared with the model that was given.
+    if (given_ && fit.model.white_scale.empty() && evidence.gain > kThreshold) {
+      evidence.gain += null_score_ - exact_score_;
+    }
     evidence.score = evidence.gain - cost_of(kind) - choice_penalty(static_cast<double>(job.scopes));
     evidence.shape = extra.beta;
   });

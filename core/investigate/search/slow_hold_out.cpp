@@ -1,6 +1,9 @@
 /// Held-out gains of what the slow search has accepted.
 #include "core/investigate/search/slow_search.hpp"
 #include "core/process/dense.hpp"
+#include "core/process/gauss_markov.hpp"
+#include "core/process/random_walk.hpp"
+#include "core/process/registry.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -33,9 +36,9 @@ Eigen::MatrixXd fold_gram(const BlockColumns& whitened, std::size_t fold) {
   return gram;
 }
 
-/// Residual square of `test` at amplitudes fitted to `train`, over the first `width` columns.
-double tested(const Eigen::MatrixXd& train, const Eigen::MatrixXd& test, Eigen::Index width) {
-  const Eigen::Index p = width - 1;
+/// Residual square of `test` at amplitudes fitted to `train`.
+double tested(const Eigen::MatrixXd& train, const Eigen::MatrixXd& test) {
+  const Eigen::Index p = train.rows() - 1;
   Eigen::MatrixXd normal = train.block(1, 1, p, p);
   normal.diagonal() *= 1.0 + 1e-9;
   normal.diagonal().array() += 1e-300;
@@ -70,40 +73,37 @@ void SlowSearch::hold_out(Evidence& evidence) const {
   }
 }
 
-/// What the last `mine` columns gain in each fold of the whitened rows, fitted to the other.
-double SlowSearch::gain_across_folds(const BlockColumns& columns, const SlowModel& noise, int mine) const {
+double SlowSearch::score_across_folds(const BlockColumns& columns, const SlowModel& noise) const {
   const Whitened whitened = whiten(series_, noise, columns);
   const Eigen::MatrixXd even = fold_gram(whitened.columns, 0);
   const Eigen::MatrixXd odd = fold_gram(whitened.columns, 1);
-  const auto full = static_cast<Eigen::Index>(columns.width);
-  const Eigen::Index without = full - mine;
-  return 0.5 * (tested(even, odd, without) - tested(even, odd, full)) +
-         0.5 * (tested(odd, even, without) - tested(odd, even, full));
+  return -0.5 * (tested(even, odd) + tested(odd, even) + whitened.sum_log_var);
 }
 
-/// A gain goes as one over the noise level, whose estimate scatters: with s^2 the variance of the logarithm of the gain
-/// that the uncertain noise parameters cause, its mean is too large by exp(s^2), of which half is the curvature of 1/x
-/// and half the bias of a maximum-likelihood level. Parameters that the data hardly know count with one unit of the
-/// logarithm.
-double SlowSearch::overstated(const BlockColumns& columns, const SlowFit& noise, int mine, double gain) const {
-  if (noise.parameters.empty() || noise.information.rows() == 0 || !(gain > 0.0)) {
-    return 1.0;
+SlowModel SlowSearch::noise_without(const BlockColumns& columns) const {
+  if (given_) {
+    return null_.model;
   }
-  constexpr double kStep = 0.1;
-  Eigen::VectorXd slope(static_cast<Eigen::Index>(noise.parameters.size()));
-  for (std::size_t k = 0; k < noise.parameters.size(); ++k) {
-    SlowModel moved = noise.model;
-    const SlowParameter& parameter = noise.parameters[k];
-    double& value = parameter.component == SlowParameter::kWhite ? moved.white
-                    : parameter.beta                             ? moved.components[parameter.component].beta
-                                                                 : moved.components[parameter.component].level;
-    value *= std::exp(kStep);
-    const double there = gain_across_folds(columns, moved, mine);
-    slope[static_cast<Eigen::Index>(k)] = there > 0.0 ? std::log(there / gain) / kStep : 0.0;
+  // Whatever a mean effect is, a slow process can follow it: both kinds are offered a large share of the variance.
+  const double level = null_.model.white / series_.block_s();
+  std::vector<SlowModel> starts{widest_base(columns)};
+  if (extra_.empty()) {
+    SlowModel walking = null_.model;
+    walking.components.push_back(
+        {&registered<RandomWalk>(), first_level(registered<RandomWalk>(), 0.3, 0.3, level), 0.0, {}});
+    SlowModel wandering = null_.model;
+    wandering.components.push_back({&registered<GaussMarkov>(), 0.3 * level, 2.5 / series_.longest_s(), {}});
+    starts.push_back(std::move(walking));
+    starts.push_back(std::move(wandering));
   }
-  const Eigen::MatrixXd information =
-      noise.information + Eigen::MatrixXd::Identity(noise.information.rows(), noise.information.cols());
-  return std::exp(std::min(1.0, slope.dot(information.ldlt().solve(slope))));
+  SlowFit best;
+  for (const SlowModel& start : starts) {
+    SlowFit fit = fit_slow(series_, columns, start, freedom());
+    if (fit.log_likelihood > best.log_likelihood) {
+      best = std::move(fit);
+    }
+  }
+  return best.model;
 }
 
 void SlowSearch::hold_out_mean(Evidence& evidence) const {
@@ -121,13 +121,11 @@ void SlowSearch::hold_out_mean(Evidence& evidence) const {
       order.push_back(regressor);
     }
   }
+  const BlockColumns without = columns_with(order);
   order.push_back(mine);
-  const BlockColumns columns = columns_with(order);
-  const SlowFit noise = given_ ? null_ : fit_slow(series_, columns, widest_base(columns), freedom());
-  evidence.heldout_gain = gain_across_folds(columns, noise.model, mine.columns);
-  if (!given_) {
-    evidence.heldout_gain /= overstated(columns, noise, mine.columns, evidence.heldout_gain);
-  }
+  const BlockColumns with = columns_with(order);
+  const SlowModel noise = given_ ? null_.model : fit_slow(series_, with, widest_base(with), freedom()).model;
+  evidence.heldout_gain = score_across_folds(with, noise) - score_across_folds(without, noise_without(without));
   std::size_t used = 0;
   for (const BlockRecording& recording : series_.recordings) {
     used += static_cast<std::size_t>(
@@ -177,12 +175,16 @@ void SlowSearch::hold_out_slow(Evidence& evidence) const {
     SlowModel start = null_.model;
     std::rotate(start.components.begin() + static_cast<std::ptrdiff_t>(component),
                 start.components.begin() + static_cast<std::ptrdiff_t>(component) + 1, start.components.end());
-    SlowFreedom last;
-    last.white = false;
-    last.first_free = start.components.size() - 1;
+    SlowFreedom last = freedom();
+    if (given_) {
+      last.first_free = start.components.size() - 1;
+    }
     const SlowModel extended = fit_slow(train, train_columns, start, last).model;
     SlowModel plain = extended;
     plain.components.pop_back();
+    if (!given_) {  // the base follows the recordings as far as it can without the process
+      plain = fit_slow(train, train_columns, plain, freedom()).model;
+    }
     gain += evaluate_slow(test, test_columns, extended).log_likelihood -
             evaluate_slow(test, test_columns, plain).log_likelihood;
     samples += static_cast<double>(test.blocks() * test.block);

@@ -275,6 +275,12 @@ const SlowFit& SlowSearch::fit_null() {
   }
   null_ = orders_[best];
   null_score_ = 2.0 * null_.log_likelihood - cost(null_.model);
+  exact_score_ = null_score_;
+  if (given_ && !white_scale_.empty()) {
+    SlowModel exact = null_.model;
+    exact.white_scale.clear();
+    exact_score_ = 2.0 * fit_slow(series_, columns, exact, freedom()).log_likelihood;
+  }
   base_count_ = null_.model.components.size() - extra_.size();
   if (!extra_.empty()) {
     extra_.assign(null_.model.components.end() - static_cast<std::ptrdiff_t>(extra_.size()),
@@ -299,7 +305,7 @@ void SlowSearch::accept(const Evidence& evidence) {
   const BlockColumns columns = columns_with(accepted_);
   SlowFit best;
   for (const SlowFit& order : orders_) {
-    SlowFit fit = fit_extra(*evidence.cause->as<SlowNoise>()->kind, evidence.members, order.model, columns);
+    SlowFit fit = fit_extra_freely(*evidence.cause->as<SlowNoise>()->kind, evidence.members, order.model, columns);
     SlowModel base = fit.model;
     base.components.pop_back();
     SlowModel best_base = best.model;
@@ -310,6 +316,7 @@ void SlowSearch::accept(const Evidence& evidence) {
       best = std::move(fit);
     }
   }
+  white_scale_ = best.model.white_scale;
   extra_.push_back(best.model.components.back());
   extra_cause_.push_back(evidence.cause);
   null_ = std::move(best);
@@ -327,7 +334,6 @@ void SlowSearch::reject(const Evidence& evidence) {
     extra_.erase(extra_.begin() + at);
     extra_cause_.erase(it);
   }
-  fit_null();
 }
 
 std::optional<std::size_t> SlowSearch::regressor_of(const Evidence& evidence) const {

@@ -48,6 +48,7 @@ class SlowSearch {
 
   /// Level of the white part per recording relative to the common one (nuisance), estimated at higher frequencies.
   void set_white_scale(std::vector<double> scale);
+  [[nodiscard]] bool has_white_scale() const { return !white_scale_.empty(); }
 
   /// The best base alone (with what has been accepted): also the start of the next `examine`.
   const SlowFit& fit_null();
@@ -59,7 +60,7 @@ class SlowSearch {
   /// Makes a found effect part of the null.
   void accept(const Evidence& evidence);
 
-  /// Takes an accepted effect out of the null again.
+  /// Takes an accepted effect out of the null again, which is to be fitted after that.
   void reject(const Evidence& evidence);
 
   /// Parameters with intervals of an accepted effect under the present null.
@@ -114,14 +115,20 @@ class SlowSearch {
   [[nodiscard]] double first_level(const ProcessKind& kind, double share, double gathered, double level) const;
   [[nodiscard]] SlowFit fit_extra(const ProcessKind& kind, const std::vector<std::size_t>& scope, const SlowModel& base,
                                   const BlockColumns& columns) const;
+  /// The same; where the levels of the recordings are a nuisance, once with them and once without, for what seems a
+  /// level may be the process itself. The better of the two, each free level at its cost.
+  [[nodiscard]] SlowFit fit_extra_freely(const ProcessKind& kind, const std::vector<std::size_t>& scope,
+                                         const SlowModel& base, const BlockColumns& columns) const;
   [[nodiscard]] double cost(const SlowModel& model) const;
   [[nodiscard]] SlowFreedom freedom() const;
   void refine_shape(Regressor& regressor, const SlowModel& model) const;
   void describe_mean(Evidence& evidence) const;
   void describe_slow(Evidence& evidence) const;
   void hold_out_mean(Evidence& evidence) const;
-  [[nodiscard]] double gain_across_folds(const BlockColumns& columns, const SlowModel& noise, int mine) const;
-  [[nodiscard]] double overstated(const BlockColumns& columns, const SlowFit& noise, int mine, double gain) const;
+  /// Log likelihood of each fold at amplitudes fitted to the other, under a noise model as it stands.
+  [[nodiscard]] double score_across_folds(const BlockColumns& columns, const SlowModel& noise) const;
+  /// The noise that describes the recordings best without the effect, which it may imitate.
+  [[nodiscard]] SlowModel noise_without(const BlockColumns& columns) const;
   void hold_out_slow(Evidence& evidence) const;
   void place_step(Evidence& evidence) const;
   [[nodiscard]] SlowModel widest_base(const BlockColumns& columns) const;
@@ -142,6 +149,7 @@ class SlowSearch {
   SlowFit null_;
   std::vector<SlowFit> orders_;
   double null_score_ = 0.0;
+  double exact_score_ = 0.0;  ///< the same at a given white level, without the nuisance of levels
   std::size_t base_count_ = 0;  ///< components of null_ that belong to the base, before the extras
 };
 

@@ -1,7 +1,7 @@
 /// Studies that lack what an investigation needs: nothing is invented, and the report says what is missing.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/investigate.hpp"
-#include "core/investigate/report/explain.hpp"
+#include "core/investigate/report/page.hpp"
 #include "core/process/random.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,9 @@
 #include "core/investigate/report/explain.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/report/order.hpp"
+#include "core/investigate/report/page.hpp"
+#include "core/investigate/report/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -57,12 +60,61 @@ TEST(Explain, NoSentenceOfAPageHasTwoBlanksInARow) {
     std::istringstream lines(page);
     std::size_t findings = 0;
     for (std::string line; std::getline(lines, line);) {
-      EXPECT_EQ(line.find("  "), std::string::npos) << line;
+      const std::size_t text = line.find_first_not_of(' ');  // a list within a list is indented
+      EXPECT_TRUE(text == std::string::npos || line.find("  ", text) == std::string::npos) << line;
       EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
-      findings += line.find(". On samples it was not fitted to") != std::string::npos ? 1 : 0;
+      findings += line.find("dentified. The recordings") != std::string::npos ||
+                          line.find("mbiguous. The recordings") != std::string::npos
+                      ? 1
+                      : 0;
     }
     EXPECT_EQ(findings, report.findings.size());
   }
+}
+
+Finding of(const char* cause, double score, std::vector<std::string> channels) {
+  Finding finding;
+  finding.evidence.cause = find_cause(cause);
+  finding.evidence.score = score;
+  finding.channels = std::move(channels);
+  return finding;
+}
+
+/// A report began with a line of noise that was strong, and said on its third page that samples were missing.
+TEST(Order, ALaboratoryReadsFirstWhatItWouldActOnFirst) {
+  std::vector<Finding> findings{
+      of("output_resolution", 900.0, {"a/gx"}),  of("random_walk", 500.0, {"a/gz"}),
+      of("scale_factor_error", 20.0, {"a/gx"}),  of("temperature_bias", 30.0, {"a/gy"}),
+      of("scale_factor_error", 300.0, {"a/gz"}), of("reference_time_offset", 15.0, {"a/gz"}),
+      of("missing_samples", 40.0, {"a/gz"})};
+  put_in_order(findings);
+  std::vector<std::string> said;
+  for (const FindingGroup& group : groups_of(findings)) {
+    said.emplace_back(group.cause->name);
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"missing_samples", "reference_time_offset", "scale_factor_error",
+                                            "temperature_bias", "random_walk", "output_resolution"}));
+  EXPECT_EQ(findings[2].channels.front(), "a/gz") << "the stronger of two findings of one cause first";
+  EXPECT_EQ(groups_of(findings)[2].columns, (std::vector<std::string>{"gz", "gx"}));
+}
+
+TEST(Verdict, OneSentenceSaysWhatIsWrongAndWhatStillFails) {
+  Report report;
+  report.models.resize(1);
+  report.checks.resize(3);
+  EXPECT_EQ(verdict_of(report).sentence, "The recordings look like the simulation: none of 3 checks fails.");
+  EXPECT_EQ(verdict_of(report).level, VerdictLevel::Fine);
+  report.findings = {of("output_resolution", 900.0, {"a/gx"})};
+  EXPECT_EQ(verdict_of(report).level, VerdictLevel::Look) << "digits are no error";
+  report.findings.insert(report.findings.begin(), of("scale_factor_error", 300.0, {"a/gx", "b/gx"}));
+  report.failed_before = 2;
+  report.failed_after = 1;
+  report.unexplained.push_back({"gx", "Something is left.", {"a/gx.kurtosis"}});
+  const Verdict verdict = verdict_of(report);
+  EXPECT_EQ(verdict.level, VerdictLevel::Wrong);
+  EXPECT_EQ(verdict.sentence, "The simulation lacks " + std::string(find_cause("scale_factor_error")->title) +
+                                  " (gx); 1 check still fails (gx).");
+  EXPECT_EQ(verdict.details.back(), "Something is left.");
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ Report with_noise_alone(const char* column) {
   Report report;
   ChannelModel model;
   model.channel = column;
-  model.base.white = kNoise * kNoise;
+  model.alone.noise.white = kNoise * kNoise;
+  model.beside = model.alone;
   report.models.push_back(model);
   return report;
 }

@@ -37,7 +37,7 @@ std::vector<double> with_outliers(std::size_t count, double fraction, double mag
 
 InnovationHistogram histogram(std::vector<double> values) {
   const NoiseAtFullRate noise({std::move(values)});
-  return histogram_of(noise.data);
+  return histogram_of(noise.data, false);
 }
 
 double log_normal_density(double e, double variance) {
@@ -53,7 +53,7 @@ double log_student_density(double e, double nu) {
 TEST(Tails, AHistogramKeepsCountAndSquaresOfTheSamplesInUse) {
   NoiseAtFullRate noise({{0.01, -0.02, 3.0, -15.0, 4000.0, 2.0}});
   noise.data.used[0][5] = 0;
-  const InnovationHistogram h = histogram_of(noise.data);
+  const InnovationHistogram h = histogram_of(noise.data, false);
   EXPECT_EQ(h.samples, 5.0);
   EXPECT_DOUBLE_EQ(h.square, 0.0001 + 0.0004 + 9.0 + 225.0 + 1e6) << "what is beyond 1000 counts as 1000";
   double count = 0.0;

@@ -17,22 +17,19 @@ import {Measured} from './investigation/Measured';
 
 const MOST_BAR = 1000;
 
-// Grouped by cause, the strongest first.
+// Grouped by cause, in the order of the document: as a laboratory would act on them.
 function grouped(findings: readonly Finding[]): [string, Finding[]][] {
   const groups = new Map<string, Finding[]>();
   for (const finding of findings) groups.set(finding.cause, [...groups.get(finding.cause) ?? [], finding]);
-  const score = (list: Finding[]): number => Math.max(...list.map(finding => finding.score ?? 0));
-  return [...groups].map(([cause, list]) => [cause, [...list].sort((a, b) => (b.score ?? 0) - (a.score ?? 0))] as [string, Finding[]]).sort((a, b) => score(b[1]) - score(a[1]));
+  return [...groups];
 }
 
+// Investigations of before the summary have their sentence from what they hold.
 function sentence(found: Investigation): string {
-  const groups = grouped(found.findings);
+  if (found.summary) return found.summary.verdict;
   const {checks_failed_before: before, checks_failed_after: after} = found.gain;
-  if (groups.length === 0) return before === 0 ? `${found.checks.length} checks, none failed. The simulation agrees with these recordings.` : `${before} of ${found.checks.length} checks fail, and no listed cause explains them.`;
-  const lacks = listWords(groups.slice(0, 4).map(([cause, list]) => `${causeName(cause)}${list.length > 1 ? ` (${list.length} findings)` : ''}`));
-  const more = groups.length > 4 ? ` and ${countWord(groups.length - 4)} more` : '';
-  const still = after > before / 2 && after > 0 ? `${after} of ${before} failed checks still fail. ` : '';
-  return `${still}The simulation lacks ${lacks}${more}. Adding ${groups.length === 1 && groups[0]![1].length === 1 ? 'it' : 'them'} mends ${before === after ? 'none' : before - after} of ${before} failed checks out of ${found.checks.length}.`;
+  if (found.findings.length === 0) return before === 0 ? `${found.checks.length} checks, none failed. The simulation agrees with these recordings.` : `${before} of ${found.checks.length} checks fail, and no listed cause explains them.`;
+  return `The simulation lacks ${listWords(grouped(found.findings).map(([cause]) => causeName(cause)))}; ${after} of ${before} failed checks still fail.`;
 }
 
 function Size({name, quantity}: {name: string; quantity: Quantity}): JSX.Element {
@@ -50,7 +47,7 @@ function FindingRow({finding, names, total}: {finding: Finding; names: Map<strin
       <span class="nowrap" title="evidence; over 6 identifies"><svg width="90" height="8" aria-hidden="true"><rect x="0" y="1" width={Math.min(90, Math.log1p(Math.max(score, 0)) / Math.log1p(MOST_BAR) * 90)} height="5" fill="var(--model)" /></svg> {writeNumber(score, 3)}</span></div>
     <details><summary class="sec">{finding.status === 'ambiguous' && finding.alternatives.length > 0 ? `cannot be told from ${listWords(finding.alternatives.map(causeName))}` : 'explanation'}</summary>
       <p>{writeSentence(finding.explanation)}</p>{finding.next_measurement && <p class="sec">Next: {finding.next_measurement}</p>}
-      {finding.gain.heldout && <p class="u">held-out gain {writeNumber(finding.gain.log_score_per_sample)} nats a sample; misfit {writeNumber(finding.gain.misfit_before)} → {writeNumber(finding.gain.misfit_after)}</p>}</details>
+      {finding.gain.heldout && <p class="u">held-out gain {writeNumber(finding.gain.log_score_per_sample)} nats a sample{finding.gain.of_the_file ? ', of the digits and rows of the file' : ''}</p>}</details>
   </li>;
 }
 
@@ -71,8 +68,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
   const {gain} = found;
   const outage = gain.outage_error_m;
   const groups = grouped(found.findings);
-  const series = found.findings.flatMap(finding => finding.series ? [finding.series] : []);
-  const channels = [...new Map(series.map(one => [one.channel, one] as const)).values()];
+  const channels = found.figures ?? [];
   const shown = channels.find(one => one.channel === query.get('axis')) ?? channels[0];
   const title = `What the simulation gets wrong: ${device.data?.name ?? '…'}`;
   const table = (): void => save(`${found.id}-findings.csv`, 'text/csv', csvOf({heading: ['cause', 'status', 'channels', 'parameter', 'value', 'low', 'high', 'unit', 'score'], rows: found.findings.flatMap(finding => Object.entries(finding.parameters).map(([name, q]) => [finding.cause, finding.status, finding.channels.map(columnOf).join(' '), name, q.value, q.ci95?.[0] ?? null, q.ci95?.[1] ?? null, q.unit, finding.score ?? null]))}));
@@ -82,10 +78,10 @@ function Found({found}: {found: Investigation}): JSX.Element {
     <Head crumb={[['Investigations', '/investigations'], [device.data?.name ?? '…', device.data ? pageOf('devices', device.data.name) : null]]} title={title}
       facts={[plural(ids.size, 'recording'), `baseline ${found.baseline.processes.map(process => processName(process.process)).join(' + ')}`, writeWhen(found.created_at)]}
       actions={<>{found.model && <a class="btn" href={pageOf('models', found.model)}>Extended model</a>}<a class="btn" href={pageOf('jobs', found.job)}>Job</a><Report /></>} />
-    <p class="verdict">{sentence(found)}<small>{found.unexplained.map(one => writeSentence(one.explanation)).join(' ')} {causes > 0 ? `${capital(countWord(causes))} cause${causes === 1 ? '' : 's'} could not be examined with these recordings.` : ''}</small></p>
+    <p class="verdict">{sentence(found)}<small>{(found.summary?.details ?? found.unexplained.map(one => one.explanation)).map(writeSentence).join(' ')} {causes > 0 ? `${capital(countWord(causes))} cause${causes === 1 ? '' : 's'} could not be examined with these recordings.` : ''}</small></p>
     <section class="panel figures4">
       <div><span class="sec">failed checks, of {found.checks.length}</span><strong>{gain.checks_failed_before} → {gain.checks_failed_after}</strong><span class="u">5 % false alarms over all of them together</span></div>
-      <div><span class="sec">misfit, nats per sample</span><strong>{writeNumber(gain.misfit_before)} → {writeNumber(gain.misfit_after)}</strong><span class="u">held out where there was enough</span></div>
+      <div><span class="sec">misfit explained</span><strong>{typeof gain.explained === 'number' && found.findings.length > 0 ? `${Math.round(100 * gain.explained)} %` : '–'}</strong><span class="u">on samples the findings were not fitted to</span></div>
       <div><span class="sec">outage error, 10 s</span><strong>{outage.baseline === null ? '–' : `${writeNumber(outage.baseline, 2)} m → ${writeNumber(outage.adopted ?? outage.extended, 2)} m`}</strong><span class="u">{outage.baseline === null ? 'no axis of an inertial unit' : 'two outages, as each model predicts'}</span></div>
       <div><span class="sec">causes not examined</span><strong>{causes}</strong><span class="u">what the next recording decides, below</span></div>
     </section>

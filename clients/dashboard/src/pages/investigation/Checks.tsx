@@ -8,6 +8,7 @@ const TOP = 118;
 const UNCORRECTED = 0.05;
 
 function mended(check: Check, found: Investigation): boolean {
+  if (check.end) return check.end !== 'unexplained';
   return !found.unexplained.some(one => one.checks.includes(check.id)) && found.findings.some((finding: Finding) => finding.because.some(id => check.id === id || check.id.endsWith(id)));
 }
 
@@ -36,6 +37,6 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
         </g>;
       })}
     </svg></div>
-    <p class="note"><b style={{color: 'var(--robust)'}}>■</b> fails and no finding explains it · <b style={{color: 'var(--robust)'}}>□</b> a finding rests on it · ● p &lt; 0.05 but not after correction for {found.checks.length} checks · · agrees</p>
+    <p class="note"><b style={{color: 'var(--robust)'}}>■</b> fails and no finding explains it · <b style={{color: 'var(--robust)'}}>□</b> the findings mend it · ● p &lt; 0.05 but not after correction for {found.checks.length} checks · · agrees</p>
   </>;
 }

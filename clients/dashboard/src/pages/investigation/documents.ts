@@ -4,18 +4,19 @@ export interface Band { q025: Nullable; median: Nullable; q975: Nullable }
 export interface SeriesDocument {
   recording: string; channel: string; unit: string;
   wavelet: {scale_s: number[]; measured: Nullable; baseline: Band; remaining: Nullable; extended: Band};
-  spectrum: {f_hz: number[]; measured: Nullable; baseline: Nullable; remaining: Nullable};
+  spectrum: {f_hz: number[]; measured: Nullable; highest: Nullable; baseline: Band; chance: Nullable; remaining: Nullable; highest_remaining: Nullable};
   course: {time_s: number[]; error: Nullable; effect: Nullable};
 }
 export interface Finding {
   cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; channels: string[]; because: string[]; explanation: string; parameters: Record<string, Quantity>; score?: number | null;
-  gain: {log_score_per_sample: number | null; misfit_before: number | null; misfit_after: number | null; heldout: boolean}; next_measurement: string | null; series?: SeriesDocument;
+  gain: {log_score_per_sample: number | null; misfit_before: number | null; misfit_after: number | null; heldout: boolean; of_the_file?: boolean; explained?: number | null}; next_measurement: string | null;
 }
-export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean }
+export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean; failed_after?: boolean; end?: 'finding' | 'mended' | 'unexplained' | null }
 export interface Model { processes: {process: string; params: Record<string, Quantity>}[]; effects?: {cause: string; channels: string[]; params: Record<string, Quantity>}[] }
 export interface Investigation {
   study: string; id: string; job: string; device: string; baseline_model?: string; model?: string; created_at: string; baseline: Model; extended_model: Model; checks: Check[]; findings: Finding[];
-  gain: {misfit_before: number | null; misfit_after: number | null; checks_failed_before: number; checks_failed_after: number; outage_error_m: {baseline: number | null; extended: number | null; measured: number | null; adopted?: number | null; ci95?: {baseline?: Nullable; extended?: Nullable; adopted?: Nullable}; left_out?: string[]}};
+  summary?: {verdict: string; details: string[]; level: string}; figures?: SeriesDocument[];
+  gain: {misfit_before: number | null; misfit_after: number | null; checks_failed_before: number; checks_failed_after: number; explained?: number | null; outage_error_m: {baseline: number | null; extended: number | null; measured: number | null; adopted?: number | null; ci95?: {baseline?: Nullable; extended?: Nullable; adopted?: Nullable}; left_out?: string[]}};
   unexplained: {channel: string; explanation: string; checks: string[]}[]; not_examined?: {cause: string; channel: string; needs: string}[]; notes?: string[];
 }
 export interface InvestigationRow { id: string; job: string; device: string; study: string; created_at: string; findings: {cause: string; status: string; channels: string[]}[] }

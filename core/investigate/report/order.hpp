@@ -1,0 +1,31 @@
+#pragma once
+/// The order of findings, and those that say the same of several channels.
+///
+/// A laboratory acts on an error of the recording before it calibrates, and calibrates before it models noise; the
+/// digits of the file are worth knowing and no task. Findings therefore stand by concern (causes/cause.hpp), one cause
+/// after the other, the strongest first, and all findings of one cause together.
+#include "core/investigate/causes/cause.hpp"
+#include "core/investigate/report/report.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// Findings of one cause, which stand next to each other.
+struct FindingGroup {
+  const Cause* cause = nullptr;
+  std::vector<std::size_t> findings;  ///< places in the report's list
+  std::vector<std::string> columns;   ///< each once
+  bool ambiguous = false;             ///< all of them are
+};
+
+void put_in_order(std::vector<Finding>& findings);
+
+/// Of findings in order.
+[[nodiscard]] std::vector<FindingGroup> groups_of(const std::vector<Finding>& findings);
+
+[[nodiscard]] std::string_view name_of(Concern concern);
+
+}  // namespace driftlab::investigate
