@@ -7,6 +7,7 @@
   COMMAND(add_table)               \
   COMMAND(add_trends)              \
   COMMAND(add_investigate)         \
+  COMMAND(add_plan)                \
   COMMAND(add_simulate)            \
   COMMAND(add_calibrate)           \
   COMMAND(add_outages)             \
