@@ -107,7 +107,7 @@ GrowingRecording look_at_growth(std::span<const double> time_s, std::span<const 
 }
 
 std::optional<bool> lies_still(std::span<const double> time_s, std::span<const double> values, const Unit& unit) {
-  const double limit = unit.dimension == Dimension::AngularRate      ? kStillRate
+  const double limit = unit.dimension == Dimension::AngularRate     ? kStillRate
                        : unit.dimension == Dimension::SpecificForce ? kStillForce
                                                                     : 0.0;
   std::size_t first = time_s.size();

@@ -51,7 +51,8 @@ std::optional<RobustHistogram> robust_histogram(std::span<const double> values, 
     }
   }
   for (std::size_t i = 0; i < bins; ++i) {
-    result.gaussian.push_back(static_cast<double>(values.size()) * (below(result.edges[i + 1]) - below(result.edges[i])));
+    result.gaussian.push_back(static_cast<double>(values.size()) *
+                              (below(result.edges[i + 1]) - below(result.edges[i])));
   }
   return result;
 }

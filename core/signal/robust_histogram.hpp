@@ -13,8 +13,8 @@ namespace driftlab {
 
 struct RobustHistogram {
   double median = 0.0;
-  double sigma = 0.0;            ///< robust standard deviation [unit of the values]
-  std::vector<double> edges;     ///< of the bins, in robust standard deviations from the median; one more than counts
+  double sigma = 0.0;         ///< robust standard deviation [unit of the values]
+  std::vector<double> edges;  ///< of the bins, in robust standard deviations from the median; one more than counts
   std::vector<std::size_t> counts;
   std::vector<double> gaussian;  ///< expected in each bin
   std::size_t below = 0;         ///< values beyond the first edge

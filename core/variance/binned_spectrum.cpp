@@ -53,8 +53,7 @@ BinnedSpectrum binned_spectrum(std::span<const double> samples, double pivot, do
     return result;
   }
   const std::size_t length = fast_taper_samples(std::min(samples.size(), kLongestSegment));
-  const std::size_t segments =
-      samples.size() <= kLongestSegment ? 1 : std::min(kMostSegments, samples.size() / length);
+  const std::size_t segments = samples.size() <= kLongestSegment ? 1 : std::min(kMostSegments, samples.size() / length);
   const std::vector<double> power = mean_spectrum(samples, pivot, length, segments, control);
   if (power.empty()) {
     return result;

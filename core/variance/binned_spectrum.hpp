@@ -21,7 +21,7 @@ struct BinnedSpectrum {
   std::vector<double> frequency_hz;  ///< mean of each bin's Fourier frequencies, rising
   std::vector<double> density;       ///< two-sided [unit^2/Hz]
   std::vector<Interval> ci95;
-  std::vector<double> greatest;      ///< of the ordinates in the bin [unit^2/Hz]
+  std::vector<double> greatest;  ///< of the ordinates in the bin [unit^2/Hz]
   std::size_t segments = 0;
   std::size_t segment_samples = 0;
 };

@@ -1,9 +1,9 @@
 #pragma once
 /// The eigenspectra of a record under sine tapers, from one transform.
 ///
-/// With v_k(t) = sqrt(2/(n + 1)) sin(pi k t/(n + 1)), k = 1 .. 5 (Riedel and Sidorenko 1995), and X the transform of the
-/// record padded to 2 (n + 1) points, S_k(f_i) ~ |X(2i - k) - X(2i + k)|^2 at the Fourier frequencies f_i = i/((n + 1)
-/// dt). Their leakage falls as f^-4.
+/// With v_k(t) = sqrt(2/(n + 1)) sin(pi k t/(n + 1)), k = 1 .. 5 (Riedel and Sidorenko 1995), and X the transform of
+/// the record padded to 2 (n + 1) points, S_k(f_i) ~ |X(2i - k) - X(2i + k)|^2 at the Fourier frequencies f_i = i/((n +
+/// 1) dt). Their leakage falls as f^-4.
 #include <complex>
 #include <cstddef>
 #include <span>

@@ -23,8 +23,8 @@ class CellSpectrum {
   CellSpectrum(std::size_t length, double pivot, double dt_s)
       : pivot_(pivot), dt_s_(dt_s), hann_(length), windowed_(length), half_(length / 2 + 1) {
     for (std::size_t t = 0; t < length; ++t) {
-      hann_[t] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(t) + 0.5) /
-                                      static_cast<double>(length));
+      hann_[t] =
+          0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(t) + 0.5) / static_cast<double>(length));
       energy_ += hann_[t] * hann_[t];
     }
     fft_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
