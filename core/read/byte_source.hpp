@@ -30,8 +30,15 @@ struct DecodeLimits {
   std::size_t max_line_bytes = std::size_t{1} << 20;            ///< one line of a text format
   std::size_t max_columns = 1024;
   std::size_t max_name_bytes = 256;  ///< one column name
+  /// Columns written = min(8 * max_expanded_bytes, columns_allowance + columns_ratio * input size). A text of one digit
+  /// a cell becomes four times as large, packed counts of one bit 64 times, and whatever a compression adds to that.
+  std::uint64_t columns_allowance = std::uint64_t{32} << 30;
+  std::uint64_t columns_ratio = 1600;
+  std::size_t max_notes = 64;         ///< sentences about the file; the rest is counted
+  std::size_t max_note_bytes = 1024;  ///< one such sentence
 
   [[nodiscard]] std::uint64_t expanded_budget(std::uint64_t compressed_bytes) const;
+  [[nodiscard]] std::uint64_t columns_budget(std::uint64_t input_bytes) const;
 };
 
 /// Delivers bytes in order. Not thread safe.

@@ -13,8 +13,12 @@ namespace {
 /// Passes on to another sink; counts rows, reports progress and stops when asked, so that no format has to.
 class WatchingSink final : public ColumnSink {
  public:
-  WatchingSink(ColumnSink& next, const ByteSource& source, const RunControl& control)
-      : next_(next), source_(source), control_(control) {}
+  WatchingSink(ColumnSink& next, const ByteSource& source, const DecodeLimits& limits, const RunControl& control)
+      : next_(next),
+        source_(source),
+        limits_(limits),
+        budget_(limits.columns_budget(source.input_size())),
+        control_(control) {}
 
   Status begin(const ColumnLayout& layout) override {
     std::set<std::string_view> seen;
@@ -30,22 +34,43 @@ class WatchingSink final : public ColumnSink {
   }
   Status rows(std::span<const double> values) override {
     decoded_.rows += values.size() / decoded_.names.size();
-    auto status = watch();
+    auto status = watch(values.size());
     return status ? next_.rows(values) : status;
   }
   Status column(std::size_t index, std::span<const double> values) override {
     decoded_.rows += index == 0 ? values.size() : 0;
-    auto status = watch();
+    auto status = watch(values.size());
     return status ? next_.column(index, values) : status;
   }
   void note(std::string sentence) override {
+    if (decoded_.notes.size() >= limits_.max_notes) {
+      ++notes_left_out_;
+      return;
+    }
+    if (sentence.size() > limits_.max_note_bytes) {
+      sentence.resize(limits_.max_note_bytes);
+      sentence += "...";
+    }
     decoded_.notes.push_back(sentence);
     next_.note(std::move(sentence));
+  }
+  /// What was decoded, once everything was.
+  [[nodiscard]] Decoded finished() {
+    if (notes_left_out_ > 0) {
+      decoded_.notes.push_back("There are " + std::to_string(notes_left_out_) + " more notes of this kind.");
+    }
+    return std::move(decoded_);
   }
   [[nodiscard]] Decoded& decoded() { return decoded_; }
 
  private:
-  Status watch() {
+  Status watch(std::size_t values) {
+    budget_used_ += values * sizeof(double);
+    if (budget_used_ > budget_) {
+      return fail(ErrorCode::DecompressionLimit, "The columns of this file of " + std::to_string(source_.input_size()) +
+                                                     " bytes take more than the " + std::to_string(budget_) +
+                                                     " bytes that it may become.");
+    }
     if (control_.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
     }
@@ -55,6 +80,10 @@ class WatchingSink final : public ColumnSink {
 
   ColumnSink& next_;
   const ByteSource& source_;
+  const DecodeLimits& limits_;
+  std::uint64_t budget_;  ///< bytes of columns
+  std::uint64_t budget_used_ = 0;
+  std::size_t notes_left_out_ = 0;
   const RunControl& control_;
   Decoded decoded_;
 };
@@ -103,13 +132,13 @@ class FileSink final : public ColumnSink {
 Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_ptr<ByteReader> nothing,
                               ColumnSink& sink, const DecodeLimits& limits, const RunControl& control) {
   const ByteSource source(std::move(nothing));
-  WatchingSink watching(sink, source, control);
+  WatchingSink watching(sink, source, limits, control);
   if (auto status = decode_folder(folder, limits, watching, control); !status) {
     return fail(status.error());
   }
   watching.decoded().format = "phone_folder";
   control.report("decode", 1.0);
-  return std::move(watching.decoded());
+  return watching.finished();
 }
 
 }  // namespace
@@ -145,14 +174,14 @@ Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& si
     const std::string looks = describe_unknown(seen);
     return fail(ErrorCode::UnsupportedFormat, "This looks like " + looks + ".", {{"looks_like", looks}});
   }
-  WatchingSink watching(sink, source, control);
+  WatchingSink watching(sink, source, limits, control);
   if (auto status = format->decode(source, limits, watching, control); !status) {
     return fail(status.error());
   }
   watching.decoded().format = format->name;
   watching.decoded().compression = compression;
   control.report("decode", 1.0);
-  return std::move(watching.decoded());
+  return watching.finished();
 }
 
 Result<Decoded> decode_file(const std::filesystem::path& input, const std::filesystem::path& output,

@@ -272,12 +272,24 @@ Result<std::unique_ptr<ByteReader>> started(std::unique_ptr<Reader> reader) {
 
 }  // namespace
 
-std::uint64_t DecodeLimits::expanded_budget(std::uint64_t compressed_bytes) const {
-  if (expansion_ratio != 0 &&
-      compressed_bytes > (std::numeric_limits<std::uint64_t>::max() - expansion_allowance) / expansion_ratio) {
-    return max_expanded_bytes;
+namespace {
+
+/// allowance + ratio * bytes, `most` at most.
+std::uint64_t budget_of(std::uint64_t bytes, std::uint64_t allowance, std::uint64_t ratio, std::uint64_t most) {
+  if (ratio != 0 && bytes > (std::numeric_limits<std::uint64_t>::max() - allowance) / ratio) {
+    return most;
   }
-  return std::min(max_expanded_bytes, expansion_allowance + expansion_ratio * compressed_bytes);
+  return std::min(most, allowance + ratio * bytes);
+}
+
+}  // namespace
+
+std::uint64_t DecodeLimits::expanded_budget(std::uint64_t compressed_bytes) const {
+  return budget_of(compressed_bytes, expansion_allowance, expansion_ratio, max_expanded_bytes);
+}
+
+std::uint64_t DecodeLimits::columns_budget(std::uint64_t input_bytes) const {
+  return budget_of(input_bytes, columns_allowance, columns_ratio, 8 * max_expanded_bytes);
 }
 
 std::string_view name_of(Compression compression) {
