@@ -2,62 +2,102 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <unordered_set>
 
 template class nlohmann::basic_json<nlohmann::ordered_map>;
 
 namespace driftlab {
 namespace {
 
-/// Watches a parse for depth and duplicate members; nlohmann accepts both, and its copy and dump recurse without limit.
-class StrictSax final : public nlohmann::json_sax<Json> {
+/// Builds a document and refuses what must not be in one. Members are appended without a search, which nlohmann makes
+/// for each: names are looked up in a set of their own, as soon as an object has more than a few.
+class StrictBuilder final : public nlohmann::json_sax<Json> {
  public:
-  bool null() override { return true; }
-  bool boolean(bool /*value*/) override { return true; }
-  bool number_integer(number_integer_t /*value*/) override { return true; }
-  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool null() override { return put(Json(nullptr)) != nullptr; }
+  bool boolean(bool value) override { return put(Json(value)) != nullptr; }
+  bool number_integer(number_integer_t value) override { return put(Json(value)) != nullptr; }
+  bool number_unsigned(number_unsigned_t value) override { return put(Json(value)) != nullptr; }
   bool number_float(number_float_t value, const string_t& /*text*/) override {
     if (!std::isfinite(value)) {
       return refuse("a number is too large for a double");
     }
-    return true;
+    return put(Json(value)) != nullptr;
   }
-  bool string(string_t& /*value*/) override { return true; }
-  bool binary(binary_t& /*value*/) override { return true; }
-  bool start_object(std::size_t /*elements*/) override {
-    keys_.emplace_back();
-    return deeper();
-  }
+  bool string(string_t& value) override { return put(Json(std::move(value))) != nullptr; }
+  bool binary(binary_t& /*value*/) override { return refuse("it holds binary data"); }
+  bool start_object(std::size_t /*elements*/) override { return open(Json::object()); }
   bool key(string_t& value) override {
-    if (!keys_.back().insert(value).second) {
+    Open& object = open_.back();
+    auto& members = object.value->get_ref<Json::object_t&>();
+    if (!is_new(object, members, value)) {
       return refuse("the member '" + value + "' appears twice in one object");
     }
+    if (members.size() >= kMaxJsonMembers) {
+      return refuse("an object has more than " + std::to_string(kMaxJsonMembers) + " members");
+    }
+    auto& list = static_cast<Json::object_t::Container&>(members);
+    list.emplace_back(std::move(value), Json());
+    object.member = &list.back().second;
     return true;
   }
-  bool end_object() override {
-    keys_.pop_back();
-    --depth_;
-    return true;
-  }
-  bool start_array(std::size_t /*elements*/) override { return deeper(); }
-  bool end_array() override {
-    --depth_;
-    return true;
-  }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t /*elements*/) override { return open(Json::array()); }
+  bool end_array() override { return close(); }
   bool parse_error(std::size_t position, const std::string& /*token*/,
                    const nlohmann::detail::exception& /*why*/) override {
     position_ = position;
     return refuse("it is not well-formed at byte " + std::to_string(position));
   }
 
+  [[nodiscard]] Json& document() { return document_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
   [[nodiscard]] std::size_t position() const { return position_; }
 
  private:
-  bool deeper() {
-    if (++depth_ > kMaxJsonDepth) {
+  /// An object or array whose end has not come. What is open in it is its last element, so `value` stays where it is.
+  struct Open {
+    Json* value = nullptr;
+    Json* member = nullptr;                 ///< of an object: where its next value belongs
+    std::unordered_set<std::string> names;  ///< of an object with more than kFewMembers
+  };
+  static constexpr std::size_t kFewMembers = 16;
+
+  static bool is_new(Open& object, const Json::object_t& members, const std::string& name) {
+    if (members.size() < kFewMembers) {
+      return members.find(name) == members.end();
+    }
+    if (object.names.empty()) {
+      for (const auto& [known, value] : members) {
+        object.names.insert(known);
+      }
+    }
+    return object.names.insert(name).second;
+  }
+
+  Json* put(Json value) {
+    if (open_.empty()) {
+      document_ = std::move(value);
+      return &document_;
+    }
+    Open& parent = open_.back();
+    if (parent.value->is_array()) {
+      auto& elements = parent.value->get_ref<Json::array_t&>();
+      elements.push_back(std::move(value));
+      return &elements.back();
+    }
+    *parent.member = std::move(value);
+    return parent.member;
+  }
+  bool open(Json value) {
+    if (open_.size() >= static_cast<std::size_t>(kMaxJsonDepth)) {
       return refuse("it is nested deeper than " + std::to_string(kMaxJsonDepth) + " levels");
     }
+    Json* const placed = put(std::move(value));
+    open_.emplace_back().value = placed;
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
     return true;
   }
   bool refuse(std::string why) {
@@ -67,8 +107,8 @@ class StrictSax final : public nlohmann::json_sax<Json> {
     return false;
   }
 
-  int depth_ = 0;
-  std::vector<std::set<std::string>> keys_;
+  Json document_;
+  std::vector<Open> open_;
   std::string reason_;
   std::size_t position_ = 0;
 };
@@ -113,7 +153,7 @@ Result<Json> parse_json(std::string_view text) {
     return fail(ErrorCode::ParseError, "The JSON document cannot be read: it holds a zero byte.",
                 {{"byte", std::to_string(zero + 1)}});
   }
-  StrictSax strict;
+  StrictBuilder strict;
   if (!Json::sax_parse(text, &strict)) {
     std::vector<ErrorField> fields;
     if (strict.position() > 0) {
@@ -121,7 +161,7 @@ Result<Json> parse_json(std::string_view text) {
     }
     return fail(ErrorCode::ParseError, "The JSON document cannot be read: " + strict.reason() + ".", std::move(fields));
   }
-  return Json::parse(text, nullptr, false);
+  return std::move(strict.document());
 }
 
 std::string canonical_text(const Json& document) {
@@ -141,6 +181,10 @@ Json quantity(const Estimate& estimate, double per_si, std::string_view unit) {
 }
 
 void Faults::add(std::string pointer, ErrorCode code, std::string detail) {
+  if (faults_.size() >= kMaxReportedFaults) {
+    ++left_out_;
+    return;
+  }
   faults_.push_back({std::move(pointer), code, std::move(detail)});
 }
 
@@ -151,7 +195,7 @@ Error Faults::error() const {
   }
   error.code = faults_.front().code;
   error.message = faults_.size() == 1 ? faults_.front().detail
-                                      : "The document has " + std::to_string(faults_.size()) +
+                                      : "The document has " + std::to_string(faults_.size() + left_out_) +
                                             " faults; the first: " + faults_.front().detail;
   for (const Fault& fault : faults_) {
     error.fields.push_back({fault.pointer.empty() ? "/" : fault.pointer, fault.detail});

@@ -2,7 +2,8 @@
 /// JSON at the doors of driftlab: strict reading, honest writing.
 ///
 /// Reading refuses what parsers disagree about: nesting deeper than 64, duplicate members, text that is not UTF-8,
-/// anything after the document. Writing never emits NaN or infinity: `number` turns them into null, and the document
+/// anything after the document; and an object of more than 10,000 members, which no document of driftlab has. It takes
+/// time in proportion to the text. Writing never emits NaN or infinity: `number` turns them into null, and the document
 /// says why beside it. Members keep the order in which they were written.
 #include "core/signal/estimate.hpp"
 #include "core/signal/result.hpp"
@@ -21,6 +22,8 @@ namespace driftlab {
 using Json = nlohmann::ordered_json;
 
 inline constexpr int kMaxJsonDepth = 64;
+inline constexpr std::size_t kMaxJsonMembers = 10'000;  ///< of one object
+inline constexpr std::size_t kMaxReportedFaults = 100;  ///< of one document; the rest is counted
 
 /// The document in `text`. Errors: ParseError, with field "byte" where the parser knows it.
 [[nodiscard]] Result<Json> parse_json(std::string_view text);
@@ -59,6 +62,7 @@ class Faults {
 
  private:
   std::vector<Fault> faults_;
+  std::size_t left_out_ = 0;  ///< beyond kMaxReportedFaults
 };
 
 /// Reads one JSON object member by member and reports what is missing, mistyped or unknown.
