@@ -186,14 +186,14 @@ std::vector<double> simulate_axis(const ModelSchedule& schedule, std::span<const
 }
 
 ImuRun simulate_imu(std::span<const ImuSample> ideal, double dt_s, const ImuModel& model, const ImuHardware& hardware,
-                    std::uint64_t seed, std::uint64_t run) {
+                    std::uint64_t seed, std::uint64_t run, const std::stop_token& stop) {
   ImuRun result;
   result.readings.resize(ideal.size());
   std::transform(ideal.begin(), ideal.end(), result.readings.begin(),
                  [&](const ImuSample& sample) { return distorted(sample, hardware); });
   apply_bandwidth(result.readings, hardware, dt_s);
   std::vector<double> rates;
-  for (std::size_t c = 0; c < kImuChannels; ++c) {
+  for (std::size_t c = 0; c < kImuChannels && !stop.stop_requested(); ++c) {
     const AxisModel& axis = model.axes[c];
     Random random(seed, 16 * run + c);
     result.bias[c] = hardware.bias[c] + (axis.bias_sd > 0.0 ? axis.bias_sd * random.normal() : 0.0);

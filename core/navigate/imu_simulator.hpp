@@ -15,6 +15,7 @@
 
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab {
@@ -41,9 +42,10 @@ struct ImuRun {
 
 /// `ideal` at dt_s. Stream 16 `run` + channel of `seed` makes the noise of a channel, so channels and runs are
 /// independent and adding a process to one channel leaves the others as they were. Time and memory linear in the
-/// samples.
+/// samples. Looks at `stop` between channels; the readings are then not to be used.
 [[nodiscard]] ImuRun simulate_imu(std::span<const ImuSample> ideal, double dt_s, const ImuModel& model,
-                                  const ImuHardware& hardware, std::uint64_t seed, std::uint64_t run);
+                                  const ImuHardware& hardware, std::uint64_t seed, std::uint64_t run,
+                                  const std::stop_token& stop = {});
 
 /// The stochastic error of one axis: one value per sample, its band chosen by `rates_rad_s` (one per sample; empty
 /// where the schedule has one band).

@@ -214,7 +214,7 @@ Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const 
                 "An evaluation takes 2 to 100000 runs and a precision that is not negative.", {{"parameter", "runs"}});
   }
   control.report("trajectory", 0.0);
-  auto experiment = OutageExperiment::make(scenario);
+  auto experiment = OutageExperiment::make(scenario, control.stop);
   if (!experiment) {
     return fail(experiment.error());
   }

@@ -80,7 +80,7 @@ std::vector<Event> events_of(const OutageScenario& scenario, const Trajectory& t
 
 }  // namespace
 
-Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario) {
+Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario, const std::stop_token& stop) {
   if (auto status = check(scenario); !status) {
     return fail(status.error());
   }
@@ -88,7 +88,7 @@ Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario) 
   if (!motion) {
     return fail(motion.error());
   }
-  auto truth = make_trajectory(**motion, scenario.imu_rate_hz);
+  auto truth = make_trajectory(**motion, scenario.imu_rate_hz, stop);
   if (!truth) {
     return fail(truth.error());
   }
@@ -108,7 +108,10 @@ Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario) 
 std::vector<std::vector<OutageScore>> OutageExperiment::run(std::uint64_t seed, std::uint64_t index,
                                                             std::vector<OutagePath>* paths,
                                                             const std::stop_token& stop) const {
-  const ImuRun imu = simulate_imu(truth_.imu, truth_.dt_s, scenario_.truth, scenario_.hardware, seed, index);
+  const ImuRun imu = simulate_imu(truth_.imu, truth_.dt_s, scenario_.truth, scenario_.hardware, seed, index, stop);
+  if (stop.stop_requested()) {
+    return {};
+  }
   const std::vector<GnssFix> arriving = fixes(seed, index);
   Random initial_random(seed, 16 * index + kInitialStream);
   const NavigationState start = first_estimate(truth_.states.front(), scenario_.initial, initial_random);

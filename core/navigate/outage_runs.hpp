@@ -7,8 +7,8 @@ namespace driftlab {
 /// A scenario made ready: its truth and the designs of its filters. Immutable; shared by threads.
 class OutageExperiment {
  public:
-  /// Errors: as evaluate_outages.
-  [[nodiscard]] static Result<OutageExperiment> make(const OutageScenario& scenario);
+  /// Errors: as evaluate_outages; Cancelled.
+  [[nodiscard]] static Result<OutageExperiment> make(const OutageScenario& scenario, const std::stop_token& stop = {});
 
   [[nodiscard]] const OutageScenario& scenario() const { return scenario_; }
   [[nodiscard]] const Trajectory& truth() const { return truth_; }

@@ -74,7 +74,7 @@ ImuSample ideal_imu(const MotionState& state, const Geodetic& place) {
   return {rate_b.x(), rate_b.y(), rate_b.z(), force_b.x(), force_b.y(), force_b.z()};
 }
 
-Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz) {
+Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz, const std::stop_token& stop) {
   if (!(rate_hz > 0.0 && std::isfinite(rate_hz))) {
     return fail(ErrorCode::InvalidArgument, "The sampling rate must be above 0.", {{"parameter", "imu_rate_hz"}});
   }
@@ -92,7 +92,11 @@ Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz) {
   trajectory.states.push_back(state_at(motion.at(0.0), place));
   const double offset = std::sqrt(0.6);
   constexpr std::array kWeights{5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0};
+  constexpr std::size_t kBetweenLooks = 4096;  // samples: a few milliseconds
   for (std::size_t i = 0; i < count; ++i) {
+    if (i % kBetweenLooks == 0 && stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The trajectory was given up on request.");
+    }
     const double time = static_cast<double>(i) / rate_hz;
     const double next_time = static_cast<double>(i + 1) / rate_hz;
     const Geodetic next = advance(place, motion, time, next_time - time);

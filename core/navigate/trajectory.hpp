@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab {
@@ -37,8 +38,9 @@ struct Trajectory {
 };
 
 /// Errors: InvalidArgument (rate not positive), LimitExceeded (more than 10 million samples), OutOfRange (the path
-/// crosses a pole). 100 000 samples take a fifth of a second.
-[[nodiscard]] Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz);
+/// crosses a pole), Cancelled. 100 000 samples take a fifth of a second.
+[[nodiscard]] Result<Trajectory> make_trajectory(const Motion& motion, double rate_hz,
+                                                 const std::stop_token& stop = {});
 
 /// Angular rate and specific force in the body axes at one moment, for a body at `place`.
 [[nodiscard]] ImuSample ideal_imu(const MotionState& state, const Geodetic& place);
