@@ -10,6 +10,7 @@
   COMMAND(add_plan)                \
   COMMAND(add_simulate)            \
   COMMAND(add_calibrate)           \
+  COMMAND(add_export)              \
   COMMAND(add_outages)             \
   COMMAND(add_regress)             \
   COMMAND(add_ci)

@@ -4,10 +4,12 @@
 #include "schema/json/json.hpp"
 
 #include <cstdio>
+#include <fstream>
 
 namespace driftlab::cli {
 
-Exit print_answer(const std::string& server, const std::string& target, const std::string& accept) {
+Exit print_answer(const std::string& server, const std::string& target, const std::string& accept,
+                  const std::string& output) {
   auto client = HttpClient::to(server);
   if (!client) {
     return complain(client.error());
@@ -22,8 +24,18 @@ Exit print_answer(const std::string& server, const std::string& target, const st
     return complain({ErrorCode::InvalidArgument, detail.empty() ? "The daemon refused." : detail, {}},
                     reply->status < 500 ? Exit::BadInput : Exit::ServerOrJob);
   }
-  std::fwrite(reply->body.data(), 1, reply->body.size(), stdout);
-  return Exit::Success;
+  return write_text(output, reply->body);
+}
+
+Exit write_text(const std::string& path, const std::string& text) {
+  if (path.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return Exit::Success;
+  }
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  return out ? Exit::Success : complain({ErrorCode::Io, "The file " + path + " cannot be written.", {{"path", path}}});
 }
 
 }  // namespace driftlab::cli

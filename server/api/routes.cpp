@@ -24,7 +24,8 @@
   RESOURCE(add_calibration_routes)      \
   RESOURCE(add_investigation_routes)    \
   RESOURCE(add_model_routes)            \
-  RESOURCE(add_regression_routes)
+  RESOURCE(add_regression_routes)       \
+  RESOURCE(add_export_routes)
 // clang-format on
 
 namespace driftlab::server {

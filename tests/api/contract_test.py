@@ -161,7 +161,7 @@ class Operations(DaemonTest):
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
                   "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],
-                  "/v1/regressions/{id}": regression.json["id"],
+                  "/v1/regressions/{id}": regression.json["id"], "/v1/exports/{target}": "kalibr",
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
                   **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("trace", "spectrum", "histogram", "spectrogram")},
@@ -186,6 +186,7 @@ class Operations(DaemonTest):
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
                 target += "?q=phone" if path == "/v1/search" else ""
+                target += "?device=phone-07" if path == "/v1/exports/{target}" else ""
                 target += "?channel=gz" if path.endswith(("/trace", "/spectrum", "/histogram", "/spectrogram")) else ""
                 if path in ("/v1/events", "/v1/live-recordings/{id}/events"):  # they do not end by themselves
                     self.expect(200, daemon.request("HEAD", target))

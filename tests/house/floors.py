@@ -14,10 +14,10 @@ import tree
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
 INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "causes", "search", "report")]  # lowest first
-ANALYSIS = [*CORE, "core/campaign", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
+ANALYSIS = [*CORE, "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
-RESULTS = ["core/signal", "core/campaign", "core/analysis", "schema/json", "schema/text", "schema"]
+RESULTS = ["core/signal", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -26,6 +26,7 @@ FLOORS: dict[str, list[str]] = {
     "core/variance": CORE[:2],
     "core/fit": CORE[:3],
     "core/campaign": CORE,
+    "core/export": [*CORE, "core/campaign"],  # what other programs want of a campaign
     "core/calibrate": CORE,
     "core/navigate": CORE,
     **{room: [*CORE, *INVESTIGATE[:floor]] for floor, room in enumerate(INVESTIGATE)},

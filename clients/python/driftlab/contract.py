@@ -501,6 +501,33 @@ class DeviceSummaryLatest(TypedDict):
     at: str
 
 
+class Export(TypedDict):
+    """The file of a target for a device."""
+
+    target: str
+    title: str
+    file: str
+    convention: str
+    source: str
+    device: str
+    recordings: list[str]
+    # A sentence for each name without a value or with an upper limit.
+    gaps: list[str]
+    text: str
+
+
+class ExportTarget(TypedDict):
+    """A program whose file can be written, and what its numbers mean."""
+
+    target: str
+    title: str
+    # Name of the file by custom.
+    file: str
+    convention: str
+    # Where the convention is stated.
+    source: str
+
+
 class FinishLiveRecordingAnswer(TypedDict):
     recording: StoredRecording
     job: Job | None
@@ -2757,6 +2784,10 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),
         ('Prefer',), ('application/json', 'text/plain')),
+    'listExportTargets': Operation(
+        'GET', '/v1/exports', (), (), ('application/json',)),
+    'getExport': Operation(
+        'GET', '/v1/exports/{target}', ('device',), (), ('text/plain', 'application/json')),
     'listStudies': Operation(
         'GET', '/v1/studies', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
     'createStudy': Operation(

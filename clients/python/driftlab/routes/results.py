@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, cast
 
-from ..contract import Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
+from ..contract import Export, ExportTarget, Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
 from ..contract import Investigation as InvestigationDocument
 from ..contract import ParameterTable as ParameterTableDocument
 from ..contract import Trends as TrendsDocument
@@ -65,6 +65,16 @@ class ResultRoutes(Routes):
         """The same trends as the daemon writes them."""
         query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
         return self._text("getTrends", "text/plain", None, query, wait_s)
+
+    @operation("listExportTargets")
+    def export_targets(self) -> list[ExportTarget]:
+        """The programs whose files can be written, each with what its numbers mean."""
+        return cast("list[ExportTarget]", self._get("listExportTargets")["items"])
+
+    @operation("getExport")
+    def export(self, target: str, device: str) -> Export:
+        """Noise parameters of a device in the file of another program (`text`), and what of it is missing (`gaps`)."""
+        return cast(Export, self._get("getExport", {"target": target}, {"device": device}))
 
     @operation("listInvestigations")
     def investigations(self, *, device: str | None = None, study: str | None = None, job: str | None = None,

@@ -1,0 +1,139 @@
+#include "schema/text/export.hpp"
+
+#include "clients/cli/analysis.hpp"
+#include "clients/cli/http_client.hpp"
+#include "clients/cli/print_answer.hpp"
+#include "core/export/imu_noise.hpp"
+#include "schema/json/campaign_summary.hpp"
+#include "schema/json/characterisation.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  FileFlags file;
+  std::string target;
+  std::string server;
+  std::string output;
+  bool list = false;
+};
+
+/// A characterisation document, where the one file named is one.
+std::optional<Json> as_characterisation(const std::vector<std::string>& files) {
+  if (files.size() != 1 || !files.front().ends_with(".json")) {
+    return std::nullopt;
+  }
+  const std::ifstream stream(files.front(), std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document || !document->is_object()) {
+    return std::nullopt;
+  }
+  const Json recordings = document->value("recordings", Json(nullptr));
+  const bool characterised = recordings.is_array() && !recordings.empty() && recordings.front().is_object() &&
+                             recordings.front().contains("channels");
+  return characterised ? std::optional(std::move(*document)) : std::nullopt;
+}
+
+/// Device and document of what the user named: a characterisation as it stands, recordings characterised now.
+tl::expected<std::pair<std::string, Json>, Failure> characterised(const Flags& flags) {
+  if (auto document = as_characterisation(flags.files)) {
+    std::string device = flags.file.device;
+    if (device.empty()) {
+      device = document->at("recordings").front().value("id", "unnamed");
+    }
+    return std::pair(std::move(device), std::move(*document));
+  }
+  auto inputs = read_inputs(flags.files, flags.file);
+  if (!inputs) {
+    return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
+  }
+  auto document = characterise_here(*inputs, {});
+  if (!document) {
+    return tl::unexpected(document.error());
+  }
+  return std::pair(inputs->device, std::move(*document));
+}
+
+Exit run_here(const Flags& flags, const ExportTarget& target) {
+  const auto found = characterised(flags);
+  if (!found) {
+    return complain(found.error().error, found.error().exit);
+  }
+  const auto& [device, document] = *found;
+  const auto sensors = sensors_of(document);
+  if (!sensors) {
+    return complain(sensors.error());
+  }
+  const auto imu = imu_noise_of(device, *sensors, {interrupt_token(), {}});
+  if (!imu) {
+    return complain_of_work(imu.error());
+  }
+  for (const std::string& gap : export_gaps(target, *imu)) {
+    std::fprintf(stderr, "driftlab: %s\n", gap.c_str());
+  }
+  if (!has_noise(*imu)) {
+    return complain({ErrorCode::TooFewSamples, "No axis has a noise density: there is nothing to export.", {}});
+  }
+  return write_text(flags.output, export_to_text(target, *imu));
+}
+
+Exit run(const Flags& flags) {
+  if (flags.list) {
+    return write_text("", export_targets_to_text());
+  }
+  const auto target = find_export_target(flags.target);
+  if (!target) {
+    return complain(target.error());
+  }
+  if (!flags.server.empty()) {
+    if (!flags.files.empty() || flags.file.device.empty()) {
+      return complain({ErrorCode::InvalidArgument,
+                       "With --server name the device (--device NAME) and no files: what it has stored is exported.",
+                       {}});
+    }
+    return print_answer(flags.server,
+                        "/v1/exports/" + std::string((*target)->name) + "?device=" + percent_encode(flags.file.device),
+                        "text/plain", flags.output);
+  }
+  if (flags.files.empty()) {
+    return complain(
+        {ErrorCode::InvalidArgument,
+         "Name a recording, a study.json or what `driftlab characterise --json` wrote; or --server and --device.",
+         {}});
+  }
+  return run_here(flags, **target);
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Command& chosen) {
+  CLI::App* const command = app.add_subcommand(
+      "export", "Noise parameters in the file of another program: Kalibr, VINS-Fusion, PX4, Gazebo, ... (--list)");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("FILE", flags->files,
+                      "Recordings that share the flags below, one study.json, or a document of characterise --json");
+  command->add_option("--target", flags->target, "Which program: a name of --list")->capture_default_str();
+  command->add_flag("--list", flags->list, "List the programs and end");
+  command->add_option("--output", flags->output, "Write to this file instead of the terminal");
+  command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
+  command->add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… as for characterise");
+  command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
+      ->capture_default_str();
+  command->add_option("--device", flags->file.device, "Name of the device; with --server the device to export");
+  command->add_option("--calibration", flags->file.calibration,
+                      "Correct the readings by what `driftlab calibrate --json` wrote to this file");
+  command->add_option("--server", flags->server, "Export what the daemon at this address has stored of --device");
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace driftlab::cli
