@@ -1,5 +1,6 @@
 #include "clients/cli/input.hpp"
 
+#include "clients/cli/left_out_lines.hpp"
 #include "core/signal/number.hpp"
 #include "schema/json/calibration.hpp"
 #include "schema/json/recording_spec.hpp"
@@ -125,6 +126,9 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
 
 Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags) {
   if (names.size() == 1 && names.front().ends_with(".json")) {
+    if (flags.skip_lines > 0 || !flags.comment.empty()) {
+      return fail(ErrorCode::InvalidArgument, "--skip-lines and --comment are for recordings, not for a study.");
+    }
     auto study = read_study(names.front());
     if (study && !flags.device.empty()) {
       study->device = flags.device;
@@ -141,6 +145,9 @@ Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlag
     InputFile file{name, *spec};
     file.spec.id = stem_of(file.path);
     inputs.files.push_back(std::move(file));
+  }
+  if (auto left_out = leave_out_lines(flags, inputs); !left_out) {
+    return fail(left_out.error());
   }
   inputs.device = flags.device.empty() ? inputs.files.front().spec.id : flags.device;
   if (auto read = read_calibrations({}, inputs); !read) {

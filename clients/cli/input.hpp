@@ -1,11 +1,13 @@
 #pragma once
 /// What a user hands to a command: recording files with flags, or a study document (spec/study.md) with files beside
 /// it.
+#include "clients/cli/workspace.hpp"
 #include "core/analysis/recording_source.hpp"
 #include "core/signal/recording.hpp"
 #include "schema/json/json.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,20 +20,27 @@ struct FileFlags {
   std::string condition = "static";
   std::string device;
   std::string calibration;
+  std::size_t skip_lines = 0;  ///< lines at the front of a text that are no table
+  std::string comment;         ///< what begins a line that is no row; empty: what every text knows
 };
 
 struct InputFile {
   std::filesystem::path path;
-  RecordingSpec spec;              ///< `id` is never empty
-  Calibration calibration = {};    ///< what the file that `spec.calibration` names holds
-  Json calibration_document = {};  ///< the same as it was read, or null
+  RecordingSpec spec;                   ///< `id` is never empty
+  Calibration calibration = {};         ///< what the file that `spec.calibration` names holds
+  Json calibration_document = {};       ///< the same as it was read, or null
+  std::filesystem::path filtered = {};  ///< a copy without the lines that flags leave out; empty: there is none
+
+  /// What is decoded or sent.
+  [[nodiscard]] const std::filesystem::path& bytes() const { return filtered.empty() ? path : filtered; }
 };
 
 struct Inputs {
   std::string device;
   Json study;  ///< the id of the study's file, or null
   std::vector<InputFile> files;
-  Json baseline;  ///< the study's `baseline`, or null
+  Json baseline;                                   ///< the study's `baseline`, or null
+  std::shared_ptr<Workspace> workspace = nullptr;  ///< keeps filtered copies
 };
 
 /// Reads the inputs named on the command line: one study.json, or any number of recordings that share the flags.

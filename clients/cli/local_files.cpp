@@ -14,7 +14,7 @@ Result<std::unique_ptr<LocalFiles>> LocalFiles::of(const Inputs& inputs) {
 
 Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& control) {
   const InputFile& file = inputs_.files[index];
-  auto decoded = decode_file(file.path, workspace_.file(), {}, control);
+  auto decoded = decode_file(file.bytes(), workspace_.file(), {}, control);
   if (!decoded) {
     return fail(decoded.error());
   }

@@ -87,7 +87,7 @@ tl::expected<Json, Failure> upload_all(HttpClient& client, const Inputs& inputs,
   Json ids = Json::array();
   for (const InputFile& file : *files) {
     const auto done = static_cast<double>(ids.size());
-    auto reply = client.upload(upload_target(inputs.device, file.spec), file.path, [&](double fraction) {
+    auto reply = client.upload(upload_target(inputs.device, file.spec), file.bytes(), [&](double fraction) {
       bar.show("upload " + file.spec.id, kUploads * (done + fraction) / static_cast<double>(inputs.files.size()));
     });
     if (!reply) {

@@ -6,6 +6,7 @@
 /// refused for it.
 #include "core/read/csv_cells.hpp"
 #include "core/read/csv_header.hpp"
+#include "core/read/csv_left_out.hpp"
 #include "core/read/csv_time.hpp"
 #include "core/read/decimal.hpp"
 #include "core/read/dialect.hpp"
@@ -69,11 +70,15 @@ class CsvDecoder {
   const RunControl& control_;
   text::Dialect dialect_;
   FastReader fast_ = nullptr;
-  std::uint64_t line_ = 0;        ///< number of the line being read, from 1
-  std::uint64_t blank_line_ = 0;  ///< a blank line that is an error if a row follows it
+  std::uint64_t line_ = 0;       ///< number of the line being read, from 1
+  CsvLeftOut blank_;             ///< blank lines between rows; those at the end are none
+  std::uint64_t blank_run_ = 0;  ///< blank lines since the last row
+  CsvLeftOut words_;             ///< lines between rows that hold words alone
+  bool torn_ = false;            ///< the last line ends within a row
   std::uint64_t comments_ = 0;
   std::uint64_t inner_comments_ = 0;  ///< between rows
   std::uint64_t rows_ = 0;
+  bool last_line_ = false;     ///< the line being read has no end: the file stops in it
   bool units_follow_ = false;  ///< the next line is the second of two header lines
   ColumnNames names_;          ///< of the file's columns; empty until the first row is seen
   std::size_t stride_ = 0;     ///< values a row: the file's columns, and the time made from a stated rate
@@ -132,6 +137,7 @@ Status CsvDecoder::take_pieces() {
       want = 1;
     } else if (view->size() < want) {  // the end: a last line without a line feed
       const std::string last = std::string(*view) + "\n";
+      last_line_ = true;
       source_.consume(view->size());
       return last.size() > 1 ? take_lines(last) : Status{};
     } else if (view->size() > limits_.max_line_bytes) {
@@ -148,7 +154,7 @@ Status CsvDecoder::take_lines(std::string_view lines) {
   const char* p = lines.data();
   const char* const end = p + lines.size();
   while (p < end) {
-    if (!names_.empty() && blank_line_ == 0 && !units_follow_) {
+    if (!names_.empty() && blank_run_ == 0 && !units_follow_) {
       p = (this->*fast_)(p, end);
       if (filled_ == batch_.size()) {
         if (auto status = flush(); !status) {
@@ -269,7 +275,7 @@ Status CsvDecoder::take_line(std::string_view line) {
     return take_first_line(line);  // a tab at its front separates an empty name
   }
   if (content.empty()) {
-    blank_line_ = blank_line_ != 0 ? blank_line_ : line_;
+    ++blank_run_;
     return {};
   }
   if (text::is_comment(content)) {
@@ -280,9 +286,9 @@ Status CsvDecoder::take_line(std::string_view line) {
     units_follow_ = false;
     return {};
   }
-  if (blank_line_ != 0) {
-    line_ = blank_line_;
-    return at_line(ErrorCode::RaggedRow, "is empty, but more rows follow it.");
+  if (blank_run_ > 0) {
+    blank_.add(line_ - blank_run_, blank_run_, "");
+    blank_run_ = 0;
   }
   return take_row_carefully(line);
 }
@@ -330,6 +336,14 @@ Status CsvDecoder::take_row_carefully(std::string_view line) {
   if (dialect_.trailing_separator && cells.size() == names_.size() + 1 && cells.back().empty()) {
     cells.pop_back();
   }
+  if (is_interruption(cells, names_, dialect_.decimal_comma)) {
+    words_.add(line_, 1, line);
+    return {};
+  }
+  if (cells.size() != names_.size() && last_line_ && cells.size() < names_.size() && rows_ > 0) {
+    torn_ = true;
+    return {};
+  }
   if (cells.size() != names_.size()) {
     return at_line(ErrorCode::RaggedRow, "has " + std::to_string(cells.size()) + " values; the first row has " +
                                              std::to_string(names_.size()) + ".");
@@ -365,6 +379,16 @@ Status CsvDecoder::finish() {
   }
   if (!cells_.any_number()) {
     return fail(cells_.first_fault());
+  }
+  if (words_.count() > std::max<std::uint64_t>(3, rows_ / 10)) {
+    line_ = words_.first();
+    return at_line(ErrorCode::RaggedRow, "holds words alone, and so do " + std::to_string(words_.count() - 1) +
+                                             " more between " + std::to_string(rows_) + " rows; is this one table?");
+  }
+  blank_.note(sink_, "blank lines between the rows were skipped");
+  words_.note(sink_, "lines between the rows hold words alone and were skipped");
+  if (torn_) {
+    sink_.note("The file ends within a row (line " + std::to_string(line_) + "); that row is left out.");
   }
   if (inner_comments_ > 0) {
     sink_.note(std::to_string(inner_comments_) + " comment lines between the rows were skipped.");

@@ -58,13 +58,13 @@ std::string describe_zip(std::string_view head) {
 std::string describe_text(std::string_view head) {
   const std::string_view start = text::trim(head.substr(std::min(head.find_first_not_of(" \t\r\n"), head.size())));
   if (start.starts_with("<!DOCTYPE html") || start.starts_with("<!doctype html") || start.starts_with("<html")) {
-    return "an HTML page";
+    return "an HTML page; is this a download that needed a login?";
   }
   if (start.starts_with("<")) {
-    return "an XML document";
+    return "an XML document; send the samples as CSV or .npy";
   }
   if (start.starts_with("{") || start.starts_with("[")) {
-    return "a JSON document";
+    return "a JSON document; send the samples as CSV or .npy";
   }
   switch (text::shape_of(head)) {
     case text::Shape::Semicolons:

@@ -120,6 +120,26 @@ TEST(Csv, SaysWhichColumnsHoldText) {
               ElementsAre("Column 'state' holds text in 2 of 2 rows, first 'S'."));
 }
 
+TEST(Csv, ReadsTheRowsOfALogThatTalksInBetweenAndSaysSo) {
+  // Serial logs: a restart in the middle, blank lines, and a file that stops within its last row were refused whole.
+  const std::string rows = "1,2\n3,4\n";
+  const auto log =
+      decode_bytes("gx,gy\n" + rows + "\n\n" + rows + "[WARN] buffer full\n" + rows + "gx,gy\n" + rows + "5");
+  ASSERT_FALSE(log.error) << log.message;
+  EXPECT_THAT(column(log, 0), ElementsAre(1, 3, 1, 3, 1, 3, 1, 3));
+  EXPECT_THAT(
+      log.decoded.notes,
+      ElementsAre("2 blank lines between the rows were skipped (the first is line 4).",
+                  "2 lines between the rows hold words alone and were skipped (the first is line 8: \"[WARN] buffer "
+                  "full\").",
+                  "The file ends within a row (line 14); that row is left out."));
+  // A row that is torn anywhere else, or has too many cells, is still a fault: samples are lost there.
+  EXPECT_EQ(decode_bytes("gx,gy\n1,2\n3\n4,5\n").error, ErrorCode::RaggedRow);
+  EXPECT_EQ(decode_bytes("gx,gy\n1,2\n3,4,5").error, ErrorCode::RaggedRow);
+  EXPECT_EQ(decode_bytes("gx,gy\n1,2\nreset x\nreset x\nreset x\nreset x\n3,4\n").error, ErrorCode::RaggedRow);
+  EXPECT_TRUE(decode_bytes("gx,gy\n1,2\n3,4\n\n\n").decoded.notes.empty());
+}
+
 TEST(Csv, RoundsANumberTooSmallForADoubleToZero) {
   EXPECT_THAT(column(decode_bytes("gx\n1e-999\n"), 0), ElementsAre(0.0));
 }
