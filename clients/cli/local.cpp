@@ -7,6 +7,9 @@
 #include "schema/text/parameter_table.hpp"
 #include "schema/text/trend_table.hpp"
 
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 namespace driftlab::cli {
@@ -62,31 +65,95 @@ std::string notes_of(const Json& document) {
 
 }  // namespace
 
-Result<std::string> tables_of(const Json& document, const std::string& device) {
+namespace {
+
+/// A sensor axis with what was put together of it, and its tables by both methods.
+struct AxisTables {
+  const SensorSources* sensor = nullptr;
+  std::optional<PooledSensor> pooled;
+  std::array<Result<ParameterTable>, 2> tables;  ///< Allan variance, GMWM
+};
+
+constexpr std::array kMethods{TableMethod::Av, TableMethod::Gmwm};
+
+Result<AxisTables> axis_tables(const Json& document, const std::string& device, const SensorSources& sensor) {
+  auto found = pooled_of(document, sensor);
+  if (!found) {
+    return fail(found.error());
+  }
+  AxisTables axis;
+  axis.sensor = &sensor;
+  axis.pooled = std::move(*found);
+  const PooledSensor* const pooled = axis.pooled ? &*axis.pooled : nullptr;
+  const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
+  for (std::size_t m = 0; m < kMethods.size(); ++m) {
+    axis.tables[m] = build_parameter_table({device, quantity, sensor.axis, kMethods[m], ""}, sensor.sources, pooled);
+  }
+  return axis;
+}
+
+/// Axes of one sensor from here on whose tables have one row each under one condition: they make one table.
+std::size_t alike(const std::vector<AxisTables>& axes, std::size_t from, std::size_t method) {
+  std::size_t count = 0;
+  for (std::size_t i = from; i < axes.size(); ++i) {
+    const auto& table = axes[i].tables[method];
+    const auto& first = axes[from].tables[method];
+    const bool one = table && table->rows.size() == 1 && table->quantity == first->quantity &&
+                     table->rows.front().label == first->rows.front().label;
+    if (!one) {
+      break;
+    }
+    ++count;
+  }
+  return count;
+}
+
+std::string one_axis_text(const AxisTables& axis) {
   std::string text;
+  for (const auto& table : axis.tables) {
+    text += table ? table_to_text(*table, false) + "\n" : table.error().message + "\n\n";
+    if (table && axis.pooled) {
+      text += trends_to_text(build_trends(*table)) + "\n";
+    }
+  }
+  if (axis.pooled && axis.pooled->structure) {
+    text += axis.pooled->structure->statement + "\n\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> tables_of(const Json& document, const std::string& device) {
   const auto sensors = sensors_of(document);
   if (!sensors) {
     return fail(sensors.error());
   }
+  std::vector<AxisTables> axes;
   for (const SensorSources& sensor : *sensors) {
-    const auto found = pooled_of(document, sensor);
-    if (!found) {
-      return fail(found.error());
+    auto axis = axis_tables(document, device, sensor);
+    if (!axis) {
+      return fail(axis.error());
     }
-    const PooledSensor* const pooled = *found ? &**found : nullptr;
-    for (const TableMethod method : {TableMethod::Av, TableMethod::Gmwm}) {
-      const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
-      const auto table = build_parameter_table({device, quantity, sensor.axis, method, ""}, sensor.sources, pooled);
-      text += table ? table_to_text(*table) + "\n" : table.error().message + "\n\n";
-      if (table && pooled != nullptr) {
-        text += trends_to_text(build_trends(*table)) + "\n";
-      }
-    }
-    if (pooled != nullptr && pooled->structure) {
-      text += pooled->structure->statement + "\n\n";
-    }
+    axes.push_back(std::move(*axis));
   }
-  return text + notes_of(document);
+  std::string text;
+  for (std::size_t i = 0; i < axes.size();) {
+    const std::size_t count = std::min(alike(axes, i, 0), alike(axes, i, 1));
+    if (count < 2) {
+      text += one_axis_text(axes[i++]);
+      continue;
+    }
+    for (std::size_t m = 0; m < kMethods.size(); ++m) {
+      std::vector<ParameterTable> tables;
+      for (std::size_t k = i; k < i + count; ++k) {
+        tables.push_back(*axes[k].tables[m]);
+      }
+      text += axes_to_text(tables) + "\n";
+    }
+    i += count;
+  }
+  return text + notes_of(document) + (axes.empty() ? "" : table_legend());
 }
 
 }  // namespace driftlab::cli

@@ -26,7 +26,11 @@ Exit run(const Flags& flags) {
       target += name + percent_encode(value);
     }
   }
-  return print_answer(flags.server, target, flags.format == "json" ? "application/json" : "text/plain");
+  return print_answer(flags.server, target,
+                      flags.format == "json"       ? "application/json"
+                      : flags.format == "csv"      ? "text/csv"
+                      : flags.format == "markdown" ? "text/markdown"
+                                                   : "text/plain");
 }
 
 }  // namespace
@@ -41,8 +45,8 @@ void add_trends(CLI::App& app, Command& chosen) {
   command->add_option("--axis", flags->axis, "x, y or z");
   command->add_option("--method", flags->method, "gmwm or av (Allan variance)")->capture_default_str();
   command->add_option("--model", flags->model, "Model of the table; default: the best over all conditions");
-  command->add_option("--format", flags->format, "text or json")
-      ->check(CLI::IsMember({"text", "json"}))
+  command->add_option("--format", flags->format, "text, csv, markdown or json")
+      ->check(CLI::IsMember({"text", "csv", "markdown", "json"}))
       ->capture_default_str();
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

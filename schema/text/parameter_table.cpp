@@ -174,15 +174,17 @@ std::string table_to_csv(const ParameterTable& table) {
   return text;
 }
 
-std::string table_to_text(const ParameterTable& table) {
-  const std::vector<std::vector<std::string>> grid = grid_of(table);
+namespace {
+
+/// Cells under their columns, with a rule below the two lines of names and units.
+std::string aligned(const std::vector<std::vector<std::string>>& grid) {
   std::vector<std::size_t> widths(grid[0].size(), 0);
   for (const auto& line : grid) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       widths[i] = std::max(widths[i], width(line[i]));
     }
   }
-  std::string text = heading_of(table) + " (" + kLegend + ")\n\n";
+  std::string text;
   for (std::size_t r = 0; r < grid.size(); ++r) {
     std::string line;
     for (std::size_t i = 0; i < grid[r].size(); ++i) {
@@ -201,7 +203,72 @@ std::string table_to_text(const ParameterTable& table) {
       text += rule + "\n";
     }
   }
-  return text + notes_of(table);
+  return text;
+}
+
+/// Columns that one of the tables has, each once: those of the model with most of them first.
+std::vector<TableColumn> columns_of(const std::vector<ParameterTable>& tables) {
+  std::vector<TableColumn> columns;
+  for (const ParameterTable& table : tables) {
+    for (const TableColumn& column : table.columns) {
+      const bool known =
+          std::any_of(columns.begin(), columns.end(), [&](const TableColumn& one) { return one.key == column.key; });
+      if (!known) {
+        columns.push_back(column);
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::string table_to_text(const ParameterTable& table, bool legend) {
+  return heading_of(table) + (legend ? std::string(" (") + kLegend + ")" : std::string()) + "\n\n" +
+         aligned(grid_of(table)) + notes_of(table);
+}
+
+std::string table_legend() { return std::string("Legend: ") + kLegend + "; – no part of the model.\n"; }
+
+std::string axes_to_text(const std::vector<ParameterTable>& tables) {
+  const ParameterTable& first = tables.front();
+  const bool gmwm = first.method == TableMethod::Gmwm;
+  const std::vector<TableColumn> columns = columns_of(tables);
+  std::vector<std::vector<std::string>> grid{{"axis"}, {""}};
+  if (gmwm) {
+    grid[0].emplace_back("model");
+    grid[0].emplace_back("N");
+    grid[1].emplace_back("");
+    grid[1].push_back(density_unit(first));
+  }
+  for (const TableColumn& column : columns) {
+    grid[0].push_back(column.key);
+    grid[1].push_back(column.unit);
+  }
+  std::string notes;
+  for (const ParameterTable& table : tables) {
+    const TableRow& row = table.rows.front();
+    std::vector<std::string> line{(table.axis.empty() ? "-" : table.axis) +
+                                  (contaminated(row) || disagrees(row) ? " *" : "")};
+    if (gmwm) {
+      line.push_back(table.model);
+      line.push_back(cell_text(row.density));
+    }
+    for (const TableColumn& column : columns) {
+      const auto own = std::find_if(table.columns.begin(), table.columns.end(),
+                                    [&](const TableColumn& one) { return one.key == column.key; });
+      line.push_back(own == table.columns.end()
+                         ? "–"
+                         : cell_text(row.cells[static_cast<std::size_t>(own - table.columns.begin())]));
+    }
+    grid.push_back(std::move(line));
+    ParameterTable named = table;
+    named.rows.front().label = table.axis.empty() ? row.label : table.axis;
+    notes += notes_of(named);
+  }
+  const std::string heading = first.device + ", " + std::string(sensor_of(first.quantity)) + ", " +
+                              first.rows.front().label + (gmwm ? ", GMWM" : ", Allan variance");
+  return heading + "\n\n" + aligned(grid) + notes;
 }
 
 std::string table_to_markdown(const ParameterTable& table) {

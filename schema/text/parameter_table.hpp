@@ -3,6 +3,7 @@
 #include "core/campaign/parameter_table.hpp"
 
 #include <string>
+#include <vector>
 
 namespace driftlab {
 
@@ -11,7 +12,15 @@ namespace driftlab {
 
 /// Aligned plain text for a terminal of any width: value with interval, `…` where not identifiable, ↑ ↓ for changes,
 /// `*` at rows whose recordings hold gross errors or disagree; notes below say which.
-[[nodiscard]] std::string table_to_text(const ParameterTable& table);
+/// `legend`: what the signs mean, behind the heading.
+[[nodiscard]] std::string table_to_text(const ParameterTable& table, bool legend = true);
+
+/// Tables of one row each of the axes of one sensor, by one method, as one: a row for each axis with its model, `–`
+/// where a parameter is no part of it. `tables` is not empty.
+[[nodiscard]] std::string axes_to_text(const std::vector<ParameterTable>& tables);
+
+/// What the signs of both mean, a line.
+[[nodiscard]] std::string table_legend();
 
 /// A pipe table for papers and issues, with the same notes below.
 [[nodiscard]] std::string table_to_markdown(const ParameterTable& table);

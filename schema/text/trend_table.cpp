@@ -22,7 +22,83 @@ std::string line_of(const ColumnTrend& column) {
          std::string(unit_of(column.against)) + tests_of(trend) + statement(trend) + "\n";
 }
 
+constexpr std::array kTrendHeading{"parameter", "against", "direction", "relation", "unit",
+                                   "w in",      "trend p", "equal p",   "statement"};
+
+std::array<std::string, kTrendHeading.size()> fields_of(const ColumnTrend& column) {
+  const Trend& trend = column.trend;
+  const auto written = [](double p) {
+    std::array<char, 32> buffer{};
+    (void)std::snprintf(buffer.data(), buffer.size(), "%.2g", p);
+    return std::string(buffer.data());
+  };
+  return {column.column.key,
+          column.against == Dynamics::Rate ? "rate" : "angular acceleration",
+          trend.direction > 0   ? "up"
+          : trend.direction < 0 ? "down"
+                                : "none",
+          formula(trend.relation),
+          column.column.unit,
+          std::string(unit_of(column.against)),
+          written(trend.monotone_p),
+          written(trend.equal_p),
+          statement(trend)};
+}
+
+std::string quoted_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    return text;
+  }
+  std::string result = "\"";
+  for (const char c : text) {
+    result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return result + "\"";
+}
+
+std::string piped_field(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '|' ? std::string("\\|") : std::string(1, c);
+  }
+  return result;
+}
+
 }  // namespace
+
+std::string trends_to_csv(const TrendTable& table) {
+  std::string text;
+  for (std::size_t i = 0; i < kTrendHeading.size(); ++i) {
+    text += std::string(i == 0 ? "" : ",") + kTrendHeading[i];
+  }
+  text += "\r\n";
+  for (const ColumnTrend& column : table.trends) {
+    const auto fields = fields_of(column);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      text += (i == 0 ? "" : ",") + quoted_field(fields[i]);
+    }
+    text += "\r\n";
+  }
+  return text;
+}
+
+std::string trends_to_markdown(const TrendTable& table) {
+  std::string text = "|";
+  std::string rule = "|";
+  for (const char* const name : kTrendHeading) {
+    text += std::string(" ") + name + " |";
+    rule += " --- |";
+  }
+  text += "\n" + rule + "\n";
+  for (const ColumnTrend& column : table.trends) {
+    text += "|";
+    for (const std::string& field : fields_of(column)) {
+      text += " " + piped_field(field) + " |";
+    }
+    text += "\n";
+  }
+  return text;
+}
 
 std::string trends_to_text(const TrendTable& table) {
   std::string text;

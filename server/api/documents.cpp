@@ -142,7 +142,7 @@ Result<Response> refused_job(const Error& error) {
 Response json_response(int status, const Json& document) {
   Response response;
   response.status = status;
-  response.body = to_text(document);
+  response.body = to_text(document) + "\n";  // a prompt begins on a line of its own
   return response;
 }
 

@@ -89,9 +89,11 @@ Result<Response> get_table(ApiContext& context, const Request& request) {
 }
 
 Result<Response> get_trends(ApiContext& context, const Request& request) {
-  const auto type = negotiate(request.header("accept"), {"application/json", "text/plain"});
+  const auto type =
+      negotiate(request.header("accept"), {"application/json", "text/csv", "text/plain", "text/markdown"});
   if (!type) {
-    return problem_response(HttpFault::NotAcceptable, "Offered are application/json and text/plain.");
+    return problem_response(HttpFault::NotAcceptable,
+                            "Offered are application/json, text/csv, text/plain and text/markdown.");
   }
   const auto stored = read_table(context, request);
   if (!stored) {
@@ -103,6 +105,12 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
   if (*type == "text/plain") {
     response.content_type = "text/plain; charset=utf-8";
     response.body = trends_to_text(trends) + (note.empty() ? "" : "! " + note);
+  } else if (*type == "text/csv") {
+    response.content_type = "text/csv; charset=utf-8";
+    response.body = trends_to_csv(trends);
+  } else if (*type == "text/markdown") {
+    response.content_type = "text/markdown; charset=utf-8";
+    response.body = trends_to_markdown(trends) + (note.empty() ? "" : "\n" + note);
   }
   return response;
 }

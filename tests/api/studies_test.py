@@ -60,6 +60,10 @@ class Studies(DaemonTest):
             self.assertAlmostEqual(stored["value"] / (6.0 * 1.5 ** i), 1.0, delta=0.04)
         self.assertEqual(table["pooling"]["state"], "done")
         trends = self.expect(200, self.daemon.get(TRENDS + "campaign")).json
+        listed = self.expect(200, self.daemon.get(TRENDS + "campaign", Accept="text/csv")).text.splitlines()
+        self.assertEqual((listed[0].split(",")[:3], len(listed) - 1), (["parameter", "against", "direction"], len(trends["trends"])))
+        piped = self.expect(200, self.daemon.get(TRENDS + "campaign", Accept="text/markdown")).text.splitlines()
+        self.assertEqual((piped[1].count("---"), len(piped) - 2), (9, len(trends["trends"])))
         self.assertEqual(trends["pooling"], table["pooling"])
         [trend] = [t for t in trends["trends"] if t["parameter"] == "white_noise.N"]
         self.assertEqual(trend["monotone"]["direction"], "up")

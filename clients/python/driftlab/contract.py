@@ -2783,7 +2783,7 @@ OPERATIONS: dict[str, Operation] = {
     'getTrends': Operation(
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),
-        ('Prefer',), ('application/json', 'text/plain')),
+        ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
     'listExportTargets': Operation(
         'GET', '/v1/exports', (), (), ('application/json',)),
     'getExport': Operation(
