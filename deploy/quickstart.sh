@@ -80,7 +80,11 @@ if [ -z "$bin" ]; then
   if [ -t 1 ] && [ ! -x "$build/bin/driftlabd" ]; then
     NINJA_STATUS='  [%f/%t] ' ninja -C "$build" --quiet driftlab driftlabd || built=no
   else
+    # Without a terminal a line a minute: on a slow machine half an hour of silence looks like a hang.
+    (while sleep 60 >/dev/null 2>&1; do say "  $(grep -o '^\[[0-9]*/[0-9]*\]' "$logs/build.log" | tail -n 1)"; done) &
+    minutes=$!
     ninja -C "$build" driftlab driftlabd >"$logs/build.log" 2>&1 || { built=no; tail -n 40 "$logs/build.log" >&2; }
+    kill "$minutes" 2>/dev/null || true
   fi
   kill "$notice" 2>/dev/null || true
   [ -z "${built:-}" ] || fail "the build failed"
@@ -153,8 +157,11 @@ else
 fi
 
 say ''
+if [ "$once" = yes ]; then
+  say "Done: the daemon is stopped. It leaves its data in $data, logs in $logs and the programs in $bin; nothing else runs or stays."
+  exit 0
+fi
 say "driftlab serves at $address (open it in a browser: the lab's pages) and keeps its data in $data"
-[ "$once" = no ] || exit 0
 trap 'say ""; say "Stopping"; exit 0' INT
 say "Ctrl-C stops it."
 wait "$daemon" || code=$?

@@ -43,7 +43,7 @@ std::string provenance(const Flags& flags) {
       .append(flags.condition)
       .append(", seed ")
       .append(std::to_string(flags.seed));
-  text.append(", ").append(to_text(flags.rate_hz)).append(" Hz");
+  text.append(", sample rate ").append(to_text(flags.rate_hz)).append(" Hz");  // read back as the rate
   return text.append("; see core/process/published_models.hpp");
 }
 
@@ -100,8 +100,8 @@ Exit write_model(const Flags& flags) {
     return complain(made.error());
   }
   std::string comment = "Simulated by driftlab " DRIFTLAB_VERSION ", model " + flags.model + ", condition " +
-                        flags.condition + ", seed " + std::to_string(flags.seed) + ", " + to_text(flags.rate_hz) +
-                        " Hz";
+                        flags.condition + ", seed " + std::to_string(flags.seed) + ", sample rate " +
+                        to_text(flags.rate_hz) + " Hz";
   for (const std::string& left : made->left_out) {
     comment.append("; left out: ").append(left);
     std::fprintf(stderr, "driftlab: left out: %s\n", left.c_str());
