@@ -1,4 +1,6 @@
 #include "clients/cli/analysis.hpp"
+#include "clients/cli/plot_file.hpp"
+#include "schema/json/report_page.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -20,6 +22,7 @@ struct Flags {
   FurtherRequest also;
   double from_tau_s = 0.0;
   bool json = false;
+  std::string plot;
 };
 
 Exit run(const Flags& flags) {
@@ -45,13 +48,18 @@ Exit run(const Flags& flags) {
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
+  if (!flags.plot.empty()) {
+    if (auto drawn = write_plots(*document, flags.plot); !drawn) {
+      return complain(drawn.error());
+    }
+  }
   Result<std::string> text =
       flags.json ? Result<std::string>(document->dump(2) + "\n") : tables_of(*document, inputs->device);
   if (!text) {
     return complain(text.error());
   }
   if (!flags.json) {
-    *text += further_to_text(*document);
+    *text = verdict_lines(*document) + "\n" + *text + further_to_text(*document);
   }
   std::fwrite(text->data(), 1, text->size(), stdout);
   return Exit::Success;
@@ -73,6 +81,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--device", flags->file.device,
                       "Device the recordings belong to; default: the first file's name");
+  command->add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
+  command->add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
   command->add_option("--calibration", flags->file.calibration,
                       "Correct the readings by what `driftlab calibrate --json` wrote to this file");
   command
@@ -98,6 +108,7 @@ void add_characterise(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--seed", flags->seed, "Seed of random draws")->capture_default_str();
   command->add_option("--server", flags->server, "Run through the daemon at this address, e.g. http://127.0.0.1:8477");
+  add_plot_flag(*command, flags->plot);
   command->add_flag("--json", flags->json, "Print the characterisation document instead of tables");
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

@@ -10,6 +10,8 @@
   COMMAND(add_plan)                \
   COMMAND(add_simulate)            \
   COMMAND(add_calibrate)           \
+  COMMAND(add_plot)                \
+  COMMAND(add_report)              \
   COMMAND(add_export)              \
   COMMAND(add_outages)             \
   COMMAND(add_regress)             \

@@ -130,6 +130,8 @@ void add_export(CLI::App& app, Command& chosen) {
   command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
       ->capture_default_str();
   command->add_option("--device", flags->file.device, "Name of the device; with --server the device to export");
+  command->add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
+  command->add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
   command->add_option("--calibration", flags->file.calibration,
                       "Correct the readings by what `driftlab calibrate --json` wrote to this file");
   command->add_option("--server", flags->server, "Export what the daemon at this address has stored of --device");

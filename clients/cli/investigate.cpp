@@ -3,6 +3,7 @@
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
 #include "clients/cli/local_files.hpp"
+#include "clients/cli/plot_file.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/study_request.hpp"
 #include "schema/json/investigation.hpp"
@@ -21,6 +22,7 @@ struct Flags {
   std::string out;
   std::string markdown;
   bool json = false;
+  std::string plot;
 };
 
 Exit run(const Flags& flags) {
@@ -44,7 +46,13 @@ Exit run(const Flags& flags) {
   if (!report) {
     return complain_of_work(report.error());
   }
-  const std::string document = to_json(*report).dump(2) + "\n";
+  const Json written = to_json(*report);
+  if (!flags.plot.empty()) {
+    if (auto drawn = write_plots(written, flags.plot); !drawn) {
+      return complain(drawn.error());
+    }
+  }
+  const std::string document = written.dump(2) + "\n";
   const std::string page = investigation_page(*report);
   for (const auto& [path, text] : {std::pair{flags.out, &document}, std::pair{flags.markdown, &page}}) {
     if (!path.empty() && !write_file(path, *text)) {
@@ -67,6 +75,7 @@ void add_investigate(CLI::App& app, Command& chosen) {
   command->add_option("STUDY", flags->study, "study.json beside its recordings")->required();
   command->add_option("--out", flags->out, "Write the report document to this file");
   command->add_option("--markdown", flags->markdown, "Write the report as a Markdown page to this file");
+  add_plot_flag(*command, flags->plot);
   command->add_flag("--json", flags->json, "Print the report document instead of the page");
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

@@ -1,4 +1,5 @@
 #include "clients/cli/cli.hpp"
+#include "clients/cli/plot_file.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/remote_job.hpp"
 #include "clients/cli/scenario_input.hpp"
@@ -23,7 +24,12 @@ struct Flags {
   int threads = 0;
   bool json = false;
   std::string server;
+  std::string plot;
 };
+
+Status draw_result(const Flags& flags, const Json& document) {
+  return flags.plot.empty() ? Status{} : write_plots(document, flags.plot);
+}
 
 /// The same evaluation as a job of a daemon, which may name its stored fits and tables.
 Exit run_there(const Flags& flags) {
@@ -46,6 +52,9 @@ Exit run_there(const Flags& flags) {
   }
   if (!document) {
     return complain(document.error().error, document.error().exit);
+  }
+  if (auto drawn = draw_result(flags, *document); !drawn) {
+    return complain(drawn.error());
   }
   const std::string text = document->dump(2) + "\n";
   std::fwrite(text.data(), 1, text.size(), stdout);
@@ -77,6 +86,9 @@ Exit run(const Flags& flags) {
   if (!report) {
     return complain_of_work(report.error());
   }
+  if (auto drawn = flags.plot.empty() ? Status{} : draw_result(flags, to_json(*report)); !drawn) {
+    return complain(drawn.error());
+  }
   const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : outage_text(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
@@ -107,6 +119,7 @@ void add_outages(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_option("--server", flags->server, "Address of a daemon that does the work; prints the result document");
+  add_plot_flag(*command, flags->plot);
   command->add_flag("--json", flags->json, "Print the result document instead of tables");
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

@@ -1,4 +1,5 @@
 #include "clients/cli/http_client.hpp"
+#include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,7 @@ struct Flags {
   std::string method = "gmwm";
   std::string model;
   std::string format = "text";
+  std::string plot;
 };
 
 std::string media_type(const std::string& format) {
@@ -37,6 +39,15 @@ Exit run(const Flags& flags) {
   if (!flags.model.empty()) {
     target += "&model=" + percent_encode(flags.model);
   }
+  if (!flags.plot.empty()) {
+    const auto document = fetch_document(flags.server, target);
+    if (!document) {
+      return complain(document.error().error, document.error().exit);
+    }
+    if (auto drawn = write_plots(*document, flags.plot); !drawn) {
+      return complain(drawn.error());
+    }
+  }
   return print_answer(flags.server, target, media_type(flags.format));
 }
 
@@ -54,6 +65,7 @@ void add_table(CLI::App& app, Command& chosen) {
   command->add_option("--format", flags->format, "text, csv, markdown or json")
       ->check(CLI::IsMember({"text", "csv", "markdown", "json"}))
       ->capture_default_str();
+  add_plot_flag(*command, flags->plot);
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }
 

@@ -17,7 +17,7 @@ INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrat
 ANALYSIS = [*CORE, "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
-RESULTS = ["core/signal", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema"]
+RESULTS = ["core/signal", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -34,7 +34,8 @@ FLOORS: dict[str, list[str]] = {
     "core/investigate/report": [*CORE, "core/campaign", "core/navigate", *INVESTIGATE[:-1]],
     "core/investigate": [*CORE, "core/campaign", "core/calibrate", "core/navigate", *INVESTIGATE],
     "core/analysis": [*ANALYSIS, "core/read"],  # one file per use case: what the command line and the jobs ask for
-    "schema/json": USE_CASES,
+    "schema/figure": ["core/signal"],  # drawings: data in, nothing known of where they come from
+    "schema/json": [*USE_CASES, "schema/figure"],
     "schema/text": USE_CASES,  # for people: tables and lines, of the same types and without a document in between
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
@@ -53,6 +54,7 @@ RESERVED = {
     r"sqlite3\.h": ("server/store", "core/read/rosbag2.cpp"),  # a ROS 2 bag is an SQLite database
     r"boost/(beast|asio).*": ("server", "clients/cli"),
     r"nlohmann/.*": ("schema/json", "server", "clients/cli"),
+    r"cairo/.*": ("schema/figure/png.cpp",),
     r"spdlog/.*": ("server",),
     r"iostream": ("server", "clients/cli"),
 }

@@ -1,0 +1,110 @@
+#include "clients/cli/analysis.hpp"
+#include "clients/cli/plot_file.hpp"
+#include "clients/cli/print_answer.hpp"
+#include "schema/json/report_page.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  FileFlags file;
+  std::string output = "-";
+  std::string channel;
+};
+
+/// A document as it stands, or recordings characterised now, with the name of their device.
+tl::expected<std::pair<std::string, Json>, Failure> document_of(const Flags& flags) {
+  if (flags.files.size() == 1 && flags.files.front().ends_with(".json")) {
+    auto document = read_result(flags.files.front());
+    if (!document) {
+      return tl::unexpected(Failure{document.error(), Exit::BadInput});
+    }
+    const Json recordings = document->is_object() ? document->value("recordings", Json(nullptr)) : Json(nullptr);
+    const bool study = recordings.is_array() && !recordings.empty() && !recordings.front().contains("channels");
+    if (!study) {
+      const std::string device = document->is_object() && document->value("device", Json(nullptr)).is_string()
+                                     ? document->at("device").get<std::string>()
+                                     : flags.file.device;
+      return std::pair(device, std::move(*document));
+    }
+  }
+  auto inputs = read_inputs(flags.files, flags.file);
+  if (!inputs) {
+    return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
+  }
+  auto document = characterise_here(*inputs, {});
+  if (!document) {
+    return tl::unexpected(document.error());
+  }
+  return std::pair(inputs->device, std::move(*document));
+}
+
+Exit run_plot(const Flags& flags) {
+  const auto document = document_of(flags);
+  if (!document) {
+    return complain(document.error().error, document.error().exit);
+  }
+  const auto written = write_plots(document->second, flags.output, flags.channel);
+  return written ? Exit::Success : complain(written.error());
+}
+
+Exit run_report(const Flags& flags) {
+  const auto document = document_of(flags);
+  if (!document) {
+    return complain(document.error().error, document.error().exit);
+  }
+  std::string tables;
+  if (document->second.contains("recordings") && document->second.at("recordings").is_array()) {
+    auto text = tables_of(document->second, document->first);
+    if (!text) {
+      return complain(text.error());
+    }
+    tables = std::move(*text);
+  }
+  const auto page = report_page(document->second, document->first, tables);
+  if (!page) {
+    return complain(page.error());
+  }
+  return write_text(flags.output == "-" ? "" : flags.output, *page);
+}
+
+void add_inputs(CLI::App& command, const std::shared_ptr<Flags>& flags) {
+  command.add_option("FILE", flags->files, "A document that --json wrote, recordings, or one study.json")->required();
+  command.add_option("--rate-hz", flags->file.rate_hz, "Sampling rate of recordings; needed without a time column");
+  command.add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… as for characterise");
+  command.add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
+  command.add_option("--device", flags->file.device, "Name of the device");
+  command.add_option("--skip-lines", flags->file.skip_lines, "Lines at the front of a text that are no table");
+  command.add_option("--comment", flags->file.comment, "What begins a line that is no row, e.g. ';'");
+  command.add_option("--calibration", flags->file.calibration,
+                     "Correct the readings by what `driftlab calibrate --json` wrote to this file");
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Command& chosen) {
+  CLI::App* const command =
+      app.add_subcommand("plot", "Figures of a result or a recording: SVG, PNG, or in the terminal");
+  const auto flags = std::make_shared<Flags>();
+  add_inputs(*command, flags);
+  command->add_option("--output", flags->output, "File (.svg, .png); - draws in the terminal")->capture_default_str();
+  command->add_option("--channel", flags->channel, "Only this channel, or this parameter of a table");
+  command->callback([flags, &chosen] { chosen = [flags] { return run_plot(*flags); }; });
+}
+
+void add_report(CLI::App& app, Command& chosen) {
+  CLI::App* const command =
+      app.add_subcommand("report", "One HTML page of a device, a recording, an investigation or a regression run");
+  const auto flags = std::make_shared<Flags>();
+  add_inputs(*command, flags);
+  command->add_option("--output", flags->output, "File; - prints it")->capture_default_str();
+  command->callback([flags, &chosen] { chosen = [flags] { return run_report(*flags); }; });
+}
+
+}  // namespace driftlab::cli

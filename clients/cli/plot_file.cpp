@@ -1,0 +1,80 @@
+#include "clients/cli/plot_file.hpp"
+
+#include "schema/figure/drawing.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace driftlab::cli {
+namespace {
+
+Result<std::string> drawn(const figure::Figure& figure, const std::string& ending) {
+  return ending == ".png" ? figure::to_png(figure) : Result<std::string>(figure::to_svg(figure));
+}
+
+Status write_bytes(const std::string& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) {
+    return fail(ErrorCode::Io, "The file " + path + " cannot be written.", {{"path", path}});
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_plot_flag(CLI::App& command, std::string& path) {
+  command.add_option("--plot", path, "Draw the result to this file (.svg, .png); - draws it in the terminal");
+}
+
+Status write_plots(const Json& document, const std::string& path, const std::string& channel) {
+  const std::size_t dot = path.rfind('.');
+  const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
+  if (path != "-" && ending != ".svg" && ending != ".png") {
+    return fail(ErrorCode::InvalidArgument,
+                "--plot writes .svg and .png, and - draws in the terminal; '" + path + "' ends otherwise.");
+  }
+  const auto figures = figures_of(document, channel);
+  if (!figures) {
+    return fail(figures.error());
+  }
+  for (const NamedFigure& one : *figures) {
+    if (path == "-") {
+      const std::string text = figure::to_terminal(one.figure) + "\n";
+      std::fwrite(text.data(), 1, text.size(), stdout);
+      continue;
+    }
+    const std::string name = figures->size() == 1 ? path : path.substr(0, dot) + "-" + one.name + ending;
+    const auto bytes = drawn(one.figure, ending);
+    if (!bytes) {
+      return fail(bytes.error());
+    }
+    if (auto written = write_bytes(name, *bytes); !written) {
+      return written;
+    }
+    if (figures->size() > 1) {
+      std::fprintf(stderr, "driftlab: wrote %s\n", name.c_str());
+    }
+  }
+  return {};
+}
+
+Result<Json> read_result(const std::string& path) {
+  const std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return fail(ErrorCode::NotFound, "The file " + path + " cannot be opened.");
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  auto document = parse_json(text.str());
+  if (!document) {
+    return fail(document.error().code, path + ": " + document.error().message);
+  }
+  return document;
+}
+
+}  // namespace driftlab::cli

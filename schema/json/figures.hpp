@@ -1,0 +1,27 @@
+#pragma once
+/// The figures of a document that driftlab wrote: what `driftlab plot`, `--plot` and `report` draw.
+#include "schema/figure/plot.hpp"
+#include "schema/json/json.hpp"
+
+#include <string>
+#include <vector>
+
+namespace driftlab {
+
+/// A figure and the word that tells it from the others of its document: a channel, a parameter, a filter.
+struct NamedFigure {
+  std::string name;
+  figure::Figure figure;
+};
+
+/// The Allan deviation of one member of `channels` of a characterisation document with its best model: points with
+/// intervals, robust estimate, model and components, and measured over model below; what the pages draw.
+[[nodiscard]] figure::Figure allan_figure(const Json& channel, const std::string& recording);
+
+/// Of a characterisation (one a channel), an investigation (spectrum and wavelet deviation of each channel with a
+/// series), an outage evaluation (errors by outage) or a parameter table (one a parameter). `channel`: of these alone;
+/// empty: all. Errors: InvalidArgument (a document of another kind; nothing of that name); Internal (not as driftlab
+/// writes it).
+[[nodiscard]] Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::string& channel);
+
+}  // namespace driftlab
