@@ -100,8 +100,8 @@ Exit write_model(const Flags& flags) {
     return complain(made.error());
   }
   std::string comment = "Simulated by driftlab " DRIFTLAB_VERSION ", model " + flags.model + ", condition " +
-                        flags.condition + ", seed " + std::to_string(flags.seed) + ", sample rate " +
-                        to_text(flags.rate_hz) + " Hz";
+                        flags.condition + ", seed " + std::to_string(flags.seed) + ", " + to_text(flags.rate_hz) +
+                        " Hz";
   for (const std::string& left : made->left_out) {
     comment.append("; left out: ").append(left);
     std::fprintf(stderr, "driftlab: left out: %s\n", left.c_str());
