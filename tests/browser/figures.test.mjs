@@ -71,7 +71,7 @@ test('the command line draws what the page draws, mark by mark', async () => {
   const result = await daemon.json(job.result.href);
   const [channel] = result.recordings[0].channels;
   const {items} = await daemon.json(`/v1/fits?recording=${recording.id}&best=true`);
-  const implied = await daemon.json(`/v1/fits/${items[0].id}/implied`);
+  const {implied} = await daemon.json(`/v1/fits/${items[0].id}/implied`);
   const {variancePlots, layout, Drawing} = await pages();
   const plots = variancePlots(channel, channel.fits[channel.best], implied, 'deg/h', 'allan', {robust: false, components: true, guides: true});
   const page = marks(elements(Drawing({plan: layout(plots, 900), id: 'f', cursor: null})));
