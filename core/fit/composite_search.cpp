@@ -3,7 +3,6 @@
 #include "core/fit/j_test.hpp"
 #include "core/process/distributions.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
-#include "core/variance/haar_covariance.hpp"
 #include "core/variance/nonnegative_least_squares.hpp"
 
 #include <algorithm>
@@ -28,8 +27,6 @@ constexpr std::size_t kHopelessFrom = 4;
 constexpr double kHopeless = 4.0;
 /// Components after which the periodogram is asked for lines, if the model is rejected.
 constexpr std::size_t kBeforeLines = 2;
-/// Records of more than this many half lengths are long enough for the table.
-constexpr std::size_t kShort = 32;
 constexpr std::size_t kSpare = 4;  // scales that a model must leave
 constexpr std::array<double, 5> kDiscrepancies{0.0, 0.01, 0.02, 0.05, 0.1};
 /// Of a resonance at a line, where its polishing starts.
@@ -41,9 +38,6 @@ class Search {
  public:
   Search(const CompositeBasis& basis, const CompositeCurve& curve) : basis_(basis), curve_(curve) {}
 
-  /// S from a mixture of everything that the basis scans.
-  CurveCovariance mixture_covariance();
-  CurveCovariance model_covariance(const Composite& model) const;
   /// Steps forward and back under one S; every model that was polished is left in `seen`.
   CompositeFit run(const CompositeDistance& distance, std::vector<CompositeFit>& seen) const;
   /// The shapes of the first `settled` components stay as they are.
@@ -68,115 +62,12 @@ class Search {
   /// noise before quantization noise was found is white noise.
   CompositeFit simplified(const CompositeDistance& distance, CompositeFit current,
                           std::vector<CompositeFit>& seen) const;
-  /// What the shape of the noise adds to the scatter.
-  void add_kurtosis(const Composite& model, Eigen::MatrixXd& covariance) const;
-  /// Near the end of the record fewer coefficients than the table assumes lie side by side.
-  void correct_long_scales(const Composite& mixture);
   Eigen::MatrixXd whitened_shares(const CompositeDistance& distance, const Composite& model) const;
 
   const CompositeBasis& basis_;
   const CompositeCurve& curve_;
   mutable std::optional<std::vector<SpectralLine>> lines_;
-  Eigen::VectorXd raise_;  ///< of the standard deviations
 };
-
-CurveCovariance Search::model_covariance(const Composite& model) const {
-  const Eigen::VectorXd nu = basis_.variance(model);
-  Eigen::MatrixXd covariance = basis_.table().covariance(basis_.density(model));
-  add_kurtosis(model, covariance);
-  covariance = raise_.asDiagonal() * covariance * raise_.asDiagonal();
-  // Processes without a density scatter nothing, but no variance is known better than to rounding.
-  covariance.diagonal().array() += 1e-12 * nu.array().square();
-  return curve_covariance(curve_.variance, nu, covariance);
-}
-
-void Search::add_kurtosis(const Composite& model, Eigen::MatrixXd& covariance) const {
-  if (curve_.shape.kurtosis == 0.0) {
-    return;
-  }
-  Composite part;
-  for (const Component& component : model) {
-    const bool rough = basis_.is_fast(component) || basis_.kinds()[component.kind].kind->differenced_square != nullptr;
-    if (rough == curve_.shape.rough) {
-      part.push_back(component);
-    }
-  }
-  driftlab::add_kurtosis(covariance, basis_.variance(part), basis_.table().half(), basis_.table().samples(),
-                         curve_.shape.kurtosis);
-}
-
-CurveCovariance Search::mixture_covariance() {
-  Composite all;
-  for (std::size_t k = 0; k < basis_.kinds().size(); ++k) {
-    const CompositeKind& kind = basis_.kinds()[k];
-    if (is_trend(k) || kind.at_lines_only || kind.shapes() > 1) {
-      continue;
-    }
-    if (kind.shapes() == 0) {
-      all.push_back({k, 0.0, {}});
-      continue;
-    }
-    const std::span<const double> scan = basis_.scan(k);
-    const std::size_t step = kind.repeats ? 5 : 12;
-    for (std::size_t i = step / 2; i < scan.size(); i += step) {
-      all.push_back({k, 0.0, {scan[i]}});
-    }
-  }
-  const Eigen::Index scales = basis_.table().scales();
-  Eigen::MatrixXd columns(scales, static_cast<Eigen::Index>(all.size()));
-  LogColumn column;
-  for (std::size_t c = 0; c < all.size(); ++c) {
-    basis_.column(all[c], false, column);
-    columns.col(static_cast<Eigen::Index>(c)) = column.value.head(scales).array().exp();
-  }
-  // Degrees of freedom as if white: the number of filters side by side.
-  Eigen::VectorXd weight(scales);
-  for (Eigen::Index j = 0; j < scales; ++j) {
-    const auto m = static_cast<double>(basis_.table().half()[static_cast<std::size_t>(j)]);
-    weight(j) = std::min(std::sqrt(static_cast<double>(basis_.table().samples()) / m), 300.0);
-  }
-  Eigen::VectorXd fitted = curve_.variance;
-  Composite mixture;
-  for (int round = 0; round < 3; ++round) {
-    const Eigen::VectorXd scale = weight.cwiseQuotient(fitted.cwiseMax(1e-300));
-    const NonnegativeSolution solution =
-        nonnegative_least_squares(scale.asDiagonal() * columns, scale.asDiagonal() * curve_.variance);
-    mixture.clear();
-    for (std::size_t c = 0; c < all.size(); ++c) {
-      const double level = solution.x(static_cast<Eigen::Index>(c));
-      if (level > 0.0) {
-        mixture.push_back(all[c]);
-        mixture.back().log_square = std::log(level);
-      }
-    }
-    fitted = columns * solution.x;
-  }
-  correct_long_scales(mixture);
-  return model_covariance(mixture);
-}
-
-void Search::correct_long_scales(const Composite& mixture) {
-  const SpectralTable& table = basis_.table();
-  raise_ = curve_.raise.size() > 0 ? curve_.raise : Eigen::VectorXd::Ones(table.scales());
-  const auto first = std::find_if(table.half().begin(), table.half().end(),
-                                  [&](std::size_t m) { return kShort * m > table.samples(); });
-  const auto from = first - table.half().begin();
-  Model model;
-  Composite lawful;
-  for (const Component& component : mixture) {
-    if (basis_.kinds()[component.kind].kind->add_haar_cross != nullptr) {
-      model.push_back(basis_.process(component));
-      lawful.push_back(component);
-    }
-  }
-  if (first == table.half().end() || model.empty()) {
-    return;
-  }
-  HaarCovariance plan(std::span(table.half()).subspan(static_cast<std::size_t>(from)), table.samples(), basis_.dt_s());
-  const Eigen::VectorXd exact = plan.diagonal(model);
-  const Eigen::VectorXd nearly = table.covariance(basis_.density(lawful)).diagonal().tail(exact.size());
-  raise_.tail(exact.size()).array() *= (exact.array() / nearly.array()).sqrt();
-}
 
 CompositeFit Search::polished(const CompositeDistance& distance, Composite model, std::size_t settled) const {
   CompositeFit fit;
@@ -390,9 +281,10 @@ CompositeFit Search::run(const CompositeDistance& distance, std::vector<Composit
 
 CompositeSearchResult search_composite(const CompositeBasis& basis, const CompositeCurve& curve,
                                        const RunControl& control) {
-  Search search(basis, curve);
+  const Search search(basis, curve);
+  CompositeCovariance covariance(basis, curve);
   CompositeSearchResult result;
-  result.curve = search.mixture_covariance();
+  result.curve = covariance.of_mixture();
   std::vector<CompositeFit> seen;
   CompositeFit best;
   for (const double delta : kDiscrepancies) {
@@ -415,7 +307,7 @@ CompositeSearchResult search_composite(const CompositeBasis& basis, const Compos
     return result;
   }
   // Once more under the S of the model itself.
-  result.curve = search.model_covariance(best.model);
+  result.curve = covariance.of_model(best.model);
   const CompositeDistance distance(basis, result.curve, std::max(result.delta, 0.0));
   const CompositeFit first = search.polished(distance, best.model);
   result.fits.push_back(first);

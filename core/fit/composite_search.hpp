@@ -13,14 +13,10 @@
 /// Where nothing is accepted, the search is repeated with a discrepancy delta of the variances
 /// (core/fit/discrepancy.hpp), the first of 0.5, 1, 2, 5 and 10 % at which L of some model is below its degrees of
 /// freedom by that measure: the model then describes the curve within delta, and L is no test.
+#include "core/fit/composite_covariance.hpp"
 #include "core/fit/composite_fit.hpp"
 #include "core/signal/progress.hpp"
-#include "core/variance/excess_kurtosis.hpp"
-#include "core/variance/spectral_lines.hpp"
 
-#include <Eigen/Core>
-
-#include <functional>
 #include <vector>
 
 namespace driftlab {
@@ -34,17 +30,6 @@ struct CompositeFit {
   std::size_t parameters = 0;
   double p = 0.0;  ///< of L; with a discrepancy a measure, no test
   [[nodiscard]] double cost() const { return distance + 4.0 * static_cast<double>(parameters); }
-};
-
-/// The wavelet variances of a curve [unit^2] at the scales of a basis.
-struct CompositeCurve {
-  Eigen::VectorXd variance;
-  /// Lines of the periodogram: where a resonance, or if they are sharp a sinusoid, may be looked for. Asked for once,
-  /// where models without them are rejected; empty: there are none.
-  std::function<std::vector<SpectralLine>()> lines;
-  /// By what missing samples, or a robust estimator, raise the standard deviations; empty: by nothing.
-  Eigen::VectorXd raise;
-  NoiseShape shape = {};  ///< kurtosis of the noise (core/variance/excess_kurtosis.hpp)
 };
 
 struct CompositeSearchResult {

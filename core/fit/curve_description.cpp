@@ -80,29 +80,15 @@ std::vector<FittedProcess> told_processes(const CompositeBasis& basis, const Com
   return processes;
 }
 
-/// What of a model the nine candidates lack, as people say it.
-std::string beyond_candidates(const CompositeBasis& basis, const Composite& model) {
+/// What a model holds beside white noise, random walks and slow processes, as people say it.
+std::string beyond_candidates(const CompositeBasis& basis, const Composite& model, double dt_s) {
   std::string text;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   for (const Component& component : model) {
-    const Process process = basis.process(component);
-    const std::string_view name = process.kind->name;
-    if (name == "moving_average") {
-      add("white noise averaged over " + brief(process.parameters[1]) + " samples");
-    } else if (name == "decimation") {
-      add("white noise behind a decimator of " + brief(process.parameters[1]) + " samples");
-    } else if (name == "low_pass_2") {
-      add("a low-pass at " + brief(process.parameters[1]) + " Hz");
-    } else if (name == "power_law") {
-      add("power-law noise 1/f^" + brief(process.parameters[1]));
-    } else if (name == "resonance") {
-      add("a resonance at " + brief(process.parameters[1]) + " Hz");
-    } else if (name == "sinusoid") {
-      add("a line at " + brief(process.parameters[1]) + " Hz");
-    } else if (name == "flicker_noise" || name == "quantization_noise") {
-      add(std::string(process.kind->title));
-    } else if (name == "gauss_markov" && basis.is_fast(component)) {
-      add("a process of " + brief(1e3 / process.parameters[1]) + " ms correlation time");
+    if (const auto shown = basis.process(component).appearance(dt_s)) {
+      text += text.empty() ? "" : ", ";
+      text += shown->before;
+      text += shown->figure ? brief(*shown->figure) : "";
+      text += shown->after;
     }
   }
   return text;
@@ -159,7 +145,7 @@ void describe_curve(const DescribedSamples& channel, const FittedVariances& octa
       description.alternatives.push_back(std::move(name));
     }
   }
-  description.sentence = sentence_of(description, beyond_candidates(*basis, best.model));
+  description.sentence = sentence_of(description, beyond_candidates(*basis, best.model, channel.dt_s));
 }
 
 }  // namespace driftlab

@@ -7,6 +7,7 @@
 /// the density N^2 at low frequencies: N is the angle (velocity) random walk, whatever the filter. m = 1 is the usual
 /// decimator, which averages three times over what it makes one sample of; a slower output rate than that makes m
 /// smaller, and one of 1/3 and less leaves white noise.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -48,6 +49,9 @@ struct Decimation {
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
   [[nodiscard]] Ringing ringing(double /*dt_s*/) const { return {3.0 * samples + 1.0, 0.5 * samples}; }
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const {
+    return {"white noise averaged three times over ", samples, " samples"};
+  }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Exact, with ceil(3 m) states: what the noise up to now gives to the present and each later sample.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;

@@ -3,6 +3,7 @@
 ///
 /// The floor of its Allan deviation is sqrt(2 ln 2/pi) B = 0.664 B. Only its increments are stationary. It has no
 /// finite state space; the one given is a sum of 16 Gauss-Markov processes, an approximation whose error is stated.
+#include "core/process/appearance.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/slow_law.hpp"
@@ -33,6 +34,7 @@ struct FlickerNoise {
   /// (2 B^2/pi) Cin(pi h), Cin(x) = int_0^x (1 - cos t)/t dt; h whole.
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {kTitle, std::nullopt, ""}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Approximate. It has 16 Gauss-Markov states with stationary variances between 0.1 and 0.9 B^2 and correlation times
   /// from 0.4 to 1.3e7 samples, two per decade, fitted to the density in relative least squares over 10^-7 .. 1/2

@@ -5,6 +5,7 @@
 /// and stationary variance sigma^2. As beta -> 0 with 2 beta sigma^2 fixed it becomes a random walk; as beta ->
 /// infinity, white noise. The closed forms below keep 15 digits for x = beta dt from 1e-14 to 700 and scales up to
 /// 2^30, where the usual form loses all of them.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -42,6 +43,11 @@ struct GaussMarkov {
   /// haar_cross over many lags with one exponential per lag.
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
+  /// One that is faster than some five samples is the bandwidth of the sensor; slower ones are the usual bias.
+  [[nodiscard]] std::optional<Appearance> appearance(double dt_s) const {
+    return beta * dt_s < 0.2 ? std::nullopt
+                             : std::optional(Appearance{"a process of ", 1e3 / beta, " ms correlation time"});
+  }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Starts in the stationary distribution.

@@ -6,6 +6,7 @@
 /// other words, beta = 2 pi f_c and sigma^2 = N^2 tanh(beta dt/2)/dt, and no curve tells the two apart: a model needs
 /// one of them for each fast process. This one has the parameters of a data sheet. A corner above the sampling rate
 /// leaves white noise.
+#include "core/process/appearance.hpp"
 #include "core/process/gauss_markov.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
@@ -57,6 +58,7 @@ struct LowPass1 {
                       std::span<double> out) const {
     same(dt_s).add_haar_cross(mi, mj, dt_s, lags, factor, out);
   }
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {"a low-pass at ", corner_hz, " Hz"}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// One state, exact.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const { return same(dt_s).state_space(dt_s); }

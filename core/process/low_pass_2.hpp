@@ -6,6 +6,7 @@
 /// of quality 1/sqrt(2) (resonance.hpp). An investigation's finding `band_limited_noise` is the same filter made of
 /// samples (bilinear transform), which has a zero at the Nyquist frequency where this one has its aliases; below a
 /// quarter of the sampling rate their shapes agree to some per cent.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -42,6 +43,7 @@ struct LowPass2 {
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
   [[nodiscard]] Ringing ringing(double dt_s) const;
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {"a low-pass at ", corner_hz, " Hz"}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Two states, exact.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;

@@ -8,6 +8,7 @@
 /// a driver that averages 13 readings and gives every fourth has m = 3.25. A width of 1 and less is white noise. With
 /// m = k + r between two whole numbers the autocovariance is the mixture (1 - r) t_k + r t_(k+1) of triangles, so all
 /// laws are those of whole widths; at a whole width they have a kink in m.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -49,6 +50,9 @@ struct MovingAverage {
   [[nodiscard]] double variogram(double lag, double dt_s) const;
   [[nodiscard]] double haar_cross(double mi, double mj, double h, double dt_s) const;
   [[nodiscard]] Ringing ringing(double /*dt_s*/) const { return {samples + 1.0, 0.25 * samples}; }
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const {
+    return {"white noise averaged over ", samples, " samples"};
+  }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Exact, with as many states as m rounded up: what the noise up to now gives to the present and each later sample.
   /// Nothing where m is above kWidestStates.

@@ -11,6 +11,7 @@
 ///
 /// All laws follow from r(h) = Gamma(h + 1/2 + eta)/Gamma(h + 1/2 - eta), and from its difference to the polynomial in
 /// h that it is at alpha = 1, divided by alpha - 1: no law has a pole or loses digits there.
+#include "core/process/appearance.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
@@ -50,6 +51,7 @@ struct PowerLaw {
   /// Far lags by two terms of the Taylor series, within 1 % of their own small value.
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {"power-law noise 1/f^", alpha, ""}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Approximate: up to 16 Gauss-Markov states with correlation times from 0.25 to 8e6 samples, two per decade, fitted
   /// to the density in relative least squares over 10^-7 .. 1/2 cycles a sample. The error is within 0.5 % for every

@@ -4,6 +4,7 @@
 /// All laws are in the unit of the channel: a `Process` with level 1 in rad/s gives variances in (rad/s)^2. `half` is
 /// the half length m of a Haar filter in samples (scale n = 2m, Allan tau = m dt). It may be any whole number up to
 /// 2^40, held in a double.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -52,6 +53,10 @@ struct ProcessKind {
 
   /// What of the covariances of Haar coefficients is not smooth between their kinks; null where all is.
   Ringing (*ringing)(std::span<const double> p, double dt_s) = nullptr;
+
+  /// What a curve shows that holds this process, where that is worth a word; null where it never is (white noise, a
+  /// random walk).
+  std::optional<Appearance> (*appearance)(std::span<const double> p, double dt_s) = nullptr;
 
   /// Optional laws, null where the kind declares none: what an investigation can do with the process where a model that
   /// is taken at its word holds it. A kind with none of them is simulated, and stays in a recording.
@@ -108,6 +113,10 @@ struct Process {
   /// Its density at low frequencies, where it has one there.
   [[nodiscard]] std::optional<LowFrequencyDensity> low_frequency(double dt_s) const {
     return kind->low_frequency != nullptr ? std::optional(kind->low_frequency(parameters, dt_s)) : std::nullopt;
+  }
+  /// What a curve shows that holds it; nothing where that is nothing unusual.
+  [[nodiscard]] std::optional<Appearance> appearance(double dt_s) const {
+    return kind->appearance != nullptr ? kind->appearance(parameters, dt_s) : std::nullopt;
   }
   /// Autocovariance at a lag in whole samples; nothing for processes that are not stationary.
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const {

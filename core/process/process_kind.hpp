@@ -2,9 +2,10 @@
 /// Turns a value type such as GaussMarkov into a ProcessKind. A value type is an aggregate of doubles, one per declared
 /// parameter and in that order, with the functions of white_noise.hpp; `static shape_range(dt_s, samples)` where it has
 /// a shape, and `static shape_ranges(dt_s, samples)`, an array of ranges, where it has several; `low_frequency(dt_s)`
-/// where its density has a limit there; `ringing(dt_s)` where its Haar coefficients' covariance rings;
-/// `kInOctaveSearch = false` where a search over octaves is not to add it; and those of the optional laws of
-/// ProcessKind that it has, `add_block_states` and `expected_periodogram` as static functions of slow_law.hpp's form.
+/// where its density has a limit there; `appearance(dt_s)` where a curve that holds it is worth a word; `ringing(dt_s)`
+/// where its Haar coefficients' covariance rings; `kInOctaveSearch = false` where a search over octaves is not to add
+/// it; and those of the optional laws of ProcessKind that it has, `add_block_states` and `expected_periodogram` as
+/// static functions of slow_law.hpp's form.
 #include "core/process/process.hpp"
 
 #include <cassert>
@@ -78,6 +79,11 @@ template <class T>
   }
   if constexpr (requires(const T process) { process.low_frequency(1.0); }) {
     kind.low_frequency = [](Values p, double dt_s) { return detail::from_values<T>(p).low_frequency(dt_s); };
+  }
+  if constexpr (requires(const T process) { process.appearance(1.0); }) {
+    kind.appearance = [](Values p, double dt_s) -> std::optional<Appearance> {
+      return detail::from_values<T>(p).appearance(dt_s);
+    };
   }
   if constexpr (requires(const T process) { process.ringing(1.0); }) {
     kind.ringing = [](Values p, double dt_s) { return detail::from_values<T>(p).ringing(dt_s); };

@@ -7,6 +7,7 @@
 ///
 /// Allan variance 3 Q^2/tau^2, slope -1 of the Allan deviation. Simulated with a uniform error, as a quantizer makes
 /// it.
+#include "core/process/appearance.hpp"
 #include "core/process/haar_differences.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -51,6 +52,7 @@ struct QuantizationNoise {
     }
     return error_variance(dt_s) * haar_cross_of(mi, mj, h, [](double lag) { return lag == 0.0 ? -1.0 : 0.0; });
   }
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {kTitle, std::nullopt, ""}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Two states: this sample's error and the previous one.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const {

@@ -6,6 +6,7 @@
 /// 1/(2 Q)). For Q well above 1 the spectrum has a peak at f of width f/Q; correlations die out after Q/(pi f). Above
 /// the Nyquist frequency the peak shows where it is folded to. With Q = 0.707 it is white noise behind a second-order
 /// low-pass (low_pass_2.hpp); with Q of 1/2 and less nothing oscillates, and a sum of Gauss-Markov processes says it.
+#include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -48,6 +49,7 @@ struct Resonance {
   void add_haar_cross(double mi, double mj, double dt_s, std::span<const double> lags, double factor,
                       std::span<double> out) const;
   [[nodiscard]] Ringing ringing(double dt_s) const;
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {"a resonance at ", frequency_hz, " Hz"}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// Two states, exact.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;

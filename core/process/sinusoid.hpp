@@ -2,6 +2,7 @@
 /// Sinusoid: amplitude * sin(2 pi f t + phase) with a phase uniform over the circle.
 ///
 /// Its spectrum is a line, so it has no density; its wavelet variance has zeros wherever f m is whole.
+#include "core/process/appearance.hpp"
 #include "core/process/haar_differences.hpp"
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
@@ -53,6 +54,7 @@ struct Sinusoid {
   }
   /// Given its phase a sinusoid is deterministic; its squares average out over a record, so it adds no scatter.
   [[nodiscard]] double haar_cross(double /*mi*/, double /*mj*/, double /*h*/, double /*dt_s*/) const { return 0.0; }
+  [[nodiscard]] Appearance appearance(double /*dt_s*/) const { return {"a line at ", frequency_hz, " Hz"}; }
   [[nodiscard]] double haar_mean(double /*m*/, double /*dt_s*/) const { return 0.0; }
   /// A rotating pair of states.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const {
