@@ -56,6 +56,20 @@ TEST_P(HiddenCause, IsNamedWhereItIsStrong) {
 INSTANTIATE_TEST_SUITE_P(Registry, HiddenCause, testing::ValuesIn(cause_names()),
                          [](const auto& instance) { return instance.param; });
 
+/// Beside a right finding its rivals "still disagreed": what a later look no longer saw kept the score of an earlier one.
+TEST(RightFindings, LeaveNoRivalUnexplained) {
+  for (const char* const cause : {"white_noise_level", "once_per_revolution", "acceleration_dependent_noise"}) {
+    const Case hidden = make_case(cause, 30.0, 1030);
+    const SimulatedStudy simulated = simulate_study(hidden.world, {hidden.effect});
+    const auto report = investigate::investigate(simulated.study, {.predict_outages = false});
+    ASSERT_TRUE(report);
+    for (const Check& check : report->checks) {
+      EXPECT_FALSE(check.failed_after) << cause << ": " << check.id;
+    }
+    EXPECT_TRUE(report->unexplained.empty()) << cause;
+  }
+}
+
 TEST(NothingHidden, NothingIsFound) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     World world;

@@ -678,8 +678,8 @@ class Investigation(TypedDict):
     created_at: NotRequired[str]
     baseline: InvestigationModel
     checks: list[InvestigationCheck]
-    # In the order in which a laboratory would act on them: by concern, then the strongest cause first; findings of one
-    # cause stand together.
+    # In the order in which a laboratory would act on them: by certainty and concern, then the strongest cause first;
+    # findings of one cause stand together.
     findings: list[InvestigationFinding]
     # The findings of each cause, in order.
     groups: NotRequired[list[InvestigationGroup]]

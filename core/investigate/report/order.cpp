@@ -10,13 +10,19 @@ namespace driftlab::investigate {
 
 void put_in_order(std::vector<Finding>& findings) {
   std::map<const Cause*, double> best;
+  std::map<const Cause*, bool> unsure;
   for (const Finding& finding : findings) {
-    const auto [place, fresh] = best.emplace(finding.evidence.cause, finding.evidence.score);
-    place->second = std::max(place->second, finding.evidence.score);
+    const Evidence& evidence = finding.evidence;
+    const auto [place, fresh] = best.emplace(evidence.cause, evidence.score);
+    place->second = std::max(place->second, evidence.score);
+    bool& all = unsure.emplace(evidence.cause, true).first->second;
+    all = all && evidence.ambiguous;
   }
   const auto key = [&](const Finding& finding) {
     const Evidence& evidence = finding.evidence;
-    return std::tuple(concern_of(*evidence.cause), -best.at(evidence.cause), evidence.cause->name, -evidence.score);
+    const Concern concern = concern_of(*evidence.cause);
+    return std::tuple(concern == Concern::Format, unsure.at(evidence.cause), concern, -best.at(evidence.cause),
+                      evidence.cause->name, -evidence.score);
   };
   sort_keeping_ties(findings, [&](const Finding& a, const Finding& b) { return key(a) < key(b); });
 }

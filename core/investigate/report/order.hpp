@@ -2,8 +2,9 @@
 /// The order of findings, and those that say the same of several channels.
 ///
 /// A laboratory acts on an error of the recording before it calibrates, and calibrates before it models noise; the
-/// digits of the file are worth knowing and no task. Findings therefore stand by concern (causes/cause.hpp), one cause
-/// after the other, the strongest first, and all findings of one cause together.
+/// digits of the file are worth knowing and no task. Nobody acts on what is ambiguous before what is sure. Findings
+/// therefore stand by certainty and concern (causes/cause.hpp), the format last; one cause after the other, the
+/// strongest first, and all findings of one cause together.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/report.hpp"
 

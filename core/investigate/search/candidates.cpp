@@ -60,10 +60,9 @@ void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fre
   }
 }
 
-void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh) {
-  std::erase_if(remaining, [&](const Evidence& old) {
-    return std::any_of(fresh.begin(), fresh.end(), [&](const Evidence& e) { return e.cause == old.cause; });
-  });
+void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh,
+               const std::function<bool(const Cause&)>& looked_for) {
+  std::erase_if(remaining, [&](const Evidence& old) { return looked_for(*old.cause); });
   std::vector<Evidence> latest;
   keep_best(latest, fresh);
   remaining.insert(remaining.end(), latest.begin(), latest.end());

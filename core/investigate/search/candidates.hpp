@@ -4,6 +4,7 @@
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,8 +16,10 @@ namespace driftlab::investigate {
 /// Keeps in `examined` the best evidence of every cause.
 void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh);
 
-/// Keeps in `remaining` the best evidence of every cause as the last look saw it.
-void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh);
+/// Keeps in `remaining` the best evidence of every cause as the last look saw it. `looked_for`: the causes of this look;
+/// one of them of which it saw nothing has gone.
+void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh,
+               const std::function<bool(const Cause&)>& looked_for);
 
 /// The strongest candidate beyond kThreshold, with those of its declared rivals that come within kMargin. Candidates
 /// found at full rate are evaluated on samples to which they were not fitted, and their score is 0 if they are worse

@@ -206,7 +206,9 @@ class GroupSearch {
       }
       std::optional<Evidence> winner = choose(data, candidates);
       keep_best(outcome_.examined, candidates);
-      keep_last(outcome_.remaining, candidates);
+      keep_last(outcome_.remaining, candidates, [&](const Cause& cause) {
+        return cause.as<SpectralLine>() != nullptr || (cause.is_slow() && !clear_line);
+      });
       if (!winner) {
         break;
       }
@@ -356,7 +358,7 @@ class GroupSearch {
       if (found == 0) {
         keep_best(outcome_.examined, candidates);
       }
-      keep_last(outcome_.remaining, candidates);
+      keep_last(outcome_.remaining, candidates, is_of_samples);
       if (!winner || found == kMost || whitened_) {
         break;
       }
@@ -369,6 +371,12 @@ class GroupSearch {
     }
   }
 
+  /// Does it tell of the noise of single samples?
+  [[nodiscard]] static bool is_of_samples(const Cause& cause) {
+    return cause.as<NoiseTails>() != nullptr || cause.as<NoiseLevel>() != nullptr ||
+           cause.as<DifferencedNoise>() != nullptr;
+  }
+
   /// What can be said of the noise of single samples; tails only until some are found.
   [[nodiscard]] std::vector<Evidence> noise_candidates(const FullRate& data) const {
     const bool tails_known =
@@ -377,7 +385,7 @@ class GroupSearch {
     std::vector<Evidence> candidates;
     for (const Cause& cause : cause_registry()) {
       const bool tails = cause.as<NoiseTails>() != nullptr;
-      const bool wanted = tails || cause.as<NoiseLevel>() != nullptr || cause.as<DifferencedNoise>() != nullptr;
+      const bool wanted = is_of_samples(cause);
       const bool lacking = cause.lacks != nullptr && !cause.lacks(study_, group_).empty();
       if (!wanted || (tails && tails_known) || looks_like_fact(cause) || lacking || stopped()) {
         continue;
@@ -436,7 +444,7 @@ class GroupSearch {
     }
     found[0].cause = &cause;
     keep_best(outcome_.examined, found);
-    keep_last(outcome_.remaining, found);
+    keep_last(outcome_.remaining, found, [&](const Cause& other) { return &other == &cause; });
     if (found[0].score < kThreshold) {
       return;
     }

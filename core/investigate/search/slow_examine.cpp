@@ -132,10 +132,13 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
     evidence.cause = job.cause;
     evidence.members = job.scope;
     evidence.freedom = kind.has_shape() ? 2.0 : 1.0;
-    evidence.gain = 2.0 * fit.log_likelihood - cost(base) - null_score_;
-    // What needs no nuisance of levels, and is far better than it, is compared with the model that was given.
-    if (given_ && fit.model.white_scale.empty() && evidence.gain > kThreshold) {
-      evidence.gain += null_score_ - exact_score_;
+    // What needs no nuisance of levels is measured against the better null, with it or without it; and once it is far
+    // better than that, against the model that was given.
+    const bool exact = fit.model.white_scale.empty();
+    evidence.gain =
+        2.0 * fit.log_likelihood - cost(base) - (exact ? std::max(null_score_, exact_score_) : null_score_);
+    if (given_ && exact && evidence.gain > kThreshold) {
+      evidence.gain += std::max(0.0, null_score_ - exact_score_);
     }
     evidence.score = evidence.gain - cost_of(kind) - choice_penalty(static_cast<double>(job.scopes));
     evidence.shape = extra.beta;

@@ -276,10 +276,10 @@ const SlowFit& SlowSearch::fit_null() {
   null_ = orders_[best];
   null_score_ = 2.0 * null_.log_likelihood - cost(null_.model);
   exact_score_ = null_score_;
-  if (given_ && !white_scale_.empty()) {
+  if (!white_scale_.empty()) {
     SlowModel exact = null_.model;
     exact.white_scale.clear();
-    exact_score_ = 2.0 * fit_slow(series_, columns, exact, freedom()).log_likelihood;
+    exact_score_ = 2.0 * fit_slow(series_, columns, exact, freedom()).log_likelihood - cost(exact);
   }
   base_count_ = null_.model.components.size() - extra_.size();
   if (!extra_.empty()) {

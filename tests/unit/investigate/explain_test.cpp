@@ -87,13 +87,16 @@ TEST(Order, ALaboratoryReadsFirstWhatItWouldActOnFirst) {
       of("scale_factor_error", 20.0, {"a/gx"}),  of("temperature_bias", 30.0, {"a/gy"}),
       of("scale_factor_error", 300.0, {"a/gz"}), of("reference_time_offset", 15.0, {"a/gz"}),
       of("missing_samples", 40.0, {"a/gz"})};
+  findings.push_back(of("g_sensitivity", 700.0, {"a/gx"}));
+  findings.back().evidence.ambiguous = true;
   put_in_order(findings);
   std::vector<std::string> said;
   for (const FindingGroup& group : groups_of(findings)) {
     said.emplace_back(group.cause->name);
   }
   EXPECT_EQ(said, (std::vector<std::string>{"missing_samples", "reference_time_offset", "scale_factor_error",
-                                            "temperature_bias", "random_walk", "output_resolution"}));
+                                            "temperature_bias", "random_walk", "g_sensitivity",
+                                            "output_resolution"}));
   EXPECT_EQ(findings[2].channels.front(), "a/gz") << "the stronger of two findings of one cause first";
   EXPECT_EQ(groups_of(findings)[2].columns, (std::vector<std::string>{"gz", "gx"}));
 }
