@@ -84,7 +84,7 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
     const Vector3 place = axes.transpose() * (o.reference_ecef_m - origin);
     outages.push_back(Json{{"start_s", number(o.outage.start_s)},
                            {"phase", o.phase},
-                           {"class", name_of(o.outage_class)},
+                           {"motion", name_of(o.outage_class)},
                            {"north_m", number(o.error_ned_m.x())},
                            {"east_m", number(o.error_ned_m.y())},
                            {"along_m", number(o.along_m)},
@@ -99,7 +99,7 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
   Json classes = Json::array();
   for (const auto& c : d.classes) {
     classes.push_back(
-        Json{{"class", name_of(c.outage_class)}, {"n", c.count}, {"rms_m", number(c.rms_m)}, {"nees", number(c.nees)}});
+        Json{{"motion", name_of(c.outage_class)}, {"n", c.count}, {"rms_m", number(c.rms_m)}, {"nees", number(c.nees)}});
   }
   return Json{{"duration_s", number(d.duration_s)},
               {"period_s", number(d.period_s)},
@@ -117,7 +117,7 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
               {"start_error_rms_m", number(d.start_error_rms_m)},
               {"straight_line_rms_m", number(d.straight_line_rms_m)},
               {"promised_rms_m", number(d.promised_rms_m)},
-              {"classes", std::move(classes)},
+              {"by_motion", std::move(classes)},
               {"outages", std::move(outages)}};
 }
 
@@ -186,7 +186,7 @@ Json simulated_json(const std::vector<drive::SimulatedDuration>& simulated) {
 Json durations_json(const drive::DriveEvaluation& evaluation, const drive::Drive& drive) {
   Json durations = Json::array();
   for (const drive::DurationSummary& d : evaluation.durations) {
-    durations.push_back(to_json(d, drive));
+    durations.push_back(driftlab::to_json(d, drive));
   }
   return durations;
 }

@@ -144,11 +144,12 @@ drive::Source drive_source(ObjectReader& reader, std::string_view source_member,
   return source;
 }
 
-void read_drive_imu(const Json& document, std::string_view member, drive::ImuSource& imu, Faults& faults) {
-  ObjectReader reader(document, "/imu", faults);
+void read_drive_imu(const Json& document, const std::string& pointer, std::string_view member, drive::ImuSource& imu,
+                    Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
   imu.source = drive_source(reader, member, faults);
   if (const Json* const force = reader.member("accelerometer")) {
-    ObjectReader inner(*force, "/imu/accelerometer", faults);
+    ObjectReader inner(*force, pointer + "/accelerometer", faults);
     imu.force = drive_source(inner, member, faults);
     inner.reject_unknown();
   }
@@ -159,7 +160,7 @@ void read_drive_imu(const Json& document, std::string_view member, drive::ImuSou
       imu.mounting = {(*mounting)[0].get<double>() * kDegree, (*mounting)[1].get<double>() * kDegree,
                       (*mounting)[2].get<double>() * kDegree};
     } else {
-      faults.add("/imu/mounting_deg", ErrorCode::InvalidArgument,
+      faults.add(pointer + "/mounting_deg", ErrorCode::InvalidArgument,
                  "The mounting is [roll, pitch, yaw] in degrees, or \"unknown\".");
     }
   }
@@ -169,13 +170,14 @@ void read_drive_imu(const Json& document, std::string_view member, drive::ImuSou
               : clock == "arrival" ? drive::SensorClock::Arrival
                                    : drive::SensorClock::Sensor;
   if (clock != "sensor" && clock != "host" && clock != "arrival") {
-    faults.add("/imu/clock", ErrorCode::InvalidArgument, "The unit's clock is sensor, host or arrival.");
+    faults.add(pointer + "/clock", ErrorCode::InvalidArgument, "The unit's clock is sensor, host or arrival.");
   }
   reader.reject_unknown();
 }
 
-void read_drive_gnss(const Json& document, std::string_view member, drive::GnssSource& gnss, Faults& faults) {
-  ObjectReader reader(document, "/gnss", faults);
+void read_drive_gnss(const Json& document, const std::string& pointer, std::string_view member, drive::GnssSource& gnss,
+                     Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
   gnss.source = drive_source(reader, member, faults);
   if (const Json* const types = reader.member("fix_types")) {
     bool sound = types->is_array();
@@ -186,26 +188,26 @@ void read_drive_gnss(const Json& document, std::string_view member, drive::GnssS
       }
     }
     if (!sound) {
-      faults.add("/gnss/fix_types", ErrorCode::InvalidArgument,
+      faults.add(pointer + "/fix_types", ErrorCode::InvalidArgument,
                  "The fix types to be used are a list of whole numbers.");
     }
   }
   gnss.lever_arm_m = drive_vector(reader, "lever_arm_m", faults).value_or(Vector3::Zero());
   gnss.lever_arm_sd_m = not_negative(reader, "lever_arm_sd_m", 0.0, faults);
   if (const Json* const latency = reader.member("latency_s")) {
-    ObjectReader inner(*latency, "/gnss/latency_s", faults);
+    ObjectReader inner(*latency, pointer + "/latency_s", faults);
     gnss.position_latency_s = inner.real("position").value_or(0.0);
     gnss.velocity_latency_s = inner.real("velocity").value_or(0.0);
     inner.reject_unknown();
     if (std::abs(gnss.position_latency_s) > 10.0 || std::abs(gnss.velocity_latency_s) > 10.0) {
-      faults.add("/gnss/latency_s", ErrorCode::InvalidArgument, "A latency is at most 10 s.");
+      faults.add(pointer + "/latency_s", ErrorCode::InvalidArgument, "A latency is at most 10 s.");
     }
   }
   gnss.hold = drive_flag(reader, "hold", faults);
   const std::string above = reader.text("height_above").value_or("ellipsoid");
   gnss.geoid = above == "geoid";
   if (above != "ellipsoid" && above != "geoid") {
-    faults.add("/gnss/height_above", ErrorCode::InvalidArgument, "Heights are above the ellipsoid or the geoid.");
+    faults.add(pointer + "/height_above", ErrorCode::InvalidArgument, "Heights are above the ellipsoid or the geoid.");
   }
   const auto sd = [&](std::string_view name, Vector3& into) {
     if (const auto value = drive_vector(reader, name, faults)) {
@@ -220,38 +222,38 @@ void read_drive_gnss(const Json& document, std::string_view member, drive::GnssS
   reader.reject_unknown();
 }
 
-void read_drive_reference(const Json& document, std::string_view member, drive::ReferenceSource& reference,
-                          Faults& faults) {
+void read_drive_reference(const Json& document, const std::string& pointer, std::string_view member,
+                          drive::ReferenceSource& reference, Faults& faults) {
   if (document.is_string()) {
     if (document.get<std::string>() != "withheld_fixes") {
-      faults.add("/reference", ErrorCode::InvalidArgument, "A reference is a source or \"withheld_fixes\".");
+      faults.add(pointer, ErrorCode::InvalidArgument, "A reference is a source or \"withheld_fixes\".");
     }
     return;
   }
-  ObjectReader reader(document, "/reference", faults);
+  ObjectReader reader(document, pointer, faults);
   reference.source = drive_source(reader, member, faults);
   reference.lever_arm_m = drive_vector(reader, "lever_arm_m", faults).value_or(Vector3::Zero());
   reference.sd_m = not_negative(reader, "sd_m", 0.0, faults);
   reader.reject_unknown();
 }
 
-void read_drive_odometer(const Json& document, std::string_view member, drive::OdometerSource& odometer,
-                         Faults& faults) {
-  ObjectReader reader(document, "/odometer", faults);
+void read_drive_odometer(const Json& document, const std::string& pointer, std::string_view member,
+                         drive::OdometerSource& odometer, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
   odometer.source = drive_source(reader, member, faults);
   odometer.metres_per_tick = not_negative(reader, "metres_per_tick", 0.0, faults);
   odometer.lever_arm_m = drive_vector(reader, "lever_arm_m", faults).value_or(Vector3::Zero());
   odometer.sd_m_s = not_negative(reader, "sd_m_s", 0.1, faults);
   if (!(odometer.sd_m_s > 0.0)) {
-    faults.add("/odometer/sd_m_s", ErrorCode::InvalidArgument, "A standard deviation is above 0.");
+    faults.add(pointer + "/sd_m_s", ErrorCode::InvalidArgument, "A standard deviation is above 0.");
   }
   reader.reject_unknown();
 }
 
-void read_drive_start(const Json& document, drive::StartState& start, Faults& faults) {
-  ObjectReader reader(document, "/start", faults);
+void read_drive_start(const Json& document, const std::string& pointer, drive::StartState& start, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
   if (const Json* const position = reader.member("position")) {
-    ObjectReader inner(*position, "/start/position", faults);
+    ObjectReader inner(*position, pointer + "/position", faults);
     Geodetic place;
     place.latitude_rad = inner.real("latitude_deg").value_or(0.0) * kDegree;
     place.longitude_rad = inner.real("longitude_deg").value_or(0.0) * kDegree;
@@ -270,8 +272,8 @@ void read_drive_start(const Json& document, drive::StartState& start, Faults& fa
   reader.reject_unknown();
 }
 
-void read_drive_outages(const Json& document, drive::OutagePlan& plan, Faults& faults) {
-  ObjectReader reader(document, "/outages", faults);
+void read_drive_outages(const Json& document, const std::string& pointer, drive::OutagePlan& plan, Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
   const auto numbers = [&](std::string_view name, std::vector<double>& into) {
     const Json* const value = reader.member(name);
     if (value == nullptr) {
@@ -317,50 +319,51 @@ ImuModel drive_model_from_json(const Json& document, const std::string& pointer,
   return model;
 }
 
-drive::Document drive_from_json(const Json& document, Faults& faults, std::string_view source_member) {
+drive::Document drive_from_json(const Json& document, Faults& faults, std::string_view source_member,
+                                const std::string& pointer) {
   drive::Document made;
-  ObjectReader reader(document, "", faults);
+  ObjectReader reader(document, pointer, faults);
   made.id = reader.required_text("id");
   const std::string vehicle = reader.required_text("vehicle");
   if (const auto parsed = drive::parse_vehicle(vehicle)) {
     made.vehicle = *parsed;
   } else if (!vehicle.empty()) {
-    faults.add("/vehicle", ErrorCode::InvalidArgument, "A vehicle is road, rail, rover, air, foot or boat.");
+    faults.add(pointer + "/vehicle", ErrorCode::InvalidArgument, "A vehicle is road, rail, rover, air, foot or boat.");
   }
   const auto required = [&](std::string_view name) {
     const Json* const member = reader.member(name);
     if (member == nullptr) {
-      faults.add("/" + std::string(name), ErrorCode::InvalidArgument,
+      faults.add(pointer + "/" + std::string(name), ErrorCode::InvalidArgument,
                  "A drive has the member `" + std::string(name) + "`.");
     }
     return member;
   };
   if (const Json* const imu = required("imu")) {
-    read_drive_imu(*imu, source_member, made.imu, faults);
+    read_drive_imu(*imu, pointer + "/imu", source_member, made.imu, faults);
   }
   if (const Json* const gnss = required("gnss")) {
-    read_drive_gnss(*gnss, source_member, made.gnss, faults);
+    read_drive_gnss(*gnss, pointer + "/gnss", source_member, made.gnss, faults);
   }
   if (const Json* const reference = reader.member("reference")) {
-    read_drive_reference(*reference, source_member, made.reference, faults);
+    read_drive_reference(*reference, pointer + "/reference", source_member, made.reference, faults);
   }
   if (const Json* const odometer = reader.member("odometer")) {
     made.odometer.emplace();
-    read_drive_odometer(*odometer, source_member, *made.odometer, faults);
+    read_drive_odometer(*odometer, pointer + "/odometer", source_member, *made.odometer, faults);
   }
   if (const Json* const model = required("model")) {
-    made.model = drive_model_from_json(*model, "/model", faults);
+    made.model = drive_model_from_json(*model, pointer + "/model", faults);
   }
   if (const Json* const start = reader.member("start")) {
-    read_drive_start(*start, made.start, faults);
+    read_drive_start(*start, pointer + "/start", made.start, faults);
   }
   if (const Json* const outages = reader.member("outages")) {
-    read_drive_outages(*outages, made.outages, faults);
+    read_drive_outages(*outages, pointer + "/outages", made.outages, faults);
   }
   reader.reject_unknown();
   if (faults.none()) {
     if (const auto status = drive::check(made); !status) {
-      faults.add("", status.error());
+      faults.add(pointer, status.error());
     }
   }
   return made;

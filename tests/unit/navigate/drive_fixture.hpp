@@ -15,7 +15,7 @@ struct Hidden {
   double imu_offset_s = 0.0;  ///< the unit's stamps must be shifted by this
   double velocity_latency_s = 0.0;
   Vector3 lever_arm_m = Vector3::Zero();
-  ReadingErrors errors;
+  ReadingErrors errors = {};
   double noise_factor = 1.0;  ///< of the gyroscope's white noise
 };
 
