@@ -15,7 +15,8 @@
   COMMAND(add_export)              \
   COMMAND(add_outages)             \
   COMMAND(add_regress)             \
-  COMMAND(add_ci)
+  COMMAND(add_ci)                  \
+  COMMAND(add_drive)
 // clang-format on
 
 namespace driftlab::cli {

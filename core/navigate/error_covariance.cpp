@@ -266,4 +266,79 @@ void ErrorCovariance::update(const ScalarMeasurement& measurement, State& state)
               [&](auto kernel) { decltype(kernel)::update(measurement, nn_, ns_.data(), ss_.data(), state.data()); });
 }
 
+ErrorCovariance::State ErrorCovariance::times(const WideMeasurement& measurement) const {
+  const Eigen::Matrix<double, 9, 1>& h = measurement.navigation.h;
+  State product = State::Zero();
+  product.head<9>() = nn_ * h;
+  for (int i = 0; i < 9; ++i) {
+    for (int j = 0; j < sensor_states_; ++j) {
+      product(9 + j) += h(i) * ns_[at(i, j)];
+    }
+  }
+  for (std::size_t k = 0; k < measurement.count; ++k) {
+    const int own = measurement.index[k];
+    const double weight = measurement.weight[k];
+    for (int i = 0; i < 9; ++i) {
+      product(i) += weight * ns_[at(i, own)];
+    }
+    for (int j = 0; j < sensor_states_; ++j) {
+      product(9 + j) += weight * ss_[at(own, j)];
+    }
+  }
+  return product;
+}
+
+namespace {
+
+/// h . x over navigation and sensor states.
+double projected(const WideMeasurement& measurement, const ErrorCovariance::State& x) {
+  double sum = measurement.navigation.h.dot(x.head<9>());
+  for (std::size_t k = 0; k < measurement.count; ++k) {
+    sum += measurement.weight[k] * x(9 + measurement.index[k]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+ScalarInnovation ErrorCovariance::expected(const WideMeasurement& measurement, const State& state) const {
+  return {measurement.navigation.innovation - projected(measurement, state),
+          projected(measurement, times(measurement)) + measurement.navigation.variance};
+}
+
+ScalarInnovation ErrorCovariance::update(const WideMeasurement& measurement, State& state) {
+  if (measurement.count == 0) {
+    const ScalarInnovation innovation = expected(measurement, state);
+    update(measurement.navigation, state);
+    return innovation;
+  }
+  const State p = times(measurement);
+  const ScalarInnovation innovation{measurement.navigation.innovation - projected(measurement, state),
+                                    projected(measurement, p) + measurement.navigation.variance};
+  const Eigen::Index n = 9 + sensor_states_;
+  const State k = p / innovation.variance;
+  state.head(n) += innovation.value * k.head(n);
+  // Joseph's form as in Kernel::update, its two corrections of rank one after the other.
+  const auto correct = [&](const State& a, const State& b, double factor) {
+    const auto both = [&](Eigen::Index i, Eigen::Index j) { return 0.5 * factor * (a(i) * b(j) + b(i) * a(j)); };
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j < 9; ++j) {
+        nn_(i, j) += both(i, j);
+      }
+      for (int j = 0; j < sensor_states_; ++j) {
+        ns_[at(i, j)] += both(i, 9 + j);
+      }
+    }
+    for (int i = 0; i < sensor_states_; ++i) {
+      for (int j = 0; j < sensor_states_; ++j) {
+        ss_[at(i, j)] += both(9 + i, 9 + j);
+      }
+    }
+  };
+  correct(k, p, -1.0);
+  correct(k, times(measurement), -1.0);
+  correct(k, k, measurement.navigation.variance);
+  return innovation;
+}
+
 }  // namespace driftlab

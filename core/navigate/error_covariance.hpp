@@ -45,6 +45,26 @@ struct ScalarMeasurement {
   double variance = 0.0;
 };
 
+/// One that depends on sensor states too: innovation = h . (navigation error) + sum weight[i] (sensor state index[i]) +
+/// noise.
+struct WideMeasurement {
+  static constexpr std::size_t kMost = 24;
+  ScalarMeasurement navigation;
+  std::size_t count = 0;  ///< sensor states that take part
+  std::array<int, kMost> index{};
+  std::array<double, kMost> weight{};
+  void add(int state, double factor) {
+    index[count] = state;
+    weight[count++] = factor;
+  }
+};
+
+/// What a measurement said that was not expected, given the measurements of its moment before it, and its variance.
+struct ScalarInnovation {
+  double value = 0.0;
+  double variance = 0.0;
+};
+
 class ErrorCovariance {
  public:
   using Navigation = Eigen::Matrix<double, 9, 9>;
@@ -74,8 +94,14 @@ class ErrorCovariance {
   /// Scalar Kalman update in Joseph's form; the correction is added to `state`, which holds what earlier measurements
   /// of this moment gave.
   void update(const ScalarMeasurement& measurement, State& state);
+  /// The same for a measurement that depends on sensor states, and slower: it takes matrices of all states.
+  ScalarInnovation update(const WideMeasurement& measurement, State& state);
+  /// The innovation that `update` would find, without the update.
+  [[nodiscard]] ScalarInnovation expected(const WideMeasurement& measurement, const State& state) const;
 
  private:
+  /// P h, in navigation and sensor states.
+  [[nodiscard]] State times(const WideMeasurement& measurement) const;
   [[nodiscard]] std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j);
   }

@@ -71,6 +71,13 @@ Result<FilterDesign> FilterDesign::make(const FilterSettings& settings, double d
     design.first_[c] = design.sensor_states_;
     design.sensor_states_ += design.channels_[c].front().states;
   }
+  for (const double sd : settings.constants_sd) {
+    if (!(sd > 0.0 && std::isfinite(sd))) {
+      return fail(ErrorCode::InvalidArgument, "The standard deviation of an estimated constant is above 0.",
+                  {{"parameter", "constants_sd"}});
+    }
+  }
+  design.sensor_states_ += static_cast<int>(settings.constants_sd.size());
   if (design.sensor_states_ > kMaxSensorStates) {
     return fail(ErrorCode::LimitExceeded, "The error models ask for more than 64 sensor states.",
                 {{"limit", std::to_string(kMaxSensorStates)}});

@@ -60,6 +60,11 @@ NavigationFilter::NavigationFilter(const FilterDesign& design, const NavigationS
       }
     }
   }
+  const std::vector<double>& constants = design.settings().constants_sd;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const int own = design.first_constant() + static_cast<int>(k);
+    covariance_.add_sensor(own, own, constants[k] * constants[k]);
+  }
   if (const auto& constraint = design.settings().non_holonomic) {
     const double samples = 1.0 / (constraint->rate_hz * design.dt_s());
     constraint_samples_ = std::max(1, static_cast<int>(std::lround(samples)));
@@ -128,6 +133,9 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
   navigation.velocity = velocity_;
   navigation.position = position_;
   const auto stride = static_cast<std::size_t>(covariance_.stride());
+  for (int constant = design_->first_constant(); constant < design_->sensor_states(); ++constant) {
+    sensors.phi[static_cast<std::size_t>(constant)] = 1.0;
+  }
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const auto k = static_cast<Eigen::Index>(c % 3);
     AxisEffect effect;
@@ -247,6 +255,18 @@ void NavigationFilter::update(const GnssFix& fix) {
       measurement.innovation = axis.dot(velocity_gap);
       measurement.variance = fix.velocity_sd_m_s(k) * fix.velocity_sd_m_s(k);
       covariance_.update(measurement, correction);
+    }
+  }
+  apply(correction);
+}
+
+void NavigationFilter::measure(std::span<const WideMeasurement> measurements, std::span<ScalarInnovation> innovations) {
+  close_step();
+  ErrorCovariance::State correction = ErrorCovariance::State::Zero();
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const ScalarInnovation innovation = covariance_.update(measurements[i], correction);
+    if (!innovations.empty()) {
+      innovations[i] = innovation;
     }
   }
   apply(correction);

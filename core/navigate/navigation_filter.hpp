@@ -51,6 +51,9 @@ struct FilterSettings {
   /// Predicts a late fix for the moment it describes.
   bool compensate_latency = true;
   std::optional<NonHolonomic> non_holonomic;
+  /// Standard deviations of constants that measurements of `measure` depend on and that are estimated beside the sensor
+  /// errors: an arm, a mounting angle, a scale factor. They stand behind the sensor states.
+  std::vector<double> constants_sd;
   int covariance_samples = 10;  ///< 1 to 100
 };
 
@@ -64,7 +67,10 @@ class FilterDesign {
 
   [[nodiscard]] const FilterSettings& settings() const { return settings_; }
   [[nodiscard]] double dt_s() const { return dt_s_; }
+  /// Constants of the settings included.
   [[nodiscard]] int sensor_states() const { return sensor_states_; }
+  /// Where the constants of the settings stand among the sensor states.
+  [[nodiscard]] int first_constant() const { return sensor_states_ - static_cast<int>(settings_.constants_sd.size()); }
   [[nodiscard]] int first_state(std::size_t channel) const { return first_[channel]; }
   [[nodiscard]] const ChannelDynamics& channel(std::size_t channel, std::size_t band) const {
     return channels_[channel][band];
@@ -87,6 +93,15 @@ class NavigationFilter {
   void advance(std::span<const ImuSample> readings);
   /// A fix that arrives now. Its position, and its velocity where it has one and the settings use it.
   void update(const GnssFix& fix);
+  /// Any measurements of this moment, linearised by the caller at the present estimate, one after the other; what all
+  /// of them say is fed back at once. `innovations`, of the same length or empty, gets what each brought.
+  void measure(std::span<const WideMeasurement> measurements, std::span<ScalarInnovation> innovations = {});
+  /// The rate that the last reading gave, sensor errors taken off [rad/s], body axes.
+  [[nodiscard]] const Vector3& last_rate() const { return last_rate_; }
+  /// The acceleration over the last sample [m/s^2] in e.
+  [[nodiscard]] const Vector3& last_acceleration() const { return last_acceleration_; }
+  /// b -> e.
+  [[nodiscard]] const Matrix3& attitude() const { return strapdown_.attitude(); }
 
   [[nodiscard]] const NavigationState& state() const { return strapdown_.state(); }
   /// Expected sensor states, in the order of the design.

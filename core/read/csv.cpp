@@ -399,7 +399,7 @@ Status CsvDecoder::finish() {
 
 /// True if a format of one kind of text takes it: the table of numbers is for what nobody else knows.
 bool is_special(std::string_view head) {
-  constexpr std::array kOfText{&kCxd5602, &kVmu931, &kGeneactiv, &kEuroc, &kRostopic, &kKfGins};
+  constexpr std::array kOfText{&kCxd5602, &kVmu931, &kGeneactiv, &kEuroc, &kRostopic, &kKfGins, &kRtklibPos};
   return std::any_of(kOfText.begin(), kOfText.end(), [head](const Format* format) { return format->sniff(head) > 0; });
 }
 

@@ -21,7 +21,8 @@
   FORMAT(kRosbag2)  /* rosbag2.cpp */ \
   FORMAT(kEuroc)    /* euroc.cpp */ \
   FORMAT(kRostopic) /* rostopic.cpp */ \
-  FORMAT(kKfGins)   /* kf_gins.cpp */
+  FORMAT(kKfGins)   /* kf_gins.cpp */ \
+  FORMAT(kRtklibPos) /* rtklib_pos.cpp */
 // clang-format on
 
 namespace driftlab::formats {

@@ -92,5 +92,24 @@ TEST(KfGins, MarksARepeatedStampAndRefusesARaggedLine) {
   EXPECT_EQ(ragged.field("row"), "11");
 }
 
+TEST(RtklibPos, DatesItsPositionsInSecondsSince1970) {
+  const Outcome outcome = decode_bytes(rtklib_pos());
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.format, "rtklib_pos");
+  EXPECT_EQ(outcome.decoded.names,
+            (ColumnNames{"time (s)", "latitude(deg)", "longitude(deg)", "height(m)", "Q", "ns"}));
+  EXPECT_NEAR(std::bit_cast<double>(outcome.bits[0].front()), 1752003258.499, 1e-6);
+  EXPECT_DOUBLE_EQ(std::bit_cast<double>(outcome.bits[3].back()), 300.5);
+}
+
+TEST(RtklibPos, TakesWeeksAndRefusesARaggedLine) {
+  const std::string head = "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n";
+  const Outcome week = decode_bytes(head + "2374 243258.499 48.5 9.25 300.125 1 21\n");
+  ASSERT_FALSE(week.error) << week.message;
+  EXPECT_NEAR(std::bit_cast<double>(week.bits[0].front()), 315964800.0 + 2374.0 * 604800.0 + 243258.499, 1e-6);
+  const Outcome ragged = decode_bytes(head + "2374 243258.499 48.5 9.25 300.125 1\n");
+  EXPECT_EQ(ragged.error, ErrorCode::RaggedRow);
+}
+
 }  // namespace
 }  // namespace driftlab

@@ -230,4 +230,13 @@ inline std::string kf_gins(const std::vector<InertialRow>& rows) {
   return text;
 }
 
+/// Three positions 0.25 s apart.
+inline std::string rtklib_pos() {
+  return "% program   : made by hand\n"
+         "%  GPST            latitude(deg) longitude(deg) height(m) Q ns\n"
+         "2025/07/08 19:34:18.499 48.5 9.25 300.125 1 21\n"
+         "2025/07/08 19:34:18.749 48.5000001 9.25 300.25 1 21\n"
+         "2025/07/08 19:34:18.999 48.5000002 9.2500001 300.5 2 20\n";
+}
+
 }  // namespace driftlab::testing

@@ -1,0 +1,81 @@
+#include "clients/cli/drive_files.hpp"
+
+#include "core/read/format.hpp"
+#include "core/read/rtklib_tag.hpp"
+#include "schema/json/drive_document.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace driftlab::cli {
+namespace {
+
+Result<Json> json_file(const std::string& path, const char* what) {
+  const std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return fail(ErrorCode::NotFound, "The " + std::string(what) + " " + path + " cannot be opened.");
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  auto document = parse_json(text.str());
+  return document ? std::move(document)
+                  : Result<Json>(fail(document.error().code, path + ": " + document.error().message));
+}
+
+}  // namespace
+
+Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunControl& control) {
+  auto decoded = decode_file(folder_ / source.file, workspace_.file(), {}, control);
+  if (!decoded) {
+    return fail(decoded.error());
+  }
+  auto columns = ColumnFile::open(workspace_.file());
+  if (!columns) {
+    return fail(columns.error());
+  }
+  drive::Table table = table_of(*columns);
+  table.notes = std::move(decoded->notes);
+  if (!source.time.tag.empty()) {
+    const auto tag = read_rtklib_tag(folder_ / source.time.tag);
+    if (!tag) {
+      return fail(tag.error());
+    }
+    table.tag = drive::TimeTag{tag->first_s, tag->last_s};
+  }
+  return table;
+}
+
+Result<drive::Document> read_drive_document(const std::string& path, const std::string& model_path) {
+  auto document = json_file(path, "drive document");
+  if (!document) {
+    return fail(document.error());
+  }
+  if (!model_path.empty()) {
+    auto model = json_file(model_path, "model");
+    if (!model) {
+      return fail(model.error());
+    }
+    (*document)["model"] = std::move(*model);
+  }
+  Faults faults;
+  drive::Document made = drive_from_json(*document, faults);
+  return faults.none() ? Result<drive::Document>(std::move(made)) : fail(faults.error());
+}
+
+Result<drive::Tables> open_drive_tables(const std::string& path, const drive::Document& document,
+                                        const RunControl& control) {
+  auto workspace = Workspace::make();
+  if (!workspace) {
+    return fail(workspace.error());
+  }
+  DriveFiles files(std::filesystem::path(path).parent_path(), std::move(*workspace));
+  return open_tables(document, files, control);
+}
+
+Result<drive::Drive> open_drive_files(const std::string& path, const drive::Document& document,
+                                      const drive::LoadOptions& options, const RunControl& control) {
+  const auto tables = open_drive_tables(path, document, control);
+  return tables ? drive::load_drive(document, *tables, options) : Result<drive::Drive>(fail(tables.error()));
+}
+
+}  // namespace driftlab::cli

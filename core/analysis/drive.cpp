@@ -1,0 +1,197 @@
+#include "core/analysis/drive.hpp"
+
+#include <array>
+#include <cstdio>
+
+namespace driftlab {
+namespace {
+
+Error of_file(Error error, const std::string& file) {
+  error.message = file + ": " + error.message;
+  return std::move(error).with("file", file);
+}
+
+}  // namespace
+
+drive::Table table_of(const ColumnFile& columns) {
+  drive::Table table;
+  table.names = columns.names();
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const auto values = columns.column(i);
+    table.columns.emplace_back(values.begin(), values.end());
+  }
+  return table;
+}
+
+Result<drive::Tables> open_tables(const drive::Document& document, DriveSource& source, const RunControl& control) {
+  drive::Tables tables;
+  const auto open = [&](const drive::Source& one) -> Result<drive::Table> {
+    auto table = source.open(one, control);
+    return table ? std::move(table) : Result<drive::Table>(fail(of_file(table.error(), one.file)));
+  };
+  auto imu = open(document.imu.source);
+  if (!imu) {
+    return fail(imu.error());
+  }
+  tables.imu = std::move(*imu);
+  auto gnss = open(document.gnss.source);
+  if (!gnss) {
+    return fail(gnss.error());
+  }
+  tables.gnss = std::move(*gnss);
+  const auto optional = [&](const drive::Source* one, std::optional<drive::Table>& into) -> Status {
+    if (one == nullptr) {
+      return {};
+    }
+    auto table = open(*one);
+    if (!table) {
+      return fail(table.error());
+    }
+    into = std::move(*table);
+    return {};
+  };
+  if (auto status = optional(document.imu.force ? &*document.imu.force : nullptr, tables.force); !status) {
+    return fail(status.error());
+  }
+  if (auto status = optional(document.reference.source ? &*document.reference.source : nullptr, tables.reference);
+      !status) {
+    return fail(status.error());
+  }
+  if (auto status = optional(document.odometer ? &document.odometer->source : nullptr, tables.odometer); !status) {
+    return fail(status.error());
+  }
+  return tables;
+}
+
+DriveCheck check_drive(drive::Drive drive) {
+  DriveCheck checked;
+  for (std::size_t run = 0; run < drive.runs.size(); ++run) {
+    const auto rests = drive::rests_of(drive, run);
+    checked.rests.insert(checked.rests.end(), rests.begin(), rests.end());
+    if (checked.start) {
+      continue;
+    }
+    if (auto start = drive::find_start(drive, run)) {
+      checked.start = *start;
+    } else {
+      checked.cannot_start = start.error().message;
+    }
+  }
+  checked.drive = std::move(drive);
+  return checked;
+}
+
+Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& options,
+                              const drive::EvaluationOptions& settings, const RunControl& control) {
+  if (options.constraint && !drive::moves_along_its_nose(drive.document.vehicle)) {
+    return fail(ErrorCode::InvalidArgument,
+                "A vehicle of kind " + std::string(name_of(drive.document.vehicle)) +
+                    " does not move along its nose: velocity constraints are for road, rail and rover.",
+                {{"parameter", "vehicle"}});
+  }
+  if (options.odometer && drive.odometer.empty()) {
+    return fail(ErrorCode::InvalidArgument, "The drive has no odometer.", {{"parameter", "odometer"}});
+  }
+  auto evaluation = drive::evaluate_drive(drive, options, settings, control);
+  if (!evaluation) {
+    return fail(evaluation.error());
+  }
+  return DriveReport{std::move(drive), options, std::move(*evaluation)};
+}
+
+Result<DriveExplanationReport> report_explanation(const drive::Document& document, const drive::Tables& tables,
+                                                  const drive::ExplainOptions& options, const RunControl& control) {
+  auto drive = drive::load_drive(document, tables);
+  if (!drive) {
+    return fail(drive.error());
+  }
+  const auto as_stamped = drive::load_drive(document, tables, {.repair = false});
+  if (!as_stamped) {
+    return fail(as_stamped.error());
+  }
+  auto explanation = drive::explain_drive(*drive, *as_stamped, options, control);
+  if (!explanation) {
+    return fail(explanation.error());
+  }
+  return DriveExplanationReport{std::move(*drive), std::move(*explanation)};
+}
+
+std::string sentence_of(const DriveExplanationReport& report) {
+  const drive::DriveExplanation& e = report.explanation;
+  const drive::SimulatedDuration& before = e.simulated_before.front();
+  std::string causes;
+  for (const drive::DriveFinding& finding : e.findings) {
+    if (causes.find(finding.cause) == std::string::npos) {
+      causes.append(causes.empty() ? "" : ", ").append(finding.cause);
+    }
+  }
+  std::array<char, 512> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "After %.3g s without fixes the drive's errors are %.3g times (95 %% interval %.3g to %.3g) those that the "
+      "simulation of the same trajectory gives. ",
+      before.duration_s, before.ratio.value, before.ratio.ci95.low, before.ratio.ci95.high);
+  std::string sentence = text.data();
+  sentence += causes.empty() ? "No cause is shown. " : "Found: " + causes + ". ";
+  const drive::RungFigures* first = nullptr;
+  const drive::RungFigures* last = nullptr;
+  for (const drive::Rung& rung : e.rungs) {
+    if (rung.durations.empty()) {
+      continue;
+    }
+    first = first == nullptr ? &rung.durations.front() : first;
+    last = rung.kept ? &rung.durations.front() : last;
+  }
+  if (first != nullptr && last != nullptr) {
+    std::snprintf(
+        text.data(), text.size(),
+        "On %zu outages of %.3g s that it has not seen the mended model takes the rms from %.3g to %.3g m and the "
+        "NEES from %.3g to %.3g (2 is right), with %.0f %% inside its 95 %% ellipse.",
+        last->held_out_count, last->duration_s, first->held_out_rms_m, last->held_out_rms_m, first->held_out_nees,
+        last->held_out_nees, 100.0 * last->held_out_coverage95);
+    sentence += text.data();
+  }
+  return sentence;
+}
+
+Result<DriveSimulation> simulate_drive_outages(drive::Drive drive, const drive::FilterOptions& options,
+                                               const drive::SimulationOptions& settings, const RunControl& control) {
+  auto measured = run_drive(std::move(drive), options, {.seed = settings.seed}, control);
+  if (!measured) {
+    return fail(measured.error());
+  }
+  const auto prepared = drive::PreparedDrive::make(measured->drive, options);
+  if (!prepared) {
+    return fail(prepared.error());
+  }
+  auto simulated = drive::simulate_outages(*prepared, measured->evaluation.durations, settings, control);
+  if (!simulated) {
+    return fail(simulated.error());
+  }
+  return DriveSimulation{std::move(*measured), std::move(*simulated)};
+}
+
+std::string sentence_of(const DriveSimulation& simulation) {
+  const drive::SimulatedDuration& first = simulation.simulated.front();
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(),
+                "After %.3g s without fixes the measured error is %.3g times (95 %% interval %.3g to %.3g) that of the "
+                "simulation of the same trajectory, outages and model: %.3g m against %.3g m.",
+                first.duration_s, first.ratio.value, first.ratio.ci95.low, first.ratio.ci95.high,
+                simulation.measured.evaluation.durations.front().rms_m.value, first.rms_m);
+  return text.data();
+}
+
+std::string sentence_of(const DriveReport& report) {
+  const drive::DurationSummary& first = report.evaluation.durations.front();
+  std::array<char, 512> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "After %.3g s without fixes the filter is %.3g m off (rms of %zu measured outages, 95 %% interval %.3g to "
+      "%.3g m); by its own covariance it would be %.3g m: %.2g times as much as the model promises.",
+      first.duration_s, first.rms_m.value, first.outages.size(), first.rms_m.ci95.low, first.rms_m.ci95.high,
+      first.promised_rms_m, first.rms_m.value / first.promised_rms_m);
+  return text.data();
+}
+
+}  // namespace driftlab

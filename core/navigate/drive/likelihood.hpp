@@ -1,0 +1,46 @@
+#pragma once
+/// The innovations of a filter as evidence on what the filter is told (spec/drives.md, section 6).
+///
+/// The log likelihood of a run is the sum over scalar innovations z of variance S of -(ln S + min(z^2/S, 9))/2; the cap
+/// keeps a few wild ones from deciding. A filter's model is never quite right, so innovations are neither white nor of
+/// their stated size: with c the mean capped normalised square, uncertainties are those of a log likelihood divided by
+/// 3 c. Innovations of the first ten seconds are left out.
+#include "core/navigate/drive/evaluation.hpp"
+
+namespace driftlab::drive {
+
+/// Sums of a run, apart for the folds of a held-out study.
+struct LogLikelihood {
+  static constexpr std::size_t kFolds = 2;
+  std::array<double, kFolds> sum{};      ///< by fold of the innovation's moment
+  std::array<double, kFolds> squares{};  ///< capped normalised squares
+  std::array<double, kFolds> count{};
+
+  [[nodiscard]] double total() const { return sum[0] + sum[1]; }
+  /// Of the folds that `used` marks.
+  [[nodiscard]] double over(const std::array<bool, kFolds>& used) const;
+  [[nodiscard]] double mean_square(const std::array<bool, kFolds>& used) const;
+};
+
+/// Stretches of this length [s] belong to the two folds in turn.
+inline constexpr double kFoldLength = 100.0;
+[[nodiscard]] std::size_t fold_at(double time_s);
+/// The fold in which an outage lies whole; nothing for one across a border.
+[[nodiscard]] std::optional<std::size_t> fold_of(const Outage& outage);
+
+/// Runs the filter over all fixes. Errors: those of PreparedDrive::make.
+[[nodiscard]] Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& options);
+
+/// The receiver's velocities against its positions, without the unit: displacement minus integrated velocity, regressed
+/// on the change of velocity. Both along and across the way give the delay.
+struct FixDelay {
+  double delay_s = 0.0;  ///< by how much the velocity is older than the position
+  double se_s = 0.0;
+  double along_s = 0.0, across_s = 0.0;
+  double score = 0.0;
+  std::size_t steps = 0;
+};
+/// Nothing where too few fixes have a velocity that changes.
+[[nodiscard]] std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes);
+
+}  // namespace driftlab::drive

@@ -1,0 +1,293 @@
+#include "core/navigate/drive/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace driftlab::drive {
+namespace {
+
+/// The three axes of a sensor at the stamped rows.
+Result<std::vector<Vector3>> triad_of(const Table& table, const Source& source, Quantity quantity,
+                                      const StampedRows& stamped) {
+  std::vector<Vector3> values(stamped.row.size());
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const std::string axis(1, "xyz"[k]);
+    auto column = find_quantity(table, source, quantity, axis);
+    if (!column) {
+      return fail(column.error());
+    }
+    if (!*column) {
+      return fail(ErrorCode::UnknownColumn,
+                  "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + axis + ".",
+                  {{"parameter", "imu.columns"}});
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i](k) = (**column)[stamped.row[i]];
+    }
+  }
+  return values;
+}
+
+struct Log {
+  SensorLog rows;
+  bool absolute = false;
+};
+
+Result<Log> sensor_log(const Document& document, const Tables& tables, FileFacts& facts) {
+  const ImuSource& imu = document.imu;
+  auto stamped = stamp_rows(tables.imu, imu.source.time);
+  if (!stamped) {
+    return fail(stamped.error());
+  }
+  facts.imu_stamps = stamped->facts;
+  auto rate = triad_of(tables.imu, imu.source, Quantity::AngularRate, *stamped);
+  if (!rate) {
+    return fail(rate.error());
+  }
+  Log log;
+  log.absolute = stamped->absolute;
+  if (!imu.force) {
+    auto force = triad_of(tables.imu, imu.source, Quantity::SpecificForce, *stamped);
+    if (!force) {
+      return fail(force.error());
+    }
+    log.rows.time_s = std::move(stamped->time_s);
+    for (std::size_t i = 0; i < rate->size(); ++i) {
+      const Vector3& w = (*rate)[i];
+      const Vector3& f = (*force)[i];
+      log.rows.readings.push_back({w.x(), w.y(), w.z(), f.x(), f.y(), f.z()});
+    }
+    return log;
+  }
+  auto force_rows = stamp_rows(*tables.force, imu.force->time);
+  if (!force_rows) {
+    return fail(force_rows.error());
+  }
+  auto force = triad_of(*tables.force, *imu.force, Quantity::SpecificForce, *force_rows);
+  if (!force) {
+    return fail(force.error());
+  }
+  log.rows = joined(stamped->time_s, *rate, force_rows->time_s, *force);
+  return log;
+}
+
+void turn_into_body(std::vector<UniformRun>& runs, const Matrix3& mounting) {
+  for (UniformRun& run : runs) {
+    for (ImuSample& sample : run.readings) {
+      const Vector3 rate = mounting * Vector3(sample[0], sample[1], sample[2]);
+      const Vector3 force = mounting * Vector3(sample[3], sample[4], sample[5]);
+      sample = {rate.x(), rate.y(), rate.z(), force.x(), force.y(), force.z()};
+    }
+  }
+}
+
+void describe_motion(Drive& drive) {
+  FileFacts& facts = drive.facts;
+  facts.fixes = drive.fixes.size();
+  facts.fix_rate_hz =
+      static_cast<double>(drive.fixes.size() - 1) / (drive.fixes.back().time_s - drive.fixes.front().time_s);
+  for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
+    const Fix& fix = drive.fixes[i];
+    if (fix.velocity_ned_m_s) {
+      facts.highest_speed_m_s = std::max(facts.highest_speed_m_s, fix.velocity_ned_m_s->head<2>().norm());
+      if (i > 0) {
+        const double step = std::min(fix.time_s - drive.fixes[i - 1].time_s, 2.0);
+        facts.length_m += fix.velocity_ned_m_s->head<2>().norm() * step;
+      }
+    }
+  }
+}
+
+std::string count_text(std::size_t count, const char* of) { return std::to_string(count) + " " + of; }
+
+void write_notes(Drive& drive) {
+  FileFacts& facts = drive.facts;
+  const auto note = [&](bool true_of_it, const std::string& sentence) {
+    if (true_of_it) {
+      facts.notes.push_back(sentence);
+    }
+  };
+  note(facts.accuracy_constant, "The stated accuracy of the positions never varies; it is not used.");
+  note(facts.speed_accuracy_constant, "The stated accuracy of the speed never varies; it is not used.");
+  note(facts.held > 0, count_text(facts.held, "rows of the fixes repeat the fix before; they are no new data."));
+  note(facts.far_away > 0,
+       count_text(facts.far_away, "fixes lie more than 200 km from the middle of the drive and are left out."));
+  note(facts.incomplete > 0, count_text(facts.incomplete, "rows of the fixes have no position and are left out."));
+  note(facts.other_types > 0, count_text(facts.other_types, "fixes of other types are left out."));
+  note(facts.gnss_stamps.week_rollovers + facts.imu_stamps.week_rollovers > 0,
+       "The seconds of the week start again within the drive; time goes on.");
+  note(facts.gnss_stamps.leap_seconds > 0.0 || facts.imu_stamps.leap_seconds > 0.0,
+       "Leap seconds were added once to bring UTC to GPS time.");
+  note(facts.imu_stamps.backward + facts.gnss_stamps.backward > 0,
+       count_text(facts.imu_stamps.backward + facts.gnss_stamps.backward, "rows whose stamp steps back are left out."));
+  note(facts.sampling.incomplete > 0,
+       count_text(facts.sampling.incomplete, "rows of the unit are incomplete and are left out."));
+  note(facts.sampling.stuck > 0,
+       count_text(facts.sampling.stuck, "rows of the unit stand in runs of equal rows: the sensor was stuck there."));
+  note(facts.sampling.gaps_splitting > 0,
+       count_text(facts.sampling.gaps_splitting, "gaps are too long to bridge; the filter begins anew after each."));
+  note(drive.document.gnss.geoid, "Heights are above the geoid: only horizontal results are given.");
+  note(drive.withheld_fixes,
+       "The reference is the withheld fixes: their own errors are part of every error given here.");
+  note(facts.highest_speed_m_s < 3.0,
+       "The vehicle never moves faster than 3 m/s: its heading cannot be observed from its course.");
+}
+
+Status load_reference(const Document& document, const Tables& tables, double epoch_s, bool absolute, Drive& drive) {
+  if (!document.reference.source) {
+    drive.withheld_fixes = true;
+    for (const Fix& fix : drive.fixes) {
+      drive.reference.push_back({fix.time_s, fix.position_ecef_m});
+    }
+    return {};
+  }
+  auto stamped = stamp_rows(*tables.reference, document.reference.source->time);
+  if (!stamped) {
+    return fail(stamped.error());
+  }
+  if (stamped->absolute != absolute) {
+    return fail(ErrorCode::InconsistentSampling, "The reference has another clock than the inertial unit.");
+  }
+  GnssSource as_fixes;  // a reference is read as fixes are: positions of an antenna, or of the unit itself
+  as_fixes.source = *document.reference.source;
+  for (auto& [name, meaning] : as_fixes.source.columns) {
+    meaning.quantity = meaning.quantity == Quantity::ReferencePosition   ? Quantity::GnssPosition
+                       : meaning.quantity == Quantity::ReferenceVelocity ? Quantity::GnssVelocity
+                                                                         : Quantity::Ignored;
+  }
+  FileFacts of_reference;
+  auto points = fixes_of(as_fixes, *tables.reference, *stamped, of_reference);
+  if (!points) {
+    return fail(points.error());
+  }
+  std::size_t equal = 0;
+  for (const Fix& point : *points) {
+    drive.reference.push_back({point.time_s - epoch_s, point.position_ecef_m});
+  }
+  std::size_t at = 0;
+  for (const Fix& fix : drive.fixes) {
+    while (at + 1 < drive.reference.size() && drive.reference[at].time_s < fix.time_s - 1e-3) {
+      ++at;
+    }
+    equal += (drive.reference[at].position_ecef_m - fix.position_ecef_m).norm() < 1e-4 ? 1 : 0;
+  }
+  if (equal * 10 > drive.fixes.size() * 9) {
+    drive.facts.notes.emplace_back(
+        "The reference equals the fixes: it is the filter's own input, and errors are those against withheld fixes.");
+    drive.withheld_fixes = true;
+  }
+  return {};
+}
+
+Status load_odometer(const Document& document, const Tables& tables, double epoch_s, bool absolute, Drive& drive) {
+  if (!document.odometer) {
+    return {};
+  }
+  const OdometerSource& source = *document.odometer;
+  auto stamped = stamp_rows(*tables.odometer, source.source.time);
+  if (!stamped) {
+    return fail(stamped.error());
+  }
+  if (stamped->absolute != absolute) {
+    return fail(ErrorCode::InconsistentSampling, "The odometer has another clock than the inertial unit.");
+  }
+  auto speed = find_quantity(*tables.odometer, source.source, Quantity::OdometerSpeed);
+  auto ticks = find_quantity(*tables.odometer, source.source, Quantity::OdometerTicks);
+  if (!speed || !ticks) {
+    return fail(!speed ? speed.error() : ticks.error());
+  }
+  if (!*speed && !(*ticks && source.metres_per_tick > 0.0)) {
+    return fail(ErrorCode::InvalidArgument,
+                "The odometer needs a column of odometer_speed, or odometer_ticks with metres_per_tick above 0.",
+                {{"parameter", "odometer.columns"}});
+  }
+  for (std::size_t k = *speed ? 0 : 1; k < stamped->row.size(); ++k) {
+    double value = 0.0;
+    double time_s = stamped->time_s[k];
+    if (*speed) {
+      value = (**speed)[stamped->row[k]];
+    } else {  // the mean speed between two counts belongs to the middle
+      const double step = time_s - stamped->time_s[k - 1];
+      value = source.metres_per_tick * ((**ticks)[stamped->row[k]] - (**ticks)[stamped->row[k - 1]]) / step;
+      time_s -= 0.5 * step;
+    }
+    if (std::isfinite(value)) {
+      drive.odometer.push_back({time_s - epoch_s, value});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Matrix3 mounting_matrix(const EulerAngles& mounting) { return from_euler(mounting).toRotationMatrix().transpose(); }
+
+Result<Drive> load_drive(const Document& document, const Tables& tables, const LoadOptions& options) {
+  if (auto status = check(document); !status) {
+    return fail(status.error());
+  }
+  Drive drive;
+  drive.document = document;
+  auto log = sensor_log(document, tables, drive.facts);
+  if (!log) {
+    return fail(log.error());
+  }
+  auto runs = uniform_readings(std::move(log->rows), {document.imu.clock, options.repair}, drive.facts.sampling);
+  if (!runs) {
+    return fail(runs.error());
+  }
+  drive.runs = std::move(*runs);
+  auto stamped = stamp_rows(tables.gnss, document.gnss.source.time);
+  if (!stamped) {
+    return fail(stamped.error());
+  }
+  if (stamped->absolute != log->absolute) {
+    return fail(ErrorCode::InconsistentSampling,
+                "The unit's clock and that of the fixes have nothing in common: one counts from power-up, the other is "
+                "GPS time or UTC. Give the unit's file a time tag, or stamps of one clock to both.");
+  }
+  drive.facts.gnss_stamps = stamped->facts;
+  auto fixes = fixes_of(document.gnss, tables.gnss, *stamped, drive.facts);
+  if (!fixes) {
+    return fail(fixes.error());
+  }
+  drive.epoch_s = drive.runs.front().start_s;
+  for (UniformRun& run : drive.runs) {
+    run.start_s -= drive.epoch_s;
+  }
+  for (Fix& fix : *fixes) {
+    fix.time_s -= drive.epoch_s;
+  }
+  const double end = drive.end_s();
+  std::erase_if(*fixes, [&](const Fix& fix) { return fix.time_s < -1.0 || fix.time_s > end + 1.0; });
+  if (fixes->size() < 4) {
+    return fail(ErrorCode::InconsistentSampling,
+                "Readings and fixes do not overlap in time; are their time scales and offsets right?");
+  }
+  drive.fixes = std::move(*fixes);
+  Matrix3 mounting = mounting_matrix(document.imu.mounting);
+  if (document.imu.mounting_unknown) {
+    turn_into_body(drive.runs, mounting);
+    auto found = found_mounting(drive.runs, drive.fixes);
+    if (!found) {
+      return fail(found.error());
+    }
+    mounting = *found;
+  }
+  turn_into_body(drive.runs, mounting);
+  if (auto status = load_reference(document, tables, drive.epoch_s, log->absolute, drive); !status) {
+    return fail(status.error());
+  }
+  if (auto status = load_odometer(document, tables, drive.epoch_s, log->absolute, drive); !status) {
+    return fail(status.error());
+  }
+  describe_motion(drive);
+  write_notes(drive);
+  if (auto status = check_plausible(drive); !status) {
+    return fail(status.error());
+  }
+  return drive;
+}
+
+}  // namespace driftlab::drive

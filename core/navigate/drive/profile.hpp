@@ -1,0 +1,53 @@
+#pragma once
+/// Profiles of the log likelihood of a drive's innovations along the knobs of causes. Internal to the explanation.
+#include "core/navigate/drive/explain.hpp"
+
+namespace driftlab::drive {
+
+/// Where a profile has its top, relative to the present value, SI.
+struct ProfileEstimate {
+  bool sound = false;  ///< the profile is concave there
+  double value = 0.0;
+  double se = 0.0;
+  double top = 0.0;  ///< log likelihood
+  double score = 0.0;
+  [[nodiscard]] double gain_to(double at) const { return sound ? top - at : 0.0; }
+};
+
+class Profile {
+ public:
+  /// `drive` and `control` must outlive it. Only innovations of the folds that `used` marks count.
+  Profile(const Drive& drive, std::array<bool, LogLikelihood::kFolds> used, const RunControl& control)
+      : drive_(drive), used_(used), control_(control) {}
+
+  /// Log likelihood of each trial; minus infinity for options that no filter can have.
+  [[nodiscard]] std::vector<double> values(const std::vector<FilterOptions>& trials) const;
+  /// 3 c of the options.
+  [[nodiscard]] double scale(const FilterOptions& options) const;
+  /// One estimate for each knob, from the options whose log likelihood is `at`.
+  [[nodiscard]] std::vector<ProfileEstimate> estimates(const FilterOptions& options, double at,
+                                                       const std::vector<const Knob*>& knobs, double scale) const;
+  /// The factors of the white noise, gyroscope and accelerometer, at the top of the likelihood; steps begin at
+  /// `first_factor`.
+  [[nodiscard]] FilterOptions with_noise_fitted(FilterOptions options, double first_factor) const;
+  /// The knobs at the top of the likelihood, one after the other.
+  [[nodiscard]] FilterOptions refitted(FilterOptions options, const std::vector<const Knob*>& knobs, int sweeps) const;
+
+  [[nodiscard]] static FilterOptions turned(const FilterOptions& options, const Knob& knob, double by);
+  /// What the options hold of a knob, SI.
+  [[nodiscard]] static double value_of(const FilterOptions& options, const Knob& knob);
+
+ private:
+  struct Bracket {
+    double low, middle, high;
+    double low_value, middle_value, high_value;
+  };
+  [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;
+  [[nodiscard]] static ProfileEstimate parabola(const Bracket& bracket, double scale);
+
+  const Drive& drive_;
+  std::array<bool, LogLikelihood::kFolds> used_;
+  const RunControl& control_;
+};
+
+}  // namespace driftlab::drive

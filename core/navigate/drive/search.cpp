@@ -1,0 +1,249 @@
+#include "core/navigate/drive/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::drive {
+namespace {
+
+constexpr double kNamed = 5.0;  ///< score
+constexpr double kSure = 3.0;   ///< standard errors
+constexpr double kPair = 2.0;   ///< scores that differ by less are a pair
+constexpr int kRefits = 2;
+
+}  // namespace
+
+std::vector<double> Profile::values(const std::vector<FilterOptions>& trials) const {
+  std::vector<double> sums(trials.size(), -std::numeric_limits<double>::infinity());
+  parallel_for(
+      control_.threads, trials.size(),
+      [&](std::size_t i) {
+        if (const auto found = log_likelihood(drive_, trials[i])) {
+          sums[i] = found->over(used_);
+        }
+      },
+      control_.stop);
+  return sums;
+}
+
+FilterOptions Profile::turned(const FilterOptions& options, const Knob& knob, double by) {
+  FilterOptions copy = options;
+  knob.turn(copy, by);
+  return copy;
+}
+
+double Profile::scale(const FilterOptions& options) const {
+  const auto found = log_likelihood(drive_, options);
+  return found ? 3.0 * std::max(found->mean_square(used_), 0.1) : 3.0;
+}
+
+std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, double at,
+                                                const std::vector<const Knob*>& knobs, double scale) const {
+  std::vector<FilterOptions> trials;
+  for (const Knob* knob : knobs) {
+    trials.push_back(turned(options, *knob, -knob->step));
+    trials.push_back(turned(options, *knob, knob->step));
+  }
+  const std::vector<double> sums = values(trials);
+  std::vector<ProfileEstimate> estimates(knobs.size());
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    const Knob& knob = *knobs[i];
+    Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
+    estimates[i] = parabola(stride(options, knob, bracket), scale);
+    estimates[i].score = std::max(estimates[i].gain_to(at), 0.0) / scale;
+  }
+  return estimates;
+}
+
+Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
+  while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
+    const bool up = bracket.high_value > bracket.low_value;
+    const double edge = up ? bracket.high : bracket.low;
+    const double next = edge + 2.0 * (edge - bracket.middle);
+    if (std::abs(next) > knob.most || control_.stop.stop_requested()) {
+      return bracket;
+    }
+    const double value = values({turned(options, knob, next)}).front();
+    if (up) {
+      bracket = {bracket.middle, bracket.high, next, bracket.middle_value, bracket.high_value, value};
+    } else {
+      bracket = {next, bracket.low, bracket.middle, value, bracket.low_value, bracket.middle_value};
+    }
+  }
+  return bracket;
+}
+
+ProfileEstimate Profile::parabola(const Bracket& b, double scale) {
+  ProfileEstimate estimate;
+  const double left = (b.middle_value - b.low_value) / (b.middle - b.low);
+  const double right = (b.high_value - b.middle_value) / (b.high - b.middle);
+  const double curvature = -2.0 * (right - left) / (b.high - b.low);
+  if (!(curvature > 0.0) || !std::isfinite(curvature)) {
+    return estimate;
+  }
+  // The slope in the middle of the left half is `left`.
+  estimate.value = std::clamp(0.5 * (b.low + b.middle) + left / curvature, b.low, b.high);
+  estimate.se = std::sqrt(scale / curvature);
+  const double from_middle = estimate.value - b.middle;
+  const double slope = left - curvature * 0.5 * (b.middle - b.low);
+  estimate.top = b.middle_value + slope * from_middle - 0.5 * curvature * from_middle * from_middle;
+  estimate.sound = true;
+  return estimate;
+}
+
+FilterOptions Profile::with_noise_fitted(FilterOptions options, double first_factor) const {
+  for (const bool gyroscope : {true, false, true}) {
+    double step = first_factor;
+    double best = values({options}).front();
+    while (step > 1.03) {
+      FilterOptions up = options;
+      FilterOptions down = options;
+      double& of_up = gyroscope ? up.gyro_noise : up.force_noise;
+      double& of_down = gyroscope ? down.gyro_noise : down.force_noise;
+      of_up *= step;
+      of_down /= step;
+      const auto tried = values({up, down});
+      const bool rises = std::max(tried[0], tried[1]) > best && of_up < 1e4 && of_down > 1e-2;
+      if (rises) {
+        options = tried[0] > tried[1] ? up : down;
+        best = std::max(tried[0], tried[1]);
+      } else {
+        step = std::sqrt(step);
+      }
+      if (control_.stop.stop_requested()) {
+        return options;
+      }
+    }
+    first_factor = std::min(first_factor, 2.0);
+  }
+  return options;
+}
+
+FilterOptions Profile::refitted(FilterOptions options, const std::vector<const Knob*>& knobs, int sweeps) const {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (const Knob* knob : knobs) {
+      const double at = values({options}).front();
+      const auto estimate = estimates(options, at, {knob}, 3.0).front();
+      if (estimate.sound) {
+        FilterOptions tried = turned(options, *knob, estimate.value);
+        if (values({tried}).front() > at) {
+          options = std::move(tried);
+        }
+      }
+    }
+  }
+  return options;
+}
+
+double Profile::value_of(const FilterOptions& options, const Knob& knob) {
+  // What a knob has been turned to: the change of the options along it, read by turning it back to the start.
+  FilterOptions zero;
+  zero.constraint = options.constraint ? std::optional(Constraint{}) : std::nullopt;
+  FilterOptions one = zero;
+  knob.turn(one, 1.0);
+  const auto numbers = [](const FilterOptions& o) {
+    std::vector<double> list{o.imu_offset_s, o.velocity_latency_s, o.position_latency_s, o.odometer_scale};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      list.push_back(o.lever_arm_m(i));
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        list.push_back(o.errors.gyroscope(i, j));
+        list.push_back(o.errors.accelerometer(i, j));
+      }
+    }
+    if (o.constraint) {
+      list.insert(list.end(), {o.constraint->yaw_rad, o.constraint->pitch_rad, o.constraint->axle_m});
+    }
+    return list;
+  };
+  const auto base = numbers(zero);
+  const auto turned_numbers = numbers(one);
+  const auto own = numbers(options);
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    if (turned_numbers[i] != base[i]) {
+      return own[i];
+    }
+  }
+  return 0.0;
+}
+
+Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& options, int most_causes,
+                                   const RunControl& control) {
+  if (auto sound = log_likelihood(drive, options); !sound) {
+    return fail(sound.error());
+  }
+  const Profile profile(drive, {true, true}, control);
+  SearchResult result;
+  result.options = profile.with_noise_fitted(options, 4.0);
+  std::vector<const Knob*> all;
+  for (const Knob& knob : all_knobs()) {
+    if (knob.applies == nullptr || knob.applies(drive, result.options)) {
+      all.push_back(&knob);
+    }
+  }
+  std::vector<const Knob*> named;
+  while (static_cast<int>(named.size()) < most_causes && !control.stop.stop_requested()) {
+    std::vector<const Knob*> open;
+    for (const Knob* knob : all) {
+      if (std::find(named.begin(), named.end(), knob) == named.end()) {
+        open.push_back(knob);
+      }
+    }
+    const double scale = profile.scale(result.options);
+    const double at = profile.values({result.options}).front();
+    const auto estimates = profile.estimates(result.options, at, open, scale);
+    std::size_t best = open.size();
+    double second = 0.0;
+    std::size_t second_at = open.size();
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const bool sure =
+          estimates[i].sound && estimates[i].score >= kNamed && std::abs(estimates[i].value) >= kSure * estimates[i].se;
+      if (sure && (best == open.size() || estimates[i].score > estimates[best].score)) {
+        best = i;
+      }
+    }
+    if (best == open.size()) {
+      break;
+    }
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      if (i != best && open[i]->cause != open[best]->cause && estimates[i].score > second) {
+        second = estimates[i].score;
+        second_at = i;
+      }
+    }
+    const Knob& knob = *open[best];
+    DriveFinding finding;
+    finding.cause = knob.cause;
+    finding.parameter = knob.parameter;
+    finding.title = knob.title;
+    finding.unit = knob.unit;
+    finding.evidence = "innovations";
+    finding.told_apart = knob.told_apart;
+    finding.score = estimates[best].score;
+    if (second_at < open.size() && finding.score - second < kPair) {
+      finding.pair = open[second_at]->cause;
+    }
+    result.findings.push_back(finding);
+    named.push_back(&knob);
+    result.options = Profile::turned(result.options, knob, estimates[best].value);
+    result.options = profile.refitted(result.options, named, 1);
+    result.options = profile.with_noise_fitted(result.options, 1.3);
+  }
+  result.options = profile.refitted(result.options, named, kRefits);
+  result.options = profile.with_noise_fitted(result.options, 1.2);
+  // Values and uncertainties at the end; the score of each is what the likelihood loses without it.
+  const double scale = profile.scale(result.options);
+  result.mean_square = scale / 3.0;
+  const double at = profile.values({result.options}).front();
+  const auto last = profile.estimates(result.options, at, named, scale);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const double value = Profile::value_of(result.options, *named[i]) - Profile::value_of(options, *named[i]);
+    result.findings[i].value = Profile::value_of(result.options, *named[i]) * named[i]->per_si;
+    result.findings[i].se = last[i].se * named[i]->per_si;
+    const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
+    result.findings[i].score = std::max((at - without) / scale, 0.0);
+  }
+  return control.stop.stop_requested() ? fail(ErrorCode::Cancelled, "The search was cancelled.")
+                                       : Result<SearchResult>(std::move(result));
+}
+
+}  // namespace driftlab::drive

@@ -1,0 +1,186 @@
+#include "core/navigate/drive/start.hpp"
+
+#include "core/signal/angle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::drive {
+namespace {
+
+constexpr double kBlock = 0.5;         ///< [s]
+constexpr double kShortestRest = 2.0;  ///< [s]
+constexpr double kSteadyRate = 0.6 * kDegree;
+constexpr double kSteadyForce = 0.2;         ///< [m/s^2]
+constexpr double kStill = 0.5;               ///< [m/s]
+constexpr double kOldestRest = 60.0;         ///< [s] before the start
+constexpr double kHeadingSpeed = 3.0;        ///< [m/s]
+constexpr double kMostTurn = 3.0 * kDegree;  ///< within a second
+
+std::size_t reading_at(const UniformRun& run, double time_s) {
+  const double at = std::ceil((time_s - run.start_s) / run.dt_s - 1e-9);
+  return std::min(static_cast<std::size_t>(std::max(at, 0.0)), run.readings.size());
+}
+
+struct BlockMeans {
+  double from_s = 0.0;
+  Vector3 rate = Vector3::Zero(), force = Vector3::Zero();
+};
+
+BlockMeans mean_of(const UniformRun& run, std::size_t first, std::size_t last) {
+  BlockMeans block{run.start_s + static_cast<double>(first) * run.dt_s, Vector3::Zero(), Vector3::Zero()};
+  for (std::size_t i = first; i < last; ++i) {
+    const ImuSample& sample = run.readings[i];
+    block.rate += Vector3(sample[0], sample[1], sample[2]);
+    block.force += Vector3(sample[3], sample[4], sample[5]);
+  }
+  block.rate /= static_cast<double>(last - first);
+  block.force /= static_cast<double>(last - first);
+  return block;
+}
+
+/// Attitude in level axes, heading 0 at the rest, carried from a rest to reading `to`.
+Quaternion carried(const UniformRun& run, const Rest& rest, std::size_t to) {
+  EulerAngles level;
+  level.roll_rad = std::atan2(-rest.force.y(), -rest.force.z());
+  level.pitch_rad = std::atan2(rest.force.x(), std::hypot(rest.force.y(), rest.force.z()));
+  Quaternion attitude = from_euler(level);
+  for (std::size_t i = reading_at(run, rest.to_s); i < to; ++i) {
+    const ImuSample& sample = run.readings[i];
+    attitude = attitude * rotation((Vector3(sample[0], sample[1], sample[2]) - rest.rate) * run.dt_s);
+  }
+  return attitude.normalized();
+}
+
+/// The gyroscope's turn about down within half a second on both sides.
+double turn_around(const UniformRun& run, double time_s) {
+  const std::size_t first = reading_at(run, time_s - 0.5);
+  const std::size_t last = reading_at(run, time_s + 0.5);
+  double turn = 0.0;
+  for (std::size_t i = first; i < last; ++i) {
+    turn += run.readings[i][2] * run.dt_s;
+  }
+  return std::abs(turn);
+}
+
+/// The fix at which the filter begins.
+const Fix* first_heading(const Drive& drive, const UniformRun& run, bool stated) {
+  for (const Fix& fix : drive.fixes) {
+    if (fix.time_s < run.start_s + 1.0 || fix.time_s > run.end_s() - 1.0) {
+      continue;
+    }
+    const bool shows = fix.velocity_ned_m_s && fix.has_course &&
+                       fix.velocity_ned_m_s->head<2>().norm() > kHeadingSpeed &&
+                       turn_around(run, fix.time_s) < kMostTurn;
+    if (stated || shows) {
+      return &fix;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
+  const UniformRun& run = drive.runs[run_index];
+  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(kBlock / run.dt_s));
+  std::vector<BlockMeans> blocks;
+  for (std::size_t i = 0; i + length <= run.readings.size(); i += length) {
+    blocks.push_back(mean_of(run, i, i + length));
+  }
+  std::vector<bool> moving(blocks.size(), false);
+  for (const Fix& fix : drive.fixes) {
+    const double at = (fix.time_s - run.start_s) / (static_cast<double>(length) * run.dt_s);
+    if (at >= 0.0 && at < static_cast<double>(moving.size()) && fix.velocity_ned_m_s && fix.has_course &&
+        fix.velocity_ned_m_s->head<2>().norm() >= kStill) {
+      moving[static_cast<std::size_t>(at)] = true;
+    }
+  }
+  std::vector<Rest> rests;
+  const double block_s = static_cast<double>(length) * run.dt_s;
+  const auto least = static_cast<std::size_t>(std::ceil(kShortestRest / block_s));
+  for (std::size_t first = 0; first < blocks.size();) {
+    std::size_t last = first;
+    Rest rest;
+    while (last < blocks.size() && !moving[last]) {
+      const double many = static_cast<double>(last - first);
+      const bool steady = last == first || ((blocks[last].rate - rest.rate / many).norm() < kSteadyRate &&
+                                            (blocks[last].force - rest.force / many).norm() < kSteadyForce);
+      if (!steady) {
+        break;
+      }
+      rest.rate += blocks[last].rate;
+      rest.force += blocks[last].force;
+      ++last;
+    }
+    if (last - first >= least) {
+      rest.rate /= static_cast<double>(last - first);
+      rest.force /= static_cast<double>(last - first);
+      rest.from_s = blocks[first].from_s;
+      rest.to_s = blocks[last - 1].from_s + block_s;
+      rests.push_back(rest);
+    }
+    first = std::max(last, first + 1);
+  }
+  return rests;
+}
+
+Result<Start> find_start(const Drive& drive, std::size_t run_index) {
+  const UniformRun& run = drive.runs[run_index];
+  const StartState& stated = drive.document.start;
+  const Fix* const fix = first_heading(drive, run, stated.heading_rad.has_value());
+  if (fix == nullptr) {
+    return fail(ErrorCode::InvalidArgument,
+                "No fix moves faster than 3 m/s in a straight line, so the heading is not observable; give "
+                "start.heading_deg.",
+                {{"parameter", "start.heading_deg"}});
+  }
+  Start start;
+  start.run = run_index;
+  start.reading = reading_at(run, fix->time_s);
+  start.time_s = run.start_s + static_cast<double>(start.reading) * run.dt_s;
+  EulerAngles angles;
+  const Rest* rest = nullptr;
+  const std::vector<Rest> rests = rests_of(drive, run_index);
+  for (const Rest& one : rests) {
+    if (one.to_s <= start.time_s && one.to_s > start.time_s - kOldestRest) {
+      rest = &one;
+    }
+  }
+  if (stated.roll_rad && stated.pitch_rad) {
+    angles.roll_rad = *stated.roll_rad;
+    angles.pitch_rad = *stated.pitch_rad;
+    start.tilt_from = TiltFrom::Stated;
+    start.uncertainty.tilt_sd_rad = 2.0 * kDegree;
+  } else if (rest != nullptr) {
+    angles = to_euler(carried(run, *rest, start.reading));
+    start.tilt_from = TiltFrom::Rest;
+    start.uncertainty.tilt_sd_rad = 1.0 * kDegree;
+  } else {
+    const BlockMeans around = mean_of(run, reading_at(run, start.time_s - 0.5), reading_at(run, start.time_s + 0.5));
+    angles.roll_rad = std::atan2(-around.force.y(), -around.force.z());
+    angles.pitch_rad = std::atan2(around.force.x(), std::hypot(around.force.y(), around.force.z()));
+    start.uncertainty.tilt_sd_rad = 3.0 * kDegree;
+  }
+  const bool straight = moves_along_its_nose(drive.document.vehicle);
+  start.uncertainty.heading_sd_rad = (straight ? 5.0 : 30.0) * kDegree;
+  const Vector3 velocity = stated.velocity_ned_m_s.value_or(fix->velocity_ned_m_s.value_or(Vector3::Zero()));
+  if (stated.heading_rad) {
+    angles.heading_rad = *stated.heading_rad;
+    start.heading_from = HeadingFrom::Stated;
+    start.uncertainty.heading_sd_rad = 5.0 * kDegree;
+  } else {
+    angles.heading_rad = std::atan2(velocity.y(), velocity.x());
+  }
+  const Vector3 antenna = stated.position ? to_ecef(*stated.position) : fix->position_ecef_m;
+  const Matrix3 axes = ned_axes(antenna);
+  start.state.attitude = Quaternion(axes) * from_euler(angles);
+  start.state.velocity_ecef_m_s = axes * velocity;
+  start.state.position_ecef_m = antenna - start.state.attitude * drive.document.gnss.lever_arm_m +
+                                (start.time_s - fix->time_s) * start.state.velocity_ecef_m_s;
+  start.uncertainty.position_sd_m = (fix->position_sd_m.cwiseAbs2().array() + 1.0).sqrt();
+  start.uncertainty.velocity_sd_m_s = (fix->velocity_sd_m_s.cwiseAbs2().array() + 0.25).sqrt();
+  return start;
+}
+
+}  // namespace driftlab::drive

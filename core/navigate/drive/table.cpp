@@ -1,0 +1,138 @@
+#include "core/navigate/drive/table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace driftlab::drive {
+namespace {
+
+constexpr double kWeekSeconds = 604800.0;
+
+/// Moments of UTC [s since 1970] from which GPS time has been ahead by so many seconds.
+constexpr std::array<std::pair<double, double>, 6> kLeaps{{{915148800.0, 13.0},
+                                                           {1136073600.0, 14.0},
+                                                           {1230768000.0, 15.0},
+                                                           {1341100800.0, 16.0},
+                                                           {1435708800.0, 17.0},
+                                                           {1483228800.0, 18.0}}};
+
+}  // namespace
+
+double leap_seconds_at(double unix_s) {
+  double leap = 0.0;
+  for (const auto& [from, seconds] : kLeaps) {
+    leap = unix_s >= from ? seconds : leap;
+  }
+  return leap;
+}
+
+Result<std::size_t> find_column(const Table& table, const std::string& name) {
+  const auto found = std::find(table.names.begin(), table.names.end(), name);
+  if (found != table.names.end()) {
+    return static_cast<std::size_t>(found - table.names.begin());
+  }
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc{} && end == name.data() + name.size() && number < table.names.size()) {
+    return number;
+  }
+  std::string known;
+  for (const std::string& other : table.names) {
+    known.append(known.empty() ? "" : ", ").append(other);
+  }
+  return fail(ErrorCode::UnknownColumn, "There is no column '" + name + "'; the file has " + known + ".",
+              {{"column", name}});
+}
+
+Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source, Quantity quantity,
+                                                         std::string_view axis) {
+  for (const auto& [name, meaning] : source.columns) {
+    if (meaning.quantity != quantity || meaning.axis != axis) {
+      continue;
+    }
+    const auto index = find_column(table, name);
+    if (!index) {
+      return fail(index.error());
+    }
+    std::vector<double> values = table.columns[*index];
+    for (double& value : values) {
+      value *= meaning.factor;
+    }
+    return std::optional(std::move(values));
+  }
+  return std::optional<std::vector<double>>();
+}
+
+Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
+  StampedRows stamped;
+  stamped.facts.rows = table.rows();
+  std::vector<double> stamps(table.rows());
+  if (meaning.scale == TimeScale::Row) {
+    if (!meaning.rate_hz || !is_sampling_rate(*meaning.rate_hz)) {
+      return fail(ErrorCode::InvalidArgument, "Rows without a clock need the rate_hz at which they were taken.",
+                  {{"parameter", "time.rate_hz"}});
+    }
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      stamps[i] = static_cast<double>(i) / *meaning.rate_hz;
+    }
+  } else {
+    const auto column = find_column(table, meaning.column);
+    if (!column) {
+      return fail(column.error());
+    }
+    std::transform(table.columns[*column].begin(), table.columns[*column].end(), stamps.begin(),
+                   [&](double value) { return value * meaning.unit_s; });
+  }
+  double rolled = 0.0;
+  double before = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (!std::isfinite(stamps[i])) {
+      ++stamped.facts.without_stamp;
+      continue;
+    }
+    double time_s = stamps[i] + rolled;
+    const bool week = meaning.scale == TimeScale::Gps && stamps[i] >= 0.0 && stamps[i] < kWeekSeconds;
+    if (week && time_s < before - 0.5 * kWeekSeconds) {
+      rolled += kWeekSeconds;
+      time_s += kWeekSeconds;
+      ++stamped.facts.week_rollovers;
+    }
+    if (time_s < before) {
+      ++stamped.facts.backward;
+      continue;
+    }
+    before = time_s;
+    stamped.row.push_back(i);
+    stamped.time_s.push_back(time_s);
+  }
+  if (stamped.facts.backward * 100 > stamps.size()) {
+    return fail(ErrorCode::NonMonotonicTime, "The stamps step back in " + std::to_string(stamped.facts.backward) +
+                                                 " of " + std::to_string(stamps.size()) +
+                                                 " rows; sort the file by time.");
+  }
+  if (stamped.time_s.size() < 2) {
+    return fail(ErrorCode::TooFewSamples, "The file has fewer than two rows with a time.");
+  }
+  stamped.absolute = meaning.scale == TimeScale::Gps;
+  if (meaning.scale == TimeScale::Utc || meaning.scale == TimeScale::Unix) {
+    stamped.facts.leap_seconds = leap_seconds_at(stamped.time_s.front());
+    stamped.absolute = true;
+  }
+  if (table.tag) {  // the file's own clock runs linearly from the first date to the last (RTKLIB time tag)
+    const double first = stamped.time_s.front();
+    const double scale = (table.tag->last_s - table.tag->first_s) / std::max(stamped.time_s.back() - first, 1e-9);
+    for (double& time_s : stamped.time_s) {
+      time_s = table.tag->first_s + scale * (time_s - first);
+    }
+    stamped.absolute = true;
+  }
+  for (double& time_s : stamped.time_s) {
+    time_s += meaning.offset_s + stamped.facts.leap_seconds;
+  }
+  return stamped;
+}
+
+}  // namespace driftlab::drive

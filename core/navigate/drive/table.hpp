@@ -1,0 +1,60 @@
+#pragma once
+/// The rows of one source of a drive, as they were decoded, and the moments that they belong to.
+#include "core/navigate/drive/document.hpp"
+#include "core/signal/recording.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftlab::drive {
+
+/// The dates that an RTKLIB time tag gives to a file: GPS time of its first and of its last row, seconds since 1970.
+struct TimeTag {
+  double first_s = 0.0;
+  double last_s = 0.0;
+};
+
+struct Table {
+  ColumnNames names;
+  std::vector<std::vector<double>> columns;
+  std::optional<TimeTag> tag;
+  std::vector<std::string> notes;  ///< what the decoding had to say
+
+  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+};
+
+/// What was done to the stamps of one source.
+struct StampFacts {
+  std::size_t rows = 0;
+  std::size_t without_stamp = 0;  ///< rows left out: no stamp
+  std::size_t backward = 0;       ///< rows left out: their stamp lies before the one before
+  std::size_t week_rollovers = 0;
+  double leap_seconds = 0.0;  ///< added once, for UTC
+};
+
+/// A row and its stamp [s]: on GPS time in seconds since 1970 for Gps, Utc, Unix and tagged files, else on the source's
+/// own clock.
+struct StampedRows {
+  std::vector<std::size_t> row;
+  std::vector<double> time_s;
+  bool absolute = false;  ///< on GPS time
+  StampFacts facts;
+};
+
+/// UTC is GPS time minus this many seconds at a moment in seconds since 1970 (IERS Bulletin C; 18 s since 2017).
+[[nodiscard]] double leap_seconds_at(double unix_s);
+
+/// The index of the column that `name` names, or the number of one. Error: UnknownColumn.
+[[nodiscard]] Result<std::size_t> find_column(const Table& table, const std::string& name);
+
+/// The column with a quantity along an axis in SI; nothing where the source has none. Error: UnknownColumn.
+[[nodiscard]] Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source,
+                                                                       Quantity quantity, std::string_view axis = "");
+
+/// Rows in the order of time. A counter of seconds of the week that starts again goes on; rows without a stamp or with
+/// one before the row before are left out and counted. Errors: UnknownColumn; TooFewSamples; NonMonotonicTime (more
+/// than one row in a hundred steps back); InvalidArgument (no rate for rows without a clock).
+[[nodiscard]] Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning);
+
+}  // namespace driftlab::drive

@@ -1,0 +1,24 @@
+#pragma once
+/// A recorded drive for people: what its files show, and what the filter does in its outages.
+#include "core/analysis/drive.hpp"
+
+#include <string>
+
+namespace driftlab {
+
+/// Facts of the files, no filter.
+[[nodiscard]] std::string drive_check_to_text(const DriveCheck& checked);
+
+/// One sentence, then a table of durations, classes, innovations and notes.
+[[nodiscard]] std::string drive_report_to_text(const DriveReport& report);
+
+/// One sentence, then findings and the table of rungs.
+[[nodiscard]] std::string drive_explanation_to_text(const DriveExplanationReport& report);
+
+/// One sentence, then measured beside simulated outages.
+[[nodiscard]] std::string drive_simulation_to_text(const DriveSimulation& simulation);
+
+/// The rows of a table of durations: n, rms with interval, median, NEES, coverage.
+[[nodiscard]] std::string duration_rows(const std::vector<drive::DurationSummary>& durations);
+
+}  // namespace driftlab

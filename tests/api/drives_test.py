@@ -1,0 +1,139 @@
+"""Recorded drives as a user runs them: documents, refusals with the repair, and the shared recordings."""
+from __future__ import annotations
+
+import copy
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+from typing import Any
+
+import drive_documents
+import samples
+from suite import DaemonTest
+
+PROGRAM = os.environ["DRIFTLAB"]
+SHARED = Path(os.environ.get("DRIFTLAB_SHARED") or Path(__file__).resolve().parents[3] / "shared") / "data" / "drives"
+
+
+class Folder(DaemonTest):
+    folder: Path
+
+    def setUp(self) -> None:
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="driftlab-drive-")))
+
+    def drive(self, exit_code: int, verb: str, document: dict[str, Any], *arguments: str) -> str:
+        """What `driftlab drive VERB` says of a document."""
+        (self.folder / "drive.json").write_text(json.dumps(document))
+        done = subprocess.run([PROGRAM, "drive", verb, "drive.json", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              timeout=300, check=False)
+        self.assertEqual(done.returncode, exit_code, done.stderr + done.stdout)
+        return done.stderr if exit_code else done.stdout
+
+
+class MadeUp(Folder):
+    def document(self) -> dict[str, Any]:
+        readings, fixes = samples.drive_csvs()
+        (self.folder / "imu.csv").write_bytes(readings)
+        (self.folder / "gnss.csv").write_bytes(fixes)
+        document = samples.drive_document("imu.csv", "gnss.csv")
+        for source in ("imu", "gnss"):
+            document[source]["file"] = document[source].pop("recording")
+        return document
+
+    def test_facts_and_outages(self) -> None:
+        document = self.document()
+        facts = json.loads(self.drive(0, "check", document, "--json"))
+        self.assertEqual(facts["facts"]["imu"]["rows"], 4000)
+        self.assertEqual(facts["start"]["heading_from"], "course")
+        self.assertAlmostEqual(facts["start"]["heading_deg"], 0.0, delta=3.0)
+        found = json.loads(self.drive(0, "run", document, "--json"))
+        [ten] = found["durations"]
+        self.assertGreaterEqual(ten["n"], 7)
+        self.assertLess(ten["rms_m"]["value"], ten["straight_line_rms_m"])
+        self.assertEqual(self.drive(0, "run", document, "--threads", "1"), self.drive(0, "run", document, "--threads", "2"))
+        self.assertIn("measured error is", self.drive(0, "simulate", document, "--runs", "2"))
+
+    def test_what_cannot_be_is_refused_with_the_repair(self) -> None:
+        document = self.document()
+
+        def changed(path: str, value: Any) -> dict[str, Any]:
+            copied = copy.deepcopy(document)
+            node = copied
+            *way, last = path.split("/")
+            for step in way:
+                node = node[step]
+            node[last] = value
+            return copied
+        cases = [
+            ("imu/columns/ax/unit", "g", "m/s^2"),
+            ("gnss/columns/lat/axis", "height", "does not measure"),
+            ("gnss/columns/vn/unit", "km/h", "velocity's unit"),
+            ("gnss/lever_arm_m", [300, 0, 0], "metres"),
+            ("gnss/time/offset_s", 1e6, "overlap"),
+            ("gnss/time/scale", "boot", "clock"),
+            ("gnss/columns/lat/unit", "rad", "latitude"),
+            ("imu/columns/gx/unit", "furlong", "furlong"),
+            ("imu/mounting_deg", [180, 0, 0], "down"),
+            ("outages", {"duration_s": [10], "every_s": [20]}, "20 s of fixes"),
+            ("outages", {"duration_s": [900], "every_s": [1000]}, "fits the drive"),
+            ("vehicle", "submarine", "road"),
+            ("surprise", 1, "surprise"),
+            ("imu/file", "none.csv", "none.csv"),
+        ]
+        for path, value, said in cases:
+            with self.subTest(path=path, value=value):
+                unit = changed(path, value)
+                if path == "imu/columns/ax/unit":
+                    for axis in "xyz":
+                        unit["imu"]["columns"][f"a{axis}"]["unit"] = "g"
+                sentence = self.drive(2, "run", unit)
+                self.assertEqual(len(sentence.strip().splitlines()), 1, sentence)
+                self.assertIn(said, sentence)
+        self.assertIn("does not move along its nose", self.drive(2, "run", changed("vehicle", "boat"), "--nhc"))
+
+    def test_a_drive_at_rest_is_told_so(self) -> None:
+        document = self.document()
+        lines = (self.folder / "gnss.csv").read_text().splitlines()
+        still = [line.split(",")[:4] + ["0.0", "0.0", "0.0"] for line in lines[1:]]
+        (self.folder / "gnss.csv").write_text("\n".join([lines[0], *(",".join(row) for row in still)]) + "\n")
+        self.assertIn("heading cannot be observed", self.drive(0, "check", document))
+        self.assertIn("heading is not observable", self.drive(2, "run", document))
+
+
+@unittest.skipUnless(SHARED.exists(), f"SKIPPED: the shared drives, for they are not in {SHARED} (set DRIFTLAB_SHARED)")
+class Shared(Folder):
+    def of(self, name: str, document: dict[str, Any], verb: str, *arguments: str) -> dict[str, Any]:
+        drive_documents.link(self.folder, SHARED / name)
+        return dict(json.loads(self.drive(0, verb, document, "--json", *arguments)))
+
+    def test_the_car_says_why_and_what_mending_gains(self) -> None:
+        found = self.of("rtk-car-0708", drive_documents.car(), "explain")
+        self.assertGreater(found["before"]["simulated"][0]["measured_over_simulated"]["value"], 20)
+        self.assertGreater(found["before"]["durations"][0]["nees"]["value"], 1000)
+        values = {f"{finding['cause']} {finding['parameter']}": finding["value"] for finding in found["findings"]}
+        self.assertAlmostEqual(values["sample_clock rate_hz"], 97.90, delta=0.01)
+        self.assertTrue(0.10 <= values["gnss_velocity_latency delay_s"] <= 0.13, values)
+        self.assertIn("imu_time_offset delta_s", values)
+        self.assertTrue(any(name.startswith("noise_level") for name in values), values)
+        ten, thirty, sixty = (duration["rms_m"]["value"] for duration in found["after"]["durations"])
+        self.assertLess(ten, 1.1 * 3.57)
+        self.assertLess(thirty, 1.1 * 39.6)
+        self.assertLess(sixty, 1.1 * 254)
+        held_out = next(rung for rung in reversed(found["rungs"]) if rung["kept"])["durations"]
+        self.assertGreaterEqual(held_out[0]["held_out"]["coverage95"], 0.80)
+        self.assertGreaterEqual(held_out[1]["held_out"]["coverage95"], 0.85)
+
+    def test_phone_and_aircraft_run(self) -> None:
+        phone = self.of("phone-motorway-1104", drive_documents.phone(), "run", "--nhc")
+        self.assertLess(phone["durations"][0]["rms_m"]["value"], 12.5)
+        self.assertTrue(phone["facts"]["gnss"]["speed_accuracy_constant"])
+        aircraft = self.of("umn-thor-flight75", drive_documents.aircraft(), "run")
+        self.assertLess(aircraft["durations"][0]["rms_m"]["value"], 19.9)
+        self.assertGreater(aircraft["facts"]["gnss"]["held"], 30000)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,274 @@
+// Recorded drives: even readings out of stamped rows, dated fixes, outages that leave no trace, and what is refused.
+#include "core/navigate/drive/evaluation.hpp"
+#include "tests/unit/navigate/drive_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace driftlab::drive {
+namespace {
+
+ImuSample noisy(Random& random, double turn = 0.0) {
+  return {0.01 * random.normal(), 0.01 * random.normal(), turn + 0.01 * random.normal(),
+          0.1 * random.normal(),  0.1 * random.normal(),  -9.8 + 0.1 * random.normal()};
+}
+
+/// A sensor at 97.9 Hz that a computer asks at 100 Hz, for `seconds`.
+SensorLog polled(double seconds) {
+  Random random(3);
+  std::vector<ImuSample> own;
+  for (int i = 0; i < static_cast<int>(seconds * 97.9) + 2; ++i) {
+    own.push_back(noisy(random, std::sin(0.01 * i)));
+  }
+  SensorLog log;
+  for (int i = 0; i < static_cast<int>(seconds * 100.0); ++i) {
+    log.time_s.push_back(0.01 * i);
+    log.readings.push_back(own[static_cast<std::size_t>(97.9 * 0.01 * i)]);
+  }
+  return log;
+}
+
+TEST(DriveSampling, DropsWhatAFasterPollRepeatsAndFindsTheSensorsRate) {
+  SamplingFacts facts;
+  const auto runs = uniform_readings(polled(200.0), {SensorClock::Host, true}, facts);
+  ASSERT_TRUE(runs) << runs.error().message;
+  EXPECT_TRUE(facts.polled_faster);
+  EXPECT_NEAR(static_cast<double>(facts.repeated) / static_cast<double>(facts.rows), 0.021, 0.001);
+  EXPECT_NEAR(facts.sensor_rate_hz, 97.9, 0.02);
+  ASSERT_EQ(runs->size(), 1U);
+  EXPECT_EQ(runs->front().readings.size(), facts.rows - facts.repeated);
+  EXPECT_NEAR(1.0 / runs->front().dt_s, 97.9, 0.02);
+}
+
+TEST(DriveSampling, KeepsTheRowsOfAStuckSensorAndCountsThem) {
+  Random random(4);
+  SensorLog log;
+  ImuSample held = noisy(random);
+  for (int i = 0; i < 5000; ++i) {
+    held = i >= 1000 && i < 1200 ? held : noisy(random);
+    log.time_s.push_back(0.01 * i);
+    log.readings.push_back(held);
+  }
+  SamplingFacts facts;
+  const auto runs = uniform_readings(log, {SensorClock::Sensor, true}, facts);
+  ASSERT_TRUE(runs);
+  EXPECT_FALSE(facts.polled_faster);
+  EXPECT_EQ(facts.stuck, 200U);
+  EXPECT_EQ(runs->front().readings.size(), 5000U);
+}
+
+TEST(DriveSampling, LosesNoAngleBetweenJitteringStampsAndTheEvenGrid) {
+  // Each reading is the mean since the stamp before; the angle over the whole log is the same after resampling.
+  Random random(5);
+  SensorLog log;
+  double angle = 0.0;
+  double before = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    const double now = 0.01 * i + 0.002 * random.uniform();
+    log.time_s.push_back(now);
+    log.readings.push_back(noisy(random, 0.5));
+    angle += i == 0 ? 0.0 : log.readings.back()[2] * (now - before);
+    before = now;
+  }
+  SamplingFacts facts;
+  const auto runs = uniform_readings(log, {SensorClock::Sensor, true}, facts);
+  ASSERT_TRUE(runs);
+  double resampled = 0.0;
+  const UniformRun& run = runs->front();
+  for (std::size_t i = 1; i < run.readings.size(); ++i) {
+    resampled += run.readings[i][2] * run.dt_s;
+  }
+  EXPECT_NEAR(resampled, angle, 1e-9);
+}
+
+TEST(DriveSampling, BridgesThreeMissingSamplesAndSplitsAtMore) {
+  Random random(6);
+  SensorLog log;
+  for (int i = 0; i < 3000; ++i) {
+    const bool lost = (i > 500 && i < 504) || (i > 1500 && i < 1600);
+    if (!lost) {
+      log.time_s.push_back(0.01 * i);
+      log.readings.push_back(noisy(random));
+    }
+  }
+  SamplingFacts facts;
+  const auto runs = uniform_readings(log, {SensorClock::Sensor, true}, facts);
+  ASSERT_TRUE(runs);
+  EXPECT_EQ(facts.gaps_bridged, 1U);
+  EXPECT_EQ(facts.samples_bridged, 3U);
+  EXPECT_EQ(facts.gaps_splitting, 1U);
+  ASSERT_EQ(runs->size(), 2U);
+  EXPECT_NEAR((*runs)[1].start_s, 15.99, 1e-9);
+}
+
+TEST(DriveTime, DatesUtcOnceAndGoesOnOverTheEndOfAWeek) {
+  Table table{{"t"}, {{1751999658.0, 1751999659.0, 1751999660.0}}, {}, {}};
+  TimeMeaning meaning{"t", 1.0, false, TimeScale::Utc, 0.0, {}, ""};
+  const auto utc = stamp_rows(table, meaning);
+  ASSERT_TRUE(utc);
+  EXPECT_DOUBLE_EQ(utc->time_s.front(), 1751999658.0 + 18.0);
+  table.columns = {{604799.0, 604799.5, 0.0, 0.5}};
+  meaning.scale = TimeScale::Gps;
+  const auto week = stamp_rows(table, meaning);
+  ASSERT_TRUE(week);
+  EXPECT_EQ(week->facts.week_rollovers, 1U);
+  EXPECT_DOUBLE_EQ(week->time_s.back(), 604800.5);
+}
+
+/// The drive without the fixes that lie in an outage.
+Drive without_fixes_in(const Drive& drive, const std::vector<Outage>& outages) {
+  Drive fewer = drive;
+  std::erase_if(fewer.fixes, [&](const Fix& fix) {
+    return std::any_of(outages.begin(), outages.end(), [&](const Outage& o) { return o.covers(fix.time_s); });
+  });
+  return fewer;
+}
+
+TEST(DriveFilter, AFixInsideAnOutageLeavesNoTrace) {
+  const Drive drive = simulated_drive(11, {.velocity_latency_s = 0.12});
+  FilterOptions options;
+  options.velocity_latency_s = 0.12;  // the first returning fix describes a velocity of the outage
+  options.constraint.emplace();
+  options.gate = 25.0;
+  const auto prepared = PreparedDrive::make(drive, options);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  FilterTask task;
+  task.outages = {{100.0, 10.0}, {160.0, 30.0}};
+  const FilterRun all = prepared->run(0, task);
+  const Drive fewer = without_fixes_in(drive, task.outages);
+  const auto prepared_fewer = PreparedDrive::make(fewer, options);
+  ASSERT_TRUE(prepared_fewer);
+  const FilterRun some = prepared_fewer->run(0, task);
+  ASSERT_EQ(all.outages.size(), 2U);
+  ASSERT_EQ(some.outages.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(all.outages[i].error_ned_m, some.outages[i].error_ned_m);
+    EXPECT_EQ(all.outages[i].covariance_ned, some.outages[i].covariance_ned);
+  }
+}
+
+TEST(DriveFilter, KnowsItselfOnADriveOfItsOwnModel) {
+  // 64 outages of 10 s, eight phases: 2 for the mean NEES within 0.7 (neighbours share most of their noise).
+  const Drive drive = simulated_drive(12, {}, 6);
+  const auto evaluation = evaluate_drive(drive, options_of(drive.document));
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  const DurationSummary& ten = evaluation->durations.front();
+  EXPECT_GT(ten.outages.size(), 60U);
+  EXPECT_NEAR(ten.nees.value, 2.0, 0.7);
+  EXPECT_GT(ten.coverage95.value, 0.88);
+  EXPECT_LT(ten.rms_m.value, ten.straight_line_rms_m);
+  ASSERT_GE(evaluation->innovations.size(), 2U);
+  EXPECT_NEAR(evaluation->innovations[0].normalised, 1.0, 0.15);
+}
+
+TEST(DriveFilter, EstimatesTheArmAndSaysHowWell) {
+  const Drive drive = simulated_drive(13, {.lever_arm_m = {0.8, -0.4, 0.0}});
+  FilterOptions options;
+  options.constants.lever_arm_sd_m = 1.0;
+  const auto prepared = PreparedDrive::make(drive, options);
+  ASSERT_TRUE(prepared);
+  FilterTask task;
+  task.outages = {{300.0, 10.0}};
+  const FilterRun with = prepared->run(0, task);
+  const auto unaware = PreparedDrive::make(drive, FilterOptions{});
+  ASSERT_TRUE(unaware);
+  const FilterRun without = unaware->run(0, task);
+  EXPECT_LT(with.outages.front().error_m(), without.outages.front().error_m());
+}
+
+TEST(DriveFilter, RejectsAWildFixAndBelievesTheReceiverAgainAfterFive) {
+  Drive drive = simulated_drive(14);
+  for (Fix& fix : drive.fixes) {
+    if (fix.time_s > 120.0 && fix.time_s < 120.5) {
+      fix.position_ecef_m += Vector3(0.0, 50.0, 0.0);
+    }
+  }
+  FilterOptions options;
+  options.gate = 50.0;
+  const auto prepared = PreparedDrive::make(drive, options);
+  ASSERT_TRUE(prepared);
+  EXPECT_EQ(prepared->run(0, {}).rejected, 2U);
+  for (Fix& fix : drive.fixes) {
+    if (fix.time_s > 200.0) {
+      fix.position_ecef_m += Vector3(0.0, 50.0, 0.0);  // the receiver moves for good
+    }
+  }
+  const auto moved = PreparedDrive::make(drive, options);
+  ASSERT_TRUE(moved);
+  EXPECT_LT(moved->run(0, {}).rejected, 40U);
+}
+
+TEST(DriveOutages, NeverOverlapAndLeaveTwentySecondsOfFixes) {
+  const Drive drive = simulated_drive(15);
+  const auto start = find_start(drive, 0);
+  ASSERT_TRUE(start);
+  const auto runs = plan_outages(drive, *start);
+  EXPECT_GT(runs.size(), 16U);
+  for (const PlannedRun& run : runs) {
+    for (std::size_t i = 1; i < run.outages.size(); ++i) {
+      EXPECT_GE(run.outages[i].start_s, run.outages[i - 1].end_s() + 20.0);
+    }
+    EXPECT_GE(run.outages.front().start_s, start->time_s + 60.0);
+  }
+}
+
+TEST(DriveOutages, TheSameForAnyNumberOfThreads) {
+  const Drive drive = simulated_drive(16);
+  Executor executor(2);
+  RunControl control;
+  control.threads.executor = &executor;
+  const auto one = evaluate_drive(drive, {});
+  const auto two = evaluate_drive(drive, {}, {}, control);
+  ASSERT_TRUE(one && two);
+  for (std::size_t d = 0; d < one->durations.size(); ++d) {
+    EXPECT_EQ(one->durations[d].rms_m.value, two->durations[d].rms_m.value);
+    EXPECT_EQ(one->durations[d].nees.ci95.high, two->durations[d].nees.ci95.high);
+  }
+}
+
+TEST(DriveStart, FindsRestTiltAndCourse) {
+  const Drive drive = simulated_drive(17);
+  const auto rests = rests_of(drive, 0);
+  ASSERT_FALSE(rests.empty());
+  EXPECT_NEAR(rests.front().to_s, 20.0, 1.0);
+  const auto start = find_start(drive, 0);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->tilt_from, TiltFrom::Rest);
+  EXPECT_EQ(start->heading_from, HeadingFrom::Course);
+  EXPECT_NEAR(start->time_s, 21.6, 0.6);
+}
+
+TEST(DriveStart, SaysThatADriveAtRestHasNoHeading) {
+  Drive drive = simulated_drive(18);
+  for (Fix& fix : drive.fixes) {
+    fix.velocity_ned_m_s = Vector3::Zero();
+    fix.has_course = false;
+  }
+  const auto start = find_start(drive, 0);
+  ASSERT_FALSE(start);
+  EXPECT_NE(start.error().message.find("heading is not observable"), std::string::npos);
+}
+
+TEST(DriveSimulation, CoversItselfWithAndWithoutAVelocityConstraint) {
+  // The simulated truth has the side slip of the recorded attitude; the constraint must not count it as an error.
+  const Drive drive = simulated_drive(19);
+  for (const bool constrained : {false, true}) {
+    FilterOptions options;
+    if (constrained) {
+      options.constraint.emplace();
+    }
+    const auto evaluation = evaluate_drive(drive, options);
+    ASSERT_TRUE(evaluation);
+    const auto prepared = PreparedDrive::make(drive, options);
+    const auto simulated = simulate_outages(*prepared, evaluation->durations, {.runs = 8, .seed = 2});
+    ASSERT_TRUE(simulated) << simulated.error().message;
+    for (const SimulatedDuration& one : *simulated) {
+      EXPECT_GT(one.coverage95, 0.91) << one.duration_s << (constrained ? " constrained" : "");
+      EXPECT_NEAR(one.nees, 2.0, 0.5) << one.duration_s << (constrained ? " constrained" : "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace driftlab::drive
