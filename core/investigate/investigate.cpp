@@ -2,14 +2,18 @@
 
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/checks.hpp"
+#include "core/investigate/report/earned.hpp"
 #include "core/investigate/report/explain.hpp"
 #include "core/investigate/report/figures.hpp"
 #include "core/investigate/report/order.hpp"
 #include "core/investigate/report/outage_gain.hpp"
+#include "core/investigate/report/recording_findings.hpp"
+#include "core/investigate/report/remains.hpp"
 #include "core/investigate/report/verdict.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/group_search.hpp"
 #include "core/investigate/search/join_axes.hpp"
+#include "core/investigate/search/right_recordings.hpp"
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
@@ -146,7 +150,8 @@ void settle_gains(const std::vector<ChannelGroup>& groups, const std::vector<Gro
   for (Finding& finding : report.findings) {
     finding.gain.explained = all > 0.0 ? gained(finding) / all : 0.0;
     finding.gain.misfit_after = report.misfit_after;
-    finding.gain.misfit_before = report.misfit_after + (finding.gain.of_the_file ? 0.0 : finding.gain.log_score_per_sample);
+    finding.gain.misfit_before =
+        report.misfit_after + (finding.gain.of_the_file ? 0.0 : finding.gain.log_score_per_sample);
     finding.explanation = explain(finding, groups[finding.evidence.group]);
     finding.next_measurement = next_measurement(finding);
   }
@@ -164,10 +169,13 @@ std::size_t first_shown(const Report& report, std::size_t group) {
 
 }  // namespace
 
-Result<Report> investigate(const Study& study, const InvestigateOptions& options, const RunControl& control) {
-  if (study.recordings.empty()) {
+Result<Report> investigate(const Study& given, const InvestigateOptions& options, const RunControl& control) {
+  if (given.recordings.empty()) {
     return fail(ErrorCode::TooFewSamples, "The study holds no recording.");
   }
+  control.report("recordings", 0.0);
+  const RightedRecordings righted = right_recordings(given);
+  const Study& study = righted.study ? *righted.study : given;
   if (const Status known = check_processes(study.baseline); !known) {
     return fail(known.error());
   }
@@ -226,6 +234,8 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
   drop_confirmed(study.baseline, groups, found, report.notes);
   control.report("checks", 0.95);
   make_checks(groups, outcomes, examined, report);
+  const std::vector<Remainder> remains = what_remains(groups, outcomes);
+  doubt_what_is_not_earned(groups, outcomes, remains, report, found);
   list_findings(std::move(found), groups, report);
   settle_gains(groups, outcomes, report);
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -242,6 +252,8 @@ Result<Report> investigate(const Study& study, const InvestigateOptions& options
     }
     report.outages = *std::move(outages);
   }
+  report_remains(remains, report);
+  report_recordings(righted, report);
   report.summary = verdict_of(report);
   return report;
 }

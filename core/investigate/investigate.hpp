@@ -1,7 +1,8 @@
 #pragma once
 /// What a simulation gets wrong, and why: the investigation of a study (spec/causes.md).
 ///
-/// Per channel group (one sensor axis through all recordings):
+/// First, among all recordings together: what is wrong with a recording (search/right_recordings.hpp) is named and put
+/// right, or the recording is set aside. Then, per channel group (one sensor axis through all recordings):
 ///   1. Facts of the file (missing, jittering, clipped, stuck samples, a coarse lattice) come first; what they spoil is
 ///   left
 ///      out of everything after.

@@ -142,6 +142,13 @@ Json finding_json(const Finding& finding) {
                           {"title", std::string(rival.cause->title)},
                           {"score", number(rival.score)}});
   }
+  if (!finding.evidence.doubt.empty()) {
+    constexpr std::size_t kMost = 5;
+    while (alternatives.size() >= kMost) {
+      alternatives.erase(alternatives.size() - 1);
+    }
+    alternatives.push_back("unnamed");
+  }
   Json next = finding.next_measurement.empty() ? Json(nullptr) : Json(finding.next_measurement);
   return Json{{"cause", std::string(finding.evidence.cause->name)},
               {"title", std::string(finding.evidence.cause->title)},

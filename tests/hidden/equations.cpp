@@ -487,42 +487,48 @@ std::vector<double> Injected::added() const {
 }
 
 const std::vector<Equation>& equations() {
-  static const std::vector<Equation> all{
-      {"white_noise_level", {3e-3}, white_noise},
-      {"gauss_markov", {0.02, 0.5}, gauss_markov},
-      {"random_walk", {0.01}, random_walk},
-      {"linear_drift", {-2e-4}, linear_drift},
-      {"flicker_noise", {0.02}, flicker_noise},
-      {"quantization_noise", {1e-3}, quantization_noise},
-      {"output_resolution", {0.01}, output_resolution},
-      {"periodic_disturbance", {0.03, 1.7}, periodic_disturbance},
-      {"band_limited_noise", {8.0}, band_limited_noise},
-      {"heavy_tailed_noise", {6.0}, heavy_tailed_noise},
-      {"noise_level_change", {1.7, 300.01}, noise_level_change},
-      {"common_mode_noise", {0.3}, common_mode_noise},
-      {"outliers", {0.02, 0.5}, outliers},
-      {"bias_step", {-0.04, 300.01}, bias_step},
-      {"turn_on_bias", {0.02}, turn_on_bias},
-      {"warm_up_transient", {-0.05, 60.0}, warm_up_transient},
-      {"temperature_bias", {3e-3, 30.0}, temperature_bias},
-      {"stuck_samples", {0.04, 4.0}, stuck_samples},
-      {"missing_samples", {0.02}, missing_samples},
-      {"timestamp_jitter", {2e-4}, timestamp_jitter},
-      {"saturation", {0.6}, saturation},
-      {"rate_dependent_noise", {0.8}, noise_with_rate},
-      {"acceleration_dependent_noise", {5.0}, noise_with_acceleration},
-      {"scale_factor_error", {4e-3}, scale_factor_error},
-      {"scale_factor_asymmetry", {4e-3}, scale_factor_asymmetry},
-      {"scale_factor_nonlinearity", {4e-3, 2.0}, scale_factor_nonlinearity},
-      {"scale_factor_nonlinearity", {4e-3, 3.0}, scale_factor_nonlinearity},
-      {"axis_misalignment", {5e-3, 2.0}, axis_misalignment},
-      {"reference_time_offset", {4e-3}, reference_time_offset},
-      {"reference_clock_drift", {1e-5}, reference_clock_drift},
-      {"once_per_revolution", {0.02}, once_per_revolution},
-      {"g_sensitivity", {1e-3}, g_sensitivity},
-      {"vibration_rectification", {2e-3}, vibration_rectification},
-      {"lever_arm", {0.05}, lever_arm},
-  };
+  static const std::vector<Equation> all = [] {
+    std::vector<Equation> list = recording_equations();
+    const std::vector<Equation> oscillations = oscillation_equations();
+    list.insert(list.end(), oscillations.begin(), oscillations.end());
+    list.insert(list.end(), {
+                                {"white_noise_level", {3e-3}, white_noise},
+                                {"gauss_markov", {0.02, 0.5}, gauss_markov},
+                                {"random_walk", {0.01}, random_walk},
+                                {"linear_drift", {-2e-4}, linear_drift},
+                                {"flicker_noise", {0.02}, flicker_noise},
+                                {"quantization_noise", {1e-3}, quantization_noise},
+                                {"output_resolution", {0.01}, output_resolution},
+                                {"periodic_disturbance", {0.03, 1.7}, periodic_disturbance},
+                                {"band_limited_noise", {8.0}, band_limited_noise},
+                                {"heavy_tailed_noise", {6.0}, heavy_tailed_noise},
+                                {"noise_level_change", {1.7, 300.01}, noise_level_change},
+                                {"common_mode_noise", {0.3}, common_mode_noise},
+                                {"outliers", {0.02, 0.5}, outliers},
+                                {"bias_step", {-0.04, 300.01}, bias_step},
+                                {"turn_on_bias", {0.02}, turn_on_bias},
+                                {"warm_up_transient", {-0.05, 60.0}, warm_up_transient},
+                                {"temperature_bias", {3e-3, 30.0}, temperature_bias},
+                                {"stuck_samples", {0.04, 4.0}, stuck_samples},
+                                {"missing_samples", {0.02}, missing_samples},
+                                {"timestamp_jitter", {2e-4}, timestamp_jitter},
+                                {"saturation", {0.6}, saturation},
+                                {"rate_dependent_noise", {0.8}, noise_with_rate},
+                                {"acceleration_dependent_noise", {5.0}, noise_with_acceleration},
+                                {"scale_factor_error", {4e-3}, scale_factor_error},
+                                {"scale_factor_asymmetry", {4e-3}, scale_factor_asymmetry},
+                                {"scale_factor_nonlinearity", {4e-3, 2.0}, scale_factor_nonlinearity},
+                                {"scale_factor_nonlinearity", {4e-3, 3.0}, scale_factor_nonlinearity},
+                                {"axis_misalignment", {5e-3, 2.0}, axis_misalignment},
+                                {"reference_time_offset", {4e-3}, reference_time_offset},
+                                {"reference_clock_drift", {1e-5}, reference_clock_drift},
+                                {"once_per_revolution", {0.02}, once_per_revolution},
+                                {"g_sensitivity", {1e-3}, g_sensitivity},
+                                {"vibration_rectification", {2e-3}, vibration_rectification},
+                                {"lever_arm", {0.05}, lever_arm},
+                            });
+    return list;
+  }();
   return all;
 }
 

@@ -51,4 +51,9 @@ struct Equation {
 
 [[nodiscard]] const std::vector<Equation>& equations();
 
+/// Those of what is wrong with recordings as a whole (recording_equations.cpp); `equations` holds them too.
+[[nodiscard]] std::vector<Equation> recording_equations();
+/// Those of oscillations that are no line (oscillation_equations.cpp); likewise.
+[[nodiscard]] std::vector<Equation> oscillation_equations();
+
 }  // namespace driftlab::hidden

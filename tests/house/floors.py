@@ -13,7 +13,7 @@ import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
-INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "causes", "search", "report")]  # lowest first
+INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "facts", "consistency", "causes", "search", "report")]  # lowest first
 ANALYSIS = [*CORE, "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.

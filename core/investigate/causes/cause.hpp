@@ -32,6 +32,7 @@ struct UnitAxis;
 struct CauseParameter {
   std::string_view name;
   LabUnit (*unit)(const Unit& channel) = nullptr;
+  double doubtful_below = -1e300;  ///< an estimate below it is at the bound of the search, and says nothing [SI]
 };
 
 /// What a finding asks a laboratory to do, in the order in which it would: record anew or mend the file, calibrate,

@@ -43,7 +43,8 @@ struct Evidence {
   bool heldout = false;
   std::vector<Evidence> rivals;  ///< that come near, best first
   bool ambiguous = false;
-  std::string note;  ///< one more sentence for the report
+  std::string note;   ///< one more sentence for the report
+  std::string doubt;  ///< why something that has no name may be behind it; empty: nothing says so
 };
 
 /// Penalty for having chosen among `choices` equally likely places.

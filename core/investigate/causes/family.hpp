@@ -8,8 +8,10 @@
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
+#include <deque>
 #include <functional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -125,7 +127,33 @@ struct FileFact {
   bool gives_lattice_step = false;
 };
 
+/// Noise that jumps between levels: not Gaussian, though its spectrum is that of a slow process. It is sought in what
+/// the search for slow effects leaves, taken off the error, and then that search is made once more, for a process of
+/// the baseline may have been fitted to it. `examine` holds it out itself.
+struct SwitchingNoise {
+  std::vector<Evidence> (*examine)(const FullRate& data);
+  /// Its expected course over the analysed part of member r, to be subtracted.
+  std::vector<double> (*values)(const FullRate& data, std::size_t r, const Evidence& found);
+};
+
+/// One thing that is wrong with some recordings, and how it is put right.
+struct FaultyRecordings {
+  std::vector<std::string> channels;  ///< recording/column
+  std::vector<FoundParameter> parameters;
+  std::string sentence;  ///< what is wrong where, and what was done about it
+  /// Puts the recordings right. Rows of a file that must be written anew are kept in `rows`.
+  std::function<void(Study& study, std::deque<std::vector<double>>& rows)> mend;
+};
+
+/// A recording that is not what it is said to be: in another unit, on another axis, on a clock that breaks, resampled
+/// by its driver. It is looked for before any model is fitted, among all recordings of the study together, and put
+/// right, so that everything after it sees the sensor. Causes of this family are taken in the order of the registry,
+/// each on what those before it have put right. They are facts: nothing is held out.
+struct RecordingFault {
+  std::vector<FaultyRecordings> (*find)(const Study& study);
+};
+
 using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, NoiseTails, SpectralLine,
-                            CommonNoise, FileFact>;
+                            CommonNoise, SwitchingNoise, FileFact, RecordingFault>;
 
 }  // namespace driftlab::investigate

@@ -89,7 +89,7 @@ Cause heavy_tailed_noise() {
           .rivals = {"outliers"},
           .needs = "any recording",
           .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
-          .parameters = {{"nu", units::one}},
+          .parameters = {{"nu", units::one, 2.3}},
           .inject = inject_effect,
           .showing = {.values = shown_values, .oracle = false}};
 }

@@ -12,6 +12,10 @@
   CAUSE(quantization_noise)           \
   CAUSE(output_resolution)            \
   CAUSE(periodic_disturbance)         \
+  CAUSE(random_telegraph_noise)       \
+  CAUSE(chirped_disturbance)          \
+  CAUSE(modulated_disturbance)        \
+  CAUSE(vibration_bursts)             \
   CAUSE(band_limited_noise)           \
   CAUSE(heavy_tailed_noise)           \
   CAUSE(noise_level_change)           \
@@ -36,7 +40,16 @@
   CAUSE(once_per_revolution)          \
   CAUSE(g_sensitivity)                \
   CAUSE(vibration_rectification)      \
-  CAUSE(lever_arm)
+  CAUSE(lever_arm)                    \
+  CAUSE(bursty_clock)                 \
+  CAUSE(duplicated_blocks)            \
+  CAUSE(interpolated_samples)         \
+  CAUSE(averaged_samples)             \
+  CAUSE(unit_error)                   \
+  CAUSE(turned_sign)                  \
+  CAUSE(swapped_axes)                 \
+  CAUSE(clock_jump)                   \
+  CAUSE(sampling_rate_change)
 
 namespace driftlab::investigate {
 
@@ -75,6 +88,9 @@ Concern concern_of(const Cause& cause) {
   }
   if (const FileFact* const fact = cause.as<FileFact>()) {
     return fact->gives_lattice_step ? Concern::Format : Concern::Recording;
+  }
+  if (cause.as<RecordingFault>() != nullptr) {
+    return Concern::Recording;
   }
   return cause.as<MeanEffect>() != nullptr ? Concern::Calibration : Concern::Noise;
 }

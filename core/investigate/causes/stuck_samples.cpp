@@ -108,7 +108,8 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   const double noise = noise_of_differences(recording, channel);
   if (far > 0.01 || step > 0.02 * noise) {
     // Gaussian noise about the middle of a lattice place stays on it with erf(step / (2 sqrt(2) sigma)).
-    const double stays = noise > 0.0 ? std::erf(0.5 * step / std::numbers::sqrt2 / noise) : 1.0;
+    const double behind = noise_behind_lattice(noise, step);
+    const double stays = behind > 0.0 ? std::erf(0.5 * step / std::numbers::sqrt2 / behind) : 1.0;
     runs.chance = std::min(0.999, std::max({far, goes_on, commonest_share(v), stays}));
   }
   return runs;

@@ -62,12 +62,15 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
     text.append(" It explains ").append(percent(finding.gain.explained));
     text.append(" of what the baseline gets wrong, on samples it was not fitted to.");
   }
-  if (evidence.ambiguous) {
+  if (evidence.ambiguous && !evidence.rivals.empty()) {
     std::vector<std::string> names;
     for (const Evidence& rival : evidence.rivals) {
       names.emplace_back(rival.cause->title);
     }
     text.append(" These data cannot tell it from ").append(list_of(names)).append(".");
+  }
+  if (!evidence.doubt.empty()) {
+    text.append(" It may be an effect that has no name here: ").append(evidence.doubt).append(".");
   }
   return text;
 }

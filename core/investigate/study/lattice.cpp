@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -111,7 +112,62 @@ double noise_of_differences(const StudyRecording& recording, const Channel& chan
   return count > 0.0 ? std::sqrt(0.5 * square / count) : 0.0;
 }
 
+double noise_behind_lattice(double seen, double step) {
+  return std::sqrt(std::max(seen * seen - step * step / 12.0, 1e-4 * step * step));
+}
+
 bool at_limit(double row, double limit) { return std::fabs(row) >= limit * (1.0 - 1e-9); }
+
+namespace {
+
+constexpr double kCoarse = 0.3;  ///< step over noise
+
+/// From differences of the samples as they are: motion changes little from one to the next.
+double spread_of_differences(const Channel& channel) {
+  std::vector<double> d;
+  for (std::size_t i = 1; i < channel.rows.size(); ++i) {
+    d.push_back(std::fabs(channel.rows[i] - channel.rows[i - 1]));
+  }
+  if (d.empty()) {
+    return 0.0;
+  }
+  double mean = 0.0;
+  for (const double v : d) {
+    mean += v / static_cast<double>(d.size());
+  }
+  return mean * std::sqrt(0.25 * std::numbers::pi);  // of Gaussian white noise
+}
+
+bool is_coarse(const Channel& channel) {
+  return find_lattice(channel.rows).step > kCoarse * spread_of_differences(channel);
+}
+
+/// The motion, as the channel reads it where it is slower, goes beyond `top` [SI] by more than rounding and noise do.
+bool goes_beyond(const Channel& channel, double top) {
+  constexpr std::size_t kEnough = 8;
+  constexpr std::size_t kSlower = 100;
+  const double factor = std::fabs(channel.unit.factor);
+  const double step = find_lattice(channel.rows).step * factor;
+  const double margin = 1.5 * step + 3.0 * noise_behind_lattice(spread_of_differences(channel) * factor, step);
+  std::vector<double> slower;
+  for (std::size_t i = 0; i < channel.error.size() && i < channel.reference.size(); ++i) {
+    if (channel.valid[i] != 0 && std::fabs(channel.reference[i]) < 0.8 * top) {
+      slower.push_back(channel.error[i]);
+    }
+  }
+  if (slower.size() < kSlower) {
+    return false;
+  }
+  const auto middle = slower.begin() + static_cast<std::ptrdiff_t>(slower.size() / 2);
+  std::nth_element(slower.begin(), middle, slower.end());
+  std::size_t beyond = 0;
+  for (const double w : channel.reference) {
+    beyond += std::fabs(w + *middle) > top + margin ? 1 : 0;
+  }
+  return beyond >= kEnough;
+}
+
+}  // namespace
 
 double clipped_at(const Channel& channel) {
   constexpr std::ptrdiff_t kEnough = 8;
@@ -125,6 +181,9 @@ double clipped_at(const Channel& channel) {
                                    [&](double w) { return std::fabs(w) > kNear * si; });
   const auto count =
       std::count_if(channel.rows.begin(), channel.rows.end(), [&](double v) { return at_limit(v, top); });
+  if (reached && count >= kEnough && is_coarse(channel) && !goes_beyond(channel, si)) {
+    return 0.0;
+  }
   return reached && count >= kEnough ? top : 0.0;
 }
 

@@ -22,8 +22,14 @@ struct Lattice {
 /// robust deviations; 0 for a constant channel.
 [[nodiscard]] double noise_of_differences(const StudyRecording& recording, const Channel& channel);
 
+/// Standard deviation of the noise behind a lattice of step `step` [same unit] where that of the rounded differences is
+/// `seen`: Sheppard's step^2/12 taken off. Where the noise is small against the step the rounded values hardly tell it.
+[[nodiscard]] double noise_behind_lattice(double seen, double step);
+
 /// The magnitude at which the output is clipped [file's unit]: at least eight values are at the extreme while the
-/// reference comes near it. 0 if nothing is clipped.
+/// reference comes near it. On a lattice of more than kCoarse of the noise many values are at an extreme without being
+/// clipped; there the reference must go beyond it by a step and a half and three deviations of the noise, as the
+/// channel reads it where it is slower. 0 if nothing is clipped.
 [[nodiscard]] double clipped_at(const Channel& channel);
 [[nodiscard]] bool at_limit(double row, double limit);
 

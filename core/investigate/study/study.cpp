@@ -1,6 +1,7 @@
 #include "core/investigate/study/study.hpp"
 
 #include "core/investigate/study/time_grid.hpp"
+#include "core/signal/number.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/turns.hpp"
 
@@ -136,12 +137,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
     std::vector<double> stamps = columns.si(*index, Unit{"s", Dimension::Time});
     const double start = stamps[0];
     std::transform(stamps.begin(), stamps.end(), stamps.begin(), [&](double t) { return t - start; });
-    auto grid = fit_time_grid(stamps, spec.rate_hz);
-    if (grid && spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > 0.01) {
-      return fail(ErrorCode::InconsistentSampling, "The stated rate and the time column contradict each other.",
-                  {{"parameter", "rate_hz"}});
-    }
-    return grid;
+    return fit_time_grid(stamps, spec.rate_hz);
   }
   if (!spec.rate_hz) {
     return fail(ErrorCode::InconsistentSampling,
@@ -190,6 +186,12 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   recording.dt_s = grid->dt_s;
   recording.length = grid->length;
   recording.stamps = grid->stamps;
+  constexpr double kContradicts = 0.01;
+  if (spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > kContradicts) {
+    recording.notes.push_back("The stated rate of " + short_text(*spec.rate_hz) +
+                              " Hz and the time column contradict each other: it was measured as " +
+                              short_text(1.0 / grid->dt_s) + " Hz, which is used.");
+  }
   if (auto status = set_window(recording, spec.trim); !status) {
     return fail(status.error());
   }

@@ -30,6 +30,13 @@ struct Channel {
   bool input_only = false;           ///< drives effects of other channels; not criticised itself
 };
 
+/// Samples that arrive several at a time: time_grid.hpp says when.
+struct Bursts {
+  std::size_t count = 0;   ///< bursts; 0: samples arrive one by one
+  double mean = 0.0;       ///< samples in one
+  double deviation = 0.0;  ///< of their numbers
+};
+
 /// What the time column says.
 struct Stamps {
   bool present = false;
@@ -37,6 +44,7 @@ struct Stamps {
   double scatter_s = 0.0;     ///< standard deviation of the stamps about the grid, their own resolution taken off
   double resolution_s = 0.0;  ///< step of the stamps themselves; 0: finer than can be seen
   std::size_t repeated = 0;   ///< stamps equal to the one before
+  Bursts bursts;
 };
 
 /// One recording. Vectors over the grid of the whole file; empty where the quantity is not known.

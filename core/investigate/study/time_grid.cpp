@@ -76,6 +76,46 @@ double stamp_resolution(std::span<const double> stamps) {
   return 0.0;
 }
 
+/// Few long stretches are gaps between sessions and no habit of a clock, and so are stretches whose steps are those of
+/// the stated rate.
+Bursts bursts_of(std::span<const double> stamps, double typical, std::optional<double> rate_hz) {
+  constexpr double kShort = 0.25;
+  constexpr double kShare = 0.2;
+  constexpr std::size_t kFewest = 10;
+  constexpr double kLongest = 200.0;
+  if (rate_hz && std::fabs(typical * *rate_hz - 1.0) < kShare) {
+    return {};
+  }
+  const auto steps = static_cast<double>(stamps.size() - 1);
+  const double mean = (stamps.back() - stamps.front()) / steps;
+  double within = 0.0;
+  double square = 0.0;
+  Bursts bursts;
+  double length = 1.0;
+  const auto end = [&] {
+    ++bursts.count;
+    square += length * length;
+    length = 1.0;
+  };
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const bool joined = stamps[i] - stamps[i - 1] < kShort * mean;
+    within += joined ? 1.0 : 0.0;
+    if (joined) {
+      length += 1.0;
+    } else {
+      end();
+    }
+  }
+  end();
+  const auto count = static_cast<double>(bursts.count);
+  bursts.mean = static_cast<double>(stamps.size()) / count;
+  if (within < kShare * steps || bursts.count < kFewest || bursts.mean > kLongest) {
+    return {};
+  }
+  bursts.deviation = std::sqrt(std::max(0.0, square / count - bursts.mean * bursts.mean));
+  return bursts;
+}
+
 }  // namespace
 
 Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz) {
@@ -100,12 +140,15 @@ Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<d
   for (std::size_t i = 1; i < rows; ++i) {
     grid.stamps.repeated += stamps_s[i] == stamps_s[i - 1] ? 1 : 0;
   }
+  grid.stamps.bursts = bursts_of(stamps_s, typical, rate_hz);
+  const bool bursts = grid.stamps.bursts.count > 0;
   grid.dt_s = rate_hz ? 1.0 / *rate_hz : typical;
-  bool placed = place_rows(stamps_s, grid.dt_s, grid.place);
-  if (!placed && rate_hz) {
+  bool placed = !bursts && place_rows(stamps_s, grid.dt_s, grid.place);
+  if (!placed && !bursts && rate_hz) {
     placed = place_rows(stamps_s, typical, grid.place);
   }
   if (!placed) {
+    grid.place.resize(rows);
     for (std::size_t i = 0; i < rows; ++i) {
       grid.place[i] = i;
     }
@@ -118,7 +161,7 @@ Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<d
   }
   const double own = grid.stamps.resolution_s * grid.stamps.resolution_s / 12.0;
   grid.stamps.scatter_s = std::sqrt(std::max(0.0, square / static_cast<double>(rows) - own));
-  if (std::fabs(slope * (rate_hz ? *rate_hz : 1.0 / slope) - 1.0) > 1e-5) {
+  if (bursts || std::fabs(slope * (rate_hz ? *rate_hz : 1.0 / slope) - 1.0) > 1e-5) {
     grid.dt_s = slope;
   }
   grid.length = grid.place.back() + 1;

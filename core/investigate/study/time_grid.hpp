@@ -18,6 +18,10 @@ struct TimeGrid {
 /// 1/`rate_hz` if a rate is stated, else as the median step, and is then fitted. If stamps scatter so much that two
 /// rows would share a place, the rows are taken as evenly spaced, because their number is then more reliable than their
 /// stamps.
+///
+/// Where more than a fifth of the steps are below a quarter of the mean step, samples arrive in bursts
+/// (`Stamps::bursts`) and the stamps are those of the arrival: the rows are evenly spaced at the mean step, whatever
+/// rate is stated. Larger steps than a quarter of the mean part the bursts.
 [[nodiscard]] Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz);
 
 }  // namespace driftlab::investigate

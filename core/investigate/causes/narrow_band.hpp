@@ -1,0 +1,56 @@
+#pragma once
+/// Oscillations that are no line: a frequency that runs, an amplitude that is modulated.
+///
+/// Both are followed in the innovations, which are white and of unit variance under the model. With a phase
+/// p(t) = 2 pi (f t + c t^2/2) the sum S = sum e exp(-i p) of n innovations has X = 2 |S|^2 / n, chi-square with two
+/// degrees of freedom where nothing oscillates so; a local excess of the spectrum divides it. Sums over blocks of
+/// e exp(-i p0), p0 a phase that is nearly right, keep all frequencies within half the rate of the blocks about it, so
+/// that the search about p0 costs no more than the number of blocks.
+#include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/fullrate/full_rate.hpp"
+
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// A phase that runs linearly or quadratically in the time from the first analysed sample.
+struct Sweep {
+  double f_hz = 0.0;        ///< at the first analysed sample
+  double slope_hz_s = 0.0;  ///< c
+  [[nodiscard]] double phase(double t) const;
+  [[nodiscard]] double at(double t) const { return f_hz + slope_hz_s * t; }
+};
+
+/// Innovations of member r times exp(-i phase), summed over blocks of samples.
+struct Beaten {
+  double step_s = 1.0;
+  double samples = 0.0;
+  std::vector<std::complex<double>> sums;
+};
+[[nodiscard]] Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block);
+
+/// Mean power of the innovations of member r, 1 where white, over each band of a quarter of a hertz; its largest value between
+/// two frequencies, at least 1.
+[[nodiscard]] double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz);
+
+/// ln of the chance that chi-square with 2 k degrees of freedom exceeds x.
+[[nodiscard]] double log_tail(double x, double k);
+
+/// Least squares of cosines and sines of several phases in the residuals of member r [SI].
+struct PhaseFit {
+  std::vector<std::complex<double>> amplitude;  ///< modulus [SI]
+  double variance = 0.0;                        ///< of each part of each [SI^2]
+  std::vector<double> values;                   ///< over the analysed part
+};
+[[nodiscard]] PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep>& sweeps);
+
+/// The scopes in which such an effect is looked for: all recordings, and each by itself.
+[[nodiscard]] std::vector<std::vector<std::size_t>> scopes_of(const FullRate& data);
+
+/// ln of the mean, over a phase that is not known, of the likelihood ratio of a sinusoid of `amplitude`.
+[[nodiscard]] double log_gain_of(std::complex<double> fitted, double variance, double amplitude);
+
+}  // namespace driftlab::investigate

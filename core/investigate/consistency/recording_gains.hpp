@@ -1,0 +1,42 @@
+#pragma once
+/// Whether each recording shows the motion that it is said to show: the gain of every channel on it, and the noise.
+///
+/// Per recording, the channels of a quantity are regressed on what drives them: on the reference where it varies, by
+/// means over a second, jointly on all axes that move; where it is constant, the gain is
+///   (mean - b) / w,   b the median of the channel's means over the recordings in which nothing drives it.
+/// A right recording has a gain of 1 on its own axis and of 0 on the others. Errors of calibration are small and common
+/// to all recordings; what comes to more than a tenth in one of them is an error of the recording: a turned sign (-1),
+/// exchanged axes (0, and 1 on another axis), another unit (a known factor), or another motion than the one stated. The
+/// noise carries the factor of a unit as well, which decides where nothing moves or where a bias is in the way. Samples
+/// at a clipped extreme are left out.
+#include "core/investigate/study/study.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace driftlab::investigate {
+
+enum class RecordingDoubt {
+  TurnedSign,
+  SwappedAxes,
+  OtherUnit,
+  NoResponse,  ///< the channel does not see the motion
+  OddGain,     ///< a gain that neither sign, axis nor unit explains, and that other recordings do not have
+};
+
+struct DoubtfulRecording {
+  RecordingDoubt doubt = RecordingDoubt::OddGain;
+  std::size_t recording = 0;
+  std::size_t channel = 0;  ///< of the recording
+  std::size_t other = 0;    ///< the channel it is exchanged with
+  bool turned = false;      ///< exchanged, and with the sign of the motion turned
+  double factor = 1.0;      ///< reading over true value: the gain, or the factor of the unit
+  double deviation = 0.0;   ///< of the gain
+};
+
+/// Every channel of every recording that is not what it is said to be. A unit needs two other recordings or a motion.
+/// O(samples).
+[[nodiscard]] std::vector<DoubtfulRecording> doubtful_recordings(const Study& study);
+
+}  // namespace driftlab::investigate

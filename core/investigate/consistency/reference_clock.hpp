@@ -1,0 +1,49 @@
+#pragma once
+/// A clock that is right up to a moment and wrong from there on, seen against a reference in motion.
+///
+/// If from t0 on a channel follows w(t - delta), or w(t0 + (t - t0)(1 + eps)), its error is to first order
+///   -delta w'(t) H(t - t0),   or   eps (t - t0)+ w'(t),
+/// w' the derivative of the reference rate. Both are fitted beside a bias, a drift, the scale factor and its
+/// nonlinearity, an offset and a drift of the whole clock, for every t0 on a grid; the statistic is n ln(RSS0/RSS1),
+/// the sum over the channels of the recording that move. It is taken on means over a fifth of a second, whitened by an
+/// autoregression that is fitted to what the best t0 leaves, for slow noise would else pass for a fault. Clipped
+/// samples are left out.
+#include "core/investigate/study/study.hpp"
+#include "core/signal/estimate.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace driftlab::investigate {
+
+enum class ClockBreak { Jump, RateChange };
+
+struct ClockFault {
+  ClockBreak kind = ClockBreak::Jump;
+  std::size_t recording = 0;
+  double statistic = 0.0;
+  Estimate size;                      ///< delta [s], or eps [1]
+  Estimate t0_s;                      ///< from the first sample of the file
+  std::vector<std::size_t> channels;  ///< of the recording, that were used
+};
+
+/// The statistic from which a break of the clock is named: far above what a recording without one reaches.
+inline constexpr double kClockBreaks = 60.0;
+
+/// The break of the clock of a recording; nothing where the statistic stays below kClockBreaks. O(samples).
+[[nodiscard]] std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t recording);
+
+/// The time at which the reference must be read, for every grid place, if a recording's clock breaks so.
+[[nodiscard]] std::vector<double> reading_times(const StudyRecording& recording, ClockBreak kind, double size,
+                                                double t0_s);
+
+/// A series on the grid at other times [s], by cubics through four neighbours; its ends hold.
+[[nodiscard]] std::vector<double> read_at(const std::vector<double>& series, double dt_s,
+                                          const std::vector<double>& times_s);
+
+/// Reads the reference rates of a recording at other times, and renews what follows from them: accelerations, the
+/// angle, and the references and errors of the gyroscopes.
+void move_reference(StudyRecording& recording, const std::vector<double>& times_s);
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,101 @@
+#include "core/investigate/report/earned.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+#include "core/process/constant_offset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr double kMostRecords = 20.0;
+
+bool is_fact(const Cause& cause) { return cause.as<FileFact>() != nullptr || cause.as<RecordingFault>() != nullptr; }
+
+bool at_bound(const Evidence& evidence, const ChannelGroup& group) {
+  double longest = 0.0;
+  for (const auto& member : group.members) {
+    longest = std::max(longest, static_cast<double>(member.recording->count()) * member.recording->dt_s);
+  }
+  for (const FoundParameter& parameter : evidence.parameters) {
+    const double value = parameter.estimate.value;
+    const bool time = parameter.unit.symbol == "s";
+    if (!std::isfinite(value) || (time && std::fabs(value) > kMostRecords * longest)) {
+      return true;
+    }
+    for (const CauseParameter& declared : evidence.cause->parameters) {
+      if (declared.name == parameter.name && value < declared.doubtful_below) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// The recording that alone carries a bias said to differ among all; empty where several do.
+std::string carried_by(const Evidence& evidence, const ChannelGroup& group, const FullRate& before) {
+  const SlowNoise* const slow = evidence.cause->as<SlowNoise>();
+  constexpr std::size_t kFewest = 4;
+  constexpr double kAlone = 0.95;
+  if (slow == nullptr || slow->kind != &constant_offset() || before.members() < kFewest) {
+    return "";
+  }
+  std::vector<double> mean;
+  for (const auto& y : before.residual) {
+    double sum = 0.0;
+    for (const double v : y) {
+      sum += v;
+    }
+    mean.push_back(sum / std::max(1.0, static_cast<double>(y.size())));
+  }
+  std::vector<double> sorted = mean;
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  const double median = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  double all = 0.0;
+  std::size_t most = 0;
+  for (std::size_t r = 0; r < n; ++r) {
+    all += (mean[r] - median) * (mean[r] - median);
+    most = std::fabs(mean[r] - median) > std::fabs(mean[most] - median) ? r : most;
+  }
+  const double own = (mean[most] - median) * (mean[most] - median);
+  return own > kAlone * all ? group.members[most].recording->id : std::string();
+}
+
+/// Why one finding is not earned; empty: it is.
+std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const GroupOutcome& outcome,
+                     const std::vector<Remainder>& remains, const Report& report) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kClear = 0.001;
+  if (at_bound(evidence, group)) {
+    return "a parameter is at the bound of its search";
+  }
+  if (const std::string alone = carried_by(evidence, group, outcome.before); !alone.empty()) {
+    return "it is carried by " + alone + " alone";
+  }
+  if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
+    return std::to_string(report.failed_after) + " checks still fail with it";
+  }
+  const auto left = std::find_if(remains.begin(), remains.end(), [&](const Remainder& remainder) {
+    return remainder.channel == group.column && remainder.in_time_or_frequency && remainder.p_study < kClear;
+  });
+  return left != remains.end() ? "with it in the model the noise of " + group.column + " still changes" : std::string();
+}
+
+}  // namespace
+
+void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
+                              const std::vector<Remainder>& remains, const Report& report,
+                              std::vector<Evidence>& found) {
+  for (Evidence& evidence : found) {
+    if (is_fact(*evidence.cause)) {
+      continue;
+    }
+    evidence.doubt = doubt_of(evidence, groups[evidence.group], outcomes[evidence.group], remains, report);
+    evidence.ambiguous = evidence.ambiguous || !evidence.doubt.empty();
+  }
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,363 @@
+#include "core/investigate/report/remains.hpp"
+
+#include "core/investigate/fullrate/spectrum.hpp"
+#include "core/process/distributions.hpp"
+#include "core/process/random.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <span>
+#include <utility>
+
+namespace driftlab::investigate {
+namespace {
+
+std::string digits(double value) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3);
+  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
+}
+
+/// The normal quantile of each innovation's rank among all of the channel; 0 where one is not in use.
+std::vector<std::vector<double>> normal_scores(const FullRate& data) {
+  const double step = data.lattice_step / std::max(1e-300, data.innovation_sd);
+  const auto walk = [&](const auto& take) {  // the same random numbers every time
+    Random random(1, 17);
+    for (std::size_t r = 0; r < data.members(); ++r) {
+      for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+        if (data.used[r][i] != 0) {
+          take(r, i, data.innovation[r][i] + step * (random.uniform() - 0.5));
+        }
+      }
+    }
+  };
+  std::vector<double> all;
+  walk([&](std::size_t, std::size_t, double value) { all.push_back(value); });
+  std::sort(all.begin(), all.end());
+  std::vector<std::vector<double>> scores;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    scores.emplace_back(data.innovation[r].size(), 0.0);
+  }
+  walk([&](std::size_t r, std::size_t i, double value) {
+    const auto below = std::lower_bound(all.begin(), all.end(), value) - all.begin();
+    scores[r][i] = normal_quantile((static_cast<double>(below) + 0.5) / static_cast<double>(all.size()));
+  });
+  return scores;
+}
+
+double surprise_of(double mean, double ordinates, double share) {
+  return mean > 0.0 ? ordinates * (mean - 1.0 - std::log(mean)) / std::max(0.1, 1.0 - share) : 0.0;
+}
+
+/// Frames of about a second, power by ordinate in units of its mean over the recording; sums over time and frequency.
+class Tiles {
+ public:
+  Tiles(const std::vector<double>& score, const std::vector<unsigned char>& used, double dt_s) : dt_s_(dt_s) {
+    samples_ = fast_length(static_cast<std::size_t>(std::max(32.0, std::round(1.0 / dt_s))));
+    const std::size_t bins = samples_ / 2 - 1;
+    std::vector<std::vector<double>> power;
+    for (std::size_t from = 0; from + samples_ <= score.size(); from += samples_) {
+      const auto part = std::span(used).subspan(from, samples_);
+      const auto present = static_cast<double>(std::count(part.begin(), part.end(), 1));
+      if (present < 0.9 * static_cast<double>(samples_)) {
+        continue;
+      }
+      const auto z = transform(std::span(score).subspan(from, samples_), 0);
+      std::vector<double> row(bins);
+      for (std::size_t k = 0; k < bins; ++k) {
+        row[k] = std::norm(z[k + 1]) / present;
+      }
+      power.push_back(std::move(row));
+      start_s_.push_back(static_cast<double>(from) * dt_s);
+    }
+    frames_ = power.size();
+    sum_.assign(frames_ + 1, std::vector<double>(bins + 1, 0.0));
+    for (std::size_t k = 0; k < bins; ++k) {
+      double mean = 0.0;
+      for (const auto& row : power) {
+        mean += row[k] / static_cast<double>(frames_);
+      }
+      for (std::size_t f = 0; f < frames_; ++f) {
+        const double own = mean > 0.0 ? power[f][k] / mean : 1.0;
+        sum_[f + 1][k + 1] = sum_[f][k + 1] + sum_[f + 1][k] - sum_[f][k] + own;
+      }
+    }
+    bins_ = bins;
+  }
+
+  /// The most surprising tile.
+  Remainder strongest(const std::string& name) const {
+    Remainder best;
+    if (frames_ < 16) {
+      return best;
+    }
+    double tiles = 0.0;
+    for (std::size_t parts = 2; parts <= 64 && parts * 4 <= frames_; parts *= 2) {
+      for (std::size_t t = 0; t < parts; ++t) {
+        for (std::size_t bands = 1; bands <= 32 && bands * 2 <= bins_; bands *= 2) {
+          for (std::size_t b = 0; b < bands; ++b) {
+            tiles += 1.0;
+            look(t * frames_ / parts, (t + 1) * frames_ / parts, b * bins_ / bands, (b + 1) * bins_ / bands, name,
+                 best);
+          }
+        }
+      }
+    }
+    best.places = tiles;
+    return best;
+  }
+
+ private:
+  void look(std::size_t from, std::size_t to, std::size_t low, std::size_t high, const std::string& name,
+            Remainder& best) const {
+    const auto ordinates = static_cast<double>((to - from) * (high - low));
+    const double sum = sum_[to][high] - sum_[from][high] - sum_[to][low] + sum_[from][low];
+    const double share = static_cast<double>(to - from) / static_cast<double>(frames_);
+    const double mean = sum / ordinates;
+    const double surprise = surprise_of(mean, ordinates, share);
+    if (surprise <= best.observed) {
+      return;
+    }
+    const double hz = 1.0 / (static_cast<double>(samples_) * dt_s_);
+    best.observed = surprise;
+    best.sentence = name + ": from " + digits(start_s_[from]) + " to " +
+                    digits(start_s_[to - 1] + static_cast<double>(samples_) * dt_s_) + " s the noise between " +
+                    digits(static_cast<double>(low + 1) * hz) + " and " + digits(static_cast<double>(high) * hz) +
+                    " Hz has " + digits(mean) + " times its usual power";
+  }
+
+  double dt_s_;
+  std::size_t samples_ = 0;
+  std::size_t frames_ = 0;
+  std::size_t bins_ = 0;
+  std::vector<double> start_s_;
+  std::vector<std::vector<double>> sum_;
+};
+
+/// The mean of the scores over dyadic intervals.
+Remainder mean_over_time(const std::vector<double>& score, double dt_s, const std::string& name) {
+  std::vector<double> sum(score.size() + 1, 0.0);
+  for (std::size_t i = 0; i < score.size(); ++i) {
+    sum[i + 1] = sum[i] + score[i];
+  }
+  Remainder best;
+  for (std::size_t parts = 2; parts <= 256 && parts * 32 <= score.size(); parts *= 2) {
+    for (std::size_t k = 0; k < parts; ++k) {
+      const std::size_t from = k * score.size() / parts;
+      const std::size_t to = (k + 1) * score.size() / parts;
+      const auto n = static_cast<double>(to - from);
+      const double mean = (sum[to] - sum[from]) / n - sum.back() / static_cast<double>(score.size());
+      const double surprise = 0.5 * n * mean * mean / (1.0 - 1.0 / static_cast<double>(parts));
+      best.places += 1.0;
+      if (surprise > best.observed) {
+        best.observed = surprise;
+        best.sentence = name + ": from " + digits(static_cast<double>(from) * dt_s) + " to " +
+                        digits(static_cast<double>(to) * dt_s) + " s the mean is off by " + digits(mean) +
+                        " of the sample noise, beyond what the slow noise of the model does";
+      }
+    }
+  }
+  return best;
+}
+
+/// Periodogram of the squared scores less one.
+Remainder line_in_variance(const std::vector<double>& score, double dt_s, const std::string& name) {
+  const std::size_t n = fast_length(score.size());
+  std::vector<double> square(n);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    square[i] = score[i] * score[i];
+    mean += square[i] / static_cast<double>(n);
+  }
+  double variance = 0.0;
+  for (double& v : square) {
+    v -= mean;
+    variance += v * v / static_cast<double>(n);
+  }
+  const auto z = transform(square, 0);
+  constexpr std::size_t kFirst = 8;
+  Remainder best;
+  best.places = static_cast<double>(z.size());
+  for (std::size_t k = kFirst; k + 1 < z.size() && variance > 0.0; ++k) {
+    const double surprise = std::norm(z[k]) / static_cast<double>(n) / variance;
+    if (surprise > best.observed) {
+      best.observed = surprise;
+      best.sentence = name + ": the noise swells and fades at " +
+                      digits(static_cast<double>(k) / (static_cast<double>(n) * dt_s)) + " Hz";
+    }
+  }
+  return best;
+}
+
+Remainder skewness(const FullRate& data, const std::string& name) {
+  double count = 0.0;
+  double second = 0.0;
+  double third = 0.0;
+  double sixth = 0.0;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
+      if (data.used[r][i] != 0) {
+        const double e = std::clamp(data.innovation[r][i], -6.0, 6.0);
+        count += 1.0;
+        second += e * e;
+        third += e * e * e;
+        sixth += e * e * e * e * e * e;
+      }
+    }
+  }
+  Remainder best;
+  if (count < 500.0) {
+    return best;
+  }
+  // For unit variance e^3 - 3 e is free of the mean; its variance is E e^6 - 9 for any symmetric law near the normal.
+  const double scale = std::sqrt(second / count);
+  const double skew = third / count / (scale * scale * scale);
+  const double spread = std::max(6.0, sixth / count / std::pow(scale, 6.0) - 9.0);
+  const double z = skew / std::sqrt(spread / count);
+  best.observed = 0.5 * z * z;
+  best.sentence = name + ": errors to one side are larger than to the other (skewness " + digits(skew) + ")";
+  return best;
+}
+
+/// Coherence of two series, cut at four deviations, in dyadic bands.
+Remainder between(const std::vector<double>& a, const std::vector<double>& b, double dt_s, const std::string& name) {
+  const std::size_t n = fast_length(std::min(a.size(), b.size()));
+  const auto cut = [n](const std::vector<double>& values) {
+    std::vector<double> within(n);
+    std::transform(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), within.begin(),
+                   [](double v) { return std::min(4.0, std::max(-4.0, v)); });
+    return transform(within, 0);
+  };
+  const auto x = cut(a);
+  const auto y = cut(b);
+  Remainder best;
+  for (std::size_t bands = 1; bands <= 16; bands *= 2) {
+    for (std::size_t k = 0; k < bands; ++k) {
+      const std::size_t from = std::max<std::size_t>(1, k * (x.size() - 1) / bands);
+      const std::size_t to = (k + 1) * (x.size() - 1) / bands;
+      std::complex<double> cross = 0.0;
+      double xx = 0.0;
+      double yy = 0.0;
+      for (std::size_t i = from; i < to; ++i) {
+        cross += x[i] * std::conj(y[i]);
+        xx += std::norm(x[i]);
+        yy += std::norm(y[i]);
+      }
+      best.places += 1.0;
+      if (to < from + 8 || !(xx > 0.0) || !(yy > 0.0)) {
+        continue;
+      }
+      const double coherence = std::norm(cross) / xx / yy;
+      const double surprise = static_cast<double>(to - from) * coherence;
+      if (surprise > best.observed) {
+        const double hz = 1.0 / (static_cast<double>(n) * dt_s);
+        best.observed = surprise;
+        best.sentence = name + ": the two share " + digits(100.0 * std::sqrt(coherence)) +
+                        " % of their noise between " + digits(static_cast<double>(from) * hz) + " and " +
+                        digits(static_cast<double>(to) * hz) + " Hz";
+      }
+    }
+  }
+  return best;
+}
+
+void keep(std::vector<Remainder>& list, Remainder remainder, const ChannelGroup::Member* member,
+          const ChannelGroup& group, const char* test, bool in_time_or_frequency) {
+  remainder.channel = group.column;
+  remainder.recording = member != nullptr ? member->recording->id : "";
+  remainder.id = (member != nullptr ? member->name() : group.column) + "." + test;
+  remainder.in_time_or_frequency = in_time_or_frequency;
+  list.push_back(std::move(remainder));
+}
+
+}  // namespace
+
+std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
+                                    const std::vector<GroupOutcome>& outcomes) {
+  std::vector<Remainder> list;
+  std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> by_recording;  // group and member
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const ChannelGroup& group = groups[g];
+    const FullRate& data = outcomes[g].after;
+    if (!outcomes[g].usable) {
+      continue;
+    }
+    const std::vector<std::vector<double>> scores = normal_scores(data);
+    for (std::size_t r = 0; r < data.members(); ++r) {
+      const ChannelGroup::Member& member = group.members[r];
+      if (scores[r].size() < 500) {
+        continue;
+      }
+      keep(list, Tiles(scores[r], data.used[r], data.dt_s).strongest(member.name()), &member, group, "tiles", true);
+      keep(list, mean_over_time(scores[r], data.dt_s, member.name()), &member, group, "mean_over_time", false);
+      keep(list, line_in_variance(scores[r], data.dt_s, member.name()), &member, group, "line_in_variance", true);
+      by_recording[member.recording->id].emplace_back(g, r);
+    }
+    keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
+  }
+  for (const auto& [recording, axes] : by_recording) {
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      for (std::size_t b = a + 1; b < axes.size(); ++b) {
+        const ChannelGroup& first = groups[axes[a].first];
+        const ChannelGroup& second = groups[axes[b].first];
+        const double dt_s = outcomes[axes[a].first].after.dt_s;
+        const std::vector<double>& one = outcomes[axes[a].first].after.innovation[axes[a].second];
+        const std::vector<double>& other = outcomes[axes[b].first].after.innovation[axes[b].second];
+        if (first.role.quantity != second.role.quantity || one.size() != other.size()) {
+          continue;
+        }
+        const std::string name = first.column + " and " + second.column + " of " + recording;
+        keep(list, between(one, other, dt_s, name), nullptr, first, "", false);
+        list.back().id = recording + "/" + first.column + "." + second.column + ".coherence";
+        list.back().recording = recording;
+      }
+    }
+  }
+  for (Remainder& remainder : list) {
+    const double p = remainder.places * std::exp(-remainder.observed);
+    remainder.p_study = std::min(1.0, p * static_cast<double>(list.size()));
+  }
+  std::sort(list.begin(), list.end(), [](const Remainder& a, const Remainder& b) {
+    return a.p_study != b.p_study ? a.p_study < b.p_study : a.id < b.id;
+  });
+  return list;
+}
+
+void report_remains(const std::vector<Remainder>& remains, Report& report) {
+  constexpr std::size_t kMostOfChannel = 3;
+  std::map<std::string, std::size_t> shown;
+  for (const Remainder& remainder : remains) {
+    if (remainder.p_study >= kShown || ++shown[remainder.channel] > kMostOfChannel) {
+      continue;
+    }
+    Check check;
+    check.id = remainder.id;
+    check.recording = remainder.recording;
+    check.channel = remainder.channel;
+    check.observed = remainder.observed;
+    // The largest of `places` unit exponentials.
+    const auto quantile = [&](double p) { return std::log(remainder.places) - std::log(-std::log(p)); };
+    check.q025 = std::max(0.0, quantile(0.025));
+    check.median = quantile(0.5);
+    check.q975 = quantile(0.975);
+    check.p = std::min(1.0, remainder.places * std::exp(-remainder.observed));
+    check.p_adjusted = remainder.p_study;
+    check.failed = true;
+    check.title = "what is left in the innovations";
+    check.observed_after = check.observed;
+    check.p_after = check.p;
+    check.p_after_adjusted = check.p_adjusted;
+    check.failed_after = true;
+    check.end = CheckEnd::Unexplained;
+    ++report.failed_before;
+    ++report.failed_after;
+    report.checks.push_back(check);
+    report.unexplained.push_back(
+        {remainder.channel, remainder.sentence + ". No cause of the list explains it.", {check.id}});
+  }
+}
+
+}  // namespace driftlab::investigate
