@@ -155,9 +155,14 @@ class Types:
         said = " ".join(str(node.get(key, "")).rstrip(".") + "." for key in ("title", "description") if node.get(key))
         if said:
             lines += textwrap.wrap(f'"""{escaped(said)}"""', WIDTH, initial_indent="    ", subsequent_indent="    ") + [""]
+        # A member such as `is` is no name in Python: it stands in a base that is written as a call.
+        odd = {member: members.pop(member) for member in list(members) if not member.isidentifier() or keyword.iskeyword(member)}
+        if odd:
+            kinds = {member: self.expression(schema, where, name + camel(member)) for member, (schema, where) in odd.items()}
+            entries = ", ".join(f'"{member}": {kind if member in required else f"NotRequired[{kind}]"}' for member, kind in kinds.items())
+            self.made[f"{name}Odd"] = f'{name}Odd = TypedDict("{name}Odd", {{{entries}}})'
+            lines[0] = f"class {name}({name}Odd):"
         for member, (schema, where) in members.items():
-            if not member.isidentifier() or keyword.iskeyword(member):
-                raise SystemExit(f"{file}: the member {member!r} of {name} is no Python name")
             kind = self.expression(schema, where, name + camel(member))
             if "description" in schema:
                 lines += textwrap.wrap(schema["description"], WIDTH, initial_indent="    # ", subsequent_indent="    # ")
@@ -222,8 +227,9 @@ class Types:
             self.named(schema, "openapi.yaml", name)
         self.listed()
         classes = [made for name, made in sorted(self.made.items()) if made.startswith("class")]
-        aliases = [made for name, made in sorted(self.made.items()) if not made.startswith("class")]
-        return (HEAD + "\n\n\n".join(classes) + "\n\n\n" + "\n".join(broken(a) for a in aliases)
+        bases = [made for name, made in sorted(self.made.items()) if " = TypedDict(" in made]
+        aliases = [made for name, made in sorted(self.made.items()) if not made.startswith("class") and made not in bases]
+        return (HEAD + "".join(base + "\n" for base in bases) + "\n" * (2 if bases else 0) + "\n\n\n".join(classes) + "\n\n\n" + "\n".join(broken(a) for a in aliases)
                 + "\n\n# operationId -> what it takes and gives; `media` are the types of a good answer.\n"
                 + "OPERATIONS: dict[str, Operation] = {\n" + "\n".join(self.operations()) + "\n}\n")
 

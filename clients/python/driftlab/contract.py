@@ -14,6 +14,9 @@ class Operation(NamedTuple):
     media: tuple[str, ...]
 
 
+DriveTimeOdd = TypedDict("DriveTimeOdd", {"is": NotRequired[Literal['validity', 'arrival']]})
+
+
 class Calibration(TypedDict):
     """Calibration. Bias, scale factor and misalignment of a device's sensors, what they were made from, and what
     corrects readings."""
@@ -499,6 +502,143 @@ class DeviceSummaryLatest(TypedDict):
     job: str
     recording: str
     at: str
+
+
+class Drive(TypedDict):
+    """A recorded drive. One recording of an inertial unit with GNSS fixes and a reference: which files, what their
+    columns mean, what the filter believes, which outages are wanted. Lengths in m; body axes forward, right, down.
+    Members that are not named here are refused."""
+
+    id: str
+    # Decides which constraints may be used.
+    vehicle: Literal['road', 'rail', 'rover', 'air', 'foot', 'boat']
+    imu: DriveImu
+    gnss: DriveGnss
+    reference: NotRequired[Literal['withheld_fixes'] | DriveReference2]
+    odometer: NotRequired[DriveOdometer]
+    # What the filter believes, as the sensors of an outage scenario.
+    model: DriveModel
+    start: NotRequired[DriveStart]
+    outages: NotRequired[DriveOutages]
+
+
+class DriveColumn(TypedDict):
+    quantity: Literal['ignored', 'angular_rate', 'specific_force', 'gnss_position', 'gnss_velocity', 'gnss_speed',
+                      'gnss_course', 'gnss_accuracy', 'fix_type', 'satellites', 'reference_position',
+                      'reference_velocity', 'odometer_speed', 'odometer_ticks']
+    axis: NotRequired[Literal['x', 'y', 'z', 'lat', 'lon', 'height', 'north', 'east', 'down', 'up', 'horizontal',
+                              'vertical', 'speed']]
+    unit: NotRequired[str]
+
+
+class DriveGnss(TypedDict):
+    file: NotRequired[str]
+    recording: NotRequired[str]
+    columns: DriveColumns
+    time: DriveTime
+    # Those to be used; left out: all.
+    fix_types: NotRequired[list[int]]
+    # From the unit to the antenna.
+    lever_arm_m: NotRequired[list[float]]
+    lever_arm_sd_m: NotRequired[float]
+    # By how much a stamp is later than the moment described.
+    latency_s: NotRequired[DriveGnssLatencyS]
+    # The file repeats a fix until the next one.
+    hold: NotRequired[bool]
+    height_above: NotRequired[Literal['ellipsoid', 'geoid']]
+    # North, east, down, for fixes that state none worth believing.
+    position_sd_m: NotRequired[list[float]]
+    velocity_sd_m_s: NotRequired[list[float]]
+
+
+class DriveGnssLatencyS(TypedDict):
+    """By how much a stamp is later than the moment described."""
+
+    position: NotRequired[float]
+    velocity: NotRequired[float]
+
+
+class DriveImu(TypedDict):
+    file: NotRequired[str]
+    recording: NotRequired[str]
+    columns: DriveColumns
+    time: DriveTime
+    # Where the specific force has a file of its own.
+    accelerometer: NotRequired[DriveSource]
+    # Roll, pitch, yaw: body = C sensor. "unknown": from gravity and from force against change of speed.
+    mounting_deg: NotRequired[list[float] | Literal['unknown']]
+    mounting_sd_deg: NotRequired[float]
+    # Who stamps the rows: the sensor, a computer that asks, a computer that receives.
+    clock: NotRequired[Literal['sensor', 'host', 'arrival']]
+
+
+class DriveModel(TypedDict):
+    """What the filter believes, as the sensors of an outage scenario."""
+
+    gyroscope: dict[str, Any]
+    accelerometer: dict[str, Any]
+
+
+class DriveOdometer(TypedDict):
+    file: NotRequired[str]
+    recording: NotRequired[str]
+    columns: DriveColumns
+    time: DriveTime
+    metres_per_tick: NotRequired[float]
+    # From the unit to the wheel.
+    lever_arm_m: NotRequired[list[float]]
+    sd_m_s: NotRequired[float]
+
+
+class DriveOutages(TypedDict):
+    duration_s: NotRequired[list[float]]
+    # The period of each duration; at least 20 s of fixes remain.
+    every_s: NotRequired[list[float]]
+    phases: NotRequired[int]
+    settle_s: NotRequired[float]
+    # Starts [s after the first reading] in place of phases.
+    at: NotRequired[list[float]]
+
+
+class DriveReference2(TypedDict):
+    file: NotRequired[str]
+    recording: NotRequired[str]
+    columns: DriveColumns
+    time: DriveTime
+    lever_arm_m: NotRequired[list[float]]
+    sd_m: NotRequired[float]
+
+
+class DriveSource(TypedDict):
+    file: NotRequired[str]
+    recording: NotRequired[str]
+    columns: DriveColumns
+    time: DriveTime
+
+
+class DriveStart(TypedDict):
+    position: NotRequired[DriveStartPosition]
+    velocity_ned_m_s: NotRequired[list[float]]
+    heading_deg: NotRequired[float]
+    roll_deg: NotRequired[float]
+    pitch_deg: NotRequired[float]
+
+
+class DriveStartPosition(TypedDict):
+    latitude_deg: NotRequired[float]
+    longitude_deg: NotRequired[float]
+    height_m: NotRequired[float]
+
+
+class DriveTime(DriveTimeOdd):
+    column: NotRequired[str]
+    unit: NotRequired[Literal['s', 'ms', 'us', 'ns']]
+    scale: Literal['gps', 'utc', 'unix', 'boot', 'row']
+    offset_s: NotRequired[float]
+    # Where the scale is `row`.
+    rate_hz: NotRequired[float]
+    # An RTKLIB time tag that dates the file.
+    tag: NotRequired[str]
 
 
 class Export(TypedDict):
@@ -2651,6 +2791,7 @@ Condition: TypeAlias = (
     "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
     "ConditionSixPosition")
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
+DriveColumns: TypeAlias = "dict[str, DriveColumn]"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
 FitModelFitVerdict: TypeAlias = "Literal['accepted', 'described', 'not_described', 'untested', None]"
