@@ -1,4 +1,5 @@
 // driftlabd: the driftlab daemon. See `driftlabd --help` and schema/docs/operations.md.
+#include "server/access_commands.hpp"
 #include "server/api/api.hpp"
 #include "server/daemon.hpp"
 #include "server/observe/log.hpp"
@@ -85,6 +86,9 @@ void add_settings(CLI::App& app, Settings& settings) {
       ->envname("DRIFTLAB_LOG_LEVEL")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
       ->capture_default_str();
+  app.add_flag("--require-tokens", settings.require_tokens,
+               "Ask everybody for a token; makes the first one, for an admin, where there is none")
+      ->envname("DRIFTLAB_REQUIRE_TOKENS");
   app.add_flag("--insecure", settings.insecure, "Listen beyond loopback without TLS or tokens")
       ->envname("DRIFTLAB_INSECURE");
 }
@@ -96,8 +100,10 @@ int main(int argc, char** argv) {
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
       "Flags win over DRIFTLAB_* variables, which win over defaults."};
   app.set_version_flag("--version", std::string("driftlabd " DRIFTLAB_VERSION));
+  app.fallthrough();  // --data may stand behind a subcommand
   Settings settings;
   add_settings(app, settings);
+  driftlab::server::AccessCommands access(app);
   const CLI::App* const crash_points =
       app.add_subcommand("crash-points", "List the points where tests may kill the daemon");
   try {
@@ -112,6 +118,9 @@ int main(int argc, char** argv) {
       std::printf("%.*s\n", static_cast<int>(name.size()), name.data());
     }
     return 0;
+  }
+  if (access.parsed()) {
+    return access.run(settings);
   }
   return serve(settings);
 }

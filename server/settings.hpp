@@ -16,7 +16,8 @@ struct Settings {
   int workers = 0;                      ///< jobs at a time; 0: as many as threads
   int threads = 0;                      ///< that compute for all jobs together; 0: one per core, or per worker if more
   int io_threads = 2;
-  bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
+  bool require_tokens = false;  ///< refuse requests without a token even before there is one
+  bool insecure = false;        ///< listen on other addresses than loopback without TLS or tokens
   std::string log_level = "info";
 };
 

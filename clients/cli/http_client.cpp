@@ -24,6 +24,11 @@ namespace {
 /// How long one answer may be waited for.
 constexpr int kPatienceS = 20;
 
+std::string& token_of_process() {
+  static std::string token;
+  return token;
+}
+
 /// One connection for one exchange.
 class Exchange {
  public:
@@ -50,6 +55,9 @@ class Exchange {
     request.set(http::field::host, host_ + ":" + port_);
     request.set(http::field::user_agent, "driftlab/" DRIFTLAB_VERSION);
     request.keep_alive(false);
+    if (!token_of_process().empty()) {
+      request.set(http::field::authorization, "Bearer " + token_of_process());
+    }
   }
 
   template <class Body>
@@ -87,6 +95,8 @@ class Exchange {
 };
 
 }  // namespace
+
+void HttpClient::use_token(std::string token) { token_of_process() = std::move(token); }
 
 Result<HttpClient> HttpClient::to(std::string_view server) {
   const auto url = boost::urls::parse_uri(boost::core::string_view(server.data(), server.size()));

@@ -23,6 +23,9 @@ struct HttpReply {
 /// safe.
 class HttpClient {
  public:
+  /// The token that every client made from now on sends; empty: none. It comes from a file or from DRIFTLAB_TOKEN, and
+  /// never from an argument, which others could read.
+  static void use_token(std::string token);
   /// `http://127.0.0.1:8477`. Errors: InvalidArgument (not an http address).
   [[nodiscard]] static Result<HttpClient> to(std::string_view server);
 

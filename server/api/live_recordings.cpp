@@ -184,6 +184,16 @@ class Live {
   std::thread sweeper_;
 };
 
+/// The recording that the path names, for whoever may know of its device.
+Result<LiveRecording> seen(Live& live, const Request& request) {
+  const std::string& id = request.parameters[0];
+  auto recording = live.recordings().find(id);
+  if (recording && !require_device(stored(recording->about_json).at("device").get<std::string>())) {
+    return fail(ErrorCode::NotFound, "There is no live recording " + id + ".", {{"live_recording", id}});
+  }
+  return recording;
+}
+
 /// The recording that the path names, for whoever has its token.
 Result<LiveRecording> admitted(Live& live, const Request& request) {
   auto recording = live.recordings().find(request.parameters[0]);
@@ -230,6 +240,9 @@ Result<Response> create(Live& live, const Request& request) {
   if (auto resolved = resolve_device_name(live.context().store, metadata->device); !resolved) {
     return fail(resolved.error());
   }
+  if (auto allowed = require_device(metadata->device.name); !allowed) {
+    return fail(allowed.error());
+  }
   if (auto room = require_space(live.context()); !room) {
     return fail(room.error());
   }
@@ -254,7 +267,7 @@ Result<Response> create(Live& live, const Request& request) {
 }
 
 Result<Response> get(Live& live, const Request& request) {
-  const auto recording = live.recordings().find(request.parameters[0]);
+  const auto recording = seen(live, request);
   return recording ? Result<Response>(json_response(200, to_json(*recording))) : fail(recording.error());
 }
 

@@ -55,6 +55,8 @@ class HttpConnection {
   boost::asio::awaitable<bool> read_header(Parser& parser);
   /// Answers the request whose header was read. False: the connection must close.
   boost::asio::awaitable<bool> answer(Parser& parser);
+  [[nodiscard]] std::optional<Response> admit(const Route* route, Request& request) const;
+  [[nodiscard]] bool still_admitted(const Request& request) const;
   boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
   boost::asio::awaitable<bool> answer_upload(Parser& parser, const UploadHandler& handler, Request& request);
   boost::asio::awaitable<bool> answer_events(const EventHandler& handler, const Request& request);

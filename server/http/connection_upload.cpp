@@ -52,7 +52,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
     co_return co_await refuse(request, std::move(*refusal));
   }
   const UploadSlot slot(shared_.uploads_running);
-  auto begin = [&handler, &request] { return handler(request); };
+  auto begin = [&handler, &request] {
+    const ActingFor acting(request.caller);
+    return handler(request);
+  };
   auto begun = co_await shared_.uploads.run(begin);
   auto settled = settle(std::move(begun));
   if (!settled) {
@@ -87,7 +90,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
                                                                    " declares; nothing was kept.");
     co_return co_await refuse(request, std::move(surplus));
   }
-  auto finish = [&session] { return finish_upload(*session); };
+  auto finish = [&session, &request] {
+    const ActingFor acting(request.caller);
+    return finish_upload(*session);
+  };
   auto finished = co_await shared_.uploads.run(finish);
   session.reset();
   auto answered = settle(std::move(finished));

@@ -51,10 +51,16 @@ struct AccessRecord {
   double seconds = 0.0;
   std::string request_id;
   std::string address;
+  std::string token;  ///< public id; empty where nobody was asked for one
 };
 
 /// What the server needs from the daemon.
 struct HttpHooks {
+  /// Says who asks, in `request.caller`, or why the request is not admitted. Stands before every answer that a route or
+  /// a page (no route) gives. May be empty: everybody is admitted. Called from I/O threads; must not block.
+  std::function<std::optional<Response>(const Route* route, Request& request)> admit;
+  /// Whether whoever was admitted would be still, for answers that go on for long. May be empty.
+  std::function<bool(const Principal&)> still_admitted;
   /// Runs a plain route on a pool thread: checks, handler, ETag, idempotency.
   std::function<Response(const Route&, const Request&)> dispatch;
   /// Pages and files for people, which are no part of the API. May be empty. Called from I/O threads; must not block.
