@@ -147,6 +147,7 @@ struct Daemon::Parts {
   Dispatcher dispatcher;
   Router router;
   Pages pages{dashboard_files()};
+  CertificateFiles certificate;
   std::unique_ptr<HttpServer> http;
 };
 
@@ -158,6 +159,20 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   const auto address = listen_address(settings);
   if (!address) {
     return fail(address.error());
+  }
+  // Before anything is made: whether there are tokens is known only from the store, which may not exist yet.
+  std::error_code absent;
+  const bool may_have_tokens = std::filesystem::exists(settings.data / "driftlab.db", absent);
+  if (auto safe = require_safe_address(settings, *address, may_have_tokens); !safe) {
+    return fail(safe.error());
+  }
+  std::shared_ptr<boost::asio::ssl::context> tls;
+  if (!settings.tls_certificate.empty()) {
+    auto loaded = load_certificate({settings.tls_certificate, settings.tls_key});
+    if (!loaded) {
+      return fail(loaded.error());
+    }
+    tls = std::move(*loaded);
   }
   auto clock = std::make_unique<SystemClock>();
   SqliteOptions store_options;
@@ -189,9 +204,12 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   } else if (*queued > 0) {
     log_info("results of an earlier release are pooled again", Json{{"jobs", *queued}});
   }
-  auto gate = std::make_unique<Gate>((*store)->access(), *clock, GateOptions{settings.require_tokens, false});
+  auto gate = std::make_unique<Gate>((*store)->access(), *clock, GateOptions{settings.require_tokens, tls != nullptr});
   if (auto opened = open_gate(*gate, settings); !opened) {
     return fail(opened.error());
+  }
+  if (auto safe = require_safe_address(settings, *address, gate->is_on()); !safe) {
+    return fail(safe.error());
   }
   WorkerOptions worker_options;
   settle_threads(settings, worker_options);
@@ -204,6 +222,9 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   options.port = address->port;
   options.io_threads = settings.io_threads;
   options.guard.hosts = allowed_hosts(settings, *address);
+  options.guard.secure = tls != nullptr;
+  options.tls = std::move(tls);
+  parts->certificate = {settings.tls_certificate, settings.tls_key};
   Parts* const shared = parts.get();
   HttpHooks hooks;
   hooks.admit = [shared](const Route* route, Request& request) { return admit(*shared->gate, route, request); };
@@ -227,8 +248,23 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   log_info("listening", Json{{"address", settings.listen},
                              {"port", parts->http->port()},
+                             {"tls", parts->certificate.chain.empty() ? "off" : "on"},
                              {"authentication", parts->gate->is_on() ? "on" : "off"}});
   return std::unique_ptr<Daemon>(new Daemon(std::move(parts)));
+}
+
+void Daemon::reload() {
+  if (parts_->certificate.chain.empty()) {
+    log_info("nothing to reload", Json{{"tls", "off"}});
+    return;
+  }
+  auto context = load_certificate(parts_->certificate);
+  if (!context) {
+    log_error("the certificate was not reloaded; the old one stays", Json{{"detail", context.error().message}});
+    return;
+  }
+  parts_->http->show(std::move(*context));
+  log_info("certificate reloaded", Json{{"file", parts_->certificate.chain.string()}});
 }
 
 std::uint16_t Daemon::port() const { return parts_->http->port(); }

@@ -65,6 +65,9 @@ int main(int argc, char** argv) {
   std::string token_file;
   app.add_option("--token-file", token_file, "File with the token of a daemon that asks for one; else DRIFTLAB_TOKEN")
       ->envname("DRIFTLAB_TOKEN_FILE");
+  std::string ca_file;
+  app.add_option("--ca-file", ca_file, "PEM file of the authorities to trust for https; else those of the system")
+      ->envname("DRIFTLAB_CA_FILE");
   driftlab::cli::Command chosen;
   driftlab::cli::add_all_commands(app, chosen);
   try {
@@ -80,6 +83,7 @@ int main(int argc, char** argv) {
   if (!token) {
     return static_cast<int>(driftlab::cli::complain(token.error()));
   }
+  driftlab::cli::HttpClient::trust(ca_file);
   driftlab::cli::HttpClient::use_token(std::move(*token));
   driftlab::cli::watch_interrupts();
   return static_cast<int>(chosen());

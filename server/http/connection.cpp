@@ -51,8 +51,9 @@ std::chrono::seconds patience_for(const Request& request, const Response& respon
 
 }  // namespace
 
-HttpConnection::HttpConnection(asio::ip::tcp::socket socket, ConnectionShared& shared)
-    : stream_(std::move(socket)),
+HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asio::ssl::context> tls,
+                               ConnectionShared& shared)
+    : stream_(std::move(socket), std::move(tls)),
       buffer_(shared.options.limits.header_bytes + kPiece),
       shared_(shared),
       chunk_(kPiece) {
@@ -62,6 +63,10 @@ HttpConnection::HttpConnection(asio::ip::tcp::socket socket, ConnectionShared& s
 }
 
 asio::awaitable<void> HttpConnection::run() {
+  const bool shaken = co_await stream_.handshake(10s);
+  if (!shaken) {
+    co_return;
+  }
   for (int served = 0; served < shared_.options.limits.requests_per_connection && !shared_.stopping; ++served) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(shared_.options.limits.header_bytes));
@@ -76,6 +81,7 @@ asio::awaitable<void> HttpConnection::run() {
       break;
     }
   }
+  co_await stream_.say_goodbye();
   boost::system::error_code ignored;
   ignored = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
@@ -400,7 +406,7 @@ asio::awaitable<void> HttpConnection::linger() {
   const auto until = std::chrono::steady_clock::now() + 2s;
   while (!error && std::chrono::steady_clock::now() < until) {
     stream_.expires_at(until);
-    co_await stream_.async_read_some(asio::buffer(chunk_), into(error));
+    co_await stream_.below().async_read_some(asio::buffer(chunk_), into(error));
   }
 }
 

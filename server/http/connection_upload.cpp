@@ -103,7 +103,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
 
 bool HttpConnection::surplus_follows() {
   boost::system::error_code error;
-  if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
+  if (buffer_.size() == 0 && stream_.is_tls()) {
+    const std::size_t waiting = std::min(stream_.decrypted(), chunk_.size());
+    buffer_.commit(waiting > 0 ? stream_.read_decrypted(buffer_.prepare(waiting), error) : 0);
+  } else if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
     error = stream_.socket().non_blocking(true, error);
     const std::size_t count = stream_.socket().read_some(buffer_.prepare(chunk_.size()), error);
     buffer_.commit(error ? 0 : count);

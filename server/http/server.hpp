@@ -3,9 +3,11 @@
 /// uploads and event sources run on bounded pools.
 ///
 /// Limits (service-conventions section 5): header 16 KiB, target 8 KiB, JSON body 1 MiB, upload 8 GiB streamed in 256
-/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: idle 60 s, header 10 s, body
-/// 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the connection closes.
+/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: handshake 10 s, idle 60 s,
+/// header 10 s, body 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the
+/// connection closes.
 #include "server/http/bell.hpp"
+#include "server/http/certificate.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/router.hpp"
 
@@ -38,6 +40,7 @@ struct HttpOptions {
   int upload_threads = 2;
   HttpLimits limits;
   GuardLimits guard;
+  std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };
 
 /// One finished request, for the access log.
@@ -83,6 +86,8 @@ class HttpServer {
 
   /// Binds and starts the I/O threads. Errors: Io (address in use, not permitted), InvalidArgument (address).
   [[nodiscard]] Status start();
+  /// Shows another certificate to connections from now on; those that are open keep theirs. Thread safe.
+  void show(std::shared_ptr<boost::asio::ssl::context> tls);
   /// The port bound, useful when 0 was asked for.
   [[nodiscard]] std::uint16_t port() const;
   /// Stops accepting, lets running requests finish for up to `grace`, closes event streams, joins. Idempotent.

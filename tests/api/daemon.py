@@ -47,7 +47,7 @@ class Daemon:
     """One `driftlabd` process on a directory of its own, on a free port. A context manager: killed at the end."""
 
     def __init__(self, data: Path | None = None, *, arguments: tuple[str, ...] = (), environment: dict[str, str] | None = None,
-                 before_exec: Callable[[], None] | None = None) -> None:
+                 before_exec: Callable[[], None] | None = None, listen: str = "127.0.0.1:0") -> None:
         self._own = Path(tempfile.mkdtemp(prefix="driftlab-test-")) if data is None else None
         self.data = data if data is not None else self._own / "data"  # type: ignore[operator]
         self.log: list[dict[str, Any]] = []
@@ -57,7 +57,7 @@ class Daemon:
         self.port = 0
         settings = {name: value for name, value in os.environ.items() if not name.startswith("DRIFTLAB_")}
         self.process = subprocess.Popen(
-            [PROGRAM, "--data", str(self.data), "--listen", "127.0.0.1:0", *arguments], stdin=subprocess.DEVNULL,
+            [PROGRAM, "--data", str(self.data), "--listen", listen, *arguments], stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env={**settings, **(environment or {})},
             preexec_fn=before_exec)
         self._reader = threading.Thread(target=self._read_log, daemon=True)
