@@ -51,7 +51,8 @@ def requests_of(contract: Contract) -> list[tuple[str, str, str, Any, dict[str, 
             body: Any = {} if "application/json" in content else b"not a recording" if content else None
             headers = {} if not content or isinstance(body, dict) else {"Content-Type": "application/octet-stream"}
             target = re.sub(r"\{[^}]*\}", "absent", path)
-            asked.append((operation["operationId"], operation["x-scope"], method.upper(), target, (body, headers)))
+            verb = "HEAD" if path == "/v1/events" else method.upper()  # the stream itself does not end
+            asked.append((operation["operationId"], operation["x-scope"], verb, target, (body, headers)))
     return asked  # type: ignore[return-value]
 
 
@@ -73,6 +74,8 @@ class Matrix(GuardedDaemon):
                     if needed == "public":
                         self.assertNotIn(answer.status, (403,), answer.describe())
                         self.assertTrue(answer.status != 401 or operation == "openSession", answer.describe())
+                    elif method == "HEAD":
+                        self.expect(401, answer)
                     else:
                         self.problem(401, "unauthorized", answer)
                         self.assertTrue(answer.headers["www-authenticate"].startswith('Bearer realm="driftlab"'))
@@ -251,15 +254,16 @@ class OtherDevices(GuardedDaemon):
         targets = []
         for path, operations in self.contract.paths.items():
             group = path.split("/")[2] if path.startswith("/v1/") else ""
-            if "get" not in operations or operations["get"]["x-scope"] != "read" or group in ("samples", "session"):
+            if "get" not in operations or operations["get"]["x-scope"] != "read" or group in ("samples", "session", "events"):
                 continue
             if "{" in path:
                 self.assertIn(group, ids, f"the test does not know what a device has at {path}")
             target = re.sub(r"\{[^}]*\}", ids.get(group, ""), path)
-            needed = {p["name"] for p in map(self.contract.resolved, operations["get"].get("parameters", [])) if p["in"] == "query"}
+            bound = map(self.contract.resolved, operations["get"].get("parameters", []))
+            needed = {p["name"] for p in bound if p["in"] == "query"}
             if group in ("parameter-tables", "trends"):
                 target += f"?device={of['name']}&axis=z"
-            elif path.endswith("/trace"):
+            elif "channel" in needed:
                 target += "?channel=gz"
             targets.append(target)
             if "device" in needed and "?" not in target:
@@ -319,6 +323,22 @@ class OtherDevices(GuardedDaemon):
         own = {r["id"] for r in self.ask(self.limited, "GET", "/v1/jobs?limit=500").json["items"]}
         self.assertLess(own, everything)
         self.assertIn(self.mine["regression"], own)
+
+    def test_the_stream_of_all_events_tells_of_its_own_devices_alone(self) -> None:
+        with self.daemon.connect() as connection:
+            connection.sendall(f"GET /v1/events HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {self.limited}\r\n\r\n".encode())
+            text = b""
+            while b"event: ready" not in text:
+                text += connection.recv(65536)
+            for of in (self.theirs, self.mine):
+                for serial in ("a", f"serial of {of['name']}"):
+                    self.expect(200, self.daemon.request("PATCH", f"/v1/devices/{of['device']}", {"serial": serial}, {"If-Match": "*"}))
+                self.daemon.finished(self.daemon.characterise(of["recording"], models=["WN"]).json["id"])
+            while text.count(b"event: result.created") < 1:
+                text += connection.recv(65536)
+        self.assertIn(self.mine["device"].encode(), text)
+        for value in self.theirs.values():
+            self.assertNotIn(value.encode(), text)
 
     def test_pages_of_lists_are_full(self) -> None:
         """Rows that are hidden take no room on a page, and no cursor leads through them."""

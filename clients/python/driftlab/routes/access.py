@@ -32,7 +32,8 @@ class AccessRoutes(Routes):
         return self._list("listTokens", {}, page_size)
 
     @operation("createToken")
-    def create_token(self, name: str, scope: Scope, *, devices: Sequence[str] | None = None, expires_in_s: int | None = None) -> IssuedToken:
+    def create_token(self, name: str, scope: Scope, *, devices: Sequence[str] | None = None,
+                     expires_in_s: int | None = None) -> IssuedToken:
         """Makes a token; its `secret` is told this once. The first one must be an admin's, and from then on everybody needs one."""
         wanted = given(name=name, scope=scope, devices=None if devices is None else list(devices), expires_in_s=expires_in_s)
         return cast(IssuedToken, self._transport.call("createToken", body=Body.of_json(wanted), retries=False).json)
