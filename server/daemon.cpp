@@ -102,10 +102,11 @@ struct Daemon::Parts {
         store(std::move(store_in)),
         visible(make_visible_store(*store)),
         gate(std::move(gate_in)),
-        workers({*store, *blobs, *clock}, std::move(worker_options), [this](const std::string& id) {
-          bell.ring(id);
-          announce_job(api, id);
-        }),
+        workers({*store, *blobs, *clock}, std::move(worker_options),
+                [this](const std::string& id) {
+                  bell.ring(id);
+                  announce_job(api, id);
+                }),
         api{*visible,
             *blobs,
             *clock,
