@@ -1,12 +1,15 @@
 #include "server/daemon.hpp"
 
 #include "server/api/api.hpp"
+#include "server/api/audit_row.hpp"
+#include "server/auth/visible_store.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
 #include "server/jobs/fault_recorder.hpp"
 #include "server/jobs/worker_pool.hpp"
 #include "server/observe/log.hpp"
 #include "server/pages/pages.hpp"
+#include "server/store/files.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 
 #include <algorithm>
@@ -35,7 +38,8 @@ void log_request(const AccessRecord& record) {
                            {"bytes_out", record.bytes_out},
                            {"seconds", record.seconds},
                            {"request_id", record.request_id},
-                           {"address", record.address}});
+                           {"address", record.address},
+                           {"token", record.token.empty() ? Json(nullptr) : Json(record.token)}});
 }
 
 /// Attempts during which an earlier daemon died of a fault count against their jobs.
@@ -58,21 +62,61 @@ Status charge_faults(Store& store, const std::filesystem::path& file) {
   return install_fault_recorder(file);
 }
 
+/// The first admin token, for whoever can read the file.
+Status write_first_token(Gate& gate, const std::filesystem::path& path) {
+  const Caller command{Principal{"", "daemon", Scope::Admin, {}, false}, "", ""};
+  const ActingFor acting(command);
+  auto issued = gate.create({"first admin", Scope::Admin, std::nullopt, std::nullopt});
+  if (!issued) {
+    return fail(issued.error());
+  }
+  if (Status written = write_secret_file(path, issued->secret + "\n"); !written) {
+    (void)gate.revoke(issued->token.id, true);
+    return written;
+  }
+  log_warning("authentication is on; the first admin token lies in a file that only its owner can read",
+              Json{{"file", path.string()}, {"token", issued->token.id}});
+  return {};
+}
+
+/// Reads the tokens; makes the first one where tokens are required and there is none.
+Status open_gate(Gate& gate, const Settings& settings) {
+  if (Status loaded = gate.load(); !loaded) {
+    return loaded;
+  }
+  if (settings.require_tokens && !gate.has_any()) {
+    return write_first_token(gate, settings.data / "first-admin-token");
+  }
+  return {};
+}
+
 }  // namespace
 
 /// Members in the order of construction; destruction is the reverse.
 struct Daemon::Parts {
   Parts(std::unique_ptr<BlobStore> blobs_in, std::unique_ptr<SqliteStore> store_in,
-        std::unique_ptr<SystemClock> clock_in, WorkerOptions worker_options, std::filesystem::path data)
+        std::unique_ptr<SystemClock> clock_in, std::unique_ptr<Gate> gate_in, WorkerOptions worker_options,
+        std::filesystem::path data)
       : clock(std::move(clock_in)),
         blobs(std::move(blobs_in)),
         store(std::move(store_in)),
-        workers({*store, *blobs, *clock}, std::move(worker_options), [this](const std::string& id) {
-          bell.ring(id);
-          announce_job(api, id);
-        }),
-        api{*store, *blobs, *clock, bell, events, [this] { workers.wake(); }, [this] { return not_ready_why(); },
-            std::move(data)},
+        visible(make_visible_store(*store)),
+        gate(std::move(gate_in)),
+        workers({*store, *blobs, *clock}, std::move(worker_options),
+                [this](const std::string& id) {
+                  bell.ring(id);
+                  announce_job(api, id);
+                }),
+        api{*visible,
+            *blobs,
+            *clock,
+            bell,
+            events,
+            [this] { workers.wake(); },
+            [this] { return not_ready_why(); },
+            std::move(data),
+            store->access(),
+            *gate},
         dispatcher(api) {
     add_all_routes(router, api);
   }
@@ -95,6 +139,8 @@ struct Daemon::Parts {
   std::unique_ptr<SystemClock> clock;
   std::unique_ptr<BlobStore> blobs;
   std::unique_ptr<SqliteStore> store;
+  std::unique_ptr<Store> visible;
+  std::unique_ptr<Gate> gate;
   Bell bell;
   EventLog events{bell, make_id("run", clock->now()).substr(14)};
   WorkerPool workers;
@@ -102,6 +148,7 @@ struct Daemon::Parts {
   Dispatcher dispatcher;
   Router router;
   Pages pages{dashboard_files()};
+  CertificateFiles certificate;
   std::unique_ptr<HttpServer> http;
 };
 
@@ -114,8 +161,24 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   if (!address) {
     return fail(address.error());
   }
+  // Before anything is made: whether there are tokens is known only from the store, which may not exist yet.
+  std::error_code absent;
+  const bool may_have_tokens = std::filesystem::exists(settings.data / "driftlab.db", absent);
+  if (auto safe = require_safe_address(settings, *address, may_have_tokens); !safe) {
+    return fail(safe.error());
+  }
+  std::shared_ptr<boost::asio::ssl::context> tls;
+  if (!settings.tls_certificate.empty()) {
+    auto loaded = load_certificate({settings.tls_certificate, settings.tls_key});
+    if (!loaded) {
+      return fail(loaded.error());
+    }
+    tls = std::move(*loaded);
+  }
   auto clock = std::make_unique<SystemClock>();
-  auto store = open_sqlite_store(settings.data, *clock);
+  SqliteOptions store_options;
+  store_options.audited = [](const AuditRow& row) { log_info("audit", to_json(row)); };
+  auto store = open_sqlite_store(settings.data, *clock, std::move(store_options));
   if (!store) {
     return fail(store.error());
   }
@@ -142,21 +205,37 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   } else if (*queued > 0) {
     log_info("results of an earlier release are pooled again", Json{{"jobs", *queued}});
   }
+  auto gate = std::make_unique<Gate>((*store)->access(), *clock, GateOptions{settings.require_tokens, tls != nullptr});
+  if (auto opened = open_gate(*gate, settings); !opened) {
+    return fail(opened.error());
+  }
+  if (auto safe = require_safe_address(settings, *address, gate->is_on()); !safe) {
+    return fail(safe.error());
+  }
   WorkerOptions worker_options;
   settle_threads(settings, worker_options);
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
-  auto parts =
-      std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(worker_options), settings.data);
+  auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(gate),
+                                       std::move(worker_options), settings.data);
 
   HttpOptions options;
   options.address = address->address;
   options.port = address->port;
   options.io_threads = settings.io_threads;
   options.guard.hosts = allowed_hosts(settings, *address);
+  options.guard.secure = tls != nullptr;
+  options.tls = std::move(tls);
+  parts->certificate = {settings.tls_certificate, settings.tls_key};
   Parts* const shared = parts.get();
   HttpHooks hooks;
+  hooks.admit = [shared](const Route* route, Request& request) { return admit(*shared->gate, route, request); };
+  hooks.still_admitted = [shared](const Principal& who) { return shared->gate->is_valid(who); };
   hooks.dispatch = [shared](const Route& route, const Request& request) {
-    return shared->dispatcher.run(route, request);
+    Response response = shared->dispatcher.run(route, request);
+    if (const auto flushed = route.instant ? Status{} : shared->gate->flush_use(); !flushed) {
+      log_warning("the last use of tokens was not written", Json{{"detail", flushed.error().message}});
+    }
+    return response;
   };
   hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
   hooks.complete = complete_problem;
@@ -168,8 +247,25 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     parts->workers.stop();
     return fail(started.error());
   }
-  log_info("listening", Json{{"address", settings.listen}, {"port", parts->http->port()}});
+  log_info("listening", Json{{"address", settings.listen},
+                             {"port", parts->http->port()},
+                             {"tls", parts->certificate.chain.empty() ? "off" : "on"},
+                             {"authentication", parts->gate->is_on() ? "on" : "off"}});
   return std::unique_ptr<Daemon>(new Daemon(std::move(parts)));
+}
+
+void Daemon::reload() {
+  if (parts_->certificate.chain.empty()) {
+    log_info("nothing to reload", Json{{"tls", "off"}});
+    return;
+  }
+  auto context = load_certificate(parts_->certificate);
+  if (!context) {
+    log_error("the certificate was not reloaded; the old one stays", Json{{"detail", context.error().message}});
+    return;
+  }
+  parts_->http->show(std::move(*context));
+  log_info("certificate reloaded", Json{{"file", parts_->certificate.chain.string()}});
 }
 
 std::uint16_t Daemon::port() const { return parts_->http->port(); }
@@ -181,6 +277,7 @@ void Daemon::stop() {
   log_info("stopping");
   parts_->http->stop(std::chrono::seconds(10));
   parts_->workers.stop();
+  (void)parts_->gate->flush_use(true);
   log_info("stopped");
 }
 

@@ -16,6 +16,9 @@ class Daemon {
   ~Daemon();
 
   [[nodiscard]] std::uint16_t port() const;
+  /// Reads the certificate again and shows it to new connections; one that does not hold leaves the old one in place,
+  /// and the log says why.
+  void reload();
   /// Not ready, stop accepting, finish requests (10 s), stop workers (20 s), close the store. Idempotent.
   void stop();
 

@@ -1,4 +1,5 @@
 // driftlabd: the driftlab daemon. See `driftlabd --help` and schema/docs/operations.md.
+#include "server/access_commands.hpp"
 #include "server/api/api.hpp"
 #include "server/daemon.hpp"
 #include "server/observe/log.hpp"
@@ -18,12 +19,13 @@ namespace {
 using driftlab::server::Daemon;
 using driftlab::server::Settings;
 
-/// SIGTERM and SIGINT arrive at the thread that waits for them and at no other.
+/// SIGTERM, SIGINT and SIGHUP arrive at the thread that waits for them and at no other.
 sigset_t block_stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   // A client that goes away in the middle of an answer is an error of that write, not a signal.
   std::signal(SIGPIPE, SIG_IGN);  // NOLINT(cert-err33-c): SIG_IGN is always accepted for SIGPIPE
@@ -47,11 +49,14 @@ int serve(const Settings& settings) {
     return daemon.error().code == driftlab::ErrorCode::InvalidArgument ? 2 : 1;
   }
   int signal = 0;
-  sigwait(&signals, &signal);
+  while (sigwait(&signals, &signal) != 0 || signal == SIGHUP) {
+    (*daemon)->reload();
+  }
   // A second signal ends the process at once; the store is safe at any moment.
   std::thread([&signals] {
     int again = 0;
-    sigwait(&signals, &again);
+    while (sigwait(&signals, &again) != 0 || again == SIGHUP) {
+    }
     _exit(128 + again);
   }).detach();
   (*daemon)->stop();
@@ -85,6 +90,14 @@ void add_settings(CLI::App& app, Settings& settings) {
       ->envname("DRIFTLAB_LOG_LEVEL")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
       ->capture_default_str();
+  app.add_option("--tls-certificate", settings.tls_certificate,
+                 "PEM file of the certificate and its chain; then HTTPS only")
+      ->envname("DRIFTLAB_TLS_CERTIFICATE");
+  app.add_option("--tls-key", settings.tls_key, "PEM file of the certificate's private key")
+      ->envname("DRIFTLAB_TLS_KEY");
+  app.add_flag("--require-tokens", settings.require_tokens,
+               "Ask everybody for a token; makes the first one, for an admin, where there is none")
+      ->envname("DRIFTLAB_REQUIRE_TOKENS");
   app.add_flag("--insecure", settings.insecure, "Listen beyond loopback without TLS or tokens")
       ->envname("DRIFTLAB_INSECURE");
 }
@@ -96,8 +109,10 @@ int main(int argc, char** argv) {
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
       "Flags win over DRIFTLAB_* variables, which win over defaults."};
   app.set_version_flag("--version", std::string("driftlabd " DRIFTLAB_VERSION));
+  app.fallthrough();  // --data may stand behind a subcommand
   Settings settings;
   add_settings(app, settings);
+  driftlab::server::AccessCommands access(app);
   const CLI::App* const crash_points =
       app.add_subcommand("crash-points", "List the points where tests may kill the daemon");
   try {
@@ -112,6 +127,9 @@ int main(int argc, char** argv) {
       std::printf("%.*s\n", static_cast<int>(name.size()), name.data());
     }
     return 0;
+  }
+  if (access.parsed()) {
+    return access.run(settings);
   }
   return serve(settings);
 }

@@ -28,14 +28,25 @@ Result<ListenAddress> listen_address(const Settings& settings) {
         "The address to listen on is written IP:PORT, for example 127.0.0.1:8477, not '" + settings.listen + "'.",
         {{"parameter", "listen"}});
   }
-  if (!address.is_loopback() && !settings.insecure) {
-    return fail(
-        ErrorCode::InvalidArgument,
-        "The daemon has no TLS and no tokens yet, so it listens on loopback only; --insecure overrides this for "
-        "a network you trust.",
-        {{"parameter", "listen"}});
+  if (settings.tls_certificate.empty() != settings.tls_key.empty()) {
+    return fail(ErrorCode::InvalidArgument, "--tls-certificate and --tls-key are given together.",
+                {{"parameter", settings.tls_key.empty() ? "tls-key" : "tls-certificate"}});
   }
   return result;
+}
+
+Status require_safe_address(const Settings& settings, const ListenAddress& address, bool has_tokens) {
+  boost::system::error_code error;
+  const bool loopback = boost::asio::ip::make_address(address.address, error).is_loopback();
+  const bool tls = !settings.tls_certificate.empty();
+  if (loopback || settings.insecure || (tls && (has_tokens || settings.require_tokens))) {
+    return {};
+  }
+  return fail(
+      ErrorCode::InvalidArgument,
+      "Beyond this machine the daemon listens with TLS (--tls-certificate, --tls-key) and tokens "
+      "(--require-tokens, or `driftlabd token create`) only; --insecure overrides this for a network you trust.",
+      {{"parameter", "listen"}});
 }
 
 std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address) {

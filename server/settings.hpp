@@ -16,6 +16,9 @@ struct Settings {
   int workers = 0;                      ///< jobs at a time; 0: as many as threads
   int threads = 0;                      ///< that compute for all jobs together; 0: one per core, or per worker if more
   int io_threads = 2;
+  bool require_tokens = false;            ///< refuse requests without a token even before there is one
+  std::filesystem::path tls_certificate;  ///< PEM, with its chain; empty: plain HTTP
+  std::filesystem::path tls_key;
   bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
   std::string log_level = "info";
 };
@@ -25,9 +28,12 @@ struct ListenAddress {
   std::uint16_t port = 0;
 };
 
-/// `127.0.0.1:8477`, `[::1]:8477`. Refuses an address other than loopback unless `insecure`.
-/// Errors: InvalidArgument, naming the parameter.
+/// `127.0.0.1:8477`, `[::1]:8477`. Errors: InvalidArgument, naming the parameter.
 [[nodiscard]] Result<ListenAddress> listen_address(const Settings& settings);
+
+/// Whether the daemon may listen there: beyond loopback only with TLS and tokens, unless `insecure`. `has_tokens` may
+/// be false while that is not known yet but tokens are required. Errors: InvalidArgument, with the way out.
+[[nodiscard]] Status require_safe_address(const Settings& settings, const ListenAddress& address, bool has_tokens);
 
 /// Names the daemon answers for, lower case, without port.
 [[nodiscard]] std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address);

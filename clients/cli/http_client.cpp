@@ -1,6 +1,7 @@
 #include "clients/cli/http_client.hpp"
 
-#include <boost/asio/connect.hpp>
+#include "clients/cli/link.hpp"
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read_until.hpp>
@@ -17,31 +18,33 @@ namespace driftlab::cli {
 
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
-using asio::ip::tcp;
 
 namespace {
 
 /// How long one answer may be waited for.
 constexpr int kPatienceS = 20;
 
+std::string& token_of_process() {
+  static std::string token;
+  return token;
+}
+
+std::string& ca_file_of_process() {
+  static std::string file;
+  return file;
+}
+
 /// One connection for one exchange.
 class Exchange {
  public:
-  Exchange(const std::string& host, const std::string& port) : socket_(io_), host_(host), port_(port) {}
+  Exchange(const std::string& host, const std::string& port, bool secure)
+      : link_(io_, secure, ca_file_of_process()), host_(host), port_(port), secure_(secure) {}
 
-  Status connect() {
-    boost::system::error_code error;
-    tcp::resolver resolver(io_);
-    const auto endpoints = resolver.resolve(host_, port_, error);
-    if (!error) {
-      asio::connect(socket_, endpoints, error);
-    }
-    return error ? lost(error) : Status{};
-  }
+  Status connect() { return link_.connect(host_, port_); }
 
   [[nodiscard]] tl::unexpected<Error> lost(const boost::system::error_code& error) const {
-    return fail(ErrorCode::Io,
-                "The daemon at http://" + host_ + ":" + port_ + " cannot be reached: " + error.message() + ".");
+    return fail(ErrorCode::Io, std::string("The daemon at http") + (secure_ ? "s" : "") + "://" + host_ + ":" + port_ +
+                                   " cannot be reached: " + error.message() + ".");
   }
 
   template <class Body>
@@ -50,12 +53,15 @@ class Exchange {
     request.set(http::field::host, host_ + ":" + port_);
     request.set(http::field::user_agent, "driftlab/" DRIFTLAB_VERSION);
     request.keep_alive(false);
+    if (!token_of_process().empty()) {
+      request.set(http::field::authorization, "Bearer " + token_of_process());
+    }
   }
 
   template <class Body>
   Result<HttpReply> ask(http::request<Body>& request) {
     boost::system::error_code error;
-    http::write(socket_, request, error);
+    http::write(link_, request, error);
     return read_reply(error);
   }
 
@@ -65,8 +71,8 @@ class Exchange {
     boost::beast::flat_buffer buffer;
     http::response_parser<http::string_body> parser;
     parser.body_limit(boost::none);
-    http::read(socket_, buffer, parser, error);
-    if (error && error != http::error::end_of_stream) {
+    http::read(link_, buffer, parser, error);
+    if (error && error != http::error::end_of_stream && !parser.is_done()) {
       return lost(write_error ? write_error : error);
     }
     if (!parser.is_header_done()) {
@@ -77,30 +83,38 @@ class Exchange {
                      message.body(), message.find(http::field::retry_after) != message.end()};
   }
 
-  [[nodiscard]] tcp::socket& socket() { return socket_; }
+  [[nodiscard]] Link& link() { return link_; }
 
  private:
   asio::io_context io_;
-  tcp::socket socket_;
+  Link link_;
   std::string host_;
   std::string port_;
+  bool secure_;
 };
 
 }  // namespace
 
+void HttpClient::trust(std::string ca_file) { ca_file_of_process() = std::move(ca_file); }
+
+void HttpClient::use_token(std::string token) { token_of_process() = std::move(token); }
+
 Result<HttpClient> HttpClient::to(std::string_view server) {
   const auto url = boost::urls::parse_uri(boost::core::string_view(server.data(), server.size()));
-  const bool sound = url && url->scheme() == "http" && !url->host().empty() && url->encoded_path().size() <= 1;
+  const bool secure = url && url->scheme() == "https";
+  const bool sound =
+      url && (secure || url->scheme() == "http") && !url->host().empty() && url->encoded_path().size() <= 1;
   if (!sound) {
-    return fail(ErrorCode::InvalidArgument,
-                "The server is written http://HOST:PORT, for example http://127.0.0.1:8477, not '" +
-                    std::string(server) + "'.");
+    return fail(
+        ErrorCode::InvalidArgument,
+        "The server is written http://HOST:PORT or https://HOST:PORT, for example http://127.0.0.1:8477, not '" +
+            std::string(server) + "'.");
   }
   std::string host = url->host();
   if (host.size() > 2 && host.front() == '[') {
     host = host.substr(1, host.size() - 2);
   }
-  return HttpClient(host, url->has_port() ? std::string(url->port()) : "80");
+  return HttpClient(host, url->has_port() ? std::string(url->port()) : secure ? "443" : "80", secure);
 }
 
 Result<HttpReply> HttpClient::get(const std::string& target, const std::string& accept) {
@@ -118,7 +132,7 @@ Result<HttpReply> HttpClient::get_settled(const std::string& target, const std::
 }
 
 Result<HttpReply> HttpClient::get(const std::string& target, const std::string& accept, int wait_s) {
-  Exchange exchange(host_, port_);
+  Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return fail(connected.error());
   }
@@ -132,7 +146,7 @@ Result<HttpReply> HttpClient::get(const std::string& target, const std::string& 
 }
 
 Result<HttpReply> HttpClient::post(const std::string& target, const std::string& json) {
-  Exchange exchange(host_, port_);
+  Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return fail(connected.error());
   }
@@ -152,7 +166,7 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
   if (!stream || no_size) {
     return fail(ErrorCode::NotFound, "The file " + file.string() + " cannot be opened.");
   }
-  Exchange exchange(host_, port_);
+  Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return fail(connected.error());
   }
@@ -162,7 +176,7 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
   request.content_length(size);
   boost::system::error_code error;
   http::request_serializer<http::empty_body> serializer(request);
-  http::write_header(exchange.socket(), serializer, error);
+  http::write_header(exchange.link(), serializer, error);
   std::vector<char> piece(std::size_t{256} * 1024);
   std::uintmax_t done = 0;
   while (!error && done < size) {
@@ -171,7 +185,7 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
     if (count == 0) {
       return fail(ErrorCode::Io, "The file " + file.string() + " became shorter while it was sent.");
     }
-    asio::write(exchange.socket(), asio::buffer(piece.data(), count), error);
+    asio::write(exchange.link(), asio::buffer(piece.data(), count), error);
     done += count;
     sent(static_cast<double>(done) / static_cast<double>(size));
   }
@@ -179,7 +193,7 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
 }
 
 Status HttpClient::follow(const std::string& target, const std::function<bool(std::string_view)>& event) {
-  Exchange exchange(host_, port_);
+  Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return connected;
   }
@@ -187,11 +201,11 @@ Status HttpClient::follow(const std::string& target, const std::function<bool(st
   exchange.prepare(request);
   request.set(http::field::accept, "text/event-stream");
   boost::system::error_code error;
-  http::write(exchange.socket(), request, error);
+  http::write(exchange.link(), request, error);
   boost::beast::flat_buffer buffer;
   http::response_parser<http::buffer_body> parser;
   parser.body_limit(boost::none);
-  http::read_header(exchange.socket(), buffer, parser, error);
+  http::read_header(exchange.link(), buffer, parser, error);
   if (error) {
     return exchange.lost(error);
   }
@@ -200,10 +214,13 @@ Status HttpClient::follow(const std::string& target, const std::function<bool(st
   while (!parser.is_done()) {
     parser.get().body().data = piece.data();
     parser.get().body().size = piece.size();
-    http::read_some(exchange.socket(), buffer, parser, error);
+    http::read_some(exchange.link(), buffer, parser, error);
     text.append(piece.data(), piece.size() - parser.get().body().size);
     if (error && error != http::error::need_buffer) {
-      return error == http::error::end_of_stream || error == asio::error::eof ? Status{} : Status(exchange.lost(error));
+      return error == http::error::end_of_stream || error == asio::error::eof ||
+                     error == asio::ssl::error::stream_truncated
+                 ? Status{}
+                 : Status(exchange.lost(error));
     }
     std::size_t end = 0;
     while ((end = text.find("\n\n")) != std::string::npos) {

@@ -23,7 +23,12 @@ struct HttpReply {
 /// safe.
 class HttpClient {
  public:
-  /// `http://127.0.0.1:8477`. Errors: InvalidArgument (not an http address).
+  /// The token that every client made from now on sends; empty: none. It comes from a file or from DRIFTLAB_TOKEN, and
+  /// never from an argument, which others could read.
+  static void use_token(std::string token);
+  /// The authorities that clients made from now on trust, as a PEM file; empty: those of the system.
+  static void trust(std::string ca_file);
+  /// `http://127.0.0.1:8477`, `https://lab.example`. Errors: InvalidArgument (not such an address).
   [[nodiscard]] static Result<HttpClient> to(std::string_view server);
 
   [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept = "application/json");
@@ -39,9 +44,11 @@ class HttpClient {
 
  private:
   [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept, int wait_s);
-  HttpClient(std::string host, std::string port) : host_(std::move(host)), port_(std::move(port)) {}
+  HttpClient(std::string host, std::string port, bool secure)
+      : host_(std::move(host)), port_(std::move(port)), secure_(secure) {}
   std::string host_;
   std::string port_;
+  bool secure_;
 };
 
 /// A query component with everything but unreserved characters percent-encoded (RFC 3986).

@@ -1,9 +1,13 @@
 // driftlab: the command line. See `driftlab --help` and schema/docs/cli.md.
 #include "clients/cli/cli.hpp"
+#include "clients/cli/http_client.hpp"
+#include "core/signal/text.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 
 namespace driftlab::cli {
 
@@ -32,6 +36,24 @@ Exit complain_of_work(const Error& error) {
   return complain(error, error.code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput);
 }
 
+namespace {
+
+/// What stands in the file, or in DRIFTLAB_TOKEN; white space around it does not belong to it. Error: NotFound.
+Result<std::string> read_token(const std::string& path) {
+  if (path.empty()) {
+    const char* const variable = std::getenv("DRIFTLAB_TOKEN");  // NOLINT(concurrency-mt-unsafe): before any thread
+    return std::string(trimmed(variable != nullptr ? variable : ""));
+  }
+  std::ifstream file(path);
+  std::string line;
+  if (!file || !std::getline(file, line) || trimmed(line).empty()) {
+    return fail(ErrorCode::NotFound, "The file " + path + " holds no token, or cannot be opened.");
+  }
+  return std::string(trimmed(line));
+}
+
+}  // namespace
+
 }  // namespace driftlab::cli
 
 int main(int argc, char** argv) {
@@ -39,6 +61,13 @@ int main(int argc, char** argv) {
   CLI::App app{"driftlab characterises the stochastic errors of inertial sensors."};
   app.set_version_flag("--version", std::string("driftlab " DRIFTLAB_VERSION));
   app.require_subcommand(1);
+  app.fallthrough();  // the option may stand behind the command
+  std::string token_file;
+  app.add_option("--token-file", token_file, "File with the token of a daemon that asks for one; else DRIFTLAB_TOKEN")
+      ->envname("DRIFTLAB_TOKEN_FILE");
+  std::string ca_file;
+  app.add_option("--ca-file", ca_file, "PEM file of the authorities to trust for https; else those of the system")
+      ->envname("DRIFTLAB_CA_FILE");
   driftlab::cli::Command chosen;
   driftlab::cli::add_all_commands(app, chosen);
   try {
@@ -50,6 +79,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "driftlab: %s (--help lists the options)\n", error.what());
     return static_cast<int>(Exit::BadInput);
   }
+  auto token = driftlab::cli::read_token(token_file);
+  if (!token) {
+    return static_cast<int>(driftlab::cli::complain(token.error()));
+  }
+  driftlab::cli::HttpClient::trust(ca_file);
+  driftlab::cli::HttpClient::use_token(std::move(*token));
   driftlab::cli::watch_interrupts();
   return static_cast<int>(chosen());
 }

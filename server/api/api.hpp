@@ -1,6 +1,7 @@
 #pragma once
 /// The HTTP resources. One file per resource declares its routes and handlers; routes.cpp lists them.
 #include "server/api/event_log.hpp"
+#include "server/auth/gate.hpp"
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -18,7 +19,7 @@ namespace driftlab::server {
 
 /// What handlers use. Outlives the router.
 struct ApiContext {
-  Store& store;
+  Store& store;  ///< as the caller of the thread sees it (server/auth/visible_store.hpp)
   BlobStore& blobs;
   const Clock& clock;
   Bell& bell;
@@ -26,6 +27,8 @@ struct ApiContext {
   std::function<void()> wake_workers;          ///< a job was queued or cancelled
   std::function<std::string()> not_ready_why;  ///< empty text: ready
   std::filesystem::path data;                  ///< the daemon's directory
+  AccessStore& access;
+  Gate& gate;
 };
 
 /// Tells who listens to all events how a job stands, and of its result when it has one.
@@ -48,6 +51,11 @@ class Dispatcher {
   std::mutex mutex_;
   std::vector<std::string> in_flight_;
 };
+
+/// Says who asks, in `request.caller`, or why it is refused: 401 without a token that is valid, 403 where its scope is
+/// smaller than the route's, and where a browser's session asks for a change without saying from which page. Pages (no
+/// route) and routes of the scope `public` are for everybody.
+[[nodiscard]] std::optional<Response> admit(Gate& gate, const Route* route, Request& request);
 
 /// Adds `instance` and `request_id` to a problem document; other answers stay as they are.
 void complete_problem(const Request& request, Response& response);

@@ -81,13 +81,21 @@ void add_etag(const Request& request, Response& response) {
 }  // namespace
 
 Response Dispatcher::run(const Route& route, const Request& request) {
-  if (const auto type = request.header("content-type"); type && !request.body.empty() && !is_json(*type)) {
+  // A page of another origin may send a body without a type, or with one of a form, and no browser asks before.
+  const std::string_view type = request.header("content-type").value_or("");
+  if (!request.body.empty() && !is_json(type)) {
     return problem_response(HttpFault::UnsupportedMediaType,
-                            "The body must be application/json, not '" + std::string(*type) + "'.");
+                            "The body must be application/json" +
+                                (type.empty() ? "; name it in Content-Type." : ", not '" + std::string(type) + "'."));
   }
   const auto& handler = std::get<Handler>(route.handler);
   try {
     const auto key = request.method == "POST" ? request.header("idempotency-key") : std::nullopt;
+    if (key && route.secret) {
+      return problem_response(Error{ErrorCode::InvalidArgument,
+                                    "The answer holds a secret and is kept nowhere; send no Idempotency-Key.",
+                                    {{"parameter", "Idempotency-Key"}}});
+    }
     Response response = key ? run_idempotent(handler, request, std::string(*key)) : run_handler(handler, request);
     add_etag(request, response);
     compress(request, response);
@@ -103,12 +111,13 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
   if (!is_request_id(key)) {
     return problem_response(malformed_idempotency_key());
   }
-  const InFlight flight(mutex_, in_flight_, key);
+  const std::string own = own_key(request, key);
+  const InFlight flight(mutex_, in_flight_, own);
   if (!flight.first()) {
     return problem_response(HttpFault::IdempotencyInFlight, "A request with this Idempotency-Key is running.");
   }
   const std::string digest = sha256_hex(request.body);
-  auto known = context_.store.idempotent_reply(key);
+  auto known = context_.store.idempotent_reply(own);
   if (!known) {
     return problem_response(known.error());
   }
@@ -118,7 +127,7 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
   Response response = run_handler(handler, request);
   if (response.status >= 200 && response.status < 300) {
     const Status remembered =
-        context_.store.remember_reply(reply_to_remember(key, request, digest, response, context_.clock.now()));
+        context_.store.remember_reply(reply_to_remember(own, request, digest, response, context_.clock.now()));
     if (!remembered) {
       return problem_response(remembered.error());
     }

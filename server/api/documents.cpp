@@ -96,6 +96,11 @@ Json to_json(const Fit& fit) {
   return document;
 }
 
+std::string own_key(const Request& request, std::string_view key) {
+  const std::string& token = request.caller.principal.token;
+  return token.empty() ? std::string(key) : token + ':' + std::string(key);
+}
+
 Error malformed_idempotency_key() {
   return {ErrorCode::InvalidArgument,
           "An Idempotency-Key is 1 to 64 of the characters A-Z a-z 0-9 . _ -",
@@ -190,7 +195,18 @@ Result<std::optional<JobState>> state_filter(const Request& request) {
   return state;
 }
 
-Result<Page> page_of(const Request& request) {
+namespace {
+
+bool is_row_cursor(std::string_view cursor) {
+  const std::size_t underscore = cursor.find('_');
+  return underscore != std::string_view::npos && is_id(cursor, cursor.substr(0, underscore));
+}
+
+}  // namespace
+
+Result<Page> page_of(const Request& request) { return page_of(request, is_row_cursor); }
+
+Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view)) {
   Page page;
   if (const auto limit = request.parameter("limit")) {
     const auto [stop, error] = std::from_chars(limit->data(), limit->data() + limit->size(), page.limit);
@@ -207,8 +223,7 @@ Result<Page> page_of(const Request& request) {
     page.newest_first = *sort == "-created_at";
   }
   if (const auto cursor = request.parameter("cursor")) {
-    const std::size_t underscore = cursor->find('_');
-    if (underscore == std::string_view::npos || !is_id(*cursor, cursor->substr(0, underscore))) {
+    if (!is_cursor(*cursor)) {
       return fail(ErrorCode::InvalidArgument, "The cursor is not one that a list gave.", {{"parameter", "cursor"}});
     }
     page.after = *cursor;

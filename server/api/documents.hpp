@@ -16,6 +16,9 @@ namespace driftlab::server {
 [[nodiscard]] Json to_json(const Job& job);
 [[nodiscard]] Json to_json(const Fit& fit);
 
+/// The key under which the reply is kept: keys are those of a token.
+[[nodiscard]] std::string own_key(const Request& request, std::string_view key);
+
 /// What a key gets that is no `is_request_id`.
 [[nodiscard]] Error malformed_idempotency_key();
 
@@ -45,6 +48,8 @@ namespace driftlab::server {
 /// `?limit=` (1 to 500, default 50), `?cursor=`, and `?sort=` created_at (default) or -created_at. Error:
 /// InvalidArgument naming the parameter.
 [[nodiscard]] Result<Page> page_of(const Request& request);
+/// The same for a list whose cursors are no ids of rows: `is_cursor` tells them.
+[[nodiscard]] Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view));
 
 /// The id of the device that `?device=` names by id or name; nothing where it is not asked for. Error: NotFound.
 [[nodiscard]] Result<std::optional<std::string>> device_filter(Store& store, const Request& request);

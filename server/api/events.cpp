@@ -10,7 +10,7 @@ namespace driftlab::server {
 namespace {
 
 constexpr std::array<std::string_view, 4> kTopics{"jobs", "recordings", "devices", "results"};
-constexpr std::size_t kMost = 200;
+constexpr std::size_t kMostAtOnce = 200;
 
 /// Where the result of a finished job is read.
 std::string address_of(ApiContext& context, const Job& job) {
@@ -71,7 +71,7 @@ class AllEvents final : public EventSource {
   [[nodiscard]] const std::string& subject() const override { return subject_; }
 
   [[nodiscard]] Result<Batch> next() override {
-    EventLog::Since since = log_.since(after_, kMost);
+    EventLog::Since since = log_.since(after_, kMostAtOnce);
     Batch batch;
     if (reset_ || !since.complete) {
       after_ = log_.latest();

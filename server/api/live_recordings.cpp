@@ -1,5 +1,7 @@
 // Recordings that are still being made: a phone or a board sends its samples second by second, and what they say so far
 // is followed live. What was acknowledged is on the disk; finished, it is a recording like any other.
+#include "server/store/live_recordings.hpp"
+
 #include "core/signal/number.hpp"
 #include "schema/json/growing_recording.hpp"
 #include "schema/json/recording_spec.hpp"
@@ -8,7 +10,6 @@
 #include "server/api/record_blob.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
-#include "server/store/live_recordings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -148,8 +149,8 @@ class Live {
 
   Json characterise(const std::string& recording) {
     JobContext job_context{context_.store, context_.blobs, context_.clock};
-    const auto job =
-        new_job(*find_job_kind("characterise"), Json{{"recordings", Json::array({recording})}}, Json::object(), job_context);
+    const auto job = new_job(*find_job_kind("characterise"), Json{{"recordings", Json::array({recording})}},
+                             Json::object(), job_context);
     const auto queued = job ? context_.store.enqueue(*job) : Result<EnqueuedJob>(fail(job.error()));
     if (!queued) {
       return nullptr;
@@ -183,6 +184,17 @@ class Live {
   bool stopping_ = false;
   std::thread sweeper_;
 };
+
+/// The recording that the path names, for whoever may know of its device.
+Result<LiveRecording> seen(Live& live, const Request& request) {
+  const std::string& id = request.parameters[0];
+  auto recording = live.recordings().find(id);
+  if (recording && !require_device(stored(recording->about_json).at("device").get<std::string>())) {
+    return fail(ErrorCode::NotFound, "There is no live recording \"" + id + "\"; it may have been finished.",
+                {{"live_recording", id}});
+  }
+  return recording;
+}
 
 /// The recording that the path names, for whoever has its token.
 Result<LiveRecording> admitted(Live& live, const Request& request) {
@@ -230,6 +242,9 @@ Result<Response> create(Live& live, const Request& request) {
   if (auto resolved = resolve_device_name(live.context().store, metadata->device); !resolved) {
     return fail(resolved.error());
   }
+  if (auto allowed = require_device(metadata->device.name); !allowed) {
+    return fail(allowed.error());
+  }
   if (auto room = require_space(live.context()); !room) {
     return fail(room.error());
   }
@@ -254,7 +269,7 @@ Result<Response> create(Live& live, const Request& request) {
 }
 
 Result<Response> get(Live& live, const Request& request) {
-  const auto recording = live.recordings().find(request.parameters[0]);
+  const auto recording = seen(live, request);
   return recording ? Result<Response>(json_response(200, to_json(*recording))) : fail(recording.error());
 }
 
@@ -273,8 +288,7 @@ Result<Response> finish(Live& live, const Request& request) {
 
 class SamplesUpload final : public UploadSession {
  public:
-  SamplesUpload(Live& live, std::string id, std::uint32_t number)
-      : live_(live), id_(std::move(id)), number_(number) {}
+  SamplesUpload(Live& live, std::string id, std::uint32_t number) : live_(live), id_(std::move(id)), number_(number) {}
 
   [[nodiscard]] Status append(std::span<const std::byte> bytes) override {
     if (bytes_.size() + bytes.size() > kLongestPiece) {
@@ -337,8 +351,8 @@ class LiveEvents final : public EventSource {
     if (!samples) {
       return Batch{};
     }
-    const auto column = static_cast<std::size_t>(
-        std::find(about_.columns.begin(), about_.columns.end(), channel_) - about_.columns.begin());
+    const auto column = static_cast<std::size_t>(std::find(about_.columns.begin(), about_.columns.end(), channel_) -
+                                                 about_.columns.begin());
     const GrowingRecording look = look_at_growth(samples->time_s, samples->columns[column]);
     Json data = growing_recording_to_json(look, unit_of(about_, channel_));
     data["channel"] = channel_;
@@ -371,7 +385,7 @@ class LiveEvents final : public EventSource {
 };
 
 Result<std::unique_ptr<EventSource>> events(Live& live, const Request& request) {
-  const auto recording = live.recordings().find(request.parameters[0]);
+  const auto recording = seen(live, request);
   if (!recording) {
     return fail(recording.error());
   }
@@ -402,9 +416,10 @@ void add_live_recording_routes(Router& router, ApiContext& context) {
               "addLiveSamples",
               {"sequence"},
               UploadHandler([live](const Request& request) { return begin_samples(*live, request); })});
-  router.add({"POST", "/v1/live-recordings/{id}/finish", "finishLiveRecording", {}, Handler([live](const Request& request) {
-                return finish(*live, request);
-              })});
+  router.add(
+      {"POST", "/v1/live-recordings/{id}/finish", "finishLiveRecording", {}, Handler([live](const Request& request) {
+         return finish(*live, request);
+       })});
   router.add({"GET",
               "/v1/live-recordings/{id}/events",
               "streamLiveRecording",

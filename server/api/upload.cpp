@@ -76,7 +76,7 @@ class RecordingUpload final : public UploadSession {
     if (!key) {
       return record();
     }
-    return record_once(std::string(*key));
+    return record_once(own_key(request_, *key));
   }
 
  private:
@@ -180,6 +180,11 @@ Result<std::unique_ptr<UploadSession>> begin_upload(ApiContext& context, const R
     metadata = std::move(*read);
     if (auto resolved = resolve_device_name(context.store, metadata.device); !resolved) {
       return fail(resolved.error());
+    }
+  }
+  if (!boundary) {
+    if (auto allowed = require_device(metadata.device.name); !allowed) {
+      return fail(allowed.error());
     }
   }
   if (auto room = require_space(context); !room) {

@@ -51,8 +51,9 @@ std::chrono::seconds patience_for(const Request& request, const Response& respon
 
 }  // namespace
 
-HttpConnection::HttpConnection(asio::ip::tcp::socket socket, ConnectionShared& shared)
-    : stream_(std::move(socket)),
+HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asio::ssl::context> tls,
+                               ConnectionShared& shared)
+    : stream_(std::move(socket), std::move(tls)),
       buffer_(shared.options.limits.header_bytes + kPiece),
       shared_(shared),
       chunk_(kPiece) {
@@ -62,6 +63,10 @@ HttpConnection::HttpConnection(asio::ip::tcp::socket socket, ConnectionShared& s
 }
 
 asio::awaitable<void> HttpConnection::run() {
+  const bool shaken = co_await stream_.handshake(10s);
+  if (!shaken) {
+    co_return;
+  }
   for (int served = 0; served < shared_.options.limits.requests_per_connection && !shared_.stopping; ++served) {
     Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(shared_.options.limits.header_bytes));
@@ -76,6 +81,7 @@ asio::awaitable<void> HttpConnection::run() {
       break;
     }
   }
+  co_await stream_.say_goodbye();
   boost::system::error_code ignored;
   ignored = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
@@ -131,6 +137,8 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   request.headers = std::move(head.headers);
   const auto given_id = request.header("x-request-id");
   request.request_id = given_id && is_request_id(*given_id) ? std::string(*given_id) : shared_.hooks.make_request_id();
+  request.caller.request_id = request.request_id;
+  request.caller.address = address_;
   wants_continue_ = verdict.expects_continue;
 
   std::optional<Response> refusal = verdict.refusal;
@@ -142,7 +150,7 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   if (!refusal) {
     request.path = std::move(target->path);
     request.query = std::move(target->query);
-    if (shared_.hooks.page && verdict.content_length == 0) {
+    if (shared_.hooks.page && verdict.content_length == 0 && !admit(nullptr, request)) {
       if (auto page = shared_.hooks.page(request)) {
         route_ = "page";
         co_return co_await send(request, std::move(*page), true);
@@ -160,7 +168,10 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
       }
       refusal->headers.emplace_back("Allow", allow);
     } else {
-      refusal = refuse_unknown_query(*match.route, request);
+      refusal = admit(match.route, request);
+      if (!refusal) {
+        refusal = refuse_unknown_query(*match.route, request);
+      }
     }
   }
   if (refusal) {
@@ -180,6 +191,10 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
     co_return co_await answer_events(*events, request);
   }
   co_return co_await answer_plain(parser, *match.route, request);
+}
+
+std::optional<Response> HttpConnection::admit(const Route* route, Request& request) const {
+  return shared_.hooks.admit ? shared_.hooks.admit(route, request) : std::nullopt;
 }
 
 asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& parser) {
@@ -239,7 +254,10 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
     }
     request.body.append(reinterpret_cast<const char*>(chunk_.data()), *count);
   }
-  auto work = [this, &route, &request] { return shared_.hooks.dispatch(route, request); };
+  auto work = [this, &route, &request] {
+    const ActingFor acting(request.caller);
+    return shared_.hooks.dispatch(route, request);
+  };
   std::optional<Response> outcome;
   if (route.instant) {
     outcome = work();
@@ -258,13 +276,16 @@ asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const
   const auto deadline = std::chrono::steady_clock::now() + patience_for(request, response);
   const auto executor = co_await asio::this_coro::executor;
   const auto listener = shared_.bell.listen(response.pending_job, executor);
-  while (patience_for(request, response) > 0s && !shared_.stopping) {
+  while (patience_for(request, response) > 0s && !shared_.stopping && still_admitted(request)) {
     const auto left = deadline - std::chrono::steady_clock::now();
     if (left <= 0s) {
       break;
     }
     co_await listener->wait(std::min<std::chrono::steady_clock::duration>(left, 1s));
-    auto work = [this, &route, &request] { return shared_.hooks.dispatch(route, request); };
+    auto work = [this, &route, &request] {
+      const ActingFor acting(request.caller);
+      return shared_.hooks.dispatch(route, request);
+    };
     auto outcome = co_await shared_.handlers.run(work);
     if (outcome) {
       response = std::move(*outcome);
@@ -276,6 +297,10 @@ asio::awaitable<Response> HttpConnection::wait_for_job(const Route& route, const
   co_return response;
 }
 
+bool HttpConnection::still_admitted(const Request& request) const {
+  return !shared_.hooks.still_admitted || shared_.hooks.still_admitted(request.caller.principal);
+}
+
 asio::awaitable<bool> HttpConnection::refuse(const Request& request, Response response) {
   co_await send(request, std::move(response), false);
   co_await linger();
@@ -283,7 +308,10 @@ asio::awaitable<bool> HttpConnection::refuse(const Request& request, Response re
 }
 
 asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler, const Request& request) {
-  auto begin = [&handler, &request] { return handler(request); };
+  auto begin = [&handler, &request] {
+    const ActingFor acting(request.caller);
+    return handler(request);
+  };
   auto begun = co_await shared_.handlers.run(begin);
   auto settled = settle(std::move(begun));
   if (!settled) {
@@ -300,7 +328,10 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
   bool last = request.method == "HEAD";
   while (true) {
     if (!last) {
-      auto look = [&source] { return source->next(); };
+      auto look = [&source, &request] {
+        const ActingFor acting(request.caller);
+        return source->next();
+      };
       auto batch = co_await shared_.handlers.run(look);
       if (batch && *batch) {
         text += (*batch)->text;
@@ -320,7 +351,7 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
       last_sent = std::chrono::steady_clock::now();
       text.clear();
     }
-    if (last || shared_.stopping) {
+    if (last || shared_.stopping || !still_admitted(request)) {
       break;
     }
     co_await listener->wait(1s);
@@ -375,7 +406,7 @@ asio::awaitable<void> HttpConnection::linger() {
   const auto until = std::chrono::steady_clock::now() + 2s;
   while (!error && std::chrono::steady_clock::now() < until) {
     stream_.expires_at(until);
-    co_await stream_.async_read_some(asio::buffer(chunk_), into(error));
+    co_await stream_.below().async_read_some(asio::buffer(chunk_), into(error));
   }
 }
 
@@ -385,7 +416,7 @@ void HttpConnection::log(const Request& request, const Response& response) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_, response.body.size(), seconds,
-                     request.request_id, address_});
+                     request.request_id, address_, request.caller.principal.token});
 }
 
 }  // namespace driftlab::server

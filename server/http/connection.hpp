@@ -1,12 +1,12 @@
 #pragma once
 /// One client connection as a coroutine: header, guard, route, body, answer; again until it closes.
+#include "server/http/client_stream.hpp"
 #include "server/http/offload.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/parser.hpp>
 
@@ -41,7 +41,9 @@ struct ConnectionShared {
 
 class HttpConnection {
  public:
-  HttpConnection(boost::asio::ip::tcp::socket socket, ConnectionShared& shared);
+  /// `tls`: the certificate to show, or nullptr for plain HTTP.
+  HttpConnection(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
+                 ConnectionShared& shared);
   /// Runs until the connection closes. Never throws.
   boost::asio::awaitable<void> run();
   /// Closes a connection that waits for its next request. On the connection's own executor.
@@ -55,6 +57,8 @@ class HttpConnection {
   boost::asio::awaitable<bool> read_header(Parser& parser);
   /// Answers the request whose header was read. False: the connection must close.
   boost::asio::awaitable<bool> answer(Parser& parser);
+  [[nodiscard]] std::optional<Response> admit(const Route* route, Request& request) const;
+  [[nodiscard]] bool still_admitted(const Request& request) const;
   boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
   boost::asio::awaitable<bool> answer_upload(Parser& parser, const UploadHandler& handler, Request& request);
   boost::asio::awaitable<bool> answer_events(const EventHandler& handler, const Request& request);
@@ -74,7 +78,7 @@ class HttpConnection {
   boost::asio::awaitable<void> linger();
   void log(const Request& request, const Response& response);
 
-  boost::beast::tcp_stream stream_;
+  ClientStream stream_;
   boost::beast::flat_buffer buffer_;
   ConnectionShared& shared_;
   std::string address_;

@@ -52,7 +52,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
     co_return co_await refuse(request, std::move(*refusal));
   }
   const UploadSlot slot(shared_.uploads_running);
-  auto begin = [&handler, &request] { return handler(request); };
+  auto begin = [&handler, &request] {
+    const ActingFor acting(request.caller);
+    return handler(request);
+  };
   auto begun = co_await shared_.uploads.run(begin);
   auto settled = settle(std::move(begun));
   if (!settled) {
@@ -87,7 +90,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
                                                                    " declares; nothing was kept.");
     co_return co_await refuse(request, std::move(surplus));
   }
-  auto finish = [&session] { return finish_upload(*session); };
+  auto finish = [&session, &request] {
+    const ActingFor acting(request.caller);
+    return finish_upload(*session);
+  };
   auto finished = co_await shared_.uploads.run(finish);
   session.reset();
   auto answered = settle(std::move(finished));
@@ -97,7 +103,10 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
 
 bool HttpConnection::surplus_follows() {
   boost::system::error_code error;
-  if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
+  if (buffer_.size() == 0 && stream_.is_tls()) {
+    const std::size_t waiting = std::min(stream_.decrypted(), chunk_.size());
+    buffer_.commit(waiting > 0 ? stream_.read_decrypted(buffer_.prepare(waiting), error) : 0);
+  } else if (buffer_.size() == 0 && stream_.socket().available(error) > 0 && !error) {
     error = stream_.socket().non_blocking(true, error);
     const std::size_t count = stream_.socket().read_some(buffer_.prepare(chunk_.size()), error);
     buffer_.commit(error ? 0 : count);

@@ -15,22 +15,60 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
-/// The host of `scheme://host[:port]`; empty for `null` and whatever else is no such origin.
-std::string_view origin_host(std::string_view origin) {
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// `scheme://host[:port]` in lower case without the scheme's own port; empty for `null` and whatever else is no origin.
+std::string whole_origin(std::string_view text) {
+  std::string origin = lower(text);
   const std::size_t slashes = origin.find("://");
-  return slashes == std::string_view::npos ? std::string_view{} : host_name(origin.substr(slashes + 3));
+  if (slashes == std::string::npos) {
+    return "";
+  }
+  for (const auto& [scheme, port] : {std::pair{"http://", ":80"}, std::pair{"https://", ":443"}}) {
+    if (origin.starts_with(scheme) && origin.ends_with(port)) {
+      origin.erase(origin.size() - std::string_view(port).size());
+    }
+  }
+  return origin;
 }
 
 bool is_allowed(std::string_view host, const GuardLimits& limits) {
-  std::string name(host);
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(limits.hosts.begin(), limits.hosts.end(), name) != limits.hosts.end();
+  return std::find(limits.hosts.begin(), limits.hosts.end(), lower(host)) != limits.hosts.end();
+}
+
+/// What a browser says about the page that asks.
+struct Asking {
+  std::string_view host;
+  std::optional<std::string_view> origin;
+  std::optional<std::string_view> site;  ///< Sec-Fetch-Site
+};
+
+/// Whether a page that is not this daemon's own asks. Browsers write Sec-Fetch-Site themselves (W3C Fetch Metadata), so
+/// it decides where it is sent; behind a proxy that ends TLS the origin's scheme and port are the proxy's, and only its
+/// host is compared then. Without it the whole origin must be the one that the request was sent to.
+bool is_foreign(const Asking& asking, const GuardLimits& limits) {
+  if (asking.site && *asking.site != "same-origin" && *asking.site != "none") {
+    return true;
+  }
+  if (!asking.origin) {
+    return false;
+  }
+  const std::string origin = whole_origin(*asking.origin);
+  if (asking.site == "same-origin") {
+    const std::size_t slashes = origin.find("://");
+    return slashes == std::string::npos || !is_allowed(host_name(std::string_view(origin).substr(slashes + 3)), limits);
+  }
+  return origin != whole_origin((limits.secure ? "https://" : "http://") + std::string(asking.host));
 }
 
 bool is_sole(std::string_view name) {
   return name == "host" || name == "content-length" || name == "content-type" || name == "authorization" ||
-         name == "transfer-encoding" || name == "origin";
+         name == "transfer-encoding" || name == "origin" || name == "sec-fetch-site";
 }
 
 GuardVerdict refuse(HttpFault fault, const std::string& detail) {
@@ -53,6 +91,7 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
   std::vector<std::string_view> seen;
   std::optional<std::string_view> host;
   std::optional<std::string_view> origin;
+  std::optional<std::string_view> site;
   for (const auto& [name, value] : head.headers) {
     if (is_sole(name)) {
       if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
@@ -65,6 +104,8 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
       host = value;
     } else if (name == "origin") {
       origin = value;
+    } else if (name == "sec-fetch-site") {
+      site = value;
     } else if (name == "transfer-encoding") {
       return refuse(HttpFault::LengthRequired, "Bodies need Content-Length; Transfer-Encoding is not taken.");
     } else if (name == "content-length") {
@@ -90,9 +131,9 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
                   "The daemon does not answer for the host '" + std::string(host_name(*host)) + "'.");
   }
   const bool reads = head.method == "GET" || head.method == "HEAD";
-  if (origin && !reads && !is_allowed(origin_host(*origin), limits)) {
-    return refuse(HttpFault::OriginNotAllowed,
-                  "A page of the origin '" + std::string(*origin) + "' may not change anything here.");
+  if (!reads && is_foreign({*host, origin, site}, limits)) {
+    const std::string page = origin ? "the origin '" + std::string(*origin) + "'" : std::string("another site");
+    return refuse(HttpFault::OriginNotAllowed, "A page of " + page + " may not change anything here.");
   }
   if (head.version != 11 && verdict.content_length > 0) {
     return refuse(HttpFault::BadRequest, "A request body needs HTTP/1.1.");

@@ -3,8 +3,8 @@
 ///
 /// Beast 1.81 accepts requests that proxies and servers read differently (request smuggling): `Transfer-Encoding` of
 /// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all. It also refuses hosts the
-/// daemon was not told to answer for (DNS rebinding) and changes that a browser sends for a page of another origin. It
-/// is a pure function.
+/// daemon was not told to answer for (DNS rebinding) and changes that a browser sends for a page of another origin: an
+/// origin is scheme, host and port, so a page on another port of this machine is another one. It is a pure function.
 #include "server/http/problem.hpp"
 
 #include <cstdint>
@@ -26,6 +26,7 @@ struct HeadView {
 struct GuardLimits {
   std::size_t target_bytes = 8UL * 1024;
   std::vector<std::string> hosts;  ///< allowed names, lower case, without port
+  bool secure = false;             ///< the daemon speaks TLS: its own origin begins with https
 };
 
 struct GuardVerdict {

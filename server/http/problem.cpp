@@ -62,6 +62,10 @@ std::string_view slug_of(HttpFault fault) {
       return "not-ready";
     case HttpFault::PoolingPending:
       return "pooling-pending";
+    case HttpFault::Unauthorized:
+      return "unauthorized";
+    case HttpFault::Forbidden:
+      return "forbidden";
   }
   return "internal";
 }
@@ -217,6 +221,12 @@ const std::vector<ProblemType>& problem_types() {
        "What was asked for reads a parameter table whose recordings are being fitted jointly. The detail names the "
        "job; "
        "ask again when it has ended, or send Prefer: wait=SECONDS."},
+      {"unauthorized", 401, "Token needed", false,
+       "The daemon asks for a token, and none was sent, or one that is not known, was revoked or has expired. Send "
+       "`Authorization: Bearer TOKEN`; see /docs/security."},
+      {"forbidden", 403, "Not allowed", false,
+       "The token does not allow this: its scope is too small, or it is limited to other devices. An admin makes "
+       "another one; see /docs/security."},
   };
   return types;
 }
@@ -224,7 +234,7 @@ const std::vector<ProblemType>& problem_types() {
 const std::vector<HttpFault>& all_http_faults() {
   static const std::vector<HttpFault> all = [] {
     std::vector<HttpFault> faults;
-    for (int i = 0; i <= static_cast<int>(HttpFault::PoolingPending); ++i) {
+    for (int i = 0; i <= static_cast<int>(HttpFault::Forbidden); ++i) {
       faults.push_back(static_cast<HttpFault>(i));
     }
     return faults;
@@ -260,7 +270,12 @@ std::string problem_document(const Error& error) {
   return render(problem_type(error.code), name_of(error.code), error.message, error.fields);
 }
 
-Response problem_response(const Error& error) { return respond(problem_type(error.code), problem_document(error)); }
+Response problem_response(const Error& error) {
+  if (is_forbidden(error)) {
+    return problem_response(HttpFault::Forbidden, error.message);
+  }
+  return respond(problem_type(error.code), problem_document(error));
+}
 
 Response problem_response(HttpFault fault, const std::string& detail) {
   const ProblemType& type = problem_type(fault);

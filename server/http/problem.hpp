@@ -45,6 +45,8 @@ enum class HttpFault {
   Busy,
   NotReady,
   PoolingPending,
+  Unauthorized,
+  Forbidden,
 };
 
 [[nodiscard]] const std::vector<ProblemType>& problem_types();

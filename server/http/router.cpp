@@ -55,6 +55,12 @@ std::optional<Response> refuse_unknown_query(const Route& route, const Request& 
 
 void Router::add(Route route) { routes_.push_back(std::move(route)); }
 
+void Router::set_scopes(const std::function<Scope(std::string_view operation_id)>& scope_of) {
+  for (Route& route : routes_) {
+    route.scope = scope_of(route.operation_id);
+  }
+}
+
 Router::Match Router::match(std::string_view method, std::string_view path) const {
   Match match;
   // A literal segment wins over a placeholder because literal routes are tried in the order they were added; no two

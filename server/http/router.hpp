@@ -57,6 +57,9 @@ struct Route {
   /// A plain handler that never blocks and is answered on the I/O thread, so that it answers while every pool thread is
   /// busy.
   bool instant = false;
+  /// The answer holds a secret: it is kept nowhere, so that it cannot be repeated by Idempotency-Key either.
+  bool secret = false;
+  Scope scope = Scope::Admin;  ///< what a token needs; the contract says so (Router::set_scopes)
 };
 
 /// The refusal of a query parameter that the route does not take, or that is given twice; nothing if all is well.
@@ -65,6 +68,8 @@ struct Route {
 class Router {
  public:
   void add(Route route);
+  /// Gives every route the scope that its operation has.
+  void set_scopes(const std::function<Scope(std::string_view operation_id)>& scope_of);
   [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
   struct Match {

@@ -66,9 +66,10 @@ bool HttpServer::Shared::admit(const std::string& address) {
 }
 
 asio::awaitable<void> HttpServer::Shared::serve(tcp::socket socket, std::string address) {
-  auto connection = std::make_shared<HttpConnection>(std::move(socket), connection_shared);
+  std::shared_ptr<HttpConnection> connection;
   {
     const std::lock_guard lock(mutex);
+    connection = std::make_shared<HttpConnection>(std::move(socket), options.tls, connection_shared);
     std::erase_if(connections, [](const auto& entry) { return entry.expired(); });
     connections.push_back(connection);
   }
@@ -154,6 +155,11 @@ Status HttpServer::start() {
     shared_->threads.emplace_back([this] { shared_->io.run(); });
   }
   return {};
+}
+
+void HttpServer::show(std::shared_ptr<asio::ssl::context> tls) {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->options.tls = std::move(tls);
 }
 
 std::uint16_t HttpServer::port() const {

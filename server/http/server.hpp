@@ -3,9 +3,11 @@
 /// uploads and event sources run on bounded pools.
 ///
 /// Limits (service-conventions section 5): header 16 KiB, target 8 KiB, JSON body 1 MiB, upload 8 GiB streamed in 256
-/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: idle 60 s, header 10 s, body
-/// 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the connection closes.
+/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: handshake 10 s, idle 60 s,
+/// header 10 s, body 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the
+/// connection closes.
 #include "server/http/bell.hpp"
+#include "server/http/certificate.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/router.hpp"
 
@@ -38,6 +40,7 @@ struct HttpOptions {
   int upload_threads = 2;
   HttpLimits limits;
   GuardLimits guard;
+  std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };
 
 /// One finished request, for the access log.
@@ -51,10 +54,16 @@ struct AccessRecord {
   double seconds = 0.0;
   std::string request_id;
   std::string address;
+  std::string token;  ///< public id; empty where nobody was asked for one
 };
 
 /// What the server needs from the daemon.
 struct HttpHooks {
+  /// Says who asks, in `request.caller`, or why the request is not admitted. Stands before every answer that a route or
+  /// a page (no route) gives. May be empty: everybody is admitted. Called from I/O threads; must not block.
+  std::function<std::optional<Response>(const Route* route, Request& request)> admit;
+  /// Whether whoever was admitted would be still, for answers that go on for long. May be empty.
+  std::function<bool(const Principal&)> still_admitted;
   /// Runs a plain route on a pool thread: checks, handler, ETag, idempotency.
   std::function<Response(const Route&, const Request&)> dispatch;
   /// Pages and files for people, which are no part of the API. May be empty. Called from I/O threads; must not block.
@@ -77,6 +86,8 @@ class HttpServer {
 
   /// Binds and starts the I/O threads. Errors: Io (address in use, not permitted), InvalidArgument (address).
   [[nodiscard]] Status start();
+  /// Shows another certificate to connections from now on; those that are open keep theirs. Thread safe.
+  void show(std::shared_ptr<boost::asio::ssl::context> tls);
   /// The port bound, useful when 0 was asked for.
   [[nodiscard]] std::uint16_t port() const;
   /// Stops accepting, lets running requests finish for up to `grace`, closes event streams, joins. Idempotent.

@@ -63,6 +63,24 @@ Status rename_durably(const std::filesystem::path& from, const std::filesystem::
   return sync_path(to.parent_path());
 }
 
+Status write_secret_file(const std::filesystem::path& path, std::string_view text) {
+  const std::filesystem::path temporary = path.string() + ".new";
+  if (Status removed = remove_file(temporary); !removed) {
+    return removed;
+  }
+  {
+    const FileHandle file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+    if (!file) {
+      return fail(file_error(errno, "make", temporary));
+    }
+    if (::write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
+        ::fsync(file.get()) != 0) {
+      return fail(file_error(errno, "write", temporary));
+    }
+  }
+  return rename_durably(temporary, path);
+}
+
 Status remove_file(const std::filesystem::path& path) {
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
     return fail(file_error(errno, "remove", path));

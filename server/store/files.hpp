@@ -38,6 +38,9 @@ class FileHandle {
 /// Flushes a file or a directory to disk. Errors: Io, DiskFull.
 [[nodiscard]] Status sync_path(const std::filesystem::path& path);
 
+/// Writes a file that only its owner can read (mode 0600), durably. An existing one is replaced. Errors: Io, DiskFull.
+[[nodiscard]] Status write_secret_file(const std::filesystem::path& path, std::string_view text);
+
 /// Renames within one file system and flushes the target's directory. An existing target is replaced.
 [[nodiscard]] Status rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 

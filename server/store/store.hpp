@@ -17,10 +17,17 @@
 
 namespace driftlab::server {
 
+/// What a caller limited to devices may know of: what belongs to one of them, and what it asked for itself.
+struct Visibility {
+  std::string devices_json;  ///< names, as a JSON list
+  std::string token;
+};
+
 struct Page {
   std::string after;
   int limit = 50;
   bool newest_first = false;  ///< descending id order; `after` is still the last id of the page before
+  std::optional<Visibility> visible = std::nullopt;  ///< nothing: every row
 };
 
 /// How much there is.
@@ -119,7 +126,12 @@ class Store {
   // ---- health
   /// Answers a trivial query. For /readyz.
   [[nodiscard]] virtual Status ping() = 0;
-  [[nodiscard]] virtual Result<Counts> counts() = 0;
+  /// Of what is `visible`; nothing: of everything.
+  [[nodiscard]] virtual Result<Counts> counts(const std::optional<Visibility>& visible = std::nullopt) = 0;
+  /// Whether somebody limited to devices may know of a job: it asked for it, or it names devices and only its own.
+  [[nodiscard]] virtual Result<bool> sees_job(std::string_view job, const Visibility& visible) = 0;
+  /// Whether that token asked for the object.
+  [[nodiscard]] virtual Result<bool> is_owner(std::string_view object, std::string_view token) = 0;
 
   // ---- devices
   /// The device of that name, created if absent. `created` tells.
@@ -146,7 +158,7 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) = 0;
   /// New metadata, one revision higher, if the revision is still `expected_revision`. What its results took part in is
   /// pooled anew without them. NotFound; Conflict.
-  [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& changed,
+  [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& recording,
                                                            std::int64_t expected_revision) = 0;
   /// Removes a recording that no job is using; its results go with it, and what they took part in is pooled anew
   /// without them. NotFound; Conflict (revision; running job).

@@ -49,6 +49,9 @@ class Documents(DaemonTest):
                 with self.subTest(operation=f"{method} {path}"):
                     ids.append(operation["operationId"])
                     self.assertTrue(operation["summary"])
+                    self.assertIn(operation["x-scope"], ("public", "read", "write", "run", "admin"))
+                    refusals = {"401", "403"} if operation["x-scope"] != "public" else set()
+                    self.assertLessEqual(refusals, set(operation["responses"]))
                     bound = [self.contract.resolved(p) for p in operation.get("parameters", [])]
                     self.assertTrue(all(parameter["description"] for parameter in bound))
                     in_path = {parameter["name"] for parameter in bound if parameter["in"] == "path"}
@@ -157,7 +160,17 @@ class Operations(DaemonTest):
         daemon.finished(regression.json["id"])
         body = {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]}
         model, _ = (daemon.post("/v1/models", body) for _ in range(2))
-        values = {"/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
+        # With the first token authentication is on: all further requests bring it.
+        made = daemon.post("/v1/tokens", {"name": "first", "scope": "admin"})
+        daemon.token = made.json["secret"]
+        self.addCleanup(setattr, daemon, "token", None)
+        other = daemon.post("/v1/tokens", {"name": "other", "scope": "read"}).json["id"]
+        signed_in = self.expect(201, daemon.post("/v1/session", {"token": daemon.token}))
+        cookie = signed_in.headers["set-cookie"].partition(";")[0]
+        self.expect(204, daemon.request("DELETE", "/v1/session", headers={"Cookie": cookie, "Sec-Fetch-Site": "same-origin"}))
+        daemon.post(f"/v1/tokens/{other}/rotate")
+        daemon.post(f"/v1/tokens/{other}/revoke")
+        values = {"/v1/tokens/{id}": other, "/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
                   "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],

@@ -47,16 +47,17 @@ class Daemon:
     """One `driftlabd` process on a directory of its own, on a free port. A context manager: killed at the end."""
 
     def __init__(self, data: Path | None = None, *, arguments: tuple[str, ...] = (), environment: dict[str, str] | None = None,
-                 before_exec: Callable[[], None] | None = None) -> None:
+                 before_exec: Callable[[], None] | None = None, listen: str = "127.0.0.1:0") -> None:
         self._own = Path(tempfile.mkdtemp(prefix="driftlab-test-")) if data is None else None
         self.data = data if data is not None else self._own / "data"  # type: ignore[operator]
         self.log: list[dict[str, Any]] = []
         self.checks: list[Callable[[Answer], None]] = []
+        self.token: str | None = None  # sent with every request that says nothing else
         self._listening = threading.Event()
         self.port = 0
         settings = {name: value for name, value in os.environ.items() if not name.startswith("DRIFTLAB_")}
         self.process = subprocess.Popen(
-            [PROGRAM, "--data", str(self.data), "--listen", "127.0.0.1:0", *arguments], stdin=subprocess.DEVNULL,
+            [PROGRAM, "--data", str(self.data), "--listen", listen, *arguments], stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env={**settings, **(environment or {})},
             preexec_fn=before_exec)
         self._reader = threading.Thread(target=self._read_log, daemon=True)
@@ -120,10 +121,13 @@ class Daemon:
     # --- HTTP
 
     def request(self, method: str, target: str, body: Any = None, headers: dict[str, str] | None = None) -> Answer:
-        """One request on a connection of its own. A body that is no bytes is sent as JSON."""
+        """One request on a connection of its own. A body that is no bytes is written as JSON; a body is JSON where nothing else is said."""
         sent = dict(headers or {})
+        if self.token is not None and not {"Authorization", "Cookie"} & set(sent):
+            sent["Authorization"] = f"Bearer {self.token}"
         if body is not None and not isinstance(body, bytes):
             body = json.dumps(body).encode()
+        if body:
             sent.setdefault("Content-Type", "application/json")
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
         try:

@@ -59,7 +59,7 @@ class Problems(DaemonTest):
     ELSEWHERE = {
         "decompression-limit": "bad_input_test.py", "disk-full": "bad_input_test.py", "busy": "protocol_test.py",
         "not-ready": "only while the daemon stops", "pooling-pending": "studies_test.py", "io": "a failing disk", "internal": "a bug", "cancelled": "never leaves a job",
-        "limit-exceeded": "bad_input_test.py", "checksum-mismatch": "resumable_test.py", "idempotency-in-flight": "tests/unit/api", "parse-error": "tests/unit/json", "inconsistent-sampling": "bad_input_test.py",
+        "limit-exceeded": "bad_input_test.py", "checksum-mismatch": "resumable_test.py", "idempotency-in-flight": "tests/unit/api", "unauthorized": "authorisation_test.py", "forbidden": "authorisation_test.py", "parse-error": "tests/unit/json", "inconsistent-sampling": "bad_input_test.py",
     }
 
     def test_every_type_is_met_and_has_a_page(self) -> None:

@@ -61,6 +61,13 @@ class Guard(DaemonTest):
             self.assertIn(answer.status, (400, 403), headers)
         self.assertNotIn("in", [device["name"] for device in self.daemon.items("/v1/devices")])
 
+    def test_a_document_names_its_type(self) -> None:
+        """A page of another origin may send a body without a type, or as a form, and no browser asks before."""
+        for header in ("", "Content-Type: application/x-www-form-urlencoded\r\n", "Content-Type: text/plain\r\n"):
+            raw = self.daemon.exchange(f"POST /v1/devices HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n{header}Content-Length: 12\r\n\r\n".encode()
+                                       + b'{"name":"a"}')
+            self.assertTrue(raw.startswith(b"HTTP/1.1 415 "), raw[:200])
+
     def test_pages_of_other_origins_change_nothing_and_may_read_nothing(self) -> None:
         for origin in ("http://evil.example", "null", "http://localhost.evil.example", "localhost"):
             self.problem(403, "origin_not_allowed", self.daemon.upload(samples.gyro_csv(), {"Origin": origin}, rate_hz=100))

@@ -14,11 +14,11 @@ const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 export const PATIENCE_MS = 60000;
 
 export class Daemon {
-  static async start(data = mkdtempSync(join(tmpdir(), 'driftlab-browser-')), port = 0) {
+  static async start(data = mkdtempSync(join(tmpdir(), 'driftlab-browser-')), port = 0, more = []) {
     const daemon = new Daemon();
     daemon.data = data;
     const environment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !name.startsWith('DRIFTLAB_')));
-    daemon.process = spawn(process.env.DRIFTLABD, ['--data', data, '--listen', `127.0.0.1:${port}`], {stdio: ['ignore', 'ignore', 'pipe'], env: environment});
+    daemon.process = spawn(process.env.DRIFTLABD, ['--data', data, '--listen', `127.0.0.1:${port}`, ...more], {stdio: ['ignore', 'ignore', 'pipe'], env: environment});
     daemon.port = await new Promise((resolve, reject) => {
       let text = '';
       daemon.process.stderr.on('data', piece => {

@@ -4,7 +4,7 @@
 - A script named in a command block of README.md, CONTRIBUTING.md or schema/docs exists and is executable.
 - A --flag given to a script or a driftlab program in such a block stands in its --help. The programs are asked where
   their folder is given in $DRIFTLAB_BIN.
-- Every flag of driftlabd stands in schema/docs/operations.md, every flag of driftlab and of its subcommands in cli.md.
+- Every flag of driftlabd and of its subcommands stands in schema/docs/operations.md or security.md, those of driftlab in cli.md.
 - A path in `backticks` that begins with a top-level folder exists; <name> and * stand for anything.
 - A link between the pages leads somewhere.
 """
@@ -48,8 +48,8 @@ def commands_of(text: str) -> list[list[str]]:
 
 
 @cache
-def help_of(program: Path, subcommand: str | None) -> str:
-    words = [str(program), *([subcommand] if subcommand else []), "--help"]
+def help_of(program: Path, *subcommands: str) -> str:
+    words = [str(program), *subcommands, "--help"]
     shown = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
     return shown.stdout + shown.stderr
 
@@ -68,11 +68,20 @@ def command_faults(root: Path, page: str, command: list[str], programs: Path | N
             return [f"{page}: the command {name} is not executable"]
     else:
         return []
-    subcommand = command[1] if program.name == "driftlab" and len(command) > 1 and not command[1].startswith("-") else None
     flags = {word.split("=")[0] for word in command[1:] if re.match(r"--[a-z]", word)}
-    shown = help_of(program, subcommand) if flags else ""
+    shown = help_of_command(program, command[1:]) if flags else ""
     return [f"{page}: {' '.join(command[:2])} has no {flag} in its --help" for flag in sorted(flags)
             if not re.search(re.escape(flag) + r"(?![\w-])", shown)]
+
+
+def help_of_command(program: Path, words: list[str]) -> str:
+    """The help of the program and of each subcommand that the words go down to; a script has none."""
+    shown = help_of(program)
+    path: list[str] = []
+    while words and words[0] in subcommands_of(program, *path):
+        path.append(words.pop(0))
+        shown += help_of(program, *path)
+    return shown
 
 
 def path_faults(root: Path, page: Path, text: str) -> list[str]:
@@ -93,20 +102,25 @@ def path_faults(root: Path, page: Path, text: str) -> list[str]:
     return faults
 
 
-def subcommands_of(program: Path) -> list[str]:
-    listed = help_of(program, None).split("Subcommands:")
+def subcommands_of(program: Path, *path: str) -> list[str]:
+    listed = help_of(program, *path).split("Subcommands:")
     return re.findall(r"^  ([a-z][\w-]*)", listed[1], re.MULTILINE) if len(listed) == 2 else []
 
 
 def undocumented(root: Path, programs: Path) -> list[str]:
     faults = []
-    for program, page in (("driftlabd", "operations.md"), ("driftlab", "cli.md")):
-        text = (root / "schema/docs" / page).read_text()
-        for subcommand in [None, *(subcommands_of(programs / program) if program == "driftlab" else [])]:
-            shown = help_of(programs / program, subcommand)
+    for program, pages_of in (("driftlabd", ("operations.md", "security.md")), ("driftlab", ("cli.md",))):
+        page = pages_of[0]
+        text = "".join((root / "schema/docs" / name).read_text() for name in pages_of if (root / "schema/docs" / name).is_file())
+        commands: list[tuple[str, ...]] = [()]
+        for path in commands:  # grows while it is walked
+            commands += [(*path, name) for name in subcommands_of(programs / program, *path)]
+        for path in commands:
+            subcommand = " ".join(path)
+            shown = help_of(programs / program, *path)
             for flag in sorted(set(re.findall(r"(?<![\w-])--[a-z][\w-]+", shown)) - {"--help", "--version"}):
                 if not re.search(re.escape(flag) + r"(?![\w-])", text):
-                    faults.append(f"schema/docs/{page}: does not tell of {flag} ({program} {subcommand or ''})".replace(" )", ")"))
+                    faults.append(f"schema/docs/{page}: does not tell of {flag} ({program} {subcommand})".replace(" )", ")"))
             if subcommand and subcommand not in text:
                 faults.append(f"schema/docs/{page}: does not tell of {program} {subcommand}")
     return faults

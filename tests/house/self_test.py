@@ -231,7 +231,7 @@ class Documents(Planted):
         self.refused(documents.check(self.root), "not executable")
 
     def test_flags_of_a_program_are_asked_of_the_subcommand(self) -> None:
-        self.plant("bin/driftlab", '#!/bin/sh\n[ "$1" = table ] && echo "--axis A"\n').chmod(0o755)
+        self.plant("bin/driftlab", '#!/bin/sh\n[ "$1" = table ] && echo "--axis A" || printf "Subcommands:\\n  table  x\\n"\n').chmod(0o755)
         os.environ["DRIFTLAB_BIN"] = str(self.root / "bin")
         self.addCleanup(os.environ.pop, "DRIFTLAB_BIN")
         self.readme("```sh\nbuild/release/bin/driftlab table --axis z --color\n```\n")

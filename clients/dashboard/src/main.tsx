@@ -1,12 +1,14 @@
 // The dashboard: which page an address shows.
 import {render, type JSX} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
+import {useLocked} from './api/client';
 import {followLinks, usePlace} from './route';
 import {Bar} from './shell/Bar';
 import {Drawer, openDrawer} from './shell/Drawer';
 import {Keys} from './shell/Help';
 import {startKeys} from './shell/keys';
 import {Said} from './shell/say';
+import {SignIn} from './shell/SignIn';
 import {Hairlines} from './shell/states';
 import {startTheme} from './shell/theme';
 
@@ -54,6 +56,7 @@ function App(): JSX.Element {
     if (first.current) { first.current = false; return; }
     main.current?.focus({preventScroll: true});
   }, [place.path]);
+  if (useLocked()) return <SignIn />;
   const Page = shown?.key === key ? shown.Page : null;
   return <>
     <Bar />

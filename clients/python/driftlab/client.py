@@ -1,9 +1,11 @@
 """The client: every route of the daemon, and the few calls that put routes together."""
 from __future__ import annotations
 
+import os
 import ssl
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, Literal, cast
 
 from .contract import Calibration as CalibrationDocument
@@ -13,6 +15,7 @@ from .contract import Job, JobRequest, NewOutageEvaluation, OutageScenario, Stud
 from .contract import OutageEvaluation as OutageEvaluationDocument
 from .problems import JobCancelled, problem_of
 from .results import Calibration, Characterisation, Investigation, OutageEvaluation
+from .routes.access import AccessRoutes
 from .routes.base import given
 from .routes.jobs import JobRoutes
 from .routes.recordings import RecordingRoutes
@@ -25,15 +28,21 @@ PIECE_S = 20.0  # the daemon is asked to wait this long at a time
 JobProgress = Callable[[float, str], None]  # fraction done, what is being done
 
 
-class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoutes):
+class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoutes, AccessRoutes):
     """A daemon at an address, for example Client("http://127.0.0.1:8477").
 
+    Where the daemon asks for a token, it is `token`, or what the file `token_file` holds, or DRIFTLAB_TOKEN of the environment.
     Every failure is a Problem. Lost connections, 429 and 503 are retried with growing pauses; every POST carries an
     Idempotency-Key, so that nothing is done twice. An object may be used by several threads: it holds no connection.
     """
 
-    def __init__(self, server: str = "http://127.0.0.1:8477", token: str | None = None, *, timeout_s: float = 60.0,
-                 retry: Retry | None = None, tls: ssl.SSLContext | None = None) -> None:
+    def __init__(self, server: str = "http://127.0.0.1:8477", token: str | None = None, *,
+                 token_file: str | os.PathLike[str] | None = None, timeout_s: float = 60.0, retry: Retry | None = None,
+                 tls: ssl.SSLContext | None = None) -> None:
+        if token is None and token_file is not None:
+            token = Path(token_file).read_text("utf-8").strip()
+        if token is None:
+            token = os.environ.get("DRIFTLAB_TOKEN") or None
         super().__init__(Transport(server, token, timeout_s, retry or Retry(), tls))
 
     def __repr__(self) -> str:

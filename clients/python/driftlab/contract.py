@@ -17,6 +17,25 @@ class Operation(NamedTuple):
 DriveTimeOdd = TypedDict("DriveTimeOdd", {"is": NotRequired[Literal['validity', 'arrival']]})
 
 
+class AuditRow(TypedDict):
+    sequence: int
+    at: str
+    # The same in microseconds since 1970, of which the digest is made.
+    at_us: int
+    # Public id of the token; `local` without authentication, `operator` for the command line, `daemon`.
+    actor: str
+    action: str
+    # The id of what was changed.
+    object: str
+    request_id: str
+    address: str
+    detail: str
+    # The digest of the row before; 64 zeros for the first.
+    previous: str
+    # SHA-256 over the other members, see /docs/security.
+    digest: str
+
+
 class Calibration(TypedDict):
     """Calibration. Bias, scale factor and misalignment of a device's sensors, what they were made from, and what
     corrects readings."""
@@ -1072,6 +1091,23 @@ class InvestigationUnexplainedItem(TypedDict):
     checks: list[str]
 
 
+class IssuedToken(TypedDict):
+    # Public; what logs and the audit log name.
+    id: str
+    name: str
+    scope: Scope
+    # null: every device.
+    devices: list[str] | None
+    created_at: str
+    expires_at: str | None
+    revoked_at: str | None
+    rotated_at: str | None
+    # To the minute.
+    last_used_at: str | None
+    # Shown this once.
+    secret: str
+
+
 class Job(TypedDict):
     """Job."""
 
@@ -1514,6 +1550,16 @@ class NewOutageEvaluation(TypedDict):
     relative_precision: NotRequired[float]
     # 0 is first.
     priority: NotRequired[int]
+
+
+class NewToken(TypedDict):
+    # What it is for.
+    name: str
+    scope: Scope
+    # Names of the only devices it may know of, which need not exist yet; none for an admin.
+    devices: NotRequired[list[str] | None]
+    # Seconds until it ends; without, it does not.
+    expires_in_s: NotRequired[int]
 
 
 class OutageEvaluation(TypedDict):
@@ -2485,6 +2531,17 @@ class SearchItem(TypedDict):
     href: str
 
 
+class Session(TypedDict):
+    # How the request was admitted.
+    authentication: Literal['off', 'token', 'session']
+    # The public id of the token.
+    token: str | None
+    name: str | None
+    scope: Scope
+    # The only devices there are for it; null: all.
+    devices: list[str] | None
+
+
 class Spectrogram(TypedDict):
     """Spectrogram. The density of a channel's error series in time and frequency over the density expected: of a fitted
     model, or the median over time of each frequency."""
@@ -2679,6 +2736,21 @@ class StudyRequestRecording(TypedDict):
     calibration: NotRequired[str]
 
 
+class Token(TypedDict):
+    # Public; what logs and the audit log name.
+    id: str
+    name: str
+    scope: Scope
+    # null: every device.
+    devices: list[str] | None
+    created_at: str
+    expires_at: str | None
+    revoked_at: str | None
+    rotated_at: str | None
+    # To the minute.
+    last_used_at: str | None
+
+
 class Trace(TypedDict):
     """Trace. A column of a recording as a screen can show it: least, greatest and mean value of every stretch of
     samples."""
@@ -2786,6 +2858,14 @@ class Upload(TypedDict):
     expires_at: str
 
 
+class VerifyAuditAnswer(TypedDict):
+    rows: int
+    head: str
+    sound: bool
+    # The first row that is not as it was written.
+    fault: str | None
+
+
 CalibrationEstimates: TypeAlias = "dict[str, Quantity]"
 Condition: TypeAlias = (
     "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
@@ -2811,6 +2891,7 @@ QuantityIdentified: TypeAlias = "Quantity | None"
 RecordingMembersColumns: TypeAlias = "dict[str, RecordingColumn]"
 RecordingMembersTrim: TypeAlias = "RecordingTrim"
 RegressionVerdict: TypeAlias = "Literal['pass', 'fail', 'inconclusive']"
+Scope: TypeAlias = "Literal['read', 'write', 'run', 'admin']"
 StudyBaseline: TypeAlias = "StudyBaselineAuto | StudyBaselineModel | StudyBaselineFitModel"
 
 # operationId -> what it takes and gives; `media` are the types of a good answer.
@@ -2961,4 +3042,24 @@ OPERATIONS: dict[str, Operation] = {
         'POST', '/v1/models', (), ('Idempotency-Key',), ('application/json',)),
     'getModel': Operation(
         'GET', '/v1/models/{id}', (), (), ('application/json',)),
+    'getSession': Operation(
+        'GET', '/v1/session', (), (), ('application/json',)),
+    'openSession': Operation(
+        'POST', '/v1/session', (), (), ('application/json',)),
+    'closeSession': Operation(
+        'DELETE', '/v1/session', (), (), ()),
+    'listTokens': Operation(
+        'GET', '/v1/tokens', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+    'createToken': Operation(
+        'POST', '/v1/tokens', (), (), ('application/json',)),
+    'getToken': Operation(
+        'GET', '/v1/tokens/{id}', (), (), ('application/json',)),
+    'rotateToken': Operation(
+        'POST', '/v1/tokens/{id}/rotate', (), (), ('application/json',)),
+    'revokeToken': Operation(
+        'POST', '/v1/tokens/{id}/revoke', (), ('Idempotency-Key',), ('application/json',)),
+    'listAudit': Operation(
+        'GET', '/v1/audit', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+    'verifyAudit': Operation(
+        'GET', '/v1/audit-verification', (), (), ('application/json',)),
 }

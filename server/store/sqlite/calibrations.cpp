@@ -53,7 +53,7 @@ Result<std::vector<StoredCalibration>> calibrations(Connection& connection, cons
                                                     const Page& page) {
   FilteredQuery query(kSelect);
   query.where("device_id = ?", device_id);
-  return query.read_page(connection, page, read_calibration);
+  return query.visible(page, "device_id").read_page(connection, page, read_calibration);
 }
 
 }  // namespace driftlab::server::tables

@@ -77,7 +77,7 @@ Result<Device> device(Connection& connection, std::string_view id_or_name) {
 
 Result<std::vector<Device>> devices(Connection& connection, const Page& page) {
   FilteredQuery query(kSelect);
-  return query.read_page(connection, page, read_device);
+  return query.visible(page, "id").read_page(connection, page, read_device);
 }
 
 Result<Device> update_device(Connection& connection, std::string_view id, const DeviceChange& change,

@@ -61,7 +61,7 @@ Result<std::vector<Investigation>> investigations(Connection& connection, const 
   query.where("device_id = ?", filter.device_id);
   query.where("study_id = ?", filter.study_id);
   query.where("job_id = ?", filter.job_id);
-  return query.read_page(connection, page, read_investigation);
+  return query.visible(page, "device_id").read_page(connection, page, read_investigation);
 }
 
 }  // namespace driftlab::server::tables

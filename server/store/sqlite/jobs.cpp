@@ -11,6 +11,18 @@ constexpr std::string_view kEqualJob =
 constexpr std::string_view kInsert =
     "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
     "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7)";
+/// ?1 the request, ?2 the job. Whatever of the request is the id of something that a device has names that device.
+constexpr std::string_view kNoteDevices =
+    "WITH named (id) AS (SELECT DISTINCT atom FROM json_tree(CASE WHEN json_valid(?1) THEN ?1 ELSE 'null' END) WHERE "
+    "type = 'text') "
+    "INSERT INTO job_devices (job_id, device_id) SELECT ?2, device_id FROM ("
+    "SELECT devices.id AS device_id FROM named JOIN devices ON devices.id = named.id "
+    "UNION SELECT recordings.device_id FROM named JOIN recordings ON recordings.id = named.id "
+    "UNION SELECT studies.device_id FROM named JOIN studies ON studies.id = named.id "
+    "UNION SELECT calibrations.device_id FROM named JOIN calibrations ON calibrations.id = named.id "
+    "UNION SELECT models.device_id FROM named JOIN models ON models.id = named.id WHERE models.device_id IS NOT NULL "
+    "UNION SELECT fits.device_id FROM named JOIN fits ON fits.id = named.id "
+    "UNION SELECT channel_results.device_id FROM named JOIN channel_results ON channel_results.id = named.id)";
 constexpr std::string_view kAttempts = "SELECT problem_json FROM job_attempts WHERE job_id = ? ORDER BY attempt";
 constexpr std::string_view kEvents =
     "SELECT sequence, type, state, stage, progress, attempt, at FROM job_events WHERE job_id = ? AND sequence > ? "
@@ -79,6 +91,9 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
                         .bind(id, job.kind, job.priority, kMaxFailures, job.unique_key, job.request_json, now)
                         .run();
   if (inserted) {
+    inserted = connection.prepare(kNoteDevices).bind(job.request_json, id).run();
+  }
+  if (inserted) {
     inserted = add_event(connection, id, "state", now);
   }
   if (!inserted) {
@@ -110,7 +125,7 @@ Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, c
   FilteredQuery query(kSelect);
   query.where("kind = ?", filter.kind);
   query.where("state = ?", filter.state ? std::optional<std::string>(name_of(*filter.state)) : std::nullopt);
-  return query.read_page(connection, page, read_job);
+  return query.visible_jobs(page).read_page(connection, page, read_job);
 }
 
 Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id, std::int64_t sequence,

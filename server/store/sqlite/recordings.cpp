@@ -22,6 +22,9 @@ constexpr std::string_view kById =
 constexpr std::string_view kByDeviceAndBlob =
     "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at "
     "FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
+constexpr std::string_view kVisibleDevicesAndRecordings =
+    "SELECT (SELECT count(*) FROM devices WHERE name IN (SELECT value FROM json_each(?))), (SELECT count(*) FROM "
+    "recordings JOIN devices ON devices.id = device_id WHERE name IN (SELECT value FROM json_each(?)))";
 constexpr std::string_view kCounts =
     "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
     "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
@@ -159,7 +162,7 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   FilteredQuery query(kSelect);
   query.where("device_id = ?", filter.device_id);
   query.where("condition = ?", filter.condition);
-  return query.read_page(connection, page, read_recording);
+  return query.visible(page, "device_id").read_page(connection, page, read_recording);
 }
 
 Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,
@@ -234,8 +237,14 @@ Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256)
   return connection.changes() > 0;
 }
 
-Result<Counts> counts(Connection& connection) {
-  Statement statement = connection.prepare(kCounts);
+Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible) {
+  const std::string jobs = "(SELECT count(*) FROM jobs WHERE state = ? AND " + std::string(kVisibleJob) + ")";
+  Statement statement = connection.prepare(
+      visible ? std::string(kVisibleDevicesAndRecordings) + ", " + jobs + ", " + jobs : std::string(kCounts));
+  if (visible) {
+    statement.bind(visible->devices_json, visible->devices_json, "queued", visible->token, visible->devices_json,
+                   "running", visible->token, visible->devices_json);
+  }
   return one_row(
       statement,
       +[](const Statement& row) { return Counts{row.integer(0), row.integer(1), row.integer(2), row.integer(3)}; },

@@ -131,7 +131,7 @@ Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, c
   if (filter.latest_only) {
     query.where(kFitIsLatest);
   }
-  return query.read_page(connection, page, read_fit);
+  return query.visible(page, "device_id").read_page(connection, page, read_fit);
 }
 
 Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis) {

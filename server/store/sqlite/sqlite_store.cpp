@@ -2,9 +2,11 @@
 
 #include "server/store/files.hpp"
 #include "server/store/sqlite/reader_pool.hpp"
+#include "server/store/sqlite/sqlite_access.hpp"
 #include "server/store/sqlite/tables.hpp"
 #include "server/store/sqlite/writer.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sqlite3.h>
 
 #include <random>
@@ -12,19 +14,48 @@
 namespace driftlab::server {
 namespace {
 
+std::optional<tables::AuditEntry> changed(const char* action, const std::string& id) {
+  return tables::AuditEntry{action, id, ""};
+}
+
+/// Objects that are made once: a row of the audit log only where this was the time.
+std::optional<tables::AuditEntry> made(const char* action, bool created, const std::string& id) {
+  return created ? changed(action, id) : std::nullopt;
+}
+
+/// A caller limited to devices may ask for no job that names another one; who asks is remembered.
+Status note_caller(Connection& connection, const Job& job, const Caller* caller) {
+  if (caller == nullptr) {
+    return {};
+  }
+  if (const auto& devices = caller->principal.devices) {
+    const auto within = tables::is_job_within(connection, job.id, nlohmann::json(*devices).dump());
+    if (!within) {
+      return fail(within.error());
+    }
+    if (!*within) {
+      return tl::unexpected(forbidden("The token is limited to devices that are not those of this job."));
+    }
+  }
+  return tables::add_owner(connection, job.id, *caller);
+}
+
 /// Hands every method to a reader or to the writer. The work itself is in the files named after resources.
 class OpenedStore final : public SqliteStore {
  public:
   OpenedStore(FileHandle lock, SqliteFacts facts, const Clock& clock, std::uint64_t jitter_seed,
-              std::unique_ptr<Connection> writer, std::unique_ptr<ReaderPool> readers)
+              std::unique_ptr<Connection> writer, std::unique_ptr<ReaderPool> readers, AuditListener listener)
       : lock_(std::move(lock)),
         facts_(std::move(facts)),
         clock_(clock),
         jitter_(jitter_seed),
         writer_(std::move(writer)),
-        readers_(std::move(readers)) {}
+        readers_(std::move(readers)),
+        audited_(writer_, clock_, std::move(listener)),
+        access_(writer_, audited_, *readers_, clock_) {}
 
   [[nodiscard]] const SqliteFacts& facts() const override { return facts_; }
+  [[nodiscard]] AccessStore& access() override { return access_; }
   [[nodiscard]] Status copy_to(const std::filesystem::path& target) override {
     return readers_->borrow([&](Connection& c) { return copy_database(c, target); });
   }
@@ -36,7 +67,8 @@ class OpenedStore final : public SqliteStore {
   }
 
   [[nodiscard]] Result<DeviceOutcome> ensure_device(const Device& device) override {
-    return writer_.write([&](Connection& c) { return tables::ensure_device(c, device, now()); });
+    return audited_.write([&](Connection& c) { return tables::ensure_device(c, device, now()); },
+                          [](const DeviceOutcome& o) { return made("device.create", o.created, o.device.id); });
   }
   [[nodiscard]] Result<Device> device(std::string_view id_or_name) override {
     return readers_->read([&](Connection& c) { return tables::device(c, id_or_name); });
@@ -46,14 +78,16 @@ class OpenedStore final : public SqliteStore {
   }
   [[nodiscard]] Result<Device> update_device(std::string_view id, const DeviceChange& change,
                                              std::int64_t expected_revision) override {
-    return writer_.write([&](Connection& c) { return tables::update_device(c, id, change, expected_revision, now()); });
+    return audited_.write([&](Connection& c) { return tables::update_device(c, id, change, expected_revision, now()); },
+                          [](const Device& device) { return changed("device.change", device.id); });
   }
 
   [[nodiscard]] Result<std::optional<Blob>> blob(std::string_view sha256) override {
     return readers_->read([&](Connection& c) { return tables::blob(c, sha256); });
   }
   [[nodiscard]] Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) override {
-    return writer_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now()); });
+    return audited_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now()); },
+                          [](const RecordingOutcome& o) { return made("recording.add", o.created, o.recording.id); });
   }
   [[nodiscard]] Result<Recording> recording(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::recording(c, id); });
@@ -61,17 +95,32 @@ class OpenedStore final : public SqliteStore {
   [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override {
     return readers_->read([&](Connection& c) { return tables::recordings(c, filter, page); });
   }
-  [[nodiscard]] Result<Counts> counts() override {
-    return readers_->read([](Connection& c) { return tables::counts(c); });
+  [[nodiscard]] Result<Counts> counts(const std::optional<Visibility>& visible) override {
+    return readers_->read([&](Connection& c) { return tables::counts(c, visible); });
+  }
+  [[nodiscard]] Result<bool> sees_job(std::string_view job, const Visibility& visible) override {
+    return readers_->read([&](Connection& c) { return tables::sees_job(c, job, visible); });
+  }
+  [[nodiscard]] Result<bool> is_owner(std::string_view object, std::string_view token) override {
+    return readers_->read([&](Connection& c) { return tables::is_owner(c, object, token); });
   }
   [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) override {
     return readers_->read([&](Connection& c) { return tables::conditions_of(c, device_id); });
   }
-  [[nodiscard]] Result<Recording> revise_recording(const Recording& changed, std::int64_t expected_revision) override {
-    return writer_.write([&](Connection& c) { return tables::revise_recording(c, changed, expected_revision, now()); });
+  [[nodiscard]] Result<Recording> revise_recording(const Recording& recording,
+                                                   std::int64_t expected_revision) override {
+    return audited_.write(
+        [&](Connection& c) { return tables::revise_recording(c, recording, expected_revision, now()); },
+        [](const Recording& revised) { return changed("recording.change", revised.id); });
   }
   [[nodiscard]] Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
-    return writer_.write([&](Connection& c) { return tables::remove_recording(c, id, expected_revision, now()); });
+    const auto removed = audited_.write(
+        [&](Connection& c) {
+          Status status = tables::remove_recording(c, id, expected_revision, now());
+          return status ? Result<std::string>(std::string(id)) : fail(status.error());
+        },
+        [](const std::string& gone) { return changed("recording.delete", gone); });
+    return removed ? Status{} : fail(removed.error());
   }
   [[nodiscard]] Result<std::vector<std::string>> blob_hashes() override {
     return readers_->read([](Connection& c) { return tables::blob_hashes(c); });
@@ -81,7 +130,18 @@ class OpenedStore final : public SqliteStore {
   }
 
   [[nodiscard]] Result<EnqueuedJob> enqueue(const NewJob& job) override {
-    return writer_.write([&](Connection& c) { return tables::enqueue(c, job, now()); });
+    const Caller* const caller = caller_of_thread();
+    return audited_.write(
+        [&](Connection& c) -> Result<EnqueuedJob> {
+          auto queued = tables::enqueue(c, job, now());
+          if (queued) {
+            if (Status noted = note_caller(c, queued->job, caller); !noted) {
+              return fail(noted.error());
+            }
+          }
+          return queued;
+        },
+        [](const EnqueuedJob& queued) { return made("job.create", queued.created, queued.job.id); });
   }
   [[nodiscard]] Result<Job> job(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::job(c, id); });
@@ -112,7 +172,8 @@ class OpenedStore final : public SqliteStore {
     return writer_.write([&](Connection& c) { return tables::release(c, lease, now()); });
   }
   [[nodiscard]] Result<Job> request_cancel(std::string_view id) override {
-    return writer_.write([&](Connection& c) { return tables::request_cancel(c, id, now()); });
+    return audited_.write([&](Connection& c) { return tables::request_cancel(c, id, now()); },
+                          [](const Job& job) { return changed("job.cancel", job.id); });
   }
   [[nodiscard]] Result<int> rescue_expired() override {
     return writer_.write([&](Connection& c) {
@@ -150,7 +211,8 @@ class OpenedStore final : public SqliteStore {
   }
 
   [[nodiscard]] Result<StudyOutcome> add_study(const Study& study) override {
-    return writer_.write([&](Connection& c) { return tables::add_study(c, study, now()); });
+    return audited_.write([&](Connection& c) { return tables::add_study(c, study, now()); },
+                          [](const StudyOutcome& o) { return made("study.create", o.created, o.study.id); });
   }
   [[nodiscard]] Result<Study> study(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::study(c, id); });
@@ -161,7 +223,9 @@ class OpenedStore final : public SqliteStore {
   }
 
   [[nodiscard]] Result<CalibrationOutcome> add_calibration(const StoredCalibration& calibration) override {
-    return writer_.write([&](Connection& c) { return tables::add_calibration(c, calibration, now()); });
+    return audited_.write(
+        [&](Connection& c) { return tables::add_calibration(c, calibration, now()); },
+        [](const CalibrationOutcome& o) { return made("calibration.create", o.created, o.calibration.id); });
   }
   [[nodiscard]] Result<StoredCalibration> calibration(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::calibration(c, id); });
@@ -172,7 +236,18 @@ class OpenedStore final : public SqliteStore {
   }
 
   [[nodiscard]] Result<ModelOutcome> add_model(const Model& model) override {
-    return writer_.write([&](Connection& c) { return tables::add_model(c, model, now()); });
+    const Caller* const caller = caller_of_thread();
+    return audited_.write(
+        [&](Connection& c) -> Result<ModelOutcome> {
+          auto added = tables::add_model(c, model, now());
+          if (added && caller != nullptr) {
+            if (Status noted = tables::add_owner(c, added->model.id, *caller); !noted) {
+              return fail(noted.error());
+            }
+          }
+          return added;
+        },
+        [](const ModelOutcome& o) { return made("model.create", o.created, o.model.id); });
   }
   [[nodiscard]] Result<Model> model(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::model(c, id); });
@@ -209,6 +284,8 @@ class OpenedStore final : public SqliteStore {
   std::mt19937_64 jitter_;  ///< used by the writing thread alone
   Writer writer_;
   std::unique_ptr<ReaderPool> readers_;
+  AuditedWriter audited_;
+  SqliteAccess access_;
 };
 
 /// 3.7.0 to 3.51.2: https://sqlite.org/wal.html
@@ -266,7 +343,7 @@ Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::pa
   }
   const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
   return std::make_unique<OpenedStore>(std::move(*lock), std::move(facts), clock, seed, std::move(*writer),
-                                       std::move(*readers));
+                                       std::move(*readers), std::move(options.audited));
 }
 
 }  // namespace driftlab::server

@@ -8,12 +8,14 @@
 /// SQLite 3.7.0 to 3.51.2 can damage a database when two connections write or checkpoint at the same moment. Here
 /// exactly one connection can: the writer's. Readers are opened read-only, and the lock keeps a second daemon out.
 #include "core/signal/result.hpp"
+#include "server/store/access_store.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/sqlite/migrations.hpp"
 #include "server/store/store.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +31,8 @@ struct SqliteOptions {
   std::int64_t max_pages = 0;
   /// Other migrations than the embedded ones, for tests.
   std::optional<std::vector<Migration>> migrations;
+  /// Told of every row of the audit log once it is durable. May be empty.
+  std::function<void(const AuditRow&)> audited;
 };
 
 /// What opening found, for the log.
@@ -44,6 +48,8 @@ struct SqliteFacts {
 class SqliteStore : public Store {
  public:
   [[nodiscard]] virtual const SqliteFacts& facts() const = 0;
+  /// Tokens, sessions and the audit log. Lives as long as the store.
+  [[nodiscard]] virtual AccessStore& access() = 0;
   /// A consistent copy of the database while it is in use (VACUUM INTO from a reader). Errors: DiskFull, Io.
   [[nodiscard]] virtual Status copy_to(const std::filesystem::path& target) = 0;
 };

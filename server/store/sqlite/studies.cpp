@@ -56,7 +56,7 @@ Result<std::vector<Study>> studies(Connection& connection, const std::optional<s
                                    const Page& page) {
   FilteredQuery query(kSelect);
   query.where("device_id = ?", device_id);
-  return query.read_page(connection, page, read_study);
+  return query.visible(page, "device_id").read_page(connection, page, read_study);
 }
 
 }  // namespace driftlab::server::tables

@@ -57,6 +57,13 @@ template <class Row>
   }
 }
 
+/// Which jobs somebody limited to devices sees: those asked for by the token (first value), and those that name devices
+/// and none but these (second value, a JSON list of names).
+constexpr std::string_view kVisibleJob =
+    "(EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id = ?) OR (EXISTS (SELECT 1 FROM job_devices "
+    "WHERE job_id = jobs.id) AND NOT EXISTS (SELECT 1 FROM job_devices JOIN devices ON devices.id = "
+    "job_devices.device_id WHERE job_id = jobs.id AND devices.name NOT IN (SELECT value FROM json_each(?)))))";
+
 /// A SELECT with those conditions that a filter asks for. Texts are constants of our own; values are bound.
 class FilteredQuery {
  public:
@@ -72,10 +79,46 @@ class FilteredQuery {
     sql_.append(first_ ? " WHERE " : " AND ").append(condition);
     first_ = false;
   }
-  /// Ends the query as a keyset page over `id` and reads it.
+  /// Leaves rows to somebody limited to devices (Page::visible) that belong to one of them. `column` holds the device's
+  /// id. A page for such a caller is read only once this, or what stands for it, was said.
+  FilteredQuery& visible(const Page& page, std::string_view column) {
+    if (page.visible) {
+      where(std::string(column) + " IN (SELECT id FROM devices WHERE name IN (SELECT value FROM json_each(?)))",
+            page.visible->devices_json);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// The same for objects that may belong to no device: who asked for one sees it too.
+  FilteredQuery& visible_or_own(const Page& page, std::string_view column, std::string_view id) {
+    if (page.visible) {
+      where("(" + std::string(column) +
+                " IN (SELECT id FROM devices WHERE name IN (SELECT value FROM json_each(?))) OR EXISTS (SELECT 1 FROM "
+                "owners WHERE object_id = " +
+                std::string(id) + " AND token_id = ?))",
+            page.visible->devices_json);
+      values_.push_back(page.visible->token);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// The same for jobs, which name any number of devices.
+  FilteredQuery& visible_jobs(const Page& page) {
+    if (page.visible) {
+      where(kVisibleJob, page.visible->token);
+      values_.push_back(page.visible->devices_json);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// Ends the query as a keyset page over `id` and reads it. Errors: Internal where the page is for a caller limited to
+  /// devices and the query does not say what such a caller sees.
   template <class Row>
   [[nodiscard]] Result<std::vector<Row>> read_page(Connection& connection, const Page& page,
                                                    Row (*read)(const Statement&)) {
+    if (page.visible && !guarded_) {
+      return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
+    }
     if (page.newest_first) {
       where("id < ?", page.after.empty() ? std::nullopt : std::optional(page.after));
     } else {
@@ -94,6 +137,7 @@ class FilteredQuery {
   std::string sql_;
   std::vector<std::string> values_;
   bool first_ = true;
+  bool guarded_ = false;
 };
 
 // ---- devices
@@ -110,7 +154,7 @@ class FilteredQuery {
 [[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
-[[nodiscard]] Result<Counts> counts(Connection& connection);
+[[nodiscard]] Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible);
 [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);

@@ -16,8 +16,9 @@ struct World {
     directory = ::mkdtemp(name.data());
     store = std::move(open_sqlite_store(directory, clock).value());
     blobs = std::move(open_blob_directory(directory).value());
-    context = std::make_unique<ApiContext>(
-        ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; }, [this] { return not_ready; }, directory});
+    context =
+        std::make_unique<ApiContext>(ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; },
+                                                [this] { return not_ready; }, directory, store->access(), gate()});
     add_all_routes(router, *context);
     dispatcher = std::make_unique<Dispatcher>(*context);
   }
@@ -31,6 +32,13 @@ struct World {
     std::filesystem::remove_all(directory, ignored);
   }
 
+  Gate& gate() {
+    if (!opened_gate) {
+      opened_gate = std::make_unique<Gate>(store->access(), clock, GateOptions{});
+    }
+    return *opened_gate;
+  }
+
   /// A plain request through the dispatcher, as the connection would pass it on.
   Response ask(std::string_view method, std::string_view target, std::string body = "",
                std::vector<std::pair<std::string, std::string>> headers = {}) {
@@ -42,6 +50,9 @@ struct World {
     request.query = parsed.query;
     request.headers = std::move(headers);
     request.body = std::move(body);
+    if (!request.body.empty() && !request.header("content-type")) {
+      request.headers.emplace_back("content-type", "application/json");
+    }
     request.request_id = "req_test";
     auto match = router.match(method, request.path);
     request.parameters = match.parameters;
@@ -56,6 +67,7 @@ struct World {
   EventLog events{bell, "run"};
   std::unique_ptr<SqliteStore> store;
   std::unique_ptr<BlobStore> blobs;
+  std::unique_ptr<Gate> opened_gate;
   std::unique_ptr<ApiContext> context;
   Router router;
   std::unique_ptr<Dispatcher> dispatcher;

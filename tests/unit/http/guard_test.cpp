@@ -42,8 +42,8 @@ TEST(Guard, AnswersOnlyForItsOwnHosts) {
 
 TEST(Guard, RefusesWhatMayBeGivenOnceWhenItComesTwice) {
   EXPECT_EQ(refusal(head("GET", {{"host", "localhost"}, {"host", "localhost"}})), "host_not_allowed");
-  for (const char* const name : {"content-length", "content-type", "authorization", "origin"}) {
-    const std::string value = name == std::string("origin") ? "http://localhost" : "1";
+  for (const char* const name : {"content-length", "content-type", "authorization", "origin", "sec-fetch-site"}) {
+    const std::string value = name == std::string("origin") ? "http://localhost" : "none";
     EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {name, value}, {name, value}})), "bad_request") << name;
   }
 }
@@ -89,9 +89,46 @@ TEST(Guard, LetsPagesOfOtherOriginsReadButChangeNothing) {
     EXPECT_EQ(refusal(head("DELETE", {{"host", "localhost"}, {"origin", origin}})), "origin_not_allowed") << origin;
     EXPECT_EQ(refusal(head("GET", {{"host", "localhost"}, {"origin", origin}})), "") << origin;
   }
-  for (const char* const origin : {"http://localhost:8477", "https://127.0.0.1", "http://[::1]:80"}) {
+  for (const char* const origin : {"http://localhost", "http://localhost:80", "HTTP://LocalHost"}) {
     EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"origin", origin}})), "") << origin;
   }
+  EXPECT_EQ(refusal(head("POST", {{"host", "[::1]:8477"}, {"origin", "http://[::1]:8477"}})), "");
+}
+
+// Found in review: an origin was held to its host alone, so that whatever else served pages on this machine, on any
+// port, could change what the daemon keeps.
+TEST(Guard, ComparesTheWholeOrigin) {
+  for (const char* const origin : {"http://localhost", "http://localhost:80", "http://localhost:9999",
+                                   "https://localhost:8477", "http://127.0.0.1:8477", "http://localhost:8477.evil"}) {
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost:8477"}, {"origin", origin}})), "origin_not_allowed") << origin;
+  }
+  EXPECT_EQ(refusal(head("POST", {{"host", "localhost:8477"}, {"origin", "http://localhost:8477"}})), "");
+  GuardLimits secure = kLimits;
+  secure.secure = true;
+  const auto refused = [&](const char* origin) {
+    return inspect(head("POST", {{"host", "localhost"}, {"origin", origin}}), secure).refusal.has_value();
+  };
+  EXPECT_FALSE(refused("https://localhost"));
+  EXPECT_FALSE(refused("https://localhost:443"));
+  EXPECT_TRUE(refused("http://localhost"));
+}
+
+TEST(Guard, BelievesWhatTheBrowserSaysOfTheSite) {
+  const auto post = [](std::vector<std::pair<std::string, std::string>> more) {
+    more.emplace_back("host", "localhost:8477");
+    return refusal(head("POST", std::move(more)));
+  };
+  for (const char* const site : {"cross-site", "same-site", "", "Same-Origin"}) {
+    EXPECT_EQ(post({{"sec-fetch-site", site}}), "origin_not_allowed") << site;
+    EXPECT_EQ(post({{"sec-fetch-site", site}, {"origin", "http://localhost:8477"}}), "origin_not_allowed") << site;
+    EXPECT_EQ(refusal(head("GET", {{"host", "localhost"}, {"sec-fetch-site", site}})), "") << site;
+  }
+  EXPECT_EQ(post({{"sec-fetch-site", "none"}}), "");
+  EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}}), "");
+  // A proxy ends TLS: scheme and port of the page are the proxy's, its host is one that the daemon answers for.
+  EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "https://localhost"}}), "");
+  EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "https://evil.example"}}), "origin_not_allowed");
+  EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "null"}}), "origin_not_allowed");
 }
 
 TEST(Guard, MeetsOneExpectationOnly) {

@@ -13,17 +13,26 @@ TEST(Settings, ListenOnThisMachineAlone) {
   EXPECT_EQ(address->port, 8477);
 }
 
-TEST(Settings, RefuseAnotherAddressUnlessInsecure) {
+TEST(Settings, RefuseAnotherAddressWithoutTlsAndTokensUnlessInsecure) {
   for (const char* const listen : {"0.0.0.0:8477", "192.168.1.4:80", "[::]:8477", "[2001:db8::1]:1"}) {
     Settings settings;
     settings.listen = listen;
-    const auto refused = listen_address(settings);
+    const auto address = listen_address(settings);
+    ASSERT_TRUE(address) << listen;
+    const auto refused = require_safe_address(settings, *address, true);
     ASSERT_FALSE(refused) << listen;
     EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
     EXPECT_EQ(refused.error().fields[0], (ErrorField{"parameter", "listen"}));
     EXPECT_THAT(refused.error().message, testing::HasSubstr("--insecure"));
     settings.insecure = true;
-    EXPECT_TRUE(listen_address(settings)) << listen;
+    EXPECT_TRUE(require_safe_address(settings, *address, false)) << listen;
+    settings.insecure = false;
+    settings.tls_certificate = "certificate.pem";
+    settings.tls_key = "key.pem";
+    EXPECT_FALSE(require_safe_address(settings, *address, false)) << listen;
+    EXPECT_TRUE(require_safe_address(settings, *address, true)) << listen;
+    settings.require_tokens = true;
+    EXPECT_TRUE(require_safe_address(settings, *address, false)) << listen;
   }
 }
 
@@ -34,7 +43,16 @@ TEST(Settings, TakeLoopbackInEitherFamily) {
     const auto taken = listen_address(settings);
     ASSERT_TRUE(taken) << listen;
     EXPECT_EQ(taken->address, address);
+    EXPECT_TRUE(require_safe_address(settings, *taken, false)) << listen;
   }
+}
+
+TEST(Settings, TakeCertificateAndKeyTogether) {
+  Settings settings;
+  settings.tls_certificate = "certificate.pem";
+  EXPECT_EQ(listen_address(settings).error().fields[0], (ErrorField{"parameter", "tls-key"}));
+  std::swap(settings.tls_certificate, settings.tls_key);
+  EXPECT_EQ(listen_address(settings).error().fields[0], (ErrorField{"parameter", "tls-certificate"}));
 }
 
 TEST(Settings, RefuseWhatIsNoAddressAndPort) {

@@ -55,6 +55,25 @@ export function useOffline(): boolean {
   return state;
 }
 
+// --- whether the daemon asks for a token that this browser does not have
+let locked = false;
+const lockWatchers = new Set<Listener>();
+
+function setLocked(now: boolean): void {
+  locked = now;
+  for (const watcher of [...lockWatchers]) watcher(now);
+}
+
+export function useLocked(): boolean {
+  const [state, setState] = useState(locked);
+  useEffect(() => {
+    lockWatchers.add(setState);
+    setState(locked);
+    return () => { lockWatchers.delete(setState); };
+  }, []);
+  return state;
+}
+
 async function problemOf(answer: Response): Promise<Problem> {
   const text = await answer.text();
   try {
@@ -74,6 +93,7 @@ export async function ask(path: string, init: RequestInit = {}): Promise<Respons
     throw new Problem(UNREACHABLE);
   }
   setOffline(false);
+  if (answer.status === 401 && !(init.method === 'POST' && path === '/v1/session')) setLocked(true);
   if (!answer.ok) throw await problemOf(answer);
   return answer;
 }

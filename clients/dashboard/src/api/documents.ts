@@ -8,6 +8,8 @@ export type Ends = (number | null)[];
 
 export interface List<T> { items: T[]; next_cursor: string | null }
 
+export interface Session { authentication: 'off' | 'token' | 'session'; token: string | null; name: string | null; scope: string; devices: string[] | null }
+
 export interface Summary { verdict: string; details: string[]; level: string; facts: {pointer: string; value: number | null}[] }
 
 export interface AxisSummary {

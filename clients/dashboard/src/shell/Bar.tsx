@@ -1,7 +1,7 @@
 import type {JSX} from 'preact';
 import {useState} from 'preact/hooks';
-import {useOffline, useRead} from '../api/client';
-import type {Counts} from '../api/documents';
+import {send, useOffline, useRead} from '../api/client';
+import type {Counts, Session} from '../api/documents';
 import {usePlace} from '../route';
 import {Find} from './Find';
 
@@ -40,9 +40,17 @@ export function Bar(): JSX.Element {
       <LiveJobs />
       <button type="button" class="btn menu" aria-expanded={open} aria-controls="pages" onClick={() => setOpen(!open)}>Menu</button>
       <a class="btn primary" href="/upload">Upload</a>
+      <SignOut />
     </header>
     <Offline />
   </>;
+}
+
+function SignOut(): JSX.Element | null {
+  const session = useRead<Session>('/v1/session');
+  if (session.data?.authentication !== 'session') return null;
+  const signOut = (): void => { send('DELETE', '/v1/session').then(() => window.location.reload(), () => window.location.reload()); };
+  return <button type="button" class="btn" title={`Signed in as ${session.data.name ?? ''}`} onClick={signOut}>Sign out</button>;
 }
 
 function Offline(): JSX.Element {
