@@ -1,5 +1,7 @@
 #pragma once
 /// Requests and responses as handlers see them: plain values, free of sockets.
+#include "server/store/budgets.hpp"
+
 #include <chrono>
 #include <optional>
 #include <string>
@@ -19,6 +21,7 @@ struct Request {
   std::vector<std::pair<std::string, std::string>> headers;  ///< names in lower case
   std::string body;                                          ///< empty for uploads, which stream
   std::string request_id;
+  const Budgets* budgets = &default_budgets();  ///< what an answer may take
 
   /// First value of a header (name in lower case), or nothing.
   [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;

@@ -68,9 +68,12 @@ def command_faults(root: Path, page: str, command: list[str], programs: Path | N
             return [f"{page}: the command {name} is not executable"]
     else:
         return []
-    subcommand = command[1] if program.name == "driftlab" and len(command) > 1 and not command[1].startswith("-") else None
+    programs_of_ours = {"driftlab", "driftlabd"}
+    subcommand = command[1] if program.name in programs_of_ours and len(command) > 1 and not command[1].startswith("-") else None
     flags = {word.split("=")[0] for word in command[1:] if re.match(r"--[a-z]", word)}
     shown = help_of(program, subcommand) if flags else ""
+    if flags and subcommand and program.name == "driftlabd":
+        shown += help_of(program, None)  # its settings go with every subcommand
     return [f"{page}: {' '.join(command[:2])} has no {flag} in its --help" for flag in sorted(flags)
             if not re.search(re.escape(flag) + r"(?![\w-])", shown)]
 
