@@ -8,12 +8,20 @@
 #include "server/jobs/fault_recorder.hpp"
 #include "server/jobs/worker_pool.hpp"
 #include "server/observe/log.hpp"
+#include "server/observe/metrics.hpp"
 #include "server/pages/pages.hpp"
+#include "server/process.hpp"
+#include "server/scrubber.hpp"
+#include "server/store/disk_reserve.hpp"
 #include "server/store/files.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <stop_token>
 #include <thread>
 
 namespace driftlab::server {
@@ -21,6 +29,9 @@ namespace {
 
 constexpr double kLeastFreeFraction = 0.05;
 constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
+/// Of the time to stop, the part that running jobs get before they are handed back.
+constexpr double kGraceShare = 0.7;
+constexpr std::chrono::seconds kProbeInterval{2};
 
 /// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
 void settle_threads(const Settings& settings, WorkerOptions& options) {
@@ -29,7 +40,8 @@ void settle_threads(const Settings& settings, WorkerOptions& options) {
   options.threads = settings.workers > 0 ? std::min(settings.workers, options.computing) : options.computing;
 }
 
-void log_request(const AccessRecord& record) {
+void log_request(Metrics& metrics, const AccessRecord& record) {
+  metrics.count_request(record.method, record.route, record.status, record.seconds, record.bytes_in, record.bytes_out);
   log_info("request", Json{{"method", record.method},
                            {"route", record.route},
                            {"target", record.target},
@@ -96,13 +108,18 @@ Status open_gate(Gate& gate, const Settings& settings) {
 struct Daemon::Parts {
   Parts(std::unique_ptr<BlobStore> blobs_in, std::unique_ptr<SqliteStore> store_in,
         std::unique_ptr<SystemClock> clock_in, std::unique_ptr<Gate> gate_in, WorkerOptions worker_options,
-        std::filesystem::path data)
-      : clock(std::move(clock_in)),
+        const Settings& settings)
+      : budgets(settings.budgets),
+        reserve(settings.data / "reserve", settings.budgets.reserve_bytes),
+        clock(std::move(clock_in)),
         blobs(std::move(blobs_in)),
         store(std::move(store_in)),
         visible(make_visible_store(*store)),
         gate(std::move(gate_in)),
-        workers({*store, *blobs, *clock}, std::move(worker_options),
+        scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second),
+        workers({*store, *blobs, *clock, budgets,
+                 [this](const std::string& blob) { return scrubber.verify_columns(blob); }},
+                maintained(std::move(worker_options)),
                 [this](const std::string& id) {
                   bell.ring(id);
                   announce_job(api, id);
@@ -114,11 +131,27 @@ struct Daemon::Parts {
             events,
             [this] { workers.wake(); },
             [this] { return not_ready_why(); },
-            std::move(data),
+            settings.data,
             store->access(),
-            *gate},
+            *gate,
+            budgets,
+            [this] { return reserve.release(); },
+            [this] { return is_nearly_full(); },
+            [this] { return metrics.text(gauges(), DRIFTLAB_VERSION); },
+            [this] { return scrubber.findings().damaged; },
+            stop_uploads.get_token()},
         dispatcher(api) {
     add_all_routes(router, api);
+  }
+
+  WorkerOptions maintained(WorkerOptions options) {
+    options.attempt_ended = [this](std::string_view kind, std::string_view outcome, double seconds) {
+      metrics.count_attempt(kind, outcome, seconds);
+    };
+    options.maintenance.budgets = budgets;
+    options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
+    options.maintenance.each_turn = [this] { look_after_reserve(); };
+    return options;
   }
 
   [[nodiscard]] std::string not_ready_why() const {
@@ -128,19 +161,98 @@ struct Daemon::Parts {
     if (!store->ping()) {
       return "The store does not answer.";
     }
-    const auto space = blobs->space();
-    if (!space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes)) {
+    if (is_nearly_full()) {
       return "The disk is nearly full.";
+    }
+    if (const std::string why = cannot_write_why(); !why.empty()) {
+      return why;
     }
     return "";
   }
 
+  [[nodiscard]] bool is_nearly_full() const {
+    const auto space = blobs->space();
+    return !space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes);
+  }
+
+  /// Why a row cannot be written; tried once in a few seconds, for who asks whether the daemon is ready asks often. A
+  /// bad state is logged when it begins and when it ends.
+  [[nodiscard]] std::string cannot_write_why() const {
+    const std::lock_guard<std::mutex> guard(probe_mutex);
+    const auto now = std::chrono::steady_clock::now();
+    if (probed_at && now - *probed_at < kProbeInterval) {
+      return write_fault;
+    }
+    const Status written = store->write_probe();
+    probed_at = std::chrono::steady_clock::now();
+    const std::string fault = written ? "" : "The store cannot be written: " + written.error().message;
+    if (fault != write_fault) {
+      fault.empty() ? log_info("the store can be written again") : log_error("bad state", Json{{"detail", fault}});
+    }
+    write_fault = fault;
+    return write_fault;
+  }
+
+  [[nodiscard]] Gauges gauges() const {
+    Gauges found;
+    found.ready = not_ready_why().empty() ? 1.0 : 0.0;
+    found.started_at = static_cast<double>(started_at) / 1e6;
+    if (http) {
+      const HttpServer::Load load = http->load();
+      found.connections = static_cast<double>(load.connections);
+      found.idle_connections = static_cast<double>(load.idle);
+      found.uploads = static_cast<double>(load.uploads);
+      found.turned_away = static_cast<double>(load.turned_away);
+    }
+    if (const auto counts = store->counts()) {
+      found.devices = static_cast<double>(counts->devices);
+      found.recordings = static_cast<double>(counts->recordings);
+      found.jobs_queued = static_cast<double>(counts->queued);
+      found.jobs_running = static_cast<double>(counts->running);
+    }
+    JobFilter waiting;
+    waiting.state = JobState::Queued;
+    if (const auto oldest = store->jobs(waiting, Page{"", 1}); oldest && !oldest->empty()) {
+      found.oldest_queued_seconds = static_cast<double>(clock->now() - oldest->front().created_at) / 1e6;
+    }
+    if (const auto space = blobs->space()) {
+      found.free_bytes = static_cast<double>(space->free_bytes);
+      found.free_fraction = space->free_fraction;
+    }
+    const Scrubber::Findings stored = scrubber.findings();
+    found.blobs_damaged = static_cast<double>(stored.damaged);
+    found.blobs_healed = static_cast<double>(stored.healed);
+    found.scrubbed_bytes = static_cast<double>(stored.bytes_read);
+    found.log_lines_dropped = static_cast<double>(dropped_log_lines());
+    const ProcessUse use = use_of_this_process();
+    found.resident_bytes = use.resident_bytes;
+    found.cpu_seconds = use.cpu_seconds;
+    return found;
+  }
+
+  /// Holds the reserve again once there is room for it.
+  void look_after_reserve() {
+    const auto space = blobs->space();
+    if (space && space->free_bytes > static_cast<std::uintmax_t>(budgets.reserve_bytes + budgets.least_free_bytes)) {
+      (void)reserve.hold();
+    }
+  }
+
   std::atomic<bool> stopping{false};
+  const Budgets budgets;
+  std::stop_source stop_uploads;
+  Metrics metrics;
+  UtcMicros started_at = SystemClock().now();
+  DiskReserve reserve;
+  mutable std::mutex probe_mutex;
+  mutable std::optional<std::chrono::steady_clock::time_point> probed_at;
+  mutable std::string write_fault;
   std::unique_ptr<SystemClock> clock;
   std::unique_ptr<BlobStore> blobs;
   std::unique_ptr<SqliteStore> store;
   std::unique_ptr<Store> visible;
   std::unique_ptr<Gate> gate;
+  Scrubber scrubber;
   Bell bell;
   EventLog events{bell, make_id("run", clock->now()).substr(14)};
   WorkerPool workers;
@@ -214,18 +326,23 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   WorkerOptions worker_options;
   settle_threads(settings, worker_options);
+  worker_options.grace_micros =
+      static_cast<std::int64_t>(kGraceShare * 1e6 * static_cast<double>(settings.budgets.stop_seconds));
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
   auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(gate),
-                                       std::move(worker_options), settings.data);
+                                       std::move(worker_options), settings);
 
   HttpOptions options;
   options.address = address->address;
   options.port = address->port;
   options.io_threads = settings.io_threads;
+  options.budgets = settings.budgets;
+  options.proxies = settings.proxies;
   options.guard.hosts = allowed_hosts(settings, *address);
   options.guard.secure = tls != nullptr;
   options.tls = std::move(tls);
   parts->certificate = {settings.tls_certificate, settings.tls_key};
+  options.guard.target_bytes = static_cast<std::size_t>(settings.budgets.target_bytes);
   Parts* const shared = parts.get();
   HttpHooks hooks;
   hooks.admit = [shared](const Route* route, Request& request) { return admit(*shared->gate, route, request); };
@@ -240,9 +357,10 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
   hooks.complete = complete_problem;
   hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
-  hooks.log = log_request;
+  hooks.log = [shared](const AccessRecord& record) { log_request(shared->metrics, record); };
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
   parts->workers.start();
+  parts->scrubber.start();
   if (auto started = parts->http->start(); !started) {
     parts->workers.stop();
     return fail(started.error());
@@ -275,10 +393,28 @@ void Daemon::stop() {
     return;
   }
   log_info("stopping");
-  parts_->http->stop(std::chrono::seconds(10));
-  parts_->workers.stop();
+  // Not ready, but still there: who distributes requests sees it and sends no more. Jobs end meanwhile.
+  parts_->workers.ask_to_stop();
+  parts_->stop_uploads.request_stop();
+  std::this_thread::sleep_for(std::chrono::milliseconds(parts_->budgets.drain_milliseconds));
+  std::thread jobs([this] {
+    parts_->workers.stop();
+    parts_->scrubber.stop();
+  });
+  parts_->http->stop(std::chrono::milliseconds(
+      static_cast<std::int64_t>(kGraceShare * 1e3 * static_cast<double>(parts_->budgets.stop_seconds))));
+  jobs.join();
   (void)parts_->gate->flush_use(true);
   log_info("stopped");
+}
+
+void Daemon::reload() {
+  const Status reopened = reopen_log();
+  if (reopened) {
+    log_info("reloaded");
+  } else {
+    log_error("cannot reload", Json{{"detail", reopened.error().message}});
+  }
 }
 
 }  // namespace driftlab::server

@@ -21,6 +21,8 @@ class Daemon {
   void reload();
   /// Not ready, stop accepting, finish requests (10 s), stop workers (20 s), close the store. Idempotent.
   void stop();
+  /// Opens the log file again and reads again what may change while the daemon runs (SIGHUP). Thread safe.
+  void reload();
 
  private:
   struct Parts;

@@ -1,40 +1,31 @@
 // driftlabd: the driftlab daemon. See `driftlabd --help` and schema/docs/operations.md.
 #include "server/access_commands.hpp"
-#include "server/api/api.hpp"
+#include "server/configuration.hpp"
 #include "server/daemon.hpp"
 #include "server/observe/log.hpp"
+#include "server/process.hpp"
+#include "server/store/clock.hpp"
 #include "server/store/crash_point.hpp"
+#include "server/store/sqlite/backup.hpp"
 
 #include <CLI/CLI.hpp>
-#include <pthread.h>
-#include <unistd.h>
 
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <thread>
 
 namespace {
 
+using driftlab::server::Configuration;
 using driftlab::server::Daemon;
 using driftlab::server::Settings;
 
-/// SIGTERM, SIGINT and SIGHUP arrive at the thread that waits for them and at no other.
-sigset_t block_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGHUP);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  // A client that goes away in the middle of an answer is an error of that write, not a signal.
-  std::signal(SIGPIPE, SIG_IGN);  // NOLINT(cert-err33-c): SIG_IGN is always accepted for SIGPIPE
-  return signals;
-}
-
 int serve(const Settings& settings) {
-  const sigset_t signals = block_stop_signals();
-  driftlab::server::start_log(settings.log_level);
+  driftlab::server::Signals signals;
+  if (const auto opened = driftlab::server::start_log(settings.log_level, settings.log_file); !opened) {
+    std::fprintf(stderr, "driftlabd: %s\n", opened.error().message.c_str());
+    return 1;
+  }
   // Read once, before any thread exists.
   const char* const crash_at = std::getenv("DRIFTLAB_CRASH_AT");  // NOLINT(concurrency-mt-unsafe)
   if (crash_at != nullptr && !driftlab::server::arm_crash_point(crash_at)) {
@@ -48,73 +39,97 @@ int serve(const Settings& settings) {
     std::fprintf(stderr, "driftlabd: %s\n", daemon.error().message.c_str());
     return daemon.error().code == driftlab::ErrorCode::InvalidArgument ? 2 : 1;
   }
-  int signal = 0;
-  while (sigwait(&signals, &signal) != 0 || signal == SIGHUP) {
-    (*daemon)->reload();
-  }
-  // A second signal ends the process at once; the store is safe at any moment.
-  std::thread([&signals] {
-    int again = 0;
-    while (sigwait(&signals, &again) != 0 || again == SIGHUP) {
-    }
-    _exit(128 + again);
-  }).detach();
+  signals.wait_for_stop([&daemon] { (*daemon)->reload(); });
+  signals.end_process_after(std::chrono::seconds(settings.budgets.stop_seconds));
   (*daemon)->stop();
   daemon->reset();
   driftlab::server::stop_log();
   return 0;
 }
 
-void add_settings(CLI::App& app, Settings& settings) {
-  app.add_option("--data", settings.data, "Directory of database and recordings, made if absent")
-      ->envname("DRIFTLAB_DATA")
-      ->capture_default_str();
-  app.add_option("--listen", settings.listen, "IP:PORT to listen on; port 0 takes any free one")
-      ->envname("DRIFTLAB_LISTEN")
-      ->capture_default_str();
-  app.add_option("--allow-host", settings.allow_host, "Another name to answer for in the Host header")
-      ->envname("DRIFTLAB_ALLOW_HOST");
-  app.add_option("--workers", settings.workers, "Jobs that run at once; 0 is as many as threads")
-      ->envname("DRIFTLAB_WORKERS")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-  app.add_option("--threads", settings.threads, "Threads that all jobs share; 0 is one per core, or per worker if more")
-      ->envname("DRIFTLAB_THREADS")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-  app.add_option("--io-threads", settings.io_threads, "Threads that serve connections")
-      ->envname("DRIFTLAB_IO_THREADS")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--log-level", settings.log_level, "Least severe events to log")
-      ->envname("DRIFTLAB_LOG_LEVEL")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
-      ->capture_default_str();
-  app.add_option("--tls-certificate", settings.tls_certificate,
-                 "PEM file of the certificate and its chain; then HTTPS only")
-      ->envname("DRIFTLAB_TLS_CERTIFICATE");
-  app.add_option("--tls-key", settings.tls_key, "PEM file of the certificate's private key")
-      ->envname("DRIFTLAB_TLS_KEY");
-  app.add_flag("--require-tokens", settings.require_tokens,
-               "Ask everybody for a token; makes the first one, for an admin, where there is none")
-      ->envname("DRIFTLAB_REQUIRE_TOKENS");
-  app.add_flag("--insecure", settings.insecure, "Listen beyond loopback without TLS or tokens")
-      ->envname("DRIFTLAB_INSECURE");
+/// The settings as TOML that could be read again, each with its origin; or as JSON.
+int show(const Configuration& configuration, bool json) {
+  if (json) {
+    std::printf("%s\n", to_json(configuration).dump(2).c_str());
+    return 0;
+  }
+  std::string_view table;
+  for (const auto& one : configuration.values) {
+    std::string_view name = one.name;
+    if (name.starts_with("budgets.")) {
+      if (table.empty()) {
+        table = "budgets";
+        std::printf("\n[budgets]\n");
+      }
+      name.remove_prefix(8);
+    }
+    std::printf("%-26s = %-20s # %s\n", std::string(name).c_str(), one.value.dump().c_str(), one.origin.c_str());
+  }
+  return 0;
+}
+
+/// A flag for every setting; texts go to `given` as they are and are read with those of the other sources.
+void add_settings(CLI::App& app, driftlab::server::GivenFlags& given) {
+  for (const auto& setting : driftlab::server::all_settings()) {
+    std::string flag = "--" + std::string(setting.name);
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    std::vector<std::string>& values = given.values[std::string(setting.name)];
+    const std::string meaning(setting.meaning);
+    if (setting.kind == driftlab::server::SettingKind::Switch) {
+      app.add_flag_callback(flag, [&values] { values.assign(1, "true"); }, meaning);
+      continue;
+    }
+    const auto shown = setting.get(Settings{});
+    auto* const option = app.add_option(flag, values, meaning)->allow_extra_args(false);
+    if (setting.kind == driftlab::server::SettingKind::Text) {
+      option->default_str(shown.is_string() ? shown.get<std::string>() : shown.dump());
+    }
+  }
+  app.add_option("--config", given.file, "TOML file of settings")->allow_extra_args(false);
+  app.add_option("--budget", given.budgets, "NAME=VALUE of a budget; `driftlabd config` lists them")
+      ->allow_extra_args(false);
+}
+
+/// Says what a check, a backup or a restore found. 0: all is well; 1: it could not be done, or something is damaged.
+int tell(const char* what, const driftlab::Result<driftlab::server::StoreReport>& report) {
+  if (!report) {
+    std::fprintf(stderr, "driftlabd: %s\n", report.error().message.c_str());
+    return report.error().code == driftlab::ErrorCode::Conflict ? 2 : 1;
+  }
+  for (const std::string& fault : report->faults) {
+    std::fprintf(stderr, "driftlabd: %s\n", fault.c_str());
+  }
+  std::printf("%s: %lld files of recordings, %lld bytes, %zu faults\n", what, static_cast<long long>(report->blobs),
+              static_cast<long long>(report->bytes), report->faults.size());
+  return report->faults.empty() ? 0 : 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  driftlab::server::occupy_standard_descriptors();
   CLI::App app{
       "driftlabd serves the characterisation of inertial sensors over HTTP.\n"
-      "Flags win over DRIFTLAB_* variables, which win over defaults."};
+      "Flags win over DRIFTLAB_* variables, which win over the configuration file, which wins over defaults."};
   app.set_version_flag("--version", std::string("driftlabd " DRIFTLAB_VERSION));
-  app.fallthrough();  // --data may stand behind a subcommand
-  Settings settings;
-  add_settings(app, settings);
-  driftlab::server::AccessCommands access(app);
+  app.fallthrough();
+  app.require_subcommand(0, 1);
+  driftlab::server::GivenFlags given;
+  add_settings(app, given);
+  const driftlab::server::AccessCommands access(app);
   const CLI::App* const crash_points =
       app.add_subcommand("crash-points", "List the points where tests may kill the daemon");
+  CLI::App* const config = app.add_subcommand("config", "Print every setting and budget with its origin");
+  const CLI::App* const check =
+      app.add_subcommand("check", "Read everything in --data back and compare it with its checksums");
+  CLI::App* const backup = app.add_subcommand("backup", "Copy --data to --to, also while the daemon runs");
+  std::string to;
+  backup->add_option("--to", to, "Directory to make")->required();
+  CLI::App* const restored = app.add_subcommand("restore", "Make --data, which must not be there, from a backup");
+  std::string from;
+  restored->add_option("--from", from, "Directory that `driftlabd backup` made")->required();
+  bool json = false;
+  config->add_flag("--json", json, "As JSON, with bounds and meanings");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -128,8 +143,24 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
+  const auto configuration = driftlab::server::configure(given, driftlab::server::own_environment());
+  if (!configuration) {
+    std::fprintf(stderr, "driftlabd: %s\n", configuration.error().message.c_str());
+    return 2;
+  }
+  const Settings& settings = configuration->settings;
   if (access.parsed()) {
     return access.run(settings);
   }
-  return serve(settings);
+  if (check->parsed()) {
+    return tell("checked", driftlab::server::check_data(settings.data));
+  }
+  if (backup->parsed()) {
+    const std::string now = driftlab::server::rfc3339(driftlab::server::SystemClock().now());
+    return tell("backed up", driftlab::server::back_up(settings.data, to, now));
+  }
+  if (restored->parsed()) {
+    return tell("restored", driftlab::server::restore(from, settings.data));
+  }
+  return config->parsed() ? show(*configuration, json) : serve(configuration->settings);
 }

@@ -1,6 +1,7 @@
 #pragma once
-/// What the daemon was told: flags, then DRIFTLAB_* variables, then defaults.
+/// What the daemon was told; where each value came from: server/configuration.hpp.
 #include "core/signal/result.hpp"
+#include "server/store/budgets.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +14,7 @@ struct Settings {
   std::filesystem::path data = "driftlab-data";
   std::string listen = "127.0.0.1:8477";
   std::vector<std::string> allow_host;  ///< Host names answered for, beside the address and localhost
+  std::vector<std::string> proxies;     ///< addresses whose many connections are those of many people
   int workers = 0;                      ///< jobs at a time; 0: as many as threads
   int threads = 0;                      ///< that compute for all jobs together; 0: one per core, or per worker if more
   int io_threads = 2;
@@ -21,6 +23,8 @@ struct Settings {
   std::filesystem::path tls_key;
   bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
   std::string log_level = "info";
+  std::string log_file;  ///< empty: standard error
+  Budgets budgets;
 };
 
 struct ListenAddress {

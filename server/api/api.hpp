@@ -1,6 +1,7 @@
 #pragma once
 /// The HTTP resources. One file per resource declares its routes and handlers; routes.cpp lists them.
 #include "server/api/event_log.hpp"
+#include "server/api/keys_in_flight.hpp"
 #include "server/auth/gate.hpp"
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
@@ -10,10 +11,9 @@
 
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
-#include <vector>
 
 namespace driftlab::server {
 
@@ -29,6 +29,13 @@ struct ApiContext {
   std::filesystem::path data;                  ///< the daemon's directory
   AccessStore& access;
   Gate& gate;
+  Budgets budgets = {};
+  std::function<bool()> make_room = {};             ///< frees what was kept for a full disk; false: there was nothing
+  std::function<bool()> is_nearly_full = {};        ///< the disk: what is removed must be gone at once
+  std::function<std::string()> metrics = {};        ///< the text that /metrics gives
+  std::function<std::size_t()> damaged_blobs = {};  ///< how many stored files are known to be damaged
+  std::stop_token stopping = {};  ///< requested when the daemon stops: uploads that decode then give up
+  KeysInFlight keys_in_flight = {};
 };
 
 /// Tells who listens to all events how a job stands, and of its result when it has one.
@@ -48,8 +55,6 @@ class Dispatcher {
   [[nodiscard]] Response run_idempotent(const Handler& handler, const Request& request, const std::string& key);
 
   ApiContext& context_;
-  std::mutex mutex_;
-  std::vector<std::string> in_flight_;
 };
 
 /// Says who asks, in `request.caller`, or why it is refused: 401 without a token that is valid, 403 where its scope is

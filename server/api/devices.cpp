@@ -13,15 +13,27 @@ Response device_response(int status, const Device& device) {
 }
 
 /// The text members a device may have, read from a body; `labels` as canonical text.
-DeviceChange read_change(ObjectReader& reader, Faults& faults) {
+DeviceChange read_change(ObjectReader& reader, const Budgets& budgets, Faults& faults) {
   DeviceChange change;
   change.model = reader.text("model");
   change.imu = reader.text("imu");
   change.serial = reader.text("serial");
+  for (const auto& [member, text] :
+       {std::pair{"model", &change.model}, std::pair{"imu", &change.imu}, std::pair{"serial", &change.serial}}) {
+    limit_text(text->value_or(""), "name_bytes", budgets.name_bytes, reader.pointer(member), faults);
+  }
   if (const Json* const labels = reader.member("labels")) {
+    if (labels->size() > static_cast<std::size_t>(budgets.labels)) {
+      faults.add(reader.pointer("labels"), ErrorCode::LimitExceeded,
+                 "These are too many labels " + naming_budget("labels", budgets.labels) + ".");
+      return change;
+    }
     bool sound = labels->is_object();
     for (const auto& [name, value] : labels->items()) {
       sound = sound && value.is_string();
+      limit_text(name, "label_bytes", budgets.label_bytes, reader.pointer("labels"), faults);
+      limit_text(value.is_string() ? value.get<std::string>() : "", "label_bytes", budgets.label_bytes,
+                 reader.pointer("labels"), faults);
     }
     if (sound) {
       change.labels_json = canonical_text(*labels);
@@ -41,7 +53,7 @@ Result<Response> create_device(ApiContext& context, const Request& request) {
   ObjectReader reader(*body, "", faults);
   Device device;
   device.name = reader.required_text("name");
-  const DeviceChange members = read_change(reader, faults);
+  const DeviceChange members = read_change(reader, *request.budgets, faults);
   reader.reject_unknown();
   if (device.name.starts_with("dev_")) {
     faults.add("/name", ErrorCode::InvalidArgument, "A device name does not begin with dev_.");
@@ -117,7 +129,7 @@ Result<Response> patch_device(ApiContext& context, const Request& request) {
   }
   Faults faults;
   ObjectReader reader(*body, "", faults);
-  const DeviceChange change = read_change(reader, faults);
+  const DeviceChange change = read_change(reader, *request.budgets, faults);
   reader.reject_unknown();
   if (!faults.none()) {
     return fail(faults.error());

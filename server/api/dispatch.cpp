@@ -8,39 +8,8 @@
 
 #include <boost/beast/core/string.hpp>
 
-#include <algorithm>
-#include <mutex>
-
 namespace driftlab::server {
 namespace {
-
-/// Takes a key out of the in-flight list on every way out.
-class InFlight {
- public:
-  InFlight(std::mutex& mutex, std::vector<std::string>& keys, std::string key)
-      : mutex_(mutex), keys_(keys), key_(std::move(key)) {
-    const std::lock_guard lock(mutex_);
-    first_ = std::find(keys_.begin(), keys_.end(), key_) == keys_.end();
-    if (first_) {
-      keys_.push_back(key_);
-    }
-  }
-  InFlight(const InFlight&) = delete;
-  InFlight& operator=(const InFlight&) = delete;
-  ~InFlight() {
-    if (first_) {
-      const std::lock_guard lock(mutex_);
-      std::erase(keys_, key_);
-    }
-  }
-  [[nodiscard]] bool first() const { return first_; }
-
- private:
-  std::mutex& mutex_;
-  std::vector<std::string>& keys_;
-  std::string key_;
-  bool first_ = false;
-};
 
 Response run_handler(const Handler& handler, const Request& request) {
   auto answer = handler(request);
@@ -112,8 +81,8 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
     return problem_response(malformed_idempotency_key());
   }
   const std::string own = own_key(request, key);
-  const InFlight flight(mutex_, in_flight_, own);
-  if (!flight.first()) {
+  const auto flight = context_.keys_in_flight.take(own);
+  if (!flight) {
     return problem_response(HttpFault::IdempotencyInFlight, "A request with this Idempotency-Key is running.");
   }
   const std::string digest = sha256_hex(request.body);

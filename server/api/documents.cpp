@@ -144,6 +144,15 @@ Result<Response> refused_job(const Error& error) {
   return response;
 }
 
+std::optional<Response> refuse_full_queue(Store& store, const Budgets& budgets) {
+  const auto counts = store.counts();
+  if (!counts || counts->queued < budgets.queued_jobs) {
+    return std::nullopt;
+  }
+  return problem_response(HttpFault::Busy,
+                          "Too many jobs wait " + naming_budget("queued_jobs", budgets.queued_jobs) + ".");
+}
+
 Response json_response(int status, const Json& document) {
   Response response;
   response.status = status;
@@ -231,23 +240,53 @@ Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view)
   return page;
 }
 
-Response list_response(const Request& request, const Page& page, std::vector<Json> items,
-                       const std::function<std::string(std::size_t)>& id_of) {
-  const auto limit = static_cast<std::size_t>(page.limit);
-  Json next = nullptr;
-  if (items.size() > limit) {
-    next = id_of(limit - 1);
-    items.resize(limit);
+void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,
+                Faults& faults) {
+  if (text.size() > static_cast<std::size_t>(most)) {
+    faults.add(
+        pointer, ErrorCode::LimitExceeded,
+        "This text of " + std::to_string(text.size()) + " bytes is too long " + naming_budget(budget, most) + ".");
   }
-  Response response = json_response(200, Json{{"items", std::move(items)}, {"next_cursor", next}});
-  if (next.is_string()) {
-    std::string link = request.target.substr(0, request.target.find('?')) + "?";
-    for (const auto& [name, value] : request.query) {
+}
+
+ListPage::ListPage(const Request& request, const Page& page)
+    : request_(request),
+      most_items_(static_cast<std::size_t>(page.limit)),
+      most_bytes_(static_cast<std::size_t>(request.budgets->page_bytes)),
+      last_id_(page.after) {}
+
+int ListPage::rows_to_fetch() const {
+  constexpr std::size_t kFirst = 16;
+  constexpr std::size_t kMost = 128;
+  const std::size_t left = most_items_ + 1 - items_;
+  const std::size_t room = most_bytes_ > text_.size() ? most_bytes_ - text_.size() : 0;
+  const std::size_t fitting = items_ == 0 ? kFirst : std::min(room / std::max<std::size_t>(largest_, 1) + 1, kMost);
+  return static_cast<int>(std::clamp<std::size_t>(fitting, 1, left));
+}
+
+bool ListPage::add(const Json& item, const std::string& id) {
+  std::string text = to_text(item);
+  if (items_ == most_items_ || (items_ > 0 && text_.size() + text.size() > most_bytes_)) {
+    return false;
+  }
+  text_ += (items_ > 0 ? "," : "") + text;
+  ++items_;
+  largest_ = std::max(largest_, text.size());
+  last_id_ = id;
+  return true;
+}
+
+Response ListPage::response(bool more) const {
+  Response response;
+  response.body = text_ + "],\"next_cursor\":" + (more ? to_text(Json(last_id_)) : "null") + "}";
+  if (more) {
+    std::string link = request_.target.substr(0, request_.target.find('?')) + "?";
+    for (const auto& [name, value] : request_.query) {
       if (name != "cursor") {
         link += name + "=" + percent_encode(value) + "&";
       }
     }
-    response.headers.emplace_back("Link", "<" + link + "cursor=" + next.get<std::string>() + ">; rel=\"next\"");
+    response.headers.emplace_back("Link", "<" + link + "cursor=" + last_id_ + ">; rel=\"next\"");
   }
   return response;
 }

@@ -4,7 +4,6 @@
 #include "server/http/message.hpp"
 #include "server/store/store.hpp"
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -32,6 +31,9 @@ namespace driftlab::server {
 /// stored_table.hpp) it is one that a waiting connection asks for again.
 [[nodiscard]] Result<Response> refused_job(const Error& error);
 
+/// The answer where too many jobs wait already; nothing where there is room for one more.
+[[nodiscard]] std::optional<Response> refuse_full_queue(Store& store, const Budgets& budgets);
+
 [[nodiscard]] Response json_response(int status, const Json& document);
 
 /// A stored JSON text inside a document; null where it does not parse.
@@ -45,6 +47,10 @@ namespace driftlab::server {
 [[nodiscard]] tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
                                                                      std::int64_t current);
 
+/// A fault at `pointer` where a text is longer than the budget of that name allows.
+void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,
+                Faults& faults);
+
 /// `?limit=` (1 to 500, default 50), `?cursor=`, and `?sort=` created_at (default) or -created_at. Error:
 /// InvalidArgument naming the parameter.
 [[nodiscard]] Result<Page> page_of(const Request& request);
@@ -57,28 +63,57 @@ namespace driftlab::server {
 /// `?state=` of a job; nothing where it is not asked for. Error: InvalidArgument naming the parameter.
 [[nodiscard]] Result<std::optional<JobState>> state_filter(const Request& request);
 
-/// {"items": [...], "next_cursor": ...} with `Link: rel="next"`, from a page that was fetched with one row more than
-/// asked.
-[[nodiscard]] Response list_response(const Request& request, const Page& page, std::vector<Json> items,
-                                     const std::function<std::string(std::size_t)>& id_of);
+/// A page of a list under construction: as many items as were asked for, or as fit into the budget page_bytes. Items
+/// are kept as text, so that an answer takes little more than its own length, and one larger than the budget comes
+/// alone.
+class ListPage {
+ public:
+  ListPage(const Request& request, const Page& page);
+  /// How many rows to fetch next, from what the largest so far took. At least 1.
+  [[nodiscard]] int rows_to_fetch() const;
+  /// False: the page is full, and the item begins the next one.
+  [[nodiscard]] bool add(const Json& item, const std::string& id);
+  [[nodiscard]] const std::string& last_id() const { return last_id_; }
+  /// {"items": [...], "next_cursor": ...} with `Link: rel="next"` where more follow.
+  [[nodiscard]] Response response(bool more) const;
 
-/// The page of stored rows that a request asks for. `fetch` reads rows after an id, as many as asked and one more;
-/// `item` makes the document of one. Rows have an `id`. Errors: those of page_of and of the store.
+ private:
+  const Request& request_;
+  std::size_t most_items_;
+  std::size_t most_bytes_;
+  std::size_t items_ = 0;
+  std::size_t largest_ = 0;
+  std::string last_id_;
+  std::string text_ = "{\"items\":[";
+};
+
+/// The page of stored rows that a request asks for. `fetch` reads rows after an id, as many as asked; `item` makes the
+/// document of one. Rows have an `id`. They are read a few at a time, for large ones would fill the memory. Errors:
+/// those of page_of and of the store.
 template <class Fetch, class Item>
 [[nodiscard]] Result<Response> list_rows(const Request& request, const Fetch& fetch, const Item& item) {
   const auto page = page_of(request);
   if (!page) {
     return fail(page.error());
   }
-  const auto rows = fetch(Page{page->after, page->limit + 1, page->newest_first});
-  if (!rows) {
-    return fail(rows.error());
+  ListPage list(request, *page);
+  std::string after = page->after;
+  while (true) {
+    const int asked = list.rows_to_fetch();
+    const auto rows = fetch(Page{after, asked, page->newest_first});
+    if (!rows) {
+      return fail(rows.error());
+    }
+    for (const auto& row : *rows) {
+      if (!list.add(item(row), row.id)) {
+        return list.response(true);
+      }
+      after = row.id;
+    }
+    if (rows->size() < static_cast<std::size_t>(asked)) {
+      return list.response(false);
+    }
   }
-  std::vector<Json> items;
-  for (const auto& row : *rows) {
-    items.push_back(item(row));
-  }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return (*rows)[i].id; });
 }
 
 }  // namespace driftlab::server

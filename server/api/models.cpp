@@ -60,6 +60,8 @@ Result<Response> create_model(ApiContext& context, const Request& request) {
   model.parent_id = reader.text("parent").value_or("");
   const auto device_name = reader.text("device");
   const auto why = reader.text("why");
+  limit_text(model.name, "name_bytes", request.budgets->name_bytes, reader.pointer("name"), faults);
+  limit_text(why.value_or(""), "note_bytes", request.budgets->note_bytes, reader.pointer("why"), faults);
   Json content = Json::object();
   for (const char* const member : {"processes", "channels", "deterministic", "effects"}) {
     if (const Json* const value = reader.member(member)) {

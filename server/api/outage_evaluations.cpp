@@ -81,7 +81,10 @@ Result<Response> create(ApiContext& context, const Request& request) {
   if (!faults.none()) {
     return fail(faults.error());
   }
-  JobContext job_context{context.store, context.blobs, context.clock};
+  if (auto full = refuse_full_queue(context.store, context.budgets)) {
+    return std::move(*full);
+  }
+  JobContext job_context{context.store, context.blobs, context.clock, context.budgets};
   auto job = new_job(*find_job_kind(kKind), inputs, parameters, job_context);
   if (!job) {
     return refused_job(located_in_body(job.error()));

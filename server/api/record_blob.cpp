@@ -4,13 +4,43 @@
 #include "core/read/open_recording.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
+#include "server/api/stored_blob.hpp"
 #include "server/jobs/recording_calibration.hpp"
 #include "server/store/crash_point.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
 
 namespace driftlab::server {
 namespace {
 
-constexpr std::uintmax_t kLeastFreeBytes = 64ULL * 1024 * 1024;
+/// Asks a decoding to stop when its time is over or the daemon stops; what it did not take part in asks for nothing.
+class DecodeWatch {
+ public:
+  DecodeWatch(std::chrono::seconds time, const std::stop_token& daemon)
+      : with_daemon_(daemon, [this] { stop_.request_stop(); }), timer_([this, time](const std::stop_token& ended) {
+          std::unique_lock<std::mutex> lock(mutex_);
+          std::condition_variable_any waiting;
+          if (!waiting.wait_for(lock, ended, time, [] { return false; }) && !ended.stop_requested()) {
+            too_slow_ = true;
+            stop_.request_stop();
+          }
+        }) {}
+  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
+  [[nodiscard]] bool too_slow() const { return too_slow_; }
+
+ private:
+  std::stop_source stop_;
+  std::atomic<bool> too_slow_{false};
+  std::mutex mutex_;
+  std::stop_callback<std::function<void()>> with_daemon_;
+  std::jthread timer_;
+};
 
 struct DecodedBlob {
   Blob row;
@@ -27,7 +57,18 @@ Result<DecodedBlob> decode(ApiContext& context, const IncomingBlob& incoming) {
   if (blob && ColumnFile::open(context.blobs.columns_path(incoming.sha256()))) {
     return DecodedBlob{*blob, context.blobs.columns_path(incoming.sha256())};
   }
-  auto decoded = decode_file(incoming.path(), incoming.columns_path());
+  const Budgets& budgets = context.budgets;
+  const std::int64_t seconds =
+      budgets.decode_seconds + static_cast<std::int64_t>(incoming.size()) / budgets.decode_bytes_per_second;
+  const DecodeWatch watch(std::chrono::seconds(seconds), context.stopping);
+  RunControl control;
+  control.stop = watch.token();
+  auto decoded = decode_file(incoming.path(), incoming.columns_path(), decode_limits(budgets), control);
+  if (!decoded && watch.too_slow()) {
+    return fail(ErrorCode::LimitExceeded, "The file was not decoded in " + std::to_string(seconds) + " s " +
+                                              naming_budget("decode_seconds", budgets.decode_seconds) +
+                                              "; nothing was kept.");
+  }
   if (!decoded) {
     return fail(decoded.error());
   }
@@ -43,12 +84,32 @@ Result<DecodedBlob> decode(ApiContext& context, const IncomingBlob& incoming) {
   return DecodedBlob{std::move(row), incoming.columns_path()};
 }
 
+/// Error: DiskFull naming the budget, where the device has all it may have.
+Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::string& device_name) {
+  const auto device = context.store.device(device_name);
+  const auto usage = context.store.usage_of(device ? device->id : "", blob.sha256());
+  if (!usage) {
+    return fail(usage.error());
+  }
+  const Budgets& budgets = context.budgets;
+  const bool many = usage->recordings >= budgets.recordings_per_device;
+  if (usage->holds_these_bytes ||
+      (!many && usage->bytes + static_cast<std::int64_t>(blob.size()) <= budgets.device_bytes)) {
+    return {};
+  }
+  return fail(ErrorCode::DiskFull, "The device has all that it may have " +
+                                       (many ? naming_budget("recordings_per_device", budgets.recordings_per_device)
+                                             : naming_budget("device_bytes", budgets.device_bytes)) +
+                                       "; remove recordings, or ask for a larger budget.");
+}
+
 /// A conflict with a recording that is there says by which request that one is changed.
 Error naming_patch(Error error) {
   for (const ErrorField& field : error.fields) {
     if (error.code == ErrorCode::Conflict && field.name == "recording_id") {
-      error.message = "The device has these bytes already with other metadata; change those with PATCH /v1/recordings/" +
-                      field.value + ".";
+      error.message =
+          "The device has these bytes already with other metadata; change those with PATCH /v1/recordings/" +
+          field.value + ".";
       break;
     }
   }
@@ -81,6 +142,9 @@ Result<std::string> check_against_columns(ApiContext& context, const UploadMetad
 }  // namespace
 
 Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata) {
+  if (auto allowed = require_quota(context, blob, metadata.device.name); !allowed) {
+    return fail(allowed.error());
+  }
   auto decoded = decode(context, blob);
   if (!decoded) {
     return fail(decoded.error());
@@ -120,15 +184,17 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
 }
 
 Status require_space(const ApiContext& context) {
-  if (const auto space = context.blobs.space(); space && space->free_bytes < kLeastFreeBytes) {
-    return fail(ErrorCode::DiskFull, "Less than 64 MiB are free where the daemon keeps its data.");
+  const auto least = static_cast<std::uintmax_t>(context.budgets.least_free_bytes);
+  if (const auto space = context.blobs.space(); space && space->free_bytes < least) {
+    return fail(ErrorCode::DiskFull, "Too little is free where the daemon keeps its data " +
+                                         naming_budget("least_free_bytes", context.budgets.least_free_bytes) + ".");
   }
   return {};
 }
 
 std::vector<std::string_view> metadata_parameters() {
-  return {"device", "id",      "condition",    "axis",       "value",      "unit",
-          "direction", "rate_hz", "columns", "trim_start_s", "trim_end_s", "calibration"};
+  return {"device",    "id",      "condition", "axis",         "value",      "unit",
+          "direction", "rate_hz", "columns",   "trim_start_s", "trim_end_s", "calibration"};
 }
 
 }  // namespace driftlab::server

@@ -10,7 +10,7 @@ namespace driftlab::server {
 /// `blob` is sealed and not empty. 201 with the recording, or 200 with the one that exists already.
 [[nodiscard]] Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata);
 
-/// Refuses while less than 64 MiB are free, so that the database can still write. Error: DiskFull.
+/// Refuses while less is free than the budget least_free_bytes, so that the database can still write. Error: DiskFull.
 [[nodiscard]] Status require_space(const ApiContext& context);
 
 /// The query parameters that say what a file is, as POST /v1/recordings takes them.

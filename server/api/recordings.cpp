@@ -129,16 +129,29 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
   if (!revision) {
     return revision.error();
   }
-  if (auto removed = context.store.remove_recording(recording->id, *revision); !removed) {
+  Status removed = context.store.remove_recording(recording->id, *revision);
+  if (!removed && removed.error().code == ErrorCode::DiskFull && context.make_room && context.make_room()) {
+    removed = context.store.remove_recording(recording->id, *revision);
+  }
+  if (!removed) {
     return fail(removed.error());
   }
   context.events.add("recordings", "recording.deleted",
                      Json{{"recording", recording->id}, {"device", recording->device_id}});
   context.wake_workers();  // what its results took part in is pooled anew
   // The files stay: another device's recording may hold the same bytes, and an upload of them may be running. Without a
-  // row the sweeper removes them after a day.
-  if (const auto unused = context.store.remove_unused_blob(recording->blob_sha256); !unused) {
+  // row the sweeper removes them after a day; on a disk that is nearly full they go now, unless they came within the
+  // last minute.
+  const auto unused = context.store.remove_unused_blob(recording->blob_sha256);
+  if (!unused) {
     return fail(unused.error());
+  }
+  if (*unused && context.is_nearly_full && context.is_nearly_full()) {
+    constexpr UtcMicros kMinute = 60'000'000;
+    const auto gone = context.blobs.remove_if_older(recording->blob_sha256, context.clock.now() - kMinute);
+    if (!gone) {
+      return fail(gone.error());
+    }
   }
   Response response;
   response.status = 204;
@@ -153,10 +166,7 @@ void add_recording_routes(Router& router, ApiContext& context) {
               "listRecordings",
               {"limit", "cursor", "sort", "device", "condition"},
               Handler([&](const Request& request) { return list_recordings(context, request); })});
-  router.add({"POST",
-              "/v1/recordings",
-              "uploadRecording",
-              metadata_parameters(),
+  router.add({"POST", "/v1/recordings", "uploadRecording", metadata_parameters(),
               UploadHandler([&](const Request& request) { return begin_upload(context, request); })});
   router.add({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
                 return get_recording(context, request);

@@ -17,7 +17,11 @@ Result<Response> ready(const ApiContext& context) {
   if (const std::string why = context.not_ready_why(); !why.empty()) {
     return problem_response(HttpFault::NotReady, why);
   }
-  return json_response(200, Json{{"status", "ready"}});
+  Json document{{"status", "ready"}};
+  if (const std::size_t damaged = context.damaged_blobs ? context.damaged_blobs() : 0; damaged > 0) {
+    document["damaged_files"] = damaged;
+  }
+  return json_response(200, document);
 }
 
 /// The page a person sees at `/` until the dashboard is there: where to go from here.
@@ -95,6 +99,10 @@ void add_service_routes(Router& router, ApiContext& context) {
   health.instant = true;
   router.add(std::move(health));
   router.add({"GET", "/readyz", "readiness", {}, Handler([&](const Request&) { return ready(context); })});
+  router.add({"GET", "/metrics", "metrics", {}, Handler([&](const Request&) -> Result<Response> {
+                return text_response("text/plain; version=0.0.4; charset=utf-8",
+                                     context.metrics ? context.metrics() : std::string());
+              })});
   router.add({"GET", "/openapi.json", "contract", {}, Handler([](const Request&) -> Result<Response> {
                 return text_response("application/json", contract_file("openapi.json"));
               })});

@@ -16,8 +16,6 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::size_t kLongestMetadata = 1024UL * 1024;
-
 /// `sha-256=:<base64>:` of Repr-Digest (RFC 9530) as lower-case hex; nothing where the header has no SHA-256.
 std::optional<std::string> stated_digest(std::string_view header) {
   const std::size_t start = header.find("sha-256=:");
@@ -99,8 +97,10 @@ class RecordingUpload final : public UploadSession {
       return blob_->append(bytes);
     }
     metadata_text_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (metadata_text_.size() > kLongestMetadata) {
-      return fail(ErrorCode::LimitExceeded, "The metadata are longer than 1 MiB.", {{"part", "metadata"}});
+    if (metadata_text_.size() > static_cast<std::size_t>(context_.budgets.document_bytes)) {
+      return fail(ErrorCode::LimitExceeded,
+                  "The metadata are too long " + naming_budget("document_bytes", context_.budgets.document_bytes) + ".",
+                  {{"part", "metadata"}});
     }
     return {};
   }
@@ -126,6 +126,11 @@ class RecordingUpload final : public UploadSession {
   }
 
   Result<Response> record_once(const std::string& key) {
+    // From here to the reply that is remembered: of equal uploads at once one is recorded.
+    const auto flight = context_.keys_in_flight.take(key);
+    if (!flight) {
+      return problem_response(HttpFault::IdempotencyInFlight, "A request with this Idempotency-Key is running.");
+    }
     auto known = context_.store.idempotent_reply(key);
     if (!known) {
       return fail(known.error());

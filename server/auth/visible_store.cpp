@@ -29,6 +29,11 @@ class VisibleStore final : public Store {
   explicit VisibleStore(Store& whole) : whole_(whole) {}
 
   Status ping() override { return whole_.ping(); }
+  Status write_probe() override { return whole_.write_probe(); }
+  Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) override {
+    return whole_.usage_of(device_id, sha256);
+  }
+  Result<int> forget_ended_jobs(UtcMicros before) override { return whole_.forget_ended_jobs(before); }
   Result<Counts> counts(const std::optional<Visibility>& /*visible*/) override { return whole_.counts(limits()); }
   Result<bool> sees_job(std::string_view job, const Visibility& visible) override {
     return whole_.sees_job(job, visible);

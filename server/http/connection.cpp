@@ -18,8 +18,9 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr std::size_t kPiece = 256UL * 1024;
-constexpr double kSlowestBytesPerSecond = 64.0 * 1024.0;
-constexpr auto kBodyGrace = 30s;
+/// For the first bytes of a request; what its header needs beyond comes when it is there. A silent connection holds no
+/// more.
+constexpr std::size_t kFirstBytes = 1024;
 constexpr auto kUnaskedWait = 20s;
 
 auto into(boost::system::error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
@@ -54,9 +55,8 @@ std::chrono::seconds patience_for(const Request& request, const Response& respon
 HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asio::ssl::context> tls,
                                ConnectionShared& shared)
     : stream_(std::move(socket), std::move(tls)),
-      buffer_(shared.options.limits.header_bytes + kPiece),
-      shared_(shared),
-      chunk_(kPiece) {
+      buffer_(static_cast<std::size_t>(shared.options.budgets.header_bytes) + kPiece),
+      shared_(shared) {
   boost::system::error_code error;
   const auto peer = stream_.socket().remote_endpoint(error);
   address_ = error ? "" : peer.address().to_string();
@@ -67,38 +67,51 @@ asio::awaitable<void> HttpConnection::run() {
   if (!shaken) {
     co_return;
   }
-  for (int served = 0; served < shared_.options.limits.requests_per_connection && !shared_.stopping; ++served) {
+  for (std::int64_t served = 0; served < budgets().requests_per_connection && !shared_.stopping; ++served) {
     Parser parser;
-    parser.header_limit(static_cast<std::uint32_t>(shared_.options.limits.header_bytes));
+    parser.header_limit(static_cast<std::uint32_t>(budgets().header_bytes));
     parser.body_limit(boost::none);
     const bool read = co_await read_header(parser);
     if (!read) {
       break;
     }
-    keep_alive_ = parser.get().keep_alive() && served + 1 < shared_.options.limits.requests_per_connection;
+    keep_alive_ = parser.get().keep_alive() && served + 1 < budgets().requests_per_connection;
     const bool again = co_await answer(parser);
     if (!again) {
       break;
     }
   }
   co_await stream_.say_goodbye();
+  abandon();
+}
+
+void HttpConnection::abandon() {
   boost::system::error_code ignored;
   ignored = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
 }
 
 void HttpConnection::close_if_idle() {
-  if (idle_) {
+  if (idle_since_ != 0) {
     stream_.cancel();
   }
 }
 
+std::optional<std::chrono::steady_clock::time_point> HttpConnection::idle_since() const {
+  const std::int64_t since = idle_since_;
+  if (since == 0 || leaving_) {
+    return std::nullopt;
+  }
+  return std::chrono::steady_clock::time_point(std::chrono::steady_clock::duration(since));
+}
+
 asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   boost::system::error_code error;
+  idle_since_ = std::chrono::steady_clock::now().time_since_epoch().count();
   if (buffer_.size() == 0) {
-    stream_.expires_after(60s);
-    idle_ = true;
-    const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(16UL * 1024), into(error));
-    idle_ = false;
+    buffer_.shrink_to_fit();
+    std::vector<std::byte>().swap(chunk_);
+    stream_.expires_after(std::chrono::seconds(budgets().idle_seconds));
+    const std::size_t count = co_await stream_.async_read_some(buffer_.prepare(kFirstBytes), into(error));
     if (error) {
       co_return false;
     }
@@ -108,8 +121,9 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   route_.clear();
   bytes_in_ = 0;
   broken_ = false;
-  stream_.expires_after(10s);
+  stream_.expires_after(std::chrono::seconds(budgets().header_seconds));
   co_await http::async_read_header(stream_, buffer_, parser, into(error));
+  idle_since_ = 0;
   if (!error) {
     co_return true;
   }
@@ -121,7 +135,9 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
     request.request_id = shared_.hooks.make_request_id();
     Response response =
         error == http::error::header_limit || error == http::error::buffer_overflow
-            ? problem_response(HttpFault::HeaderTooLarge, "The request header is larger than 16 KiB.")
+            ? problem_response(HttpFault::HeaderTooLarge, "The request header is larger than it may be " +
+                                                              naming_budget("header_bytes", budgets().header_bytes) +
+                                                              ".")
             : problem_response(HttpFault::BadRequest, "The request is not well-formed HTTP: " + error.message() + ".");
     co_await refuse(request, std::move(response));
   }
@@ -131,6 +147,7 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
 asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   HeadView head = head_of(parser.get());
   Request request;
+  request.budgets = &budgets();
   request.method = head.method;
   request.target = head.target;
   const GuardVerdict verdict = inspect(head, shared_.options.guard);
@@ -140,6 +157,7 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   request.caller.request_id = request.request_id;
   request.caller.address = address_;
   wants_continue_ = verdict.expects_continue;
+  body_unread_ = verdict.content_length > 0 || verdict.refusal.has_value();
 
   std::optional<Response> refusal = verdict.refusal;
   auto target = parse_target(request.target);
@@ -200,11 +218,12 @@ std::optional<Response> HttpConnection::admit(const Route* route, Request& reque
 asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& parser) {
   if (wants_continue_) {
     wants_continue_ = false;
-    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-    boost::system::error_code error;
-    stream_.expires_after(60s);
-    co_await asio::async_write(stream_, asio::buffer(kContinue), into(error));
+    (void)co_await write_text("HTTP/1.1 100 Continue\r\n\r\n");
   }
+  if (chunk_.empty() && !parser.is_done()) {
+    chunk_.resize(kPiece);
+  }
+  const auto stall = std::chrono::seconds(budgets().body_stall_seconds);
   if (bytes_in_ == 0) {
     body_started_ = std::chrono::steady_clock::now();
   }
@@ -216,7 +235,7 @@ asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& p
     body.data = chunk_.data();
     body.size = chunk_.size();
     boost::system::error_code error;
-    stream_.expires_after(kBodyGrace);
+    stream_.expires_after(stall);
     co_await http::async_read(stream_, buffer_, parser, into(error));
     const std::size_t count = chunk_.size() - body.size;
     bytes_in_ += count;
@@ -226,20 +245,36 @@ asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& p
     }
     const auto elapsed = std::chrono::steady_clock::now() - body_started_;
     const double seconds = std::chrono::duration<double>(elapsed).count();
-    if (elapsed > kBodyGrace && static_cast<double>(bytes_in_) < kSlowestBytesPerSecond * seconds) {
+    if (elapsed > stall &&
+        static_cast<double>(bytes_in_) < static_cast<double>(budgets().body_bytes_per_second) * seconds) {
       co_return std::nullopt;
     }
     if (count > 0) {
       co_return count;
     }
   }
+  body_unread_ = false;
   co_return 0;
+}
+
+asio::awaitable<bool> HttpConnection::write_text(std::string_view text) {
+  while (!text.empty()) {
+    boost::system::error_code error;
+    stream_.expires_after(std::chrono::seconds(budgets().write_stall_seconds));
+    text.remove_prefix(co_await stream_.async_write_some(asio::buffer(text), into(error)));
+    if (error) {
+      co_return false;
+    }
+  }
+  co_return true;
 }
 
 asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& route, Request& request) {
   const auto declared = parser.content_length();
-  if (declared && *declared > shared_.options.limits.document_bytes) {
-    Response too_large = problem_response(HttpFault::BodyTooLarge, "A document may have 1 MiB at most.");
+  if (declared && *declared > static_cast<std::uint64_t>(budgets().document_bytes)) {
+    Response too_large =
+        problem_response(HttpFault::BodyTooLarge, "A document may not be that large " +
+                                                      naming_budget("document_bytes", budgets().document_bytes) + ".");
     co_return co_await refuse(request, std::move(too_large));
   }
   while (true) {
@@ -342,10 +377,8 @@ asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler,
       text = ": still here\n\n";
     }
     if (!text.empty()) {
-      boost::system::error_code error;
-      stream_.expires_after(60s);
-      co_await asio::async_write(stream_, asio::buffer(text), into(error));
-      if (error) {
+      const bool written = co_await write_text(text);
+      if (!written) {
         break;
       }
       last_sent = std::chrono::steady_clock::now();
@@ -367,7 +400,7 @@ asio::awaitable<bool> HttpConnection::send(const Request& request, Response resp
   http::response<http::string_body> message;
   message.version(11);
   message.result(static_cast<unsigned>(response.status));
-  message.keep_alive(keep_alive && keep_alive_ && !shared_.stopping);
+  message.keep_alive(keep_alive && keep_alive_ && !body_unread_ && !shared_.stopping);
   if (response.status != 204 && response.status != 304) {
     message.set(http::field::content_type, response.content_type);
   }
@@ -391,11 +424,9 @@ asio::awaitable<bool> HttpConnection::send(const Request& request, Response resp
   http::response_serializer<http::string_body> serializer(message);
   serializer.split(request.method == "HEAD");
   boost::system::error_code error;
-  stream_.expires_after(60s);
-  if (request.method == "HEAD") {
-    co_await http::async_write_header(stream_, serializer, into(error));
-  } else {
-    co_await http::async_write(stream_, serializer, into(error));
+  while (!error && !(request.method == "HEAD" ? serializer.is_header_done() : serializer.is_done())) {
+    stream_.expires_after(std::chrono::seconds(budgets().write_stall_seconds));
+    co_await http::async_write_some(stream_, serializer, into(error));
   }
   co_return !error && message.keep_alive();
 }
@@ -404,6 +435,9 @@ asio::awaitable<void> HttpConnection::linger() {
   boost::system::error_code error;
   error = stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
   const auto until = std::chrono::steady_clock::now() + 2s;
+  if (chunk_.empty()) {
+    chunk_.resize(kFirstBytes);
+  }
   while (!error && std::chrono::steady_clock::now() < until) {
     stream_.expires_at(until);
     co_await stream_.below().async_read_some(asio::buffer(chunk_), into(error));

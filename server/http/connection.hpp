@@ -11,7 +11,14 @@
 #include <boost/beast/http/parser.hpp>
 
 #include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
 
 namespace driftlab::server {
 
@@ -27,6 +34,24 @@ template <class Value>
   return std::move(*outcome).map_error([](const Error& error) { return problem_response(error); });
 }
 
+/// The places that uploads take, in all and for each address.
+class UploadPlaces {
+ public:
+  UploadPlaces(const Budgets& budgets, std::function<bool(const std::string&)> exempt)
+      : budgets_(budgets), exempt_(std::move(exempt)) {}
+  /// The name of the budget that is used up; empty text where a place was taken, which `leave` gives back.
+  [[nodiscard]] std::string_view take(const std::string& address);
+  void leave(const std::string& address);
+  [[nodiscard]] std::size_t taken() const;
+
+ private:
+  const Budgets& budgets_;
+  std::function<bool(const std::string&)> exempt_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::int64_t> of_address_;
+  std::int64_t taken_ = 0;
+};
+
 /// What connections share. Outlives them all.
 struct ConnectionShared {
   const HttpOptions& options;
@@ -34,9 +59,10 @@ struct ConnectionShared {
   Bell& bell;
   const HttpHooks& hooks;
   BoundedPool& handlers;
-  BoundedPool& uploads;
+  BoundedPool& uploads;    ///< takes bytes in
+  BoundedPool& decodings;  ///< ends uploads, which takes as long as they are large
   std::atomic<bool>& stopping;
-  std::atomic<std::size_t>& uploads_running;
+  UploadPlaces& upload_places;
 };
 
 class HttpConnection {
@@ -48,6 +74,14 @@ class HttpConnection {
   boost::asio::awaitable<void> run();
   /// Closes a connection that waits for its next request. On the connection's own executor.
   void close_if_idle();
+  /// Since when it waits for a whole request header; nothing while it is at work or told to leave. Thread safe.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> idle_since() const;
+  /// It is to be closed for want of a place. Thread safe.
+  void leave() { leaving_ = true; }
+  [[nodiscard]] bool is_leaving() const { return leaving_; }
+  /// Closes the socket. On the connection's own executor.
+  void abandon();
+  [[nodiscard]] const std::string& address() const { return address_; }
   [[nodiscard]] boost::asio::any_io_executor executor() { return stream_.get_executor(); }
 
  private:
@@ -74,6 +108,9 @@ class HttpConnection {
   boost::asio::awaitable<bool> refuse(const Request& request, Response response);
   /// Why an upload may not even begin; nothing if it may.
   [[nodiscard]] std::optional<Response> refuse_before_upload(const Parser& parser) const;
+  /// Writes all of `text`. The deadline is for progress: a slow reader is no fault, one that takes nothing is.
+  boost::asio::awaitable<bool> write_text(std::string_view text);
+  [[nodiscard]] const Budgets& budgets() const { return shared_.options.budgets; }
   /// Reads on for a moment after an early answer, so that the client sees it before the connection resets.
   boost::asio::awaitable<void> linger();
   void log(const Request& request, const Response& response);
@@ -89,8 +126,10 @@ class HttpConnection {
   std::chrono::steady_clock::time_point body_started_;
   bool keep_alive_ = true;  ///< the client and the limit of requests allow another one
   bool wants_continue_ = false;
-  bool broken_ = false;  ///< the body ended early; what came before was handed on
-  bool idle_ = false;
+  bool broken_ = false;                      ///< the body ended early; what came before was handed on
+  bool body_unread_ = false;                 ///< bytes of a body may follow, which must not be read as the next request
+  std::atomic<std::int64_t> idle_since_{0};  ///< of the steady clock; 0: at work
+  std::atomic<bool> leaving_{false};
 };
 
 }  // namespace driftlab::server

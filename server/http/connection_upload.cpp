@@ -19,29 +19,52 @@ Result<Response> finish_upload(UploadSession& session) {
   }
 }
 
-/// Counts an upload in for as long as it lives.
-struct UploadSlot {
-  std::atomic<std::size_t>& running;
-  explicit UploadSlot(std::atomic<std::size_t>& counter) : running(counter) { running.fetch_add(1); }
-  UploadSlot(const UploadSlot&) = delete;
-  UploadSlot& operator=(const UploadSlot&) = delete;
-  ~UploadSlot() { running.fetch_sub(1); }
+/// Gives an upload's place back when it ends.
+struct UploadPlace {
+  UploadPlaces& places;
+  const std::string& address;
+  UploadPlace(UploadPlaces& given, const std::string& of) : places(given), address(of) {}
+  UploadPlace(const UploadPlace&) = delete;
+  UploadPlace& operator=(const UploadPlace&) = delete;
+  ~UploadPlace() { places.leave(address); }
 };
 
 }  // namespace
+
+std::string_view UploadPlaces::take(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  if (taken_ >= budgets_.uploads) {
+    return "uploads";
+  }
+  if (!exempt_(address) && of_address_[address] >= budgets_.uploads_per_address) {
+    return "uploads_per_address";
+  }
+  ++taken_;
+  ++of_address_[address];
+  return "";
+}
+
+void UploadPlaces::leave(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  --taken_;
+  if (--of_address_[address] == 0) {
+    of_address_.erase(address);
+  }
+}
+
+std::size_t UploadPlaces::taken() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(taken_);
+}
 
 std::optional<Response> HttpConnection::refuse_before_upload(const Parser& parser) const {
   const auto declared = parser.content_length();
   if (!declared) {
     return problem_response(HttpFault::LengthRequired, "An upload needs Content-Length.");
   }
-  if (*declared > shared_.options.limits.upload_bytes) {
-    return problem_response(
-        HttpFault::BodyTooLarge,
-        "An upload may have " + std::to_string(shared_.options.limits.upload_bytes) + " bytes at most.");
-  }
-  if (shared_.uploads_running >= shared_.options.limits.concurrent_uploads) {
-    return problem_response(HttpFault::Busy, "Too many uploads are running.");
+  if (*declared > static_cast<std::uint64_t>(budgets().upload_bytes)) {
+    return problem_response(HttpFault::BodyTooLarge, "An upload may not be that large " +
+                                                         naming_budget("upload_bytes", budgets().upload_bytes) + ".");
   }
   return std::nullopt;
 }
@@ -51,7 +74,13 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
   if (refusal) {
     co_return co_await refuse(request, std::move(*refusal));
   }
-  const UploadSlot slot(shared_.uploads_running);
+  if (const std::string_view full = shared_.upload_places.take(address_); !full.empty()) {
+    const std::int64_t most = full == "uploads" ? budgets().uploads : budgets().uploads_per_address;
+    Response busy =
+        problem_response(HttpFault::Busy, "Too many uploads are running " + naming_budget(full, most) + ".");
+    co_return co_await refuse(request, std::move(busy));
+  }
+  const UploadPlace place(shared_.upload_places, address_);
   auto begin = [&handler, &request] {
     const ActingFor acting(request.caller);
     return handler(request);
@@ -94,7 +123,7 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
     const ActingFor acting(request.caller);
     return finish_upload(*session);
   };
-  auto finished = co_await shared_.uploads.run(finish);
+  auto finished = co_await shared_.decodings.run(finish);
   session.reset();
   auto answered = settle(std::move(finished));
   Response response = answered ? std::move(*answered) : std::move(answered.error());

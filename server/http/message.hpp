@@ -1,5 +1,6 @@
 #pragma once
 /// Requests and responses as handlers see them: plain values, free of sockets.
+#include "server/store/budgets.hpp"
 #include "server/store/principal.hpp"
 
 #include <chrono>
@@ -22,6 +23,7 @@ struct Request {
   std::string body;                                          ///< empty for uploads, which stream
   std::string request_id;
   Caller caller;  ///< who asks, once the request was admitted
+  const Budgets* budgets = &default_budgets();  ///< what an answer may take
 
   /// First value of a header (name in lower case), or nothing.
   [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;

@@ -9,6 +9,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/strand.hpp>
 
+#include <algorithm>
 #include <condition_variable>
 #include <list>
 #include <map>
@@ -25,24 +26,32 @@ struct HttpServer::Shared {
       : options(std::move(given)),
         hooks(std::move(given_hooks)),
         bell(bell_in),
-        handlers(static_cast<std::size_t>(options.handler_threads), 256),
+        handlers(static_cast<std::size_t>(options.handler_threads),
+                 static_cast<std::size_t>(options.budgets.requests_waiting)),
         uploads(static_cast<std::size_t>(options.upload_threads), 1024),
-        connection_shared{options, router, bell_in, hooks, handlers, uploads, stopping, uploads_running},
+        decodings(static_cast<std::size_t>(options.budgets.decodings), 1024),
+        connection_shared{options, router, bell_in, hooks, handlers, uploads, decodings, stopping, upload_places},
         work(asio::make_work_guard(io)),
         acceptor(io) {}
 
   asio::awaitable<void> accept();
   asio::awaitable<void> serve(tcp::socket socket, std::string address);
   void close_idle_connections();
+  /// Counts a connection of this address in, at the cost of an idle one where there is no place. False: everybody is at
+  /// work.
   [[nodiscard]] bool admit(const std::string& address);
+  /// Closes the connection that has waited longest, of `address` or of anybody. `mutex` is held.
+  bool close_longest_idle(const std::string* address);
+  [[nodiscard]] bool is_exempt(const std::string& address) const;
 
   HttpOptions options;
   HttpHooks hooks;
   Bell& bell;
   std::atomic<bool> stopping{false};
-  std::atomic<std::size_t> uploads_running{0};
+  UploadPlaces upload_places{options.budgets, [this](const std::string& address) { return is_exempt(address); }};
   BoundedPool handlers;
   BoundedPool uploads;
+  BoundedPool decodings;
   ConnectionShared connection_shared;
   asio::io_context io;
   asio::executor_work_guard<asio::io_context::executor_type> work;
@@ -53,11 +62,48 @@ struct HttpServer::Shared {
   std::map<std::string, std::size_t> per_address;
   std::list<std::weak_ptr<HttpConnection>> connections;
   std::size_t open = 0;
+  std::size_t leaving = 0;  ///< of these, told to close for want of a place
+  std::uint64_t turned_away = 0;
 };
+
+bool HttpServer::Shared::is_exempt(const std::string& address) const {
+  boost::system::error_code error;
+  const auto parsed = asio::ip::make_address(address, error);
+  return (!error && parsed.is_loopback()) ||
+         std::find(options.proxies.begin(), options.proxies.end(), address) != options.proxies.end();
+}
+
+bool HttpServer::Shared::close_longest_idle(const std::string* address) {
+  std::shared_ptr<HttpConnection> longest;
+  for (const auto& entry : connections) {
+    auto connection = entry.lock();
+    if (!connection || !connection->idle_since() || (address != nullptr && connection->address() != *address)) {
+      continue;
+    }
+    if (!longest || *connection->idle_since() < *longest->idle_since()) {
+      longest = std::move(connection);
+    }
+  }
+  if (!longest) {
+    return false;
+  }
+  longest->leave();
+  ++leaving;
+  ++turned_away;
+  const auto executor = longest->executor();
+  asio::post(executor, [longest = std::move(longest)] { longest->close_if_idle(); });
+  return true;
+}
 
 bool HttpServer::Shared::admit(const std::string& address) {
   const std::lock_guard lock(mutex);
-  if (open >= options.limits.connections || per_address[address] >= options.limits.connections_per_address) {
+  const auto most = static_cast<std::size_t>(options.budgets.connections);
+  const auto most_of_one = static_cast<std::size_t>(options.budgets.connections_per_address);
+  const bool crowded = !is_exempt(address) && per_address[address] >= most_of_one;
+  // Those that leave are still counted; beyond twice the budget they leave too slowly.
+  if ((crowded && (per_address[address] >= 2 * most_of_one || !close_longest_idle(&address))) ||
+      (open - leaving >= most && (open >= 2 * most || !close_longest_idle(nullptr)))) {
+    ++turned_away;
     return false;
   }
   ++open;
@@ -76,11 +122,13 @@ asio::awaitable<void> HttpServer::Shared::serve(tcp::socket socket, std::string 
   try {
     co_await connection->run();
   } catch (const std::exception&) {
-    connection.reset();  // A connection that fails in an unforeseen way closes; the daemon goes on.
+    connection->abandon();  // A connection that fails in an unforeseen way closes; the daemon goes on.
   }
+  const bool left = connection && connection->is_leaving();
   connection.reset();
   const std::lock_guard lock(mutex);
   --open;
+  leaving -= left ? 1 : 0;
   if (--per_address[address] == 0) {
     per_address.erase(address);
   }
@@ -117,6 +165,8 @@ asio::awaitable<void> HttpServer::Shared::accept() {
       continue;  // closes the socket
     }
     error = socket.set_option(tcp::no_delay(true), error);
+    const auto held = static_cast<int>(options.budgets.send_buffer_bytes);
+    error = socket.set_option(asio::socket_base::send_buffer_size(held), error);
     const auto strand = socket.get_executor();
     asio::co_spawn(strand, serve(std::move(socket), address), asio::detached);
   }
@@ -167,6 +217,19 @@ std::uint16_t HttpServer::port() const {
   return shared_->acceptor.local_endpoint(error).port();
 }
 
+HttpServer::Load HttpServer::load() const {
+  const std::lock_guard lock(shared_->mutex);
+  Load load;
+  load.connections = shared_->open;
+  load.turned_away = shared_->turned_away;
+  load.uploads = shared_->upload_places.taken();
+  for (const auto& entry : shared_->connections) {
+    const auto connection = entry.lock();
+    load.idle += connection && connection->idle_since() ? 1 : 0;
+  }
+  return load;
+}
+
 void HttpServer::stop(std::chrono::milliseconds grace) {
   if (shared_->threads.empty()) {
     return;
@@ -190,6 +253,7 @@ void HttpServer::stop(std::chrono::milliseconds grace) {
   shared_->threads.clear();
   shared_->handlers.join();
   shared_->uploads.join();
+  shared_->decodings.join();
 }
 
 }  // namespace driftlab::server

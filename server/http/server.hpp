@@ -2,14 +2,14 @@
 /// The HTTP server: Boost.Beast on Asio coroutines. One strand per connection; I/O threads never block: handlers,
 /// uploads and event sources run on bounded pools.
 ///
-/// Limits (service-conventions section 5): header 16 KiB, target 8 KiB, JSON body 1 MiB, upload 8 GiB streamed in 256
-/// KiB pieces, 1024 connections, 64 per address, 100 requests per connection. Deadlines: handshake 10 s, idle 60 s,
-/// header 10 s, body 30 s without progress and at least 64 KiB/s after 30 s, write 60 s. After any protocol error the
-/// connection closes.
+/// Limits and deadlines are the budgets of connections, documents and uploads (server/store/budgets.hpp). A connection
+/// waits for a place no longer than others idle: when every place is taken, the one that has said nothing for longest
+/// is closed. After any protocol error, and after a body that was not read, the connection closes.
 #include "server/http/bell.hpp"
 #include "server/http/certificate.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/router.hpp"
+#include "server/store/budgets.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -22,23 +22,14 @@
 
 namespace driftlab::server {
 
-struct HttpLimits {
-  std::size_t header_bytes = 16UL * 1024;
-  std::uint64_t document_bytes = 1024ULL * 1024;
-  std::uint64_t upload_bytes = 8ULL * 1024 * 1024 * 1024;
-  std::size_t connections = 1024;
-  std::size_t connections_per_address = 64;
-  int requests_per_connection = 100;
-  std::size_t concurrent_uploads = 16;
-};
-
 struct HttpOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8477;
   int io_threads = 2;
   int handler_threads = 4;
   int upload_threads = 2;
-  HttpLimits limits;
+  Budgets budgets;
+  std::vector<std::string> proxies;  ///< addresses that are exempt from the budgets of one address, as loopback is
   GuardLimits guard;
   std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };
@@ -90,6 +81,14 @@ class HttpServer {
   void show(std::shared_ptr<boost::asio::ssl::context> tls);
   /// The port bound, useful when 0 was asked for.
   [[nodiscard]] std::uint16_t port() const;
+  /// Connections open now, and of these the ones that wait for a request.
+  struct Load {
+    std::size_t connections = 0;
+    std::size_t idle = 0;
+    std::size_t uploads = 0;
+    std::uint64_t turned_away = 0;  ///< connections closed for want of a place, since the start
+  };
+  [[nodiscard]] Load load() const;
   /// Stops accepting, lets running requests finish for up to `grace`, closes event streams, joins. Idempotent.
   void stop(std::chrono::milliseconds grace);
 

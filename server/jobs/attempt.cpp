@@ -4,19 +4,22 @@
 #include "server/jobs/fault_recorder.hpp"
 #include "server/store/crash_point.hpp"
 
+#include <malloc.h>
+
 #include <exception>
 #include <new>
 #include <utility>
 
 namespace driftlab::server {
 
-Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, const WorkerOptions& options,
-                 const std::function<void(const std::string&)>& changed)
+Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, MemoryGate& memory,
+                 const WorkerOptions& options, const std::function<void(const std::string&)>& changed)
     : job_(std::move(job)),
       lease_{job_.id, job_.attempt},
       kind_(kind),
       context_(context),
       executor_(executor),
+      memory_(memory),
       options_(options),
       changed_(changed) {}
 
@@ -31,6 +34,8 @@ void Attempt::run() {
   } else {
     fail(results.error());
   }
+  // Give the memory of a large job back to the system, for which the allocator would otherwise wait for its next use.
+  ::malloc_trim(0);
 }
 
 Result<JobResults> Attempt::work() {
@@ -49,8 +54,16 @@ Result<JobResults> Attempt::work() {
   const FaultScope scope(lease_);
   try {
     const auto request = parse_json(job_.request_json);
+    if (!request) {
+      return driftlab::fail(request.error());
+    }
+    const MemoryGate::Share memory(memory_, kind_->cost(*request, context_).memory_bytes, control.stop,
+                                   [this] { report("wait for memory", 0.0); });
+    if (!memory.held()) {
+      return driftlab::fail(ErrorCode::Cancelled, "The job was stopped while it waited for memory.");
+    }
     const Executor::Seat seat(executor_);
-    return request ? kind_->run(*request, context_, control) : driftlab::fail(request.error());
+    return kind_->run(*request, context_, control);
   } catch (const std::bad_alloc&) {
     out_of_memory_ = true;
     return driftlab::fail(ErrorCode::Internal, "There was not enough memory for the job.");
@@ -77,6 +90,14 @@ void Attempt::report(std::string_view stage, double fraction) {
   tell(progress);
   if (first) {
     crash_point("job.working");
+  }
+}
+
+void Attempt::mind_deadline() {
+  const auto most = std::chrono::seconds(context_.budgets.job_seconds);
+  if (!too_long_ && std::chrono::steady_clock::now() - begun_ > most) {
+    too_long_ = true;
+    stop_.request_stop();
   }
 }
 
@@ -127,7 +148,9 @@ void Attempt::ask_to_stop() {
 void Attempt::hand_back() {
   lost_ = true;
   stop_.request_stop();
-  announce(context_.store.release(lease_));
+  const Result<LeaseStatus> released = context_.store.release(lease_);
+  ended(released, "released");
+  announce(released);
 }
 
 void Attempt::finish(const JobResults& results) {
@@ -140,6 +163,7 @@ void Attempt::finish(const JobResults& results) {
   if (written->held) {
     crash_point("job.finished");
   }
+  ended(written, "succeeded");
   announce(written);
 }
 
@@ -151,20 +175,38 @@ void Attempt::fail(const Error& error) {
     // The work may have learnt before the heartbeat did that nobody wants it any more; the store knows.
     const Result<LeaseStatus> asked = context_.store.acknowledge_cancel(lease_);
     if (asked && (asked->cancel_requested || !asked->held)) {
+      ended(asked, "cancelled");
       announce(asked);
       return;
     }
     if (stopping_) {
-      announce(context_.store.release(lease_));
+      const Result<LeaseStatus> released = context_.store.release(lease_);
+      ended(released, "released");
+      announce(released);
       return;
     }
+  }
+  Error shown = error;
+  if (too_long_ && error.code == ErrorCode::Cancelled) {
+    shown = {ErrorCode::LimitExceeded,
+             "The job ran longer than a job may " + naming_budget("job_seconds", context_.budgets.job_seconds) + ".",
+             {}};
   }
   AttemptFailure failure;
   failure.retryable = out_of_memory_ || error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull;
   failure.problem_json =
-      options_.problem_document ? options_.problem_document(error) : plain_problem(error, failure.retryable);
+      options_.problem_document ? options_.problem_document(shown) : plain_problem(shown, failure.retryable);
   // Where even this cannot be written, the lease runs out and the job is tried again.
-  announce(context_.store.fail_attempt(lease_, failure));
+  const Result<LeaseStatus> failed = context_.store.fail_attempt(lease_, failure);
+  ended(failed, failure.retryable ? "retried" : "failed");
+  announce(failed);
+}
+
+void Attempt::ended(const Result<LeaseStatus>& written, std::string_view outcome) {
+  if (options_.attempt_ended) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    options_.attempt_ended(job_.kind, written && written->held ? outcome : "lost", seconds);
+  }
 }
 
 void Attempt::announce(const Result<LeaseStatus>& written) {

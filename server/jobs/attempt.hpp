@@ -21,11 +21,13 @@ namespace driftlab::server {
 class Attempt {
  public:
   /// `kind` may be null: the attempt then fails for good.
-  Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, const WorkerOptions& options,
-          const std::function<void(const std::string&)>& changed);
+  Attempt(Job job, const JobKind* kind, JobContext& context, Executor& executor, MemoryGate& memory,
+          const WorkerOptions& options, const std::function<void(const std::string&)>& changed);
 
   /// Waits for a seat of the executor, runs the job there and writes how it ended.
   void run();
+  /// Ends the work where it has taken the time that a job may take.
+  void mind_deadline();
   /// Writes progress that was thinned out, where its time has come.
   void catch_up();
   /// Renews the lease; learns of a lost lease or a cancel request and then stops the work.
@@ -49,18 +51,23 @@ class Attempt {
   void finish(const JobResults& results);
   void fail(const Error& error);
   void announce(const Result<LeaseStatus>& written);
+  /// The attempt has ended so, where the store took it; else its lease was lost.
+  void ended(const Result<LeaseStatus>& written, std::string_view outcome);
 
   const Job job_;
   const Lease lease_;
   const JobKind* kind_;
   JobContext& context_;
   Executor& executor_;
+  MemoryGate& memory_;
   const WorkerOptions& options_;
   const std::function<void(const std::string&)>& changed_;
   std::stop_source stop_;
   std::atomic<bool> lost_{false};
   std::atomic<bool> cancel_requested_{false};
   std::atomic<bool> stopping_{false};
+  std::atomic<bool> too_long_{false};
+  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   bool out_of_memory_ = false;
   std::mutex progress_mutex_;        ///< also orders the writes of the worker and of the heartbeat
   std::optional<Progress> thinned_;  ///< the last report that was not written

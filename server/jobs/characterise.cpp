@@ -124,6 +124,16 @@ class Characterise final : public JobKind {
                 {"algorithm_version", kAlgorithmVersion}};
   }
 
+  /// A few arrays of one channel's length at a time.
+  [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
+    constexpr std::int64_t kBytesPerSample = 40;
+    JobCost cost;
+    for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
+      cost.memory_bytes = std::max(cost.memory_bytes, JobCost{}.memory_bytes + kBytesPerSample * size.rows);
+    }
+    return cost;
+  }
+
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
     Faults faults;
@@ -135,7 +145,7 @@ class Characterise final : public JobKind {
     for (StoredRecordingRequest& one : wanted) {
       one.name = one.id;
     }
-    StoredRecordings recordings(context.store, context.blobs, std::move(wanted));
+    StoredRecordings recordings(context.store, context.blobs, std::move(wanted), context.verify_columns);
     const auto found = characterise(recordings, options, part_of(control, 0.0, kRecordingsShare));
     if (!found) {
       return fail(found.error());

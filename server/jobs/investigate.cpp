@@ -162,6 +162,16 @@ class Investigate final : public JobKind {
                 {"algorithm_version", kInvestigationVersion}};
   }
 
+  /// Every channel of every recording at once, some of them in several forms.
+  [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
+    constexpr std::int64_t kBytesPerSample = 220;
+    JobCost cost;
+    for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
+      cost.memory_bytes += kBytesPerSample * size.rows * size.columns;
+    }
+    return cost;
+  }
+
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
     auto row = context.store.study(request["inputs"]["study"].get<std::string>());
@@ -180,7 +190,8 @@ class Investigate final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    StoredRecordings recordings(context.store, context.blobs, recordings_from_request(request["inputs"]["recordings"]));
+    StoredRecordings recordings(context.store, context.blobs, recordings_from_request(request["inputs"]["recordings"]),
+                                context.verify_columns);
     auto report = investigate_study(wanted, recordings, control);
     if (!report) {
       return fail(report.error());

@@ -9,6 +9,9 @@ Result<NewJob> new_job(const JobKind& kind, const Json& inputs, const Json& para
   if (!request) {
     return fail(request.error());
   }
+  if (auto admitted = admit_cost(kind.cost(*request, context), context.budgets); !admitted) {
+    return fail(admitted.error());
+  }
   NewJob job;
   job.kind = kind.name();
   job.request_json = canonical_text(*request);

@@ -3,9 +3,12 @@
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
 #include "schema/json/json.hpp"
+#include "server/jobs/job_cost.hpp"
 #include "server/store/blobs.hpp"
+#include "server/store/budgets.hpp"
 #include "server/store/store.hpp"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -18,6 +21,10 @@ struct JobContext {
   Store& store;
   BlobStore& blobs;
   const Clock& clock;
+  Budgets budgets = {};
+  /// Makes sure that the columns of a blob are what was written, before they are used; may be empty. Errors: Io, for
+  /// columns that are damaged and cannot be made anew.
+  std::function<Status(const std::string& sha256)> verify_columns = {};
 };
 
 class JobKind {
@@ -35,6 +42,9 @@ class JobKind {
   [[nodiscard]] virtual Result<Json> canonical_request(const Json& inputs, const Json& parameters,
                                                        JobContext& context) const = 0;
 
+  /// What the job of a canonical request will take at most, roughly. Unless a kind says more: little.
+  [[nodiscard]] virtual JobCost cost(const Json& /*request*/, JobContext& /*context*/) const { return {}; }
+
   /// Does the work that a canonical request describes. Runs on a worker thread, polls `control.stop`, reports progress.
   /// Must not write to the store.
   [[nodiscard]] virtual Result<JobResults> run(const Json& request, JobContext& context,
@@ -42,7 +52,8 @@ class JobKind {
 };
 
 /// The job that `inputs` and `parameters` ask of `kind`, ready to be queued: its request is the canonical text (sorted
-/// members, no white space), its unique key that text's SHA-256. Errors: those of canonical_request.
+/// members, no white space), its unique key that text's SHA-256. Errors: those of canonical_request; LimitExceeded for
+/// one that would take more memory than all jobs have.
 [[nodiscard]] Result<NewJob> new_job(const JobKind& kind, const Json& inputs, const Json& parameters,
                                      JobContext& context);
 

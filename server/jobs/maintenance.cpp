@@ -9,12 +9,49 @@
 namespace driftlab::server {
 namespace {
 
-constexpr UtcMicros kOrphanAgeMicros = 24LL * 3600 * 1'000'000;
+constexpr std::int64_t kMinuteMicros = 60'000'000;
+constexpr std::int64_t kHourMicros = 60 * kMinuteMicros;
+constexpr std::int64_t kDayMicros = 24 * kHourMicros;
 
 }  // namespace
 
-Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now) {
-  const UtcMicros before = now - kOrphanAgeMicros;
+Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now) {
+  int removed = 0;
+  if (budgets.keep_jobs_days > 0) {
+    const auto jobs = store.forget_ended_jobs(now - budgets.keep_jobs_days * kDayMicros);
+    if (!jobs) {
+      return fail(jobs.error());
+    }
+    removed += *jobs;
+  }
+  std::string after;
+  while (budgets.keep_recordings_days > 0) {
+    const auto oldest = store.recordings({}, Page{after, 100});
+    if (!oldest) {
+      return fail(oldest.error());
+    }
+    for (const Recording& recording : *oldest) {
+      if (recording.created_at >= now - budgets.keep_recordings_days * kDayMicros) {
+        return removed;
+      }
+      after = recording.id;
+      const Status gone = store.remove_recording(recording.id, recording.revision);
+      if (gone) {
+        (void)store.remove_unused_blob(recording.blob_sha256);
+        ++removed;
+      } else if (gone.error().code != ErrorCode::Conflict) {
+        return fail(gone.error());
+      }
+    }
+    if (oldest->empty()) {
+      break;
+    }
+  }
+  return removed;
+}
+
+Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int64_t age_micros) {
+  const UtcMicros before = now - age_micros;
   const Result<std::vector<std::string>> files = blobs.hashes_older_than(before);
   if (!files) {
     return fail(files.error());
@@ -68,10 +105,18 @@ void Maintenance::run() {
     if (store_.rescue_expired().value_or(0) > 0 && rescued_) {
       rescued_();
     }
+    const bool full = options_.is_nearly_full && options_.is_nearly_full();
+    if (full) {
+      (void)sweep_blobs(store_, blobs_, clock_.now(), kMinuteMicros);
+    }
     if (std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {
       tidied_at = std::chrono::steady_clock::now();
       (void)store_.forget_old_replies();
-      (void)sweep_blobs(store_, blobs_, clock_.now());
+      (void)forget_old(store_, options_.budgets, clock_.now());
+      (void)sweep_blobs(store_, blobs_, clock_.now(), options_.budgets.orphan_hours * kHourMicros);
+    }
+    if (options_.each_turn) {
+      options_.each_turn();
     }
     guard.lock();
     stopped_.wait_for(guard, std::chrono::microseconds(options_.rescue_micros), [this] { return stopping_; });

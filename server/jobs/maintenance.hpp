@@ -2,6 +2,7 @@
 /// What has to be done now and then, whoever works: expired leases, old replies, files without rows.
 #include "core/signal/result.hpp"
 #include "server/store/blobs.hpp"
+#include "server/store/budgets.hpp"
 #include "server/store/store.hpp"
 
 #include <condition_variable>
@@ -15,11 +16,18 @@ namespace driftlab::server {
 struct MaintenanceOptions {
   std::int64_t rescue_micros = 5'000'000;    ///< between looks for expired leases
   std::int64_t tidy_micros = 3'600'000'000;  ///< between removals of old replies and of files without rows
+  Budgets budgets = {};
+  std::function<bool()> is_nearly_full = {};  ///< then files without rows go at once
+  std::function<void()> each_turn = {};       ///< what else is looked after, at each look for expired leases
 };
 
-/// Blob files older than 24 h that no row names, removed. How many. An upload of the same bytes at the same moment
-/// keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.
-[[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now);
+/// Removes recordings and ended jobs that are older than the budgets keep_recordings_days and keep_jobs_days say. A
+/// recording that a job is using stays until the next time. How many. Errors: those of the store.
+[[nodiscard]] Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now);
+
+/// Blob files older than `age_micros` that no row names, removed. How many. An upload of the same bytes at the same
+/// moment keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.
+[[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int64_t age_micros);
 
 /// One thread. A task that fails is tried again at its next turn; the store's state says what is left to do.
 class Maintenance {

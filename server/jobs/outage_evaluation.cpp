@@ -160,6 +160,16 @@ class OutageEvaluationKind final : public JobKind {
                 {"algorithm_version", kOutageAlgorithmVersion}};
   }
 
+  /// The motion of the drive, which all runs share; the runs themselves take their errors sample by sample.
+  [[nodiscard]] JobCost cost(const Json& request, JobContext& /*context*/) const override {
+    constexpr double kBytesPerSample = 160.0;
+    Faults faults;
+    const OutageScenario scenario = scenario_or_name(request["inputs"]["scenario"], "/inputs/scenario", faults);
+    JobCost cost;
+    cost.memory_bytes += static_cast<std::int64_t>(kBytesPerSample * scenario.drive.duration_s * scenario.imu_rate_hz);
+    return cost;
+  }
+
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& /*context*/,
                                        const RunControl& control) const override {
     Faults faults;

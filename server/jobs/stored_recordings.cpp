@@ -16,8 +16,14 @@ std::vector<StoredRecordingRequest> recordings_from_request(const Json& list) {
   return wanted;
 }
 
-StoredRecordings::StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted)
-    : store_(store), blobs_(blobs), wanted_(std::move(wanted)), rows_(wanted_.size()), specs_(wanted_.size()) {}
+StoredRecordings::StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted,
+                                   std::function<Status(const std::string&)> verify_columns)
+    : store_(store),
+      blobs_(blobs),
+      verify_columns_(std::move(verify_columns)),
+      wanted_(std::move(wanted)),
+      rows_(wanted_.size()),
+      specs_(wanted_.size()) {}
 
 Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunControl& /*control*/) {
   const StoredRecordingRequest& wanted = wanted_[index];
@@ -40,6 +46,9 @@ Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunContr
   RecordingSpec spec = recording_spec_from_json(*metadata, "", faults);
   if (!faults.none()) {
     return fail(faults.error());
+  }
+  if (auto verified = verify_columns_ ? verify_columns_(row->blob_sha256) : Status{}; !verified) {
+    return fail(verified.error());
   }
   auto columns = ColumnFile::open(blobs_.columns_path(row->blob_sha256));
   if (!columns) {

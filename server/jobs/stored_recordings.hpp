@@ -3,6 +3,7 @@
 #include "core/analysis/recording_source.hpp"
 #include "server/jobs/job_kind.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,9 @@ struct StoredRecordingRequest {
 class StoredRecordings : public RecordingSource {
  public:
   /// References must outlive this object.
-  StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted);
+  /// `verify_columns` is that of a JobContext.
+  StoredRecordings(Store& store, BlobStore& blobs, std::vector<StoredRecordingRequest> wanted,
+                   std::function<Status(const std::string&)> verify_columns = {});
 
   [[nodiscard]] std::size_t count() const override { return wanted_.size(); }
   /// Errors: NotFound; Conflict where the recording was revised since; those of the store and of ColumnFile::open.
@@ -44,6 +47,7 @@ class StoredRecordings : public RecordingSource {
  private:
   Store& store_;
   BlobStore& blobs_;
+  std::function<Status(const std::string&)> verify_columns_;
   std::vector<StoredRecordingRequest> wanted_;
   std::vector<Recording> rows_;
   std::vector<RecordingSpec> specs_;  ///< the metadata of each that was opened

@@ -21,9 +21,11 @@ struct WorkerPool::Implementation {
         changed(std::move(on_change)),
         kinds(std::move(lookup)),
         executor(static_cast<unsigned>(options.computing > 0 ? options.computing : std::max(1, options.threads))),
-        maintenance(context.store, context.blobs, context.clock, {}, [this] { wake(); }) {}
+        memory(memory_for_jobs(context.budgets)),
+        maintenance(context.store, context.blobs, context.clock, options.maintenance, [this] { wake(); }) {}
 
   void start();
+  void ask_to_stop();
   void stop();
   void wake();
   void work();
@@ -37,6 +39,7 @@ struct WorkerPool::Implementation {
   const std::function<void(const std::string&)> changed;
   const JobKindLookup kinds;
   Executor executor;
+  MemoryGate memory;
   Maintenance maintenance;
 
   std::mutex mutex;
@@ -94,7 +97,8 @@ bool WorkerPool::Implementation::run_next() {
     return false;
   }
   const JobKind* kind = kinds(claimed->kind);
-  const auto attempt = std::make_shared<Attempt>(std::move(*claimed), kind, context, executor, options, changed);
+  const auto attempt =
+      std::make_shared<Attempt>(std::move(*claimed), kind, context, executor, memory, options, changed);
   bool too_late = false;
   {
     const std::lock_guard<std::mutex> guard(mutex);
@@ -132,6 +136,7 @@ void WorkerPool::Implementation::beat() {
     }
     guard.unlock();
     for (const auto& attempt : attempts()) {
+      attempt->mind_deadline();
       attempt->catch_up();
       if (renew) {
         attempt->renew();
@@ -141,15 +146,20 @@ void WorkerPool::Implementation::beat() {
   }
 }
 
-void WorkerPool::Implementation::stop() {
-  std::unique_lock<std::mutex> guard(mutex);
-  stopping = true;
-  guard.unlock();
+void WorkerPool::Implementation::ask_to_stop() {
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    stopping = true;
+  }
   woken.notify_all();
   for (const auto& attempt : attempts()) {
     attempt->ask_to_stop();
   }
-  guard.lock();
+}
+
+void WorkerPool::Implementation::stop() {
+  ask_to_stop();
+  std::unique_lock<std::mutex> guard(mutex);
   drained.wait_for(guard, std::chrono::microseconds(options.grace_micros), [this] { return running.empty(); });
   guard.unlock();
   for (const auto& attempt : attempts()) {
@@ -178,6 +188,7 @@ WorkerPool::~WorkerPool() { stop(); }
 
 void WorkerPool::start() { implementation_->start(); }
 void WorkerPool::wake() { implementation_->wake(); }
+void WorkerPool::ask_to_stop() { implementation_->ask_to_stop(); }
 void WorkerPool::stop() { implementation_->stop(); }
 
 int WorkerPool::busy() const {

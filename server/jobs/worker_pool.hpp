@@ -8,6 +8,7 @@
 /// there counts against that job's attempt, as one in its worker does. The rules of states and retries:
 /// server/jobs/README.md.
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/maintenance.hpp"
 
 #include <functional>
 #include <memory>
@@ -31,6 +32,10 @@ struct WorkerOptions {
   std::int64_t progress_micros = 100'000;
   /// Runs the maintenance (server/jobs/maintenance.hpp) beside the workers.
   bool maintain = true;
+  MaintenanceOptions maintenance = {};
+  /// Called when an attempt has ended, with the job's kind, how it ended (server/observe/metrics.hpp) and the seconds
+  /// it took. May be empty.
+  std::function<void(std::string_view kind, std::string_view outcome, double seconds)> attempt_ended;
   /// Writes the problem document of a failed attempt; empty: a document with `code`, `detail` and `where`.
   std::function<std::string(const Error&)> problem_document;
 };
@@ -53,6 +58,8 @@ class WorkerPool {
   void start();
   /// A job was queued or cancelled: look now. Thread safe, never blocks.
   void wake();
+  /// Stops claiming and asks running jobs to stop; returns at once. Thread safe.
+  void ask_to_stop();
   /// Stops claiming, asks running jobs to stop, joins. Idempotent.
   void stop();
   /// Jobs running now.

@@ -1,11 +1,16 @@
 #include "server/observe/log.hpp"
 
 #include "server/store/clock.hpp"
+#include "server/store/files.hpp"
 
+#include <fcntl.h>
 #include <spdlog/async.h>
-#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,6 +19,56 @@ namespace driftlab::server {
 namespace {
 
 constexpr std::size_t kPendingLines = 8192;
+
+/// Where lines go: a descriptor of its own, never the number 2 of whatever came to be there.
+class LogSink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit LogSink(std::string file) : path_(std::move(file)) {}
+
+  /// Error: Io.
+  Status open() {
+    FileHandle opened(path_.empty() ? ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)
+                                    : ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640));
+    if (!opened) {
+      return fail(file_error(errno, "open the log", path_.empty() ? "standard error" : path_));
+    }
+    const std::lock_guard<std::mutex> guard(base_sink::mutex_);
+    handle_ = std::move(opened);
+    return {};
+  }
+  [[nodiscard]] bool is_file() const { return !path_.empty(); }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    base_sink::formatter_->format(message, line);
+    const char* next = line.data();
+    std::size_t left = line.size();
+    while (left > 0) {
+      const ssize_t written = ::write(handle_.get(), next, left);
+      if (written < 0 && errno != EINTR) {
+        lost_.fetch_add(1);
+        return;
+      }
+      next += written > 0 ? written : 0;
+      left -= static_cast<std::size_t>(written > 0 ? written : 0);
+    }
+  }
+  void flush_() override {}
+
+ public:
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+
+ private:
+  std::string path_;
+  FileHandle handle_;
+  std::atomic<std::uint64_t> lost_{0};
+};
+
+std::shared_ptr<LogSink>& sink() {
+  static std::shared_ptr<LogSink> one;
+  return one;
+}
 
 /// The thread that writes; the log owns it.
 std::shared_ptr<spdlog::details::thread_pool>& writer() {
@@ -35,14 +90,25 @@ void write(spdlog::level::level_enum level, std::string_view name, std::string_v
 
 }  // namespace
 
-void start_log(std::string_view level) {
+Status start_log(std::string_view level, const std::string& file) {
+  sink() = std::make_shared<LogSink>(file);
+  if (Status opened = sink()->open(); !opened) {
+    return opened;
+  }
   writer() = std::make_shared<spdlog::details::thread_pool>(kPendingLines, 1);
-  auto logger = std::make_shared<spdlog::async_logger>("driftlab", std::make_shared<spdlog::sinks::stderr_sink_mt>(),
-                                                       writer(), spdlog::async_overflow_policy::overrun_oldest);
+  auto logger = std::make_shared<spdlog::async_logger>("driftlab", sink(), writer(),
+                                                       spdlog::async_overflow_policy::overrun_oldest);
   logger->set_pattern("%v");
   logger->set_level(spdlog::level::from_str(std::string(level)));
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
+  return {};
+}
+
+Status reopen_log() { return sink() && sink()->is_file() ? sink()->open() : Status{}; }
+
+std::uint64_t dropped_log_lines() {
+  return (writer() ? writer()->overrun_counter() : 0) + (sink() ? sink()->lost() : 0);
 }
 
 void stop_log() {

@@ -1,14 +1,23 @@
 #pragma once
-/// The daemon's log: one JSON object per line on stderr, written by a background thread that never makes a request
-/// wait.
+/// The daemon's log: one JSON object per line on stderr or in a file, written by a background thread that never makes a
+/// request wait: where the reader is slower than the daemon, the oldest lines are dropped and counted.
+#include "core/signal/result.hpp"
 #include "schema/json/json.hpp"
 
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace driftlab::server {
 
-/// Starts the log. Level: debug, info, warning, error. Call once, before threads start.
-void start_log(std::string_view level);
+/// Starts the log. Level: debug, info, warning, error. `file` empty: standard error. Call once, before threads start.
+/// Error: Io, where the file cannot be opened.
+[[nodiscard]] Status start_log(std::string_view level, const std::string& file);
+/// Opens the file again, after somebody has moved it away. Without a file: nothing. Where it cannot be opened the log
+/// goes on in the old one. Error: Io.
+[[nodiscard]] Status reopen_log();
+/// Lines dropped since the start.
+[[nodiscard]] std::uint64_t dropped_log_lines();
 /// Writes what is pending and ends the log.
 void stop_log();
 

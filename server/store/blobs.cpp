@@ -1,5 +1,6 @@
 #include "server/store/blobs.hpp"
 
+#include "server/store/checksums.hpp"
 #include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
@@ -34,6 +35,7 @@ class IncomingFile final : public IncomingBlob {
   ~IncomingFile() override {
     (void)remove_file(path_);
     (void)remove_file(columns_path());
+    (void)remove_file(columns_checksum_path(columns_path()));
   }
 
   [[nodiscard]] Status append(std::span<const std::byte> bytes) override;
@@ -155,6 +157,9 @@ Status BlobDirectory::place(const IncomingFile& incoming) {
     if (Status flushed = sync_path(from); !flushed) {
       return flushed;
     }
+    if (Status summed = write_columns_checksum(from); !summed) {
+      return summed;
+    }
   }
   const std::lock_guard<std::mutex> guard(names_);
   if (!decoded && ::access(columns.c_str(), F_OK) != 0) {
@@ -165,6 +170,11 @@ Status BlobDirectory::place(const IncomingFile& incoming) {
   }
   crash_point("upload.kept_bytes");
   if (Status moved = move_or_refresh(from, columns); !moved) {
+    return moved;
+  }
+  // Columns whose checksum is missing, or that of columns that were damaged, are made anew before their next use.
+  if (Status moved = decoded ? rename_durably(columns_checksum_path(from), columns_checksum_path(columns)) : Status{};
+      !moved) {
     return moved;
   }
   crash_point("upload.kept");
@@ -183,6 +193,9 @@ Result<std::unique_ptr<IncomingBlob>> BlobDirectory::begin() {
 Status BlobDirectory::remove_both(std::string_view sha256) {
   if (!is_sha256_hex(sha256)) {
     return fail(ErrorCode::InvalidArgument, "A blob is named by 64 hexadecimal digits.", {{"parameter", "sha256"}});
+  }
+  if (Status removed = remove_file(columns_checksum_path(columns_path(sha256))); !removed) {
+    return removed;
   }
   if (Status removed = remove_file(columns_path(sha256)); !removed) {
     return removed;

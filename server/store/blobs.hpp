@@ -3,6 +3,7 @@
 ///
 ///   <root>/blobs/ab/abcdef...            the bytes as uploaded, named by their SHA-256
 ///   <root>/columns/ab/abcdef....columns  their decoded columns (core/read/column_file.hpp)
+///   <root>/columns/ab/abcdef....columns.sha256  their checksum (server/store/checksums.hpp)
 ///   <root>/incoming/                     files being written; emptied when a daemon starts
 ///
 /// A file appears under its final name complete or not at all: temporary file, fsync, rename, fsync of the directory. A

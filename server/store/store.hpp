@@ -43,6 +43,13 @@ struct ConditionCount {
   std::int64_t recordings = 0;
 };
 
+/// What is kept for a device.
+struct DeviceUsage {
+  std::int64_t recordings = 0;
+  std::int64_t bytes = 0;          ///< as uploaded
+  bool holds_these_bytes = false;  ///< a recording of the device has the blob that was asked for
+};
+
 struct RecordingFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> condition;
@@ -126,6 +133,8 @@ class Store {
   // ---- health
   /// Answers a trivial query. For /readyz.
   [[nodiscard]] virtual Status ping() = 0;
+  /// Writes a row and waits until it is on disk. For /readyz.
+  [[nodiscard]] virtual Status write_probe() = 0;
   /// Of what is `visible`; nothing: of everything.
   [[nodiscard]] virtual Result<Counts> counts(const std::optional<Visibility>& visible = std::nullopt) = 0;
   /// Whether somebody limited to devices may know of a job: it asked for it, or it names devices and only its own.
@@ -152,6 +161,8 @@ class Store {
   /// Adds the blob row if absent and the recording of (device, blob) if absent, in one transaction. The same metadata
   /// again gives the existing recording; other metadata: Conflict, with field "recording_id".
   [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
+  /// Of the device of that id; all zero for one that is not there.
+  [[nodiscard]] virtual Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// The conditions of a device's recordings, each once, in the order of their text.
@@ -250,6 +261,10 @@ class Store {
   [[nodiscard]] virtual Status remember_reply(const IdempotentReply& reply) = 0;
   /// Removes replies older than 24 h. How many.
   [[nodiscard]] virtual Result<int> forget_old_replies() = 0;
+
+  // ---- retention
+  /// Removes jobs that failed, were cancelled or given up and ended before that time. How many.
+  [[nodiscard]] virtual Result<int> forget_ended_jobs(UtcMicros before) = 0;
 };
 
 }  // namespace driftlab::server

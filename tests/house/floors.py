@@ -45,7 +45,7 @@ FLOORS: dict[str, list[str]] = {
     "server/http": [*SERVER, "server/auth", "schema/json"],
     "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http"],
     "server/pages": ["server/store", "server/http"],
-    "server": [*RESULTS, *SERVER, "server/pages", "server/auth", "server/jobs", "server/http", "server/api"],
+    "server": [*RESULTS, "core/read", *SERVER, "server/pages", "server/auth", "server/jobs", "server/http", "server/api"],
     "clients/cli": [*RESULTS, "core/read"],
 }
 

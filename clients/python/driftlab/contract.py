@@ -2145,6 +2145,8 @@ class Quantity(TypedDict):
 
 class ReadinessAnswer(TypedDict):
     status: Literal['ready']
+    # Stored files that are damaged and could not be healed; the log names them.
+    damaged_files: NotRequired[int]
 
 
 class Recording(TypedDict):
@@ -2902,6 +2904,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/healthz', (), (), ('application/json',)),
     'readiness': Operation(
         'GET', '/readyz', (), (), ('application/json',)),
+    'metrics': Operation(
+        'GET', '/metrics', (), (), ('text/plain',)),
     'contract': Operation(
         'GET', '/openapi.json', (), (), ('application/json',)),
     'listDocumentation': Operation(

@@ -4,6 +4,9 @@
 namespace driftlab::server::tables {
 namespace {
 
+constexpr std::string_view kForgetEnded =
+    "DELETE FROM jobs WHERE state IN ('failed', 'cancelled', 'dead') AND finished_at < ?";
+
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE id = ?";
 constexpr std::string_view kEqualJob =
@@ -137,6 +140,13 @@ Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_v
 
 Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now) {
   return connection.prepare(kAddEvent).bind(job_id, type, now).run();
+}
+
+Result<int> forget_ended_jobs(Connection& connection, UtcMicros before) {
+  if (Status forgotten = connection.prepare(kForgetEnded).bind(before).run(); !forgotten) {
+    return fail(forgotten.error());
+  }
+  return connection.changes();
 }
 
 }  // namespace driftlab::server::tables

@@ -28,6 +28,9 @@ constexpr std::string_view kVisibleDevicesAndRecordings =
 constexpr std::string_view kCounts =
     "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
     "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
+constexpr std::string_view kUsageOf =
+    "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(blobs.sha256 = ?2), 0) FROM recordings "
+    "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE recordings.device_id = ?1";
 constexpr std::string_view kConditionsOf =
     "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
 constexpr std::string_view kInsert =
@@ -148,6 +151,14 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
     return fail(inserted.error());
   }
   return RecordingOutcome{std::move(made), true};
+}
+
+Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256) {
+  Statement statement = connection.prepare(kUsageOf);
+  statement.bind(device_id, sha256);
+  return one_row(
+      statement, +[](const Statement& row) { return DeviceUsage{row.integer(0), row.integer(1), row.integer(2) != 0}; },
+      Error{ErrorCode::Internal, "The store counts nothing.", {}});
 }
 
 Result<Recording> recording(Connection& connection, std::string_view id) {

@@ -89,6 +89,18 @@ class OpenedStore final : public SqliteStore {
     return audited_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now()); },
                           [](const RecordingOutcome& o) { return made("recording.add", o.created, o.recording.id); });
   }
+  [[nodiscard]] Status write_probe() override {
+    // The value stays; the page goes through log and disk like any other.
+    return writer_.write([](Connection& c) -> Status {
+      return c.prepare("UPDATE schema_migrations SET applied_at = applied_at WHERE number = 1").run();
+    });
+  }
+  [[nodiscard]] Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) override {
+    return readers_->read([&](Connection& c) { return tables::usage_of(c, device_id, sha256); });
+  }
+  [[nodiscard]] Result<int> forget_ended_jobs(UtcMicros before) override {
+    return writer_.write([&](Connection& c) { return tables::forget_ended_jobs(c, before); });
+  }
   [[nodiscard]] Result<Recording> recording(std::string_view id) override {
     return readers_->read([&](Connection& c) { return tables::recording(c, id); });
   }

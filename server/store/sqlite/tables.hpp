@@ -151,6 +151,7 @@ class FilteredQuery {
 [[nodiscard]] Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256);
 [[nodiscard]] Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
                                                      const Recording& recording, UtcMicros now);
+[[nodiscard]] Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256);
 [[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
@@ -166,6 +167,7 @@ class FilteredQuery {
 // ---- jobs: asking and looking
 [[nodiscard]] Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now);
 [[nodiscard]] Result<Job> job(Connection& connection, std::string_view id);
+[[nodiscard]] Result<int> forget_ended_jobs(Connection& connection, UtcMicros before);
 [[nodiscard]] Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page);
 [[nodiscard]] Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id,
                                                          std::int64_t sequence, int limit);

@@ -28,13 +28,13 @@ TEST(SweepBlobs, RemovesFilesWithoutRowsAfterADay) {
   ASSERT_EQ(add_recording(*world.store, add_device(*world.store), "named").blob_sha256, named);
 
   const UtcMicros now = SystemClock().now();  // files carry the machine's time
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 23 * kHour), 0);
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour), 1);
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 23 * kHour, 24 * kHour), 0);
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour, 24 * kHour), 1);
   EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(orphan)));
   EXPECT_FALSE(std::filesystem::exists(world.blobs->columns_path(orphan)));
   EXPECT_TRUE(std::filesystem::exists(world.blobs->bytes_path(named)));
   EXPECT_TRUE(std::filesystem::exists(world.blobs->columns_path(named)));
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour), 0);
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour, 24 * kHour), 0);
 }
 
 TEST(Maintenance, RescuesForgetsAndSweepsByItself) {

@@ -23,6 +23,11 @@ class ServiceRoutes(Routes):
         """The daemon can take work; Unavailable at once, without retries, where it cannot."""
         return cast(ReadinessAnswer, self._transport.call("readiness", retries=False).json)
 
+    @operation("metrics")
+    def metrics(self) -> str:
+        """What the daemon counts, in the text format of Prometheus."""
+        return self._text("metrics", "text/plain")
+
     @operation("getCounts")
     def counts(self) -> GetCountsAnswer:
         """How many devices and recordings there are, and jobs that live."""

@@ -1,0 +1,94 @@
+#include "server/api/stored_blob.hpp"
+
+#include "core/read/format.hpp"
+
+#include <array>
+#include <fstream>
+#include <span>
+
+namespace driftlab::server {
+namespace {
+
+/// Makes the columns anew. False: the bytes are not what their name says, or no longer decode.
+Result<bool> decode_again(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits) {
+  auto incoming = blobs.begin();
+  if (!incoming) {
+    return fail(incoming.error());
+  }
+  std::ifstream bytes(blobs.bytes_path(sha256), std::ios::binary);
+  std::array<char, 65536> piece{};
+  while (bytes.read(piece.data(), piece.size()) || bytes.gcount() > 0) {
+    const auto count = static_cast<std::size_t>(bytes.gcount());
+    if (auto taken = (*incoming)->append(std::as_bytes(std::span(piece).first(count))); !taken) {
+      return fail(taken.error());
+    }
+  }
+  if (auto sealed = (*incoming)->seal(); !sealed) {
+    return fail(sealed.error());
+  }
+  if ((*incoming)->sha256() != sha256) {
+    return false;
+  }
+  const auto decoded = decode_file((*incoming)->path(), (*incoming)->columns_path(), limits);
+  if (!decoded) {
+    const bool storage = decoded.error().code == ErrorCode::Io || decoded.error().code == ErrorCode::DiskFull;
+    return storage ? Result<bool>(fail(decoded.error())) : Result<bool>(false);
+  }
+  return (*incoming)->keep().map([] { return true; });
+}
+
+}  // namespace
+
+DecodeLimits decode_limits(const Budgets& budgets) {
+  DecodeLimits limits;
+  limits.columns_allowance = static_cast<std::uint64_t>(budgets.columns_allowance_bytes);
+  limits.columns_ratio = static_cast<std::uint64_t>(budgets.columns_ratio);
+  limits.max_notes = static_cast<std::size_t>(budgets.notes_per_recording);
+  return limits;
+}
+
+std::string_view name_of(BlobState state) {
+  switch (state) {
+    case BlobState::Sound:
+      return "sound";
+    case BlobState::Healed:
+      return "healed";
+    case BlobState::DamagedBytes:
+      return "damaged bytes";
+    case BlobState::DamagedColumns:
+      return "damaged columns";
+  }
+  return "unknown";
+}
+
+Result<BlobState> verify_columns(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits,
+                                 const ReadingPace& pace) {
+  const auto columns = check_columns(blobs.columns_path(sha256), pace);
+  if (!columns) {
+    return fail(columns.error());
+  }
+  if (*columns == FileState::Sound) {
+    return BlobState::Sound;
+  }
+  // Columns without a checksum are trusted only after they were made anew: nobody knows what they were.
+  const auto made = decode_again(blobs, sha256, limits);
+  if (!made) {
+    return fail(made.error());
+  }
+  return *made ? BlobState::Healed : BlobState::DamagedColumns;
+}
+
+Result<BlobState> verify_blob(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits,
+                              const ReadingPace& pace) {
+  const auto columns = verify_columns(blobs, sha256, limits, pace);
+  if (!columns || *columns != BlobState::Sound) {
+    return columns;
+  }
+  const auto bytes = check_bytes(blobs.bytes_path(sha256), sha256, pace);
+  if (!bytes) {
+    return fail(bytes.error());
+  }
+  return *bytes == FileState::Sound ? BlobState::Sound : BlobState::DamagedBytes;
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,108 @@
+#include "server/scrubber.hpp"
+
+#include "server/observe/log.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <vector>
+
+namespace driftlab::server {
+namespace {
+
+/// Sleeps; false where the stop came first.
+bool rest(const std::stop_token& stop, std::chrono::duration<double> time) {
+  std::mutex mutex;
+  std::condition_variable_any waiting;
+  std::unique_lock<std::mutex> lock(mutex);
+  waiting.wait_for(lock, stop, time, [] { return false; });
+  return !stop.stop_requested();
+}
+
+}  // namespace
+
+void Scrubber::start() {
+  if (bytes_per_second_ > 0) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+}
+
+void Scrubber::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+void Scrubber::note(const std::string& sha256, BlobState state) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (state == BlobState::Healed) {
+    ++findings_.healed;
+    log_warning("columns were made anew from the uploaded bytes", Json{{"blob", sha256}});
+  }
+  if (state == BlobState::Sound || state == BlobState::Healed) {
+    if (damaged_.erase(sha256) > 0) {
+      log_info("a damaged blob is sound again", Json{{"blob", sha256}});
+    }
+  } else if (damaged_.insert(sha256).second) {
+    log_error("bad state", Json{{"detail", "A stored file is damaged; upload the same file again to heal it."},
+                                {"blob", sha256},
+                                {"state", name_of(state)}});
+  }
+  findings_.damaged = damaged_.size();
+}
+
+Status Scrubber::verify_columns(const std::string& sha256) {
+  const auto state = server::verify_columns(blobs_, sha256, limits_);
+  if (!state) {
+    return fail(state.error());
+  }
+  if (*state != BlobState::Sound) {
+    note(sha256, *state);
+  }
+  if (*state == BlobState::DamagedColumns) {
+    return fail(ErrorCode::Io,
+                "The stored samples are damaged and cannot be made anew from the uploaded bytes; upload the same file "
+                "again.",
+                {{"blob", sha256}});
+  }
+  return {};
+}
+
+Scrubber::Findings Scrubber::findings() const {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  return findings_;
+}
+
+void Scrubber::run(const std::stop_token& stop) {
+  using namespace std::chrono_literals;
+  const ReadingPace pace = [&](std::size_t bytes) {
+    {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      findings_.bytes_read += bytes;
+    }
+    return rest(stop,
+                std::chrono::duration<double>(static_cast<double>(bytes) / static_cast<double>(bytes_per_second_)));
+  };
+  while (rest(stop, 1s)) {
+    const auto hashes = store_.blob_hashes();
+    for (const std::string& sha256 : hashes.value_or(std::vector<std::string>{})) {
+      const auto state = verify_blob(blobs_, sha256, limits_, pace);
+      if (stop.stop_requested()) {
+        return;
+      }
+      const auto row = store_.blob(sha256);
+      if (state && row && *row) {  // one that was removed meanwhile is no loss
+        note(sha256, *state);
+      }
+    }
+    {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      ++findings_.passes;
+    }
+    if (!rest(stop, 60s)) {
+      return;
+    }
+  }
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,54 @@
+#pragma once
+/// Reads back everything that is stored, over and over, slowly: damage is found before somebody needs the file, columns
+/// are healed, and what cannot be healed is logged once, counted and shown by /readyz.
+#include "core/read/byte_source.hpp"
+#include "server/api/stored_blob.hpp"
+#include "server/store/store.hpp"
+
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+namespace driftlab::server {
+
+class Scrubber {
+ public:
+  /// References must outlive this object. `bytes_per_second` 0: nothing is read in the background.
+  Scrubber(Store& store, BlobStore& blobs, DecodeLimits limits, std::int64_t bytes_per_second)
+      : store_(store), blobs_(blobs), limits_(limits), bytes_per_second_(bytes_per_second) {}
+  Scrubber(const Scrubber&) = delete;
+  Scrubber& operator=(const Scrubber&) = delete;
+  ~Scrubber() = default;
+
+  void start();
+  void stop();
+
+  /// For jobs (server/jobs/job_kind.hpp): the columns before they are used. Error: Io, naming the blob.
+  [[nodiscard]] Status verify_columns(const std::string& sha256);
+
+  struct Findings {
+    std::uint64_t bytes_read = 0;
+    std::uint64_t healed = 0;
+    std::uint64_t passes = 0;  ///< over everything that is stored
+    std::size_t damaged = 0;   ///< blobs that are damaged now
+  };
+  [[nodiscard]] Findings findings() const;
+
+ private:
+  void run(const std::stop_token& stop);
+  void note(const std::string& sha256, BlobState state);
+
+  Store& store_;
+  BlobStore& blobs_;
+  const DecodeLimits limits_;
+  const std::int64_t bytes_per_second_;
+  mutable std::mutex mutex_;
+  Findings findings_;
+  std::set<std::string> damaged_;
+  std::jthread thread_;
+};
+
+}  // namespace driftlab::server

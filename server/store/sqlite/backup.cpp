@@ -1,0 +1,298 @@
+#include "server/store/sqlite/backup.hpp"
+
+#include "server/store/checksums.hpp"
+#include "server/store/digest.hpp"
+#include "server/store/files.hpp"
+#include "server/store/sqlite/connection.hpp"
+#include "server/store/sqlite/migrations.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace driftlab::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDatabase = "driftlab.db";
+constexpr const char* kManifest = "manifest.json";
+
+fs::path bytes_below(const fs::path& root, const std::string& sha256) {
+  return root / "blobs" / sha256.substr(0, 2) / sha256;
+}
+fs::path columns_below(const fs::path& root, const std::string& sha256) {
+  return root / "columns" / sha256.substr(0, 2) / (sha256 + ".columns");
+}
+
+Result<std::unique_ptr<Connection>> open_to_read(const fs::path& directory) {
+  std::error_code none;
+  if (!fs::exists(directory / kDatabase, none)) {
+    return fail(ErrorCode::NotFound, "There is no driftlab database in " + directory.string() + ".",
+                {{"parameter", "data"}});
+  }
+  return Connection::open(directory / kDatabase, Access::ReadOnly);
+}
+
+Result<std::vector<std::string>> blobs_of(Connection& connection) {
+  std::vector<std::string> hashes;
+  Statement statement = connection.prepare("SELECT sha256 FROM blobs ORDER BY sha256");
+  while (true) {
+    const auto row = statement.step();
+    if (!row) {
+      return fail(row.error());
+    }
+    if (!*row) {
+      return hashes;
+    }
+    hashes.push_back(statement.text(0));
+  }
+}
+
+Status check_database(Connection& connection, std::vector<std::string>& faults) {
+  const auto integrity = connection.query_text("PRAGMA integrity_check(1)");
+  if (!integrity) {
+    return fail(integrity.error());
+  }
+  if (integrity->value_or("") != "ok") {
+    faults.push_back("The database is damaged: " + integrity->value_or("no answer") + ".");
+  }
+  const auto orphan = connection.query_text("SELECT \"table\" FROM pragma_foreign_key_check LIMIT 1");
+  if (!orphan) {
+    return fail(orphan.error());
+  }
+  if (*orphan) {
+    faults.push_back("A row of the table " + **orphan + " refers to one that is not there.");
+  }
+  return {};
+}
+
+/// The fault of a file, as a sentence; empty: it is sound.
+std::string fault_of(const std::string& what, const std::string& sha256, FileState state) {
+  switch (state) {
+    case FileState::Sound:
+    case FileState::Unknown:
+      return "";
+    case FileState::Damaged:
+      return "The " + what + " of " + sha256 + " are damaged.";
+    case FileState::Missing:
+      return "The " + what + " of " + sha256 + " are missing.";
+  }
+  return "";
+}
+
+/// Reads the files of every blob below `root` back.
+Status check_files(const fs::path& root, const std::vector<std::string>& hashes, StoreReport& report) {
+  const ReadingPace count = [&](std::size_t bytes) {
+    report.bytes += static_cast<std::int64_t>(bytes);
+    return true;
+  };
+  for (const std::string& sha256 : hashes) {
+    const auto bytes = check_bytes(bytes_below(root, sha256), sha256, count);
+    const auto columns = check_columns(columns_below(root, sha256), count);
+    if (!bytes || !columns) {
+      return fail(!bytes ? bytes.error() : columns.error());
+    }
+    for (std::string fault : {fault_of("bytes", sha256, *bytes), fault_of("columns", sha256, *columns)}) {
+      if (!fault.empty()) {
+        report.faults.push_back(std::move(fault));
+      }
+    }
+    ++report.blobs;
+  }
+  return {};
+}
+
+Status copy_one(const fs::path& from, const fs::path& to) {
+  if (Status made = make_directories(to.parent_path()); !made) {
+    return made;
+  }
+  std::error_code error;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+  if (error) {
+    return fail(file_error(error.value(), "copy", from));
+  }
+  return sync_path(to);
+}
+
+/// Copies the files of every blob; one that is not there is told.
+Status copy_files(const fs::path& from, const fs::path& to, const std::vector<std::string>& hashes,
+                  StoreReport& report) {
+  for (const std::string& sha256 : hashes) {
+    const fs::path columns = columns_below(from, sha256);
+    for (const auto& [source, target] :
+         {std::pair{bytes_below(from, sha256), bytes_below(to, sha256)}, std::pair{columns, columns_below(to, sha256)},
+          std::pair{columns_checksum_path(columns), columns_checksum_path(columns_below(to, sha256))}}) {
+      std::error_code none;
+      if (!fs::exists(source, none)) {
+        continue;  // the check of the copy tells
+      }
+      if (Status copied = copy_one(source, target); !copied) {
+        return copied;
+      }
+    }
+  }
+  return check_files(to, hashes, report);
+}
+
+Status write_manifest(const fs::path& directory, const StoreReport& report, const std::string& now) {
+  const auto database = sha256_of_file(directory / kDatabase);
+  if (!database) {
+    return fail(database.error());
+  }
+  std::ofstream stream(directory / kManifest);
+  stream << "{\"driftlab\":\"" << DRIFTLAB_VERSION << "\",\"made_at\":\"" << now << "\",\"database_sha256\":\""
+         << *database << "\",\"blobs\":" << report.blobs << ",\"bytes\":" << report.bytes << "}\n";
+  stream.close();
+  if (!stream) {
+    return fail(ErrorCode::DiskFull, "The manifest of the backup could not be written.");
+  }
+  return sync_path(directory / kManifest);
+}
+
+Status require_absent(const fs::path& target, bool may_be_empty) {
+  std::error_code none;
+  if (!fs::exists(target, none) || (may_be_empty && fs::is_directory(target, none) && fs::is_empty(target, none))) {
+    return {};
+  }
+  return fail(ErrorCode::Conflict, "The directory " + target.string() + " is there already; name another.",
+              {{"path", target.string()}});
+}
+
+/// A directory under construction, removed unless it was given its name.
+class Construction {
+ public:
+  explicit Construction(fs::path target) : target_(std::move(target)), part_(target_) { part_ += ".part"; }
+  Construction(const Construction&) = delete;
+  Construction& operator=(const Construction&) = delete;
+  ~Construction() {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+  }
+  [[nodiscard]] Status begin() const {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+    return make_directories(part_);
+  }
+  [[nodiscard]] const fs::path& part() const { return part_; }
+  [[nodiscard]] Status finish() const {
+    std::error_code ignored;
+    fs::remove(target_, ignored);  // an empty directory
+    return rename_durably(part_, target_);
+  }
+
+ private:
+  fs::path target_;
+  fs::path part_;
+};
+
+}  // namespace
+
+Result<StoreReport> check_data(const fs::path& data) {
+  auto connection = open_to_read(data);
+  if (!connection) {
+    return fail(connection.error());
+  }
+  StoreReport report;
+  Status checked = check_database(**connection, report.faults);
+  const auto hashes = checked ? blobs_of(**connection) : Result<std::vector<std::string>>(fail(checked.error()));
+  if (!hashes) {
+    return fail(hashes.error());
+  }
+  if (checked = check_files(data, *hashes, report); !checked) {
+    return fail(checked.error());
+  }
+  return report;
+}
+
+Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const std::string& now) {
+  if (Status absent = require_absent(target, false); !absent) {
+    return fail(absent.error());
+  }
+  auto connection = open_to_read(data);
+  if (!connection) {
+    return fail(connection.error());
+  }
+  const Construction construction(target);
+  Status done = construction.begin();
+  if (done) {
+    done = copy_database(**connection, construction.part() / kDatabase);
+  }
+  if (!done) {
+    return fail(done.error());
+  }
+  StoreReport report;
+  {
+    auto copy = Connection::open(construction.part() / kDatabase, Access::ReadOnly);
+    if (!copy) {
+      return fail(copy.error());
+    }
+    if (done = check_database(**copy, report.faults); !done) {
+      return fail(done.error());
+    }
+    const auto hashes = blobs_of(**copy);
+    if (!hashes) {
+      return fail(hashes.error());
+    }
+    if (done = copy_files(data, construction.part(), *hashes, report); !done) {
+      return fail(done.error());
+    }
+  }
+  done = write_manifest(construction.part(), report, now);
+  if (done) {
+    done = construction.finish();
+  }
+  if (!done) {
+    return fail(done.error());
+  }
+  return report;
+}
+
+Result<StoreReport> restore(const fs::path& backup, const fs::path& data) {
+  if (Status absent = require_absent(data, true); !absent) {
+    return fail(absent.error());
+  }
+  std::ifstream stream(backup / kManifest);
+  const std::string manifest{std::istreambuf_iterator<char>(stream), {}};
+  const auto digest = sha256_of_file(backup / kDatabase);
+  if (!digest || manifest.empty()) {
+    return fail(ErrorCode::NotFound, "There is no complete backup in " + backup.string() + ".",
+                {{"parameter", "from"}});
+  }
+  if (manifest.find("\"database_sha256\":\"" + *digest + "\"") == std::string::npos) {
+    return fail(ErrorCode::Io, "The database of the backup is not the one that its manifest names.",
+                {{"parameter", "from"}});
+  }
+  const Construction construction(data);
+  Status done = construction.begin();
+  if (done) {
+    done = copy_one(backup / kDatabase, construction.part() / kDatabase);
+  }
+  if (!done) {
+    return fail(done.error());
+  }
+  StoreReport report;
+  {
+    auto copy = Connection::open(construction.part() / kDatabase, Access::ReadOnly);
+    if (!copy) {
+      return fail(copy.error());
+    }
+    if (done = check_database(**copy, report.faults); !done) {
+      return fail(done.error());
+    }
+    const auto hashes = blobs_of(**copy);
+    if (!hashes) {
+      return fail(hashes.error());
+    }
+    if (done = copy_files(backup, construction.part(), *hashes, report); !done) {
+      return fail(done.error());
+    }
+  }
+  if (done = construction.finish(); !done) {
+    return fail(done.error());
+  }
+  return report;
+}
+
+}  // namespace driftlab::server
