@@ -373,8 +373,11 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
 }
 
 void Daemon::reload() {
+  if (const Status reopened = reopen_log(); !reopened) {
+    log_error("cannot reload", Json{{"detail", reopened.error().message}});
+  }
   if (parts_->certificate.chain.empty()) {
-    log_info("nothing to reload", Json{{"tls", "off"}});
+    log_info("reloaded");
     return;
   }
   auto context = load_certificate(parts_->certificate);
@@ -406,15 +409,6 @@ void Daemon::stop() {
   jobs.join();
   (void)parts_->gate->flush_use(true);
   log_info("stopped");
-}
-
-void Daemon::reload() {
-  const Status reopened = reopen_log();
-  if (reopened) {
-    log_info("reloaded");
-  } else {
-    log_error("cannot reload", Json{{"detail", reopened.error().message}});
-  }
 }
 
 }  // namespace driftlab::server

@@ -16,12 +16,10 @@ class Daemon {
   ~Daemon();
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Reads the certificate again and shows it to new connections; one that does not hold leaves the old one in place,
-  /// and the log says why.
-  void reload();
   /// Not ready, stop accepting, finish requests (10 s), stop workers (20 s), close the store. Idempotent.
   void stop();
-  /// Opens the log file again and reads again what may change while the daemon runs (SIGHUP). Thread safe.
+  /// Opens the log file again, reads the certificate again and shows it to new connections (SIGHUP); one that does not
+  /// hold leaves the old one in place, and the log says why. Thread safe.
   void reload();
 
  private:
