@@ -32,8 +32,8 @@ struct Beaten {
 };
 [[nodiscard]] Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block);
 
-/// Mean power of the innovations of member r, 1 where white, over each band of a quarter of a hertz; its largest value between
-/// two frequencies, at least 1.
+/// Mean power of the innovations of member r, 1 where white, over each band of a quarter of a hertz; its largest value
+/// between two frequencies, at least 1.
 [[nodiscard]] double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz);
 
 /// ln of the chance that chi-square with 2 k degrees of freedom exceeds x.

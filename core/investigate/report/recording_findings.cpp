@@ -38,10 +38,12 @@ void report_recordings(const RightedRecordings& righted, Report& report) {
     finding.gain.misfit_before = finding.gain.misfit_after = report.misfit_after;
     if (!found.fault.channels.empty()) {
       const std::string& name = found.fault.channels.front();
-      finding.series = course_of(study, name);
+      const std::size_t slash = name.rfind('/');
       checks.push_back(
-          certain_check(name + "." + std::string(found.cause->name), finding.series.recording, finding.series.channel));
+          certain_check(name + "." + std::string(found.cause->name), name.substr(0, slash), name.substr(slash + 1)));
+      checks.back().title = std::string(found.cause->title);
       checks.back().observed = 1.0;
+      checks.back().end = CheckEnd::Finding;
       finding.because = {checks.back().id};
     }
     findings.push_back(std::move(finding));

@@ -46,7 +46,8 @@ class GroupSearch {
       search_full_rate();
     }
     if (!given_ && !stopped() && shares_in_noise(outcome_.found)) {
-      outcome_.model.beside.noise = base_of(refit_jointly(outcome_.after, mask_, quantization_, outcome_.found, control_.stop));
+      outcome_.model.beside.noise =
+          base_of(refit_jointly(outcome_.after, mask_, quantization_, outcome_.found, control_.stop));
     }
     for (Evidence& evidence : outcome_.found) {
       evidence.group = index_;
@@ -233,7 +234,7 @@ class GroupSearch {
     if (stopped()) {
       return;
     }
-    if (take_switching(full_rate(search, false))) {
+    if (take_switching(full_rate(search, error_, false))) {
       return search_slow();
     }
     control_.report("intervals of " + group_.column, 0.7);
@@ -427,9 +428,9 @@ class GroupSearch {
 
   /// What can be said of the noise of single samples; tails only until some are found.
   [[nodiscard]] std::vector<Evidence> noise_candidates(const FullRate& data) const {
-    const bool tails_known =
-        std::any_of(outcome_.found.begin(), outcome_.found.end(),
-                    [](const Evidence& evidence) { return evidence.cause->as<NoiseTails>() != nullptr; });
+    const bool tails_known = std::any_of(outcome_.found.begin(), outcome_.found.end(), [](const Evidence& evidence) {
+      return evidence.cause->as<NoiseTails>() != nullptr;
+    });
     std::vector<Evidence> candidates;
     for (const Cause& cause : cause_registry()) {
       const bool tails = cause.as<NoiseTails>() != nullptr;
