@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -398,14 +399,24 @@ void Daemon::stop() {
   log_info("stopping");
   // Not ready, but still there: who distributes requests sees it and sends no more. Jobs end meanwhile.
   parts_->workers.ask_to_stop();
-  parts_->stop_uploads.request_stop();
   std::this_thread::sleep_for(std::chrono::milliseconds(parts_->budgets.drain_milliseconds));
   std::thread jobs([this] {
     parts_->workers.stop();
     parts_->scrubber.stop();
   });
-  parts_->http->stop(std::chrono::milliseconds(
-      static_cast<std::int64_t>(kGraceShare * 1e3 * static_cast<double>(parts_->budgets.stop_seconds))));
+  const std::chrono::milliseconds grace(
+      static_cast<std::int64_t>(kGraceShare * 1e3 * static_cast<double>(parts_->budgets.stop_seconds)));
+  // Requests under way are finished. An upload that still decodes half of that time later gives up.
+  std::jthread late_uploads([this, grace](const std::stop_token& finished) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_for(lock, finished, grace / 2, [] { return false; });
+    if (!finished.stop_requested()) {
+      parts_->stop_uploads.request_stop();
+    }
+  });
+  parts_->http->stop(grace);
+  late_uploads.request_stop();
   jobs.join();
   (void)parts_->gate->flush_use(true);
   log_info("stopped");

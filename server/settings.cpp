@@ -21,7 +21,7 @@ Result<ListenAddress> listen_address(const Settings& settings) {
     sound = error == std::errc{} && stop == end;
   }
   boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address(result.address, error);
+  (void)boost::asio::ip::make_address(result.address, error);
   if (!sound || error) {
     return fail(
         ErrorCode::InvalidArgument,

@@ -23,12 +23,12 @@ Result<Response> list_audit(ApiContext& context, const Request& request) {
   if (!rows) {
     return fail(rows.error());
   }
-  std::vector<Json> items;
-  for (const AuditRow& row : *rows) {
-    items.push_back(to_json(row));
+  ListPage list(request, *page);
+  auto row = rows->begin();
+  while (row != rows->end() && list.add(to_json(*row), std::to_string(row->sequence))) {
+    ++row;
   }
-  return list_response(request, *page, std::move(items),
-                       [&](std::size_t i) { return std::to_string((*rows)[i].sequence); });
+  return list.response(row != rows->end());
 }
 
 Result<Response> verify_audit_log(ApiContext& context) {

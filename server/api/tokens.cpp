@@ -118,13 +118,11 @@ Result<Response> list_tokens(ApiContext& context, const Request& request) {
     token = std::find_if(all->begin(), all->end(), [&](const Token& each) { return each.id == page->after; });
     token += token == all->end() ? 0 : 1;
   }
-  std::vector<Json> items;
-  std::vector<std::string> ids;
-  for (; token != all->end() && items.size() <= static_cast<std::size_t>(page->limit); ++token) {
-    items.push_back(to_json(*token));
-    ids.push_back(token->id);
+  ListPage list(request, *page);
+  while (token != all->end() && list.add(to_json(*token), token->id)) {
+    ++token;
   }
-  return list_response(request, *page, std::move(items), [&](std::size_t i) { return ids[i]; });
+  return list.response(token != all->end());
 }
 
 Result<Response> get_token(ApiContext& context, const Request& request) {

@@ -250,11 +250,13 @@ class OtherDevices(GuardedDaemon):
         """Every address of the contract that reads something of a device, or a list."""
         ids = {"devices": of["device"], "recordings": of["recording"], "jobs": of["job"], "fits": of["fit"], "studies": of["study"],
                "calibrations": of["calibration"], "investigations": of["investigation"], "models": of["model"],
-               "outage-evaluations": of["evaluation"], "regressions": of["regression"]}
+               "outage-evaluations": of["evaluation"], "regressions": of["regression"], "exports": "kalibr"}
         targets = []
         for path, operations in self.contract.paths.items():
             group = path.split("/")[2] if path.startswith("/v1/") else ""
             if "get" not in operations or operations["get"]["x-scope"] != "read" or group in ("samples", "session", "events"):
+                continue
+            if group in ("uploads", "live-recordings"):  # pieces under way, of nobody's results; a secret id names them
                 continue
             if "{" in path:
                 self.assertIn(group, ids, f"the test does not know what a device has at {path}")
@@ -263,6 +265,10 @@ class OtherDevices(GuardedDaemon):
             needed = {p["name"] for p in bound if p["in"] == "query"}
             if group in ("parameter-tables", "trends"):
                 target += f"?device={of['name']}&axis=z"
+            elif group == "exports" and "{" in path:
+                target += f"?device={of['name']}"
+            elif group == "search":
+                target += f"?q={of['name']}"
             elif "channel" in needed:
                 target += "?channel=gz"
             targets.append(target)
@@ -291,7 +297,7 @@ class OtherDevices(GuardedDaemon):
                     text = text.replace(value, "")
                 for name, value in self.theirs.items():
                     self.assertNotIn(value, text, f"{name}: {answer.describe()}")
-                if asked and "?recording=" not in target and "?job=" not in target:
+                if asked and not any(query in target for query in ("?recording=", "?job=", "?q=")):  # these lists are empty
                     self.expect(404, answer)
 
     def test_what_is_hidden_reads_as_what_does_not_exist(self) -> None:

@@ -318,7 +318,7 @@ class DiskFull(unittest.TestCase):
             if not mounted:
                 print("SKIPPED: a full file system, for no tmpfs can be mounted here (root alone may)")
                 self.skipTest("no tmpfs can be mounted here")
-            with Daemon(folder / "data") as daemon:
+            with Daemon(folder / "data", arguments=("--budget", "least_free_bytes=1000000", "--budget", "reserve_bytes=1000000")) as daemon:
                 self.full(daemon, samples.npy([samples.noise(1 << 16)[0] * 100]))  # 50 MiB and its columns: more than 80
         finally:
             if mounted:

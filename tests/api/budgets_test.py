@@ -260,7 +260,7 @@ class JobsHaveABudget(unittest.TestCase):
     def test_a_job_has_a_deadline_that_is_named(self) -> None:
         with Daemon(arguments=("--budget", "job_seconds=1", "--workers", "1")) as daemon:
             recording = daemon.upload(csv(1_000_000)).json["id"]
-            job = daemon.characterise(recording).json
+            job = daemon.characterise(recording, bootstrap=2000).json
             ended = daemon.finished(job["id"])
             self.assertEqual(ended["state"], "failed")
             self.assertIn("(budget job_seconds = 1)", ended["problem"]["detail"])

@@ -131,31 +131,6 @@ class Connections(DaemonTest):
         raw = self.daemon.exchange(text)
         self.assertEqual(re.findall(rb"HTTP/1\.1 (\d+)", raw), [b"200", b"200", b"404"])
 
-    def test_sixty_four_connections_an_address(self) -> None:
-        held = [self.daemon.connect() for _ in range(64)]
-        try:
-            for connection in held:
-                connection.sendall(OK)
-            for connection in held:
-                self.assertEqual(read_answer(connection).status, 200)
-            with self.daemon.connect() as one_too_many:
-                try:
-                    one_too_many.sendall(OK)
-                    self.assertEqual(read_all(one_too_many), b"")
-                except (BrokenPipeError, ConnectionResetError):
-                    pass
-        finally:
-            for connection in held:
-                connection.close()
-        until = time.monotonic() + 20
-        while time.monotonic() < until:  # their places are free again
-            try:
-                if self.daemon.get("/healthz").status == 200:
-                    return
-            except (http.client.HTTPException, OSError):
-                time.sleep(0.02)
-        self.fail("no place became free")
-
     def test_sixteen_uploads_at_once(self) -> None:
         target = "/v1/recordings?device=slow&condition=static&rate_hz=100"
         content = samples.gyro_csv()

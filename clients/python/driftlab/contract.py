@@ -2606,7 +2606,8 @@ class StoredRecordingFile(TypedDict):
 
     sha256: str
     bytes: NotRequired[int]
-    format: NotRequired[Literal['csv', 'npy']]
+    # Name of the format that the file was read as.
+    format: NotRequired[str]
     compression: NotRequired[Literal['none', 'gzip', 'xz', 'zstd']]
     rows: NotRequired[int]
     # Names in file order.

@@ -16,9 +16,8 @@ struct World {
     directory = ::mkdtemp(name.data());
     store = std::move(open_sqlite_store(directory, clock).value());
     blobs = std::move(open_blob_directory(directory).value());
-    context =
-        std::make_unique<ApiContext>(ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; },
-                                                [this] { return not_ready; }, directory, store->access(), gate()});
+    context.reset(new ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; },
+                                 [this] { return not_ready; }, directory, store->access(), gate()});
     add_all_routes(router, *context);
     dispatcher = std::make_unique<Dispatcher>(*context);
   }
