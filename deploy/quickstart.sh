@@ -158,7 +158,7 @@ fi
 
 say ''
 if [ "$once" = yes ]; then
-  say "Done: the daemon is stopped. It leaves its data in $data, logs in $logs and the programs in $bin; nothing else runs or stays."
+  say "Done: the daemon that served at $address is stopped. It leaves its data in $data, logs in $logs and the programs in $bin; nothing else runs or stays."
   exit 0
 fi
 say "driftlab serves at $address (open it in a browser: the lab's pages) and keeps its data in $data"

@@ -229,7 +229,8 @@ class Types:
         classes = [made for name, made in sorted(self.made.items()) if made.startswith("class")]
         bases = [made for name, made in sorted(self.made.items()) if " = TypedDict(" in made]
         aliases = [made for name, made in sorted(self.made.items()) if not made.startswith("class") and made not in bases]
-        return (HEAD + "".join(base + "\n" for base in bases) + "\n" * (2 if bases else 0) + "\n\n\n".join(classes) + "\n\n\n" + "\n".join(broken(a) for a in aliases)
+        return (HEAD + "".join(base + "\n" for base in bases) + "\n" * (2 if bases else 0)
+                + "\n\n\n".join(classes) + "\n\n\n" + "\n".join(broken(a) for a in aliases)
                 + "\n\n# operationId -> what it takes and gives; `media` are the types of a good answer.\n"
                 + "OPERATIONS: dict[str, Operation] = {\n" + "\n".join(self.operations()) + "\n}\n")
 

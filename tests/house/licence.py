@@ -10,8 +10,8 @@ import tree
 # find_package / find_library in CMakeLists.txt -> the name under which NOTICE credits it.
 CREDITED = {"Eigen3": "Eigen", "nlohmann_json": "JSON for Modern C++", "spdlog": "spdlog", "SQLite3": "SQLite",
             "OpenSSL": "OpenSSL", "ZLIB": "zlib", "LibLZMA": "liblzma", "CLI11": "CLI11", "Boost": "Boost", "zstd": "Zstandard",
-            "Ceres": "Ceres", "LibArchive": "libarchive"}
-NOT_SHIPPED = {"Threads", "Python3", "GTest", "benchmark"}
+            "Ceres": "Ceres", "LibArchive": "libarchive", "tomlplusplus": "toml++"}
+NOT_SHIPPED = {"Threads", "Python3", "PkgConfig", "GTest", "benchmark"}
 
 
 def check(root: Path) -> list[str]:

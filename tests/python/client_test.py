@@ -284,10 +284,33 @@ class Everything(ClientTest):
         self.assertEqual(client.calibration(made["id"]), made)
         self.assertEqual([each["id"] for each in client.calibrations(device="all-07")], [made["id"]])
 
+        self.assertIn("driftlab_ready 1", client.metrics())
+        self.assertIn("kalibr", [each["target"] for each in client.export_targets()])
+        self.assertIn("gyroscope_noise_density", client.export("kalibr", "all-07")["text"])
+
         client.delete_recording(second)
         with self.assertRaises(NotFound):
             client.recording(second)
-        self.assertEqual(recorder.seen, set(OPERATIONS))
+        self.assertEqual(recorder.seen | self.access(), set(OPERATIONS))
+
+    def access(self) -> set[str]:
+        """Everything about tokens, on a daemon of its own: the first one switches authentication on for good."""
+        with Daemon() as daemon:
+            client = Client(f"http://127.0.0.1:{daemon.port}")
+            first = client.create_token("lab", "admin")
+            client = Client(f"http://127.0.0.1:{daemon.port}", first["secret"])
+            recorder = Recorder(client)
+            self.assertEqual(client.session()["scope"], "admin")
+            cookie = client.open_session(first["secret"]).partition(";")[0]
+            client.close_session(cookie)
+            other = client.create_token("rig", "read", devices=[])
+            self.assertEqual({each["id"] for each in client.tokens()}, {first["id"], other["id"]})
+            self.assertEqual(client.token(other["id"])["name"], "rig")
+            self.assertNotEqual(client.rotate_token(other["id"])["secret"], other["secret"])
+            self.assertTrue(client.revoke_token(other["id"])["revoked_at"])
+            self.assertTrue(list(client.audit()))
+            self.assertTrue(client.verify_audit()["sound"])
+            return recorder.seen
 
     def pieces(self, client: Client) -> None:
         """A file that is large enough goes piece by piece, and is the recording that one request makes."""

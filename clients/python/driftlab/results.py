@@ -181,7 +181,7 @@ class Investigation(Frame):
         return self.document["findings"]
 
     def series(self, cause: str) -> dict[str, Numbers]:
-        """The arrays of the figures of a finding's channel: measured against simulated `allan.…`, `wavelet.…`, `spectrum.…` and `course.…`."""
+        """The arrays of the figures of a finding's channel: measured and simulated `allan.…`, `wavelet.…`, `spectrum.…`, `course.…`."""
         for finding in self.findings:
             if finding["cause"] == cause:
                 columns = [channel.rpartition("/")[2] for channel in finding["channels"]]

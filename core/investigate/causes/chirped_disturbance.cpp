@@ -312,7 +312,7 @@ Cause chirped_disturbance() {
       .name = "chirped_disturbance",
       .title = "a disturbance whose frequency runs",
       .family = SpectralLine{.examine = examine, .find_again = find_again, .log_gain = log_gain, .values = values_of},
-      .rivals = {"periodic_disturbance", "vibration_bursts"},
+      .rivals = {"periodic_disturbance"},
       .needs = "any recording",
       .separates = "the same recording with the suspected machine at a constant speed",
       .parameters = {{"amplitude", units::level}, {"f0_hz", units::hertz}, {"f1_hz", units::hertz}},

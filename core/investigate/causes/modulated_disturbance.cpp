@@ -237,7 +237,7 @@ Cause modulated_disturbance() {
       .name = "modulated_disturbance",
       .title = "a sinusoidal disturbance that swells and fades",
       .family = SpectralLine{.examine = examine, .find_again = find_again, .log_gain = log_gain, .values = values_of},
-      .rivals = {"periodic_disturbance", "vibration_bursts"},
+      .rivals = {"periodic_disturbance"},
       .needs = "any recording",
       .separates = "a longer recording: two lines beat as one that is modulated, three do not",
       .parameters = {{"amplitude", units::level}, {"frequency_hz", units::hertz}, {"modulation_hz", units::hertz}},

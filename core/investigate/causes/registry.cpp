@@ -12,10 +12,8 @@
   CAUSE(quantization_noise)           \
   CAUSE(output_resolution)            \
   CAUSE(periodic_disturbance)         \
-  CAUSE(random_telegraph_noise)       \
   CAUSE(chirped_disturbance)          \
   CAUSE(modulated_disturbance)        \
-  CAUSE(vibration_bursts)             \
   CAUSE(band_limited_noise)           \
   CAUSE(heavy_tailed_noise)           \
   CAUSE(noise_level_change)           \

@@ -327,9 +327,11 @@ class Driver {
         worst = std::max(worst, record.scalar[i].value * record.scalar[i].value / record.scalar[i].variance);
       }
       int& in_a_row = rejected_in_a_row_[kind == MeasurementKind::Position ? 0 : 1];
-      // Once believed again, the receiver is believed until a fix agrees by itself.
-      record.accepted = worst <= options_.gate || in_a_row >= kRejectedInARow;
-      in_a_row = worst <= options_.gate ? 0 : in_a_row + 1;
+      // Once believed again, the receiver is believed until as many fixes have agreed by themselves.
+      const bool believed = in_a_row >= kRejectedInARow;
+      const bool agrees = worst <= options_.gate;
+      record.accepted = agrees || believed;
+      in_a_row = agrees ? (believed ? in_a_row - 1 : 0) : std::min(in_a_row + 1, 2 * kRejectedInARow);
       result_.rejected += record.accepted ? 0 : 1;
     }
     if (record.accepted) {

@@ -101,6 +101,9 @@ TEST(SimulatedChannel, LeavesOutAnEffectThatLacksAParameter) {
     Study study = study_of(blank);
     Baseline model = study.baseline;
     const auto all = cause.parameters.size();
+    if (all == 0) {
+      continue;  // nothing to lack
+    }
     model.effects.push_back({std::string(cause.name), {}, {}, std::vector<double>(all - 1, 1.0)});
     const auto made =
         simulate_channel(model, study.recordings[0], "gz", {Quantity::AngularRate, "z", *parse_unit("deg/s")}, 1);

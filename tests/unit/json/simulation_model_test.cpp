@@ -65,6 +65,9 @@ TEST(SimulationModel, EveryParameterOfEveryCauseComesBack) {
       const auto model = simulation_model_from_json(document, "", faults);
       ASSERT_TRUE(faults.none()) << cause.name;
       ASSERT_EQ(model.effects.size(), 1U) << cause.name;
+      if (cause.parameters.empty()) {
+        continue;  // a turned sign has no size
+      }
       EXPECT_NEAR(model.effects[0].values[0] * cause.parameters[0].unit(*parse_unit(sensor)).per_si, 3.5, 1e-9)
           << cause.name;
     }
