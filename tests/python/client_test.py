@@ -303,7 +303,7 @@ class Everything(ClientTest):
             self.assertEqual(client.session()["scope"], "admin")
             cookie = client.open_session(first["secret"]).partition(";")[0]
             client.close_session(cookie)
-            other = client.create_token("rig", "read", devices=[])
+            other = client.create_token("rig", "read")
             self.assertEqual({each["id"] for each in client.tokens()}, {first["id"], other["id"]})
             self.assertEqual(client.token(other["id"])["name"], "rig")
             self.assertNotEqual(client.rotate_token(other["id"])["secret"], other["secret"])

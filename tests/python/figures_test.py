@@ -71,7 +71,8 @@ INVESTIGATION = {"study": "rest", "checks": [], "unexplained": [{"channel": "gz"
                  "gain": {"checks_failed_before": 2, "checks_failed_after": 1}, "findings": [
                      {"cause": "temperature_bias", "status": "identified", "channels": ["gz"], "explanation": "It warms up.",
                       "gain": {"log_score_per_sample": 0.1}}],
-                 "figures": [{"channel": "gx", "wavelet": {"scale_s": [0.5]}}, {"channel": "gz", "unit": "deg/s", "wavelet": {"scale_s": [0.02, 0.04]}}]}
+                 "figures": [{"channel": "gx", "wavelet": {"scale_s": [0.5]}},
+                             {"channel": "gz", "unit": "deg/s", "wavelet": {"scale_s": [0.02, 0.04]}}]}
 OUTAGES = {"runs": 2, "seed": 1, "claims": [{"claim": "c", "supported": False, "because": "b"}],
            "filters": [{"name": "matched", "states": 9, "mean_error_m": QUANTITY, "nees": 2, "coverage95": 0.9}]}
 CALIBRATION = {"accelerometer": {"apply": {"reading_unit": "g", "bias": [0, 0, 0], "correction": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},

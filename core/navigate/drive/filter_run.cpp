@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kNearestReference = 1.6;  ///< [s]
 constexpr int kRejectedInARow = 5;         ///< after so many the receiver is believed again
+constexpr int kMostBelieved = 60;
 constexpr double kRestSpeed = 0.5;         ///< [m/s]
 constexpr double kRestSd = 0.02;           ///< [m/s]
 constexpr double kRestTurnSd = 0.05 * kDegree;
@@ -327,11 +328,11 @@ class Driver {
         worst = std::max(worst, record.scalar[i].value * record.scalar[i].value / record.scalar[i].variance);
       }
       int& in_a_row = rejected_in_a_row_[kind == MeasurementKind::Position ? 0 : 1];
-      // Once believed again, the receiver is believed until as many fixes have agreed by themselves.
+      // Once believed again, the receiver is believed until about as many fixes have agreed by themselves as disagreed.
       const bool believed = in_a_row >= kRejectedInARow;
       const bool agrees = worst <= options_.gate;
       record.accepted = agrees || believed;
-      in_a_row = agrees ? (believed ? in_a_row - 1 : 0) : std::min(in_a_row + 1, 2 * kRejectedInARow);
+      in_a_row = agrees ? (believed ? in_a_row - 1 : 0) : std::min(in_a_row + 1, kMostBelieved);
       result_.rejected += record.accepted ? 0 : 1;
     }
     if (record.accepted) {
