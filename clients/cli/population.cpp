@@ -1,0 +1,104 @@
+#include "schema/json/population.hpp"
+
+#include "clients/cli/http_client.hpp"
+#include "clients/cli/plot_file.hpp"
+#include "clients/cli/print_answer.hpp"
+#include "schema/json/campaign_summary.hpp"
+#include "schema/text/population.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace driftlab::cli {
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  std::string server = "http://127.0.0.1:8477";
+  std::string model;
+  std::string sensor;
+  std::string format = "text";
+};
+
+/// The tables by Allan variance of a document that `characterise --json` wrote; the device has the file's name.
+Status add_tables(const std::string& file, const std::string& sensor, std::vector<ParameterTable>& tables) {
+  const auto document = read_result(file);
+  if (!document) {
+    return fail(document.error());
+  }
+  const Json recordings = document->is_object() ? document->value("recordings", Json(nullptr)) : Json(nullptr);
+  if (!recordings.is_array() || recordings.empty() || !recordings.front().contains("channels")) {
+    return fail(ErrorCode::InvalidArgument,
+                file + " is no result of `driftlab characterise --json`; make one for each device.");
+  }
+  const auto sensors = sensors_of(*document);
+  if (!sensors) {
+    return fail(sensors.error());
+  }
+  const std::string device = std::filesystem::path(file).stem().string();
+  for (const SensorSources& one : *sensors) {
+    const Quantity quantity = parse_quantity(one.quantity).value_or(Quantity::Unspecified);
+    const bool wanted = quantity != Quantity::Unspecified && (sensor.empty() || sensor == sensor_of(quantity));
+    if (auto table = build_parameter_table({device, quantity, one.axis, TableMethod::Av, ""}, one.sources);
+        table && wanted) {
+      tables.push_back(std::move(*table));
+    }
+  }
+  return {};
+}
+
+Exit run_here(const Flags& flags) {
+  std::vector<ParameterTable> tables;
+  for (const std::string& file : flags.files) {
+    if (auto added = add_tables(file, flags.sensor, tables); !added) {
+      return complain(added.error());
+    }
+  }
+  const PopulationReport report = describe_populations(flags.model.empty() ? "these devices" : flags.model, tables);
+  return write_text("", flags.format == "json"       ? to_json(report).dump(2) + "\n"
+                        : flags.format == "csv"      ? populations_to_csv(report)
+                        : flags.format == "markdown" ? populations_to_markdown(report)
+                                                     : populations_to_text(report));
+}
+
+Exit run(const Flags& flags) {
+  if (!flags.files.empty()) {
+    return run_here(flags);
+  }
+  if (flags.model.empty()) {
+    return complain({ErrorCode::InvalidArgument,
+                     "Name the model of stored devices (--model MPU-6050), or the result of `characterise --json` of "
+                     "each device.",
+                     {}});
+  }
+  std::string target = "/v1/populations?model=" + percent_encode(flags.model);
+  if (!flags.sensor.empty()) {
+    target += "&sensor=" + percent_encode(flags.sensor);
+  }
+  return print_answer(flags.server, target,
+                      flags.format == "json"       ? "application/json"
+                      : flags.format == "csv"      ? "text/csv"
+                      : flags.format == "markdown" ? "text/markdown"
+                                                   : "text/plain");
+}
+
+}  // namespace
+
+void add_population(CLI::App& app, Command& chosen) {
+  CLI::App* const command = app.add_subcommand(
+      "population", "All devices of a model: mean, spread between them, and which of them is not of the line");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("FILE", flags->files, "Results of characterise --json, one a device, named after it");
+  command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
+  command->add_option("--model", flags->model, "Model or IMU of the stored devices, e.g. MPU-6050");
+  command->add_option("--sensor", flags->sensor, "Only the gyroscope or the accelerometer")
+      ->check(CLI::IsMember({"gyroscope", "accelerometer"}));
+  command->add_option("--format", flags->format, "text, csv, markdown or json")
+      ->check(CLI::IsMember({"text", "csv", "markdown", "json"}))
+      ->capture_default_str();
+  command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,12 @@
+#pragma once
+/// What the populations of a model say, in one sentence that a production line can act on (core/campaign/verdict.hpp).
+#include "core/campaign/population_report.hpp"
+#include "core/campaign/verdict.hpp"
+
+namespace driftlab {
+
+/// Which devices are not of the line and by what; else that none stands out. Details: mean and spread of N for each
+/// sensor axis and condition that has a mean. Facts: the smallest p_holm of each device that is named.
+[[nodiscard]] Verdict verdict_of(const PopulationReport& report);
+
+}  // namespace driftlab
