@@ -2,7 +2,10 @@
 
 #include "clients/cli/cli.hpp"
 #include "clients/cli/drive_files.hpp"
+#include "clients/cli/drive_remote.hpp"
 #include "clients/cli/progress.hpp"
+#include "clients/cli/table_file.hpp"
+#include "schema/json/drive_request.hpp"
 #include "schema/text/drive.hpp"
 
 #include <CLI/CLI.hpp>
@@ -17,42 +20,23 @@ namespace {
 struct DriveFlags {
   std::string document;
   std::string model;
-  bool nhc = false;
-  bool zupt = false;
-  bool odometer = false;
-  bool as_stamped = false;
-  double gate = 0.0;
-  std::uint64_t seed = 1;
-  int runs = 4;
+  DriveRequest request;
   int threads = 0;
   bool json = false;
+  std::string out;
+  DriveServer server;
 };
 
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-Result<drive::Drive> opened(const DriveFlags& flags, const RunControl& control) {
-  auto document = read_drive_document(flags.document, flags.model);
-  if (!document) {
-    return fail(document.error());
-  }
-  return open_drive_files(flags.document, *document, {.repair = !flags.as_stamped}, control);
-}
-
-drive::FilterOptions filter_options(const DriveFlags& flags, const drive::Document& document) {
-  drive::FilterOptions options = drive::options_of(document);
-  if (flags.nhc) {
-    options.constraint.emplace();
-  }
-  options.zero_velocity = flags.zupt;
-  options.odometer = flags.odometer;
-  options.gate = flags.gate;
-  return options;
-}
-
 Exit check_files(const DriveFlags& flags) {
   RunControl control;
   control.stop = interrupt_token();
-  auto drive = opened(flags, control);
+  auto document = read_drive_document(flags.document, flags.model);
+  if (!document) {
+    return complain_of_work(document.error());
+  }
+  auto drive = open_drive_files(flags.document, *document, {}, control);
   if (!drive) {
     return complain_of_work(drive.error());
   }
@@ -61,71 +45,65 @@ Exit check_files(const DriveFlags& flags) {
   return Exit::Success;
 }
 
-/// An executor and a control that uses it.
-struct Working {
-  explicit Working(int threads)
-      : executor(threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency()) {
-    control.stop = interrupt_token();
-    control.threads.executor = &executor;
+/// The same question as a job of a daemon.
+Exit ask_there(const DriveFlags& flags) {
+  const auto document = ask_drive_there(flags.server, flags.document, flags.model, flags.request);
+  if (!document) {
+    return complain(document.error().error, document.error().exit);
   }
-  Executor executor;
-  RunControl control;
-};
-
-Exit run_filter_over(const DriveFlags& flags) {
-  const Working working(flags.threads);
-  auto drive = opened(flags, working.control);
-  if (!drive) {
-    return complain_of_work(drive.error());
-  }
-  const drive::FilterOptions options = filter_options(flags, drive->document);
-  const auto report = run_drive(std::move(*drive), options, {.seed = flags.seed}, working.control);
-  if (!report) {
-    return complain_of_work(report.error());
-  }
-  print(flags.json ? to_json(*report).dump(2) + "\n" : drive_report_to_text(*report));
+  print(document->dump(2) + "\n");
   return Exit::Success;
 }
 
-Exit simulate_over(const DriveFlags& flags) {
-  const Working working(flags.threads);
-  auto drive = opened(flags, working.control);
-  if (!drive) {
-    return complain_of_work(drive.error());
+Exit ask(const DriveFlags& flags) {
+  if (!flags.server.address.empty()) {
+    return ask_there(flags);
   }
-  const drive::FilterOptions options = filter_options(flags, drive->document);
-  const auto simulation =
-      simulate_drive_outages(std::move(*drive), options, {.runs = flags.runs, .seed = flags.seed}, working.control);
-  if (!simulation) {
-    return complain_of_work(simulation.error());
-  }
-  print(flags.json ? to_json(*simulation).dump(2) + "\n" : drive_simulation_to_text(*simulation));
-  return Exit::Success;
-}
-
-Exit explain_files(const DriveFlags& flags) {
-  Working working(flags.threads);
   auto document = read_drive_document(flags.document, flags.model);
   if (!document) {
     return complain_of_work(document.error());
   }
-  const auto tables = open_drive_tables(flags.document, *document, working.control);
+  Executor executor(flags.threads > 0 ? static_cast<unsigned>(flags.threads) : std::thread::hardware_concurrency());
+  RunControl control;
+  control.stop = interrupt_token();
+  control.threads.executor = &executor;
+  const auto tables = open_drive_tables(flags.document, *document, control);
   if (!tables) {
     return complain_of_work(tables.error());
   }
-  Result<DriveExplanationReport> report;
+  Result<DriveAnswer> answer;
   {
     ProgressBar bar;
-    working.control.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
-    report = report_explanation(*document, *tables,
-                                {.seed = flags.seed, .simulated_runs = flags.runs, .constraint = flags.nhc},
-                                working.control);
+    control.progress = [&](std::string_view stage, double fraction) { bar.show(stage, fraction); };
+    answer = answer_drive(flags.request, *document, *tables, control);
   }
-  if (!report) {
-    return complain_of_work(report.error());
+  if (!answer) {
+    return complain_of_work(answer.error());
   }
-  print(flags.json ? to_json(*report).dump(2) + "\n" : drive_explanation_to_text(*report));
+  print(flags.json ? to_json(*answer).dump(2) + "\n" : drive_answer_to_text(*answer));
   return Exit::Success;
+}
+
+/// The path by all fixes, written as a table.
+Exit smooth_files(const DriveFlags& flags) {
+  RunControl control;
+  control.stop = interrupt_token();
+  const auto document = read_drive_document(flags.document, flags.model);
+  if (!document) {
+    return complain_of_work(document.error());
+  }
+  const auto drive = open_drive_files(flags.document, *document, {}, control);
+  if (!drive) {
+    return complain_of_work(drive.error());
+  }
+  const auto table = smoothed_table(*drive, options_of(flags.request, *document));
+  if (!table) {
+    return complain_of_work(table.error());
+  }
+  const Status written = write_table(
+      flags.out, "Smoothed by driftlab " DRIFTLAB_VERSION " over all fixes of " + document->id + "; the inertial unit",
+      *table);
+  return written ? Exit::Success : complain(written.error());
 }
 
 void add_files(CLI::App& command, DriveFlags& flags) {
@@ -135,21 +113,29 @@ void add_files(CLI::App& command, DriveFlags& flags) {
 
 void add_belief(CLI::App& command, DriveFlags& flags) {
   command.add_option("--model", flags.model, "What the filter believes, in place of the document's model");
-  command.add_flag("--nhc", flags.nhc, "The vehicle moves along its nose: velocity constraints");
-  command.add_option("--seed", flags.seed, "Same seed, same result, for any number of threads")->capture_default_str();
+  command.add_flag("--nhc", flags.request.velocity_constraint,
+                   "The vehicle moves along its nose: velocity constraints");
+  command.add_option("--seed", flags.request.seed, "Same seed, same result, for any number of threads")
+      ->capture_default_str();
   command.add_option("--threads", flags.threads, "Threads; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  command.add_option("--server", flags.server.address,
+                     "Address of a daemon that does the work; prints the result document");
+  command.add_option("--device", flags.server.device,
+                     "Device under which the daemon keeps the files; left out: the document's id");
 }
 
 void add_filter(CLI::App& command, DriveFlags& flags) {
   add_belief(command, flags);
-  command.add_flag("--zupt", flags.zupt, "Zero velocity and no turn while the unit is at rest");
-  command.add_flag("--odometer", flags.odometer, "Use the odometer");
+  command.add_flag("--zupt", flags.request.zero_velocity, "Zero velocity and no turn while the unit is at rest");
+  command.add_flag("--odometer", flags.request.odometer, "Use the odometer");
 }
 
 void add_runs(CLI::App& command, DriveFlags& flags) {
-  command.add_option("--runs", flags.runs, "Simulated drives")->check(CLI::Range(1, 1000))->capture_default_str();
+  command.add_option("--runs", flags.request.runs, "Simulated drives")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -165,23 +151,40 @@ void add_drive(CLI::App& app, Command& chosen) {
   CLI::App* const run = drive->add_subcommand("run", "Take fixes away and measure what the filter does without them");
   add_files(*run, *flags);
   add_filter(*run, *flags);
-  run->add_option("--gate", flags->gate, "Reject fixes whose normalised squared innovation is above this; 0: none")
+  run->add_option("--gate", flags->request.gate,
+                  "Reject fixes whose normalised squared innovation is above this; 0: none")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  run->add_flag("--as-stamped", flags->as_stamped, "Believe the unit's stamps and keep repeated rows");
-  run->callback([flags, &chosen] { chosen = [flags] { return run_filter_over(*flags); }; });
+  run->add_flag("--as-stamped", flags->request.as_stamped, "Believe the unit's stamps and keep repeated rows");
+  run->callback([flags, &chosen] {
+    flags->request.question = DriveQuestion::Run;
+    chosen = [flags] { return ask(*flags); };
+  });
   CLI::App* const simulate = drive->add_subcommand(
       "simulate", "The same outages simulated along the same trajectory, beside the measured ones");
   add_files(*simulate, *flags);
   add_filter(*simulate, *flags);
   add_runs(*simulate, *flags);
-  simulate->callback([flags, &chosen] { chosen = [flags] { return simulate_over(*flags); }; });
+  simulate->callback([flags, &chosen] {
+    flags->request.question = DriveQuestion::Simulate;
+    chosen = [flags] { return ask(*flags); };
+  });
+  CLI::App* const smooth = drive->add_subcommand("smooth", "The drive's path by all its fixes, as a table");
+  smooth->add_option("DRIVE", flags->document, "drive.json; its files lie beside it")->required();
+  smooth->add_option("--model", flags->model, "What the filter believes, in place of the document's model");
+  smooth->add_flag("--nhc", flags->request.velocity_constraint,
+                   "The vehicle moves along its nose: velocity constraints");
+  smooth->add_option("--out", flags->out, "Where to write the table (.csv or .npy)")->required();
+  smooth->callback([flags, &chosen] { chosen = [flags] { return smooth_files(*flags); }; });
   CLI::App* const explain = drive->add_subcommand(
       "explain", "By how much a simulation of the drive is too optimistic, why, and what mending it gains");
   add_files(*explain, *flags);
   add_belief(*explain, *flags);
   add_runs(*explain, *flags);
-  explain->callback([flags, &chosen] { chosen = [flags] { return explain_files(*flags); }; });
+  explain->callback([flags, &chosen] {
+    flags->request.question = DriveQuestion::Explain;
+    chosen = [flags] { return ask(*flags); };
+  });
 }
 
 }  // namespace driftlab::cli

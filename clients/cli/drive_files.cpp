@@ -45,17 +45,25 @@ Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunCont
   return table;
 }
 
-Result<drive::Document> read_drive_document(const std::string& path, const std::string& model_path) {
+Result<Json> read_drive_json(const std::string& path, const std::string& model_path) {
   auto document = json_file(path, "drive document");
+  if (!document || model_path.empty()) {
+    return document;
+  }
+  auto model = json_file(model_path, "model");
+  if (!model) {
+    return fail(model.error());
+  }
+  if (document->is_object()) {
+    (*document)["model"] = std::move(*model);
+  }
+  return document;
+}
+
+Result<drive::Document> read_drive_document(const std::string& path, const std::string& model_path) {
+  const auto document = read_drive_json(path, model_path);
   if (!document) {
     return fail(document.error());
-  }
-  if (!model_path.empty()) {
-    auto model = json_file(model_path, "model");
-    if (!model) {
-      return fail(model.error());
-    }
-    (*document)["model"] = std::move(*model);
   }
   Faults faults;
   drive::Document made = drive_from_json(*document, faults);

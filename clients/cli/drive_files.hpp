@@ -19,6 +19,9 @@ class DriveFiles final : public DriveSource {
   Workspace workspace_;
 };
 
+/// The JSON text at `path`; `model_path`, where not empty, takes the place of its model.
+[[nodiscard]] Result<Json> read_drive_json(const std::string& path, const std::string& model_path);
+
 /// The document at `path`; `model_path`, where not empty, takes the place of its model.
 [[nodiscard]] Result<drive::Document> read_drive_document(const std::string& path, const std::string& model_path);
 

@@ -1,5 +1,7 @@
 #include "core/analysis/drive.hpp"
 
+#include "core/navigate/drive/smoother.hpp"
+
 #include <array>
 #include <cstdio>
 
@@ -12,6 +14,31 @@ Error of_file(Error error, const std::string& file) {
 }
 
 }  // namespace
+
+std::string_view name_of(DriveQuestion question) {
+  constexpr std::array<std::string_view, 3> kNames{"run", "simulate", "explain"};
+  return kNames[static_cast<std::size_t>(question)];
+}
+
+std::optional<DriveQuestion> parse_drive_question(std::string_view name) {
+  for (const DriveQuestion question : {DriveQuestion::Run, DriveQuestion::Simulate, DriveQuestion::Explain}) {
+    if (name_of(question) == name) {
+      return question;
+    }
+  }
+  return std::nullopt;
+}
+
+drive::FilterOptions options_of(const DriveRequest& request, const drive::Document& document) {
+  drive::FilterOptions options = drive::options_of(document);
+  if (request.velocity_constraint) {
+    options.constraint.emplace();
+  }
+  options.zero_velocity = request.zero_velocity;
+  options.odometer = request.odometer;
+  options.gate = request.gate;
+  return options;
+}
 
 drive::Table table_of(const ColumnFile& columns) {
   drive::Table table;
@@ -27,7 +54,11 @@ Result<drive::Tables> open_tables(const drive::Document& document, DriveSource& 
   drive::Tables tables;
   const auto open = [&](const drive::Source& one) -> Result<drive::Table> {
     auto table = source.open(one, control);
-    return table ? std::move(table) : Result<drive::Table>(fail(of_file(table.error(), one.file)));
+    if (!table) {
+      return fail(of_file(table.error(), one.file));
+    }
+    table->tag = one.time.dates ? one.time.dates : table->tag;
+    return table;
   };
   auto imu = open(document.imu.source);
   if (!imu) {
@@ -99,13 +130,21 @@ Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& op
   return DriveReport{std::move(drive), options, std::move(*evaluation)};
 }
 
+Result<drive::Drive> load_with_reference(const drive::Document& document, const drive::Tables& tables,
+                                         const drive::LoadOptions& options) {
+  auto drive = drive::load_drive(document, tables, options);
+  return drive && document.reference.smoothed
+             ? drive::with_smoothed_reference(std::move(*drive), drive::options_of(document))
+             : std::move(drive);
+}
+
 Result<DriveExplanationReport> report_explanation(const drive::Document& document, const drive::Tables& tables,
                                                   const drive::ExplainOptions& options, const RunControl& control) {
-  auto drive = drive::load_drive(document, tables);
+  auto drive = load_with_reference(document, tables);
   if (!drive) {
     return fail(drive.error());
   }
-  const auto as_stamped = drive::load_drive(document, tables, {.repair = false});
+  const auto as_stamped = load_with_reference(document, tables, {.repair = false});
   if (!as_stamped) {
     return fail(as_stamped.error());
   }
@@ -121,8 +160,9 @@ std::string sentence_of(const DriveExplanationReport& report) {
   const drive::SimulatedDuration& before = e.simulated_before.front();
   std::string causes;
   for (const drive::DriveFinding& finding : e.findings) {
-    if (causes.find(finding.cause) == std::string::npos) {
-      causes.append(causes.empty() ? "" : ", ").append(finding.cause);
+    const std::string_view words = drive::words_of(finding.cause);
+    if (causes.find(words) == std::string::npos) {
+      causes.append(causes.empty() ? "" : ", ").append(words);
     }
   }
   std::array<char, 512> text{};
@@ -154,8 +194,9 @@ std::string sentence_of(const DriveExplanationReport& report) {
   return sentence;
 }
 
-Result<DriveSimulation> simulate_drive_outages(drive::Drive drive, const drive::FilterOptions& options,
-                                               const drive::SimulationOptions& settings, const RunControl& control) {
+Result<DriveSimulationReport> simulate_drive_outages(drive::Drive drive, const drive::FilterOptions& options,
+                                                     const drive::SimulationOptions& settings,
+                                                     const RunControl& control) {
   auto measured = run_drive(std::move(drive), options, {.seed = settings.seed}, control);
   if (!measured) {
     return fail(measured.error());
@@ -168,10 +209,10 @@ Result<DriveSimulation> simulate_drive_outages(drive::Drive drive, const drive::
   if (!simulated) {
     return fail(simulated.error());
   }
-  return DriveSimulation{std::move(*measured), std::move(*simulated)};
+  return DriveSimulationReport{std::move(*measured), std::move(*simulated)};
 }
 
-std::string sentence_of(const DriveSimulation& simulation) {
+std::string sentence_of(const DriveSimulationReport& simulation) {
   const drive::SimulatedDuration& first = simulation.simulated.front();
   std::array<char, 512> text{};
   std::snprintf(text.data(), text.size(),
@@ -192,6 +233,29 @@ std::string sentence_of(const DriveReport& report) {
       first.duration_s, first.rms_m.value, first.outages.size(), first.rms_m.ci95.low, first.rms_m.ci95.high,
       first.promised_rms_m, first.rms_m.value / first.promised_rms_m);
   return text.data();
+}
+
+Result<DriveAnswer> answer_drive(const DriveRequest& request, const drive::Document& document,
+                                 const drive::Tables& tables, const RunControl& control) {
+  const auto answer = [](auto report) {
+    return report ? Result<DriveAnswer>(std::move(*report)) : Result<DriveAnswer>(fail(report.error()));
+  };
+  if (request.question == DriveQuestion::Explain) {
+    const drive::ExplainOptions options{
+        .seed = request.seed, .simulated_runs = request.runs, .constraint = request.velocity_constraint};
+    return answer(report_explanation(document, tables, options, control));
+  }
+  const bool simulate = request.question == DriveQuestion::Simulate;
+  auto drive = load_with_reference(document, tables, {.repair = simulate || !request.as_stamped});
+  if (!drive) {
+    return fail(drive.error());
+  }
+  const drive::FilterOptions options = options_of(request, document);
+  if (simulate) {
+    return answer(
+        simulate_drive_outages(std::move(*drive), options, {.runs = request.runs, .seed = request.seed}, control));
+  }
+  return answer(run_drive(std::move(*drive), options, {.seed = request.seed}, control));
 }
 
 }  // namespace driftlab

@@ -1,7 +1,10 @@
 #pragma once
 /// The use case "drive": a recorded drive in, measured GNSS outages out (spec/drives.md).
+#include "core/analysis/simulate.hpp"
 #include "core/navigate/drive/explain.hpp"
 #include "core/read/column_file.hpp"
+
+#include <variant>
 
 namespace driftlab {
 
@@ -17,12 +20,42 @@ class DriveSource {
   [[nodiscard]] virtual Result<drive::Table> open(const drive::Source& source, const RunControl& control) = 0;
 };
 
+/// What is asked of a drive, and what the filter is told beside the document.
+enum class DriveQuestion {
+  Run,       ///< what the filter does in its outages
+  Simulate,  ///< the same outages simulated beside the measured ones
+  Explain,   ///< by how much a simulation is too optimistic, why, and what mending gains
+};
+[[nodiscard]] std::string_view name_of(DriveQuestion question);
+[[nodiscard]] std::optional<DriveQuestion> parse_drive_question(std::string_view name);
+
+struct DriveRequest {
+  DriveQuestion question = DriveQuestion::Run;
+  bool velocity_constraint = false;
+  bool zero_velocity = false;  ///< not where causes are sought
+  bool odometer = false;       ///< not where causes are sought
+  double gate = 0.0;           ///< of a run
+  bool as_stamped = false;     ///< of a run
+  std::uint64_t seed = 1;
+  int runs = 4;  ///< simulated drives
+};
+[[nodiscard]] drive::FilterOptions options_of(const DriveRequest& request, const drive::Document& document);
+
 /// The columns of a decoded file as a table.
 [[nodiscard]] drive::Table table_of(const ColumnFile& columns);
 
 /// The files of a document, decoded. Errors: those of the source, with the field "file".
 [[nodiscard]] Result<drive::Tables> open_tables(const drive::Document& document, DriveSource& source,
                                                 const RunControl& control);
+
+/// The drive, with the reference that its document asks for: load_drive leaves the withheld fixes where a smoothed path
+/// is wanted. Errors: those of load_drive and with_smoothed_reference.
+[[nodiscard]] Result<drive::Drive> load_with_reference(const drive::Document& document, const drive::Tables& tables,
+                                                       const drive::LoadOptions& options = {});
+
+/// The path of the unit by all fixes: time on the sources' scale, position, velocity, attitude and what is left unknown
+/// of each. Errors: those of PreparedDrive::make.
+[[nodiscard]] Result<SampleTable> smoothed_table(const drive::Drive& drive, const drive::FilterOptions& options);
 
 /// A drive and what its files show before any filter.
 struct DriveCheck {
@@ -65,16 +98,23 @@ struct DriveExplanationReport {
 [[nodiscard]] std::string sentence_of(const DriveExplanationReport& report);
 
 /// What the model says of the same trajectory and the same outages, beside what was measured.
-struct DriveSimulation {
+struct DriveSimulationReport {
   DriveReport measured;
   std::vector<drive::SimulatedDuration> simulated;
 };
 
 /// Errors: those of run_drive and simulate_outages.
-[[nodiscard]] Result<DriveSimulation> simulate_drive_outages(drive::Drive drive, const drive::FilterOptions& options,
-                                                             const drive::SimulationOptions& settings = {},
-                                                             const RunControl& control = {});
+[[nodiscard]] Result<DriveSimulationReport> simulate_drive_outages(drive::Drive drive,
+                                                                   const drive::FilterOptions& options,
+                                                                   const drive::SimulationOptions& settings = {},
+                                                                   const RunControl& control = {});
 
-[[nodiscard]] std::string sentence_of(const DriveSimulation& simulation);
+[[nodiscard]] std::string sentence_of(const DriveSimulationReport& simulation);
+
+using DriveAnswer = std::variant<DriveReport, DriveSimulationReport, DriveExplanationReport>;
+
+/// Loads the drive and answers what is asked of it. Errors: those of load_drive and of the question's own function.
+[[nodiscard]] Result<DriveAnswer> answer_drive(const DriveRequest& request, const drive::Document& document,
+                                               const drive::Tables& tables, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -1,4 +1,5 @@
 #include "core/navigate/navigation_filter.hpp"
+#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +78,19 @@ Result<FilterDesign> FilterDesign::make(const FilterSettings& settings, double d
                   {{"parameter", "constants_sd"}});
     }
   }
+  if (!settings.constants_tau_s.empty() && settings.constants_tau_s.size() != settings.constants_sd.size()) {
+    return fail(ErrorCode::InvalidArgument, "Every estimated constant has a correlation time, or none has.",
+                {{"parameter", "constants_tau_s"}});
+  }
+  const auto white = make_process("white_noise", {1.0});
+  if (!white) {
+    return fail(white.error());
+  }
+  auto unit = make_channel_dynamics({*white}, 0.0, dt_s, settings.covariance_samples);
+  if (!unit) {
+    return fail(unit.error());
+  }
+  design.unit_white_ = std::move(*unit);
   design.sensor_states_ += static_cast<int>(settings.constants_sd.size());
   if (design.sensor_states_ > kMaxSensorStates) {
     return fail(ErrorCode::LimitExceeded, "The error models ask for more than 64 sensor states.",

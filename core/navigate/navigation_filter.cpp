@@ -134,7 +134,7 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
   navigation.position = position_;
   const auto stride = static_cast<std::size_t>(covariance_.stride());
   for (int constant = design_->first_constant(); constant < design_->sensor_states(); ++constant) {
-    sensors.phi[static_cast<std::size_t>(constant)] = 1.0;
+    sensors.phi[static_cast<std::size_t>(constant)] = remembered(constant, t);
   }
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const auto k = static_cast<Eigen::Index>(c % 3);
@@ -162,7 +162,12 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
     // L q L^T with L the three columns; two products of small matrices.
     Eigen::Matrix<double, 9, 3> columns;
     columns << effect.column(1.0, 0.0, 0.0), effect.column(0.0, 1.0, 0.0), effect.column(0.0, 0.0, 1.0);
-    const Eigen::Matrix<double, 9, 3> weighted = columns.lazyProduct(step.integral_noise);
+    Matrix3 integral_noise = step.integral_noise;
+    if (extra_noise_[c] > 0.0) {
+      integral_noise +=
+          extra_noise_[c] * design_->unit_white().steps[static_cast<std::size_t>(pending_) - 1].integral_noise;
+    }
+    const Eigen::Matrix<double, 9, 3> weighted = columns.lazyProduct(integral_noise);
     for (int i = 0; i < 9; ++i) {
       for (int j = i; j < 9; ++j) {
         sensors.noise(i, j) += weighted.row(i).dot(columns.row(j));
@@ -196,6 +201,7 @@ void NavigationFilter::close_step() {
       }
     }
   }
+  forget_constants();
   covariance_.add_noise(sensors);
   choose_bands();
   pending_ = 0;
@@ -206,6 +212,29 @@ void NavigationFilter::close_step() {
   velocity_.setZero();
   position_.setZero();
   readings_ = {};
+}
+
+double NavigationFilter::remembered(int constant, double time_s) const {
+  const std::vector<double>& tau = design_->settings().constants_tau_s;
+  const auto k = static_cast<std::size_t>(constant - design_->first_constant());
+  return tau.empty() || !(tau[k] > 0.0) ? 1.0 : std::exp(-time_s / tau[k]);
+}
+
+void NavigationFilter::forget_constants() {
+  const FilterSettings& settings = design_->settings();
+  for (std::size_t k = 0; k < settings.constants_tau_s.size(); ++k) {
+    const int own = design_->first_constant() + static_cast<int>(k);
+    const double phi = remembered(own, pending_ * design_->dt_s());
+    sensors_(own) *= phi;
+    covariance_.add_sensor(own, own, settings.constants_sd[k] * settings.constants_sd[k] * (1.0 - phi * phi));
+  }
+}
+
+void NavigationFilter::set_extra_noise(const std::array<double, kImuChannels>& squared_density) {
+  if (squared_density != extra_noise_) {
+    close_step();
+    extra_noise_ = squared_density;
+  }
 }
 
 void NavigationFilter::choose_bands() {
@@ -310,6 +339,9 @@ Eigen::MatrixXd NavigationFilter::pending_transition() const {
     for (Eigen::Index i = 0; i < 9; ++i) {
       whole(i, 9 + j) = sensors.gain[static_cast<std::size_t>(i * covariance_.stride() + j)];
     }
+  }
+  for (int constant = design_->first_constant(); constant < design_->sensor_states(); ++constant) {
+    whole(9 + constant, 9 + constant) = remembered(constant, t);
   }
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const Eigen::Index first = 9 + design_->first_state(c);

@@ -54,6 +54,9 @@ struct FilterSettings {
   /// Standard deviations of constants that measurements of `measure` depend on and that are estimated beside the sensor
   /// errors: an arm, a mounting angle, a scale factor. They stand behind the sensor states.
   std::vector<double> constants_sd;
+  /// Correlation times [s] of these where they are Gauss-Markov processes rather than constants, 0 for a constant;
+  /// empty, or as many as there are.
+  std::vector<double> constants_tau_s = {};
   int covariance_samples = 10;  ///< 1 to 100
 };
 
@@ -75,6 +78,8 @@ class FilterDesign {
   [[nodiscard]] const ChannelDynamics& channel(std::size_t channel, std::size_t band) const {
     return channels_[channel][band];
   }
+  /// Of white noise of density 1.
+  [[nodiscard]] const ChannelDynamics& unit_white() const { return unit_white_; }
 
  private:
   FilterSettings settings_;
@@ -82,6 +87,7 @@ class FilterDesign {
   int sensor_states_ = 0;
   std::array<int, kImuChannels> first_{};
   std::array<std::vector<ChannelDynamics>, kImuChannels> channels_;
+  ChannelDynamics unit_white_;
 };
 
 class NavigationFilter {
@@ -91,6 +97,8 @@ class NavigationFilter {
 
   /// Runs the mechanisation over `readings`; covariance and constraints step on the way.
   void advance(std::span<const ImuSample> readings);
+  /// White noise beyond that of the model from here on: squared densities by axis [(rad/s)^2/Hz, (m/s^2)^2/Hz].
+  void set_extra_noise(const std::array<double, kImuChannels>& squared_density);
   /// A fix that arrives now. Its position, and its velocity where it has one and the settings use it.
   void update(const GnssFix& fix);
   /// Any measurements of this moment, linearised by the caller at the present estimate, one after the other; what all
@@ -109,7 +117,8 @@ class NavigationFilter {
   /// Covariance of the errors, up to date at this sample.
   [[nodiscard]] const ErrorCovariance& covariance();
   [[nodiscard]] std::size_t band(std::size_t channel) const { return bands_[channel]; }
-  /// The transition that the next `covariance()` will apply, as a dense matrix; for tests.
+  /// The transition that the next `covariance()` will apply, as a dense matrix. Only while a step is
+  /// open.
   [[nodiscard]] Eigen::MatrixXd pending_transition() const;
 
  private:
@@ -119,6 +128,9 @@ class NavigationFilter {
   void apply(const ErrorCovariance::State& correction);
   void constrain();
   void choose_bands();
+  /// What is left of a constant of the settings after a time: 1 where it has no correlation time.
+  [[nodiscard]] double remembered(int constant, double time_s) const;
+  void forget_constants();
 
   const FilterDesign* design_;
   Strapdown strapdown_;
@@ -128,6 +140,7 @@ class NavigationFilter {
   std::array<const ChannelDynamics*, kImuChannels> active_{};
   Vector3 last_rate_ = Vector3::Zero();
   Vector3 last_acceleration_ = Vector3::Zero();
+  std::array<double, kImuChannels> extra_noise_{};
   int constraint_samples_ = 0;  ///< between constraints; 0: none
   int since_constraint_ = 0;
 

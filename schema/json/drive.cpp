@@ -40,21 +40,23 @@ Json facts_json(const drive::Drive& drive) {
                 {"far_away", facts.far_away},
                 {"accuracy_constant", facts.accuracy_constant},
                 {"speed_accuracy_constant", facts.speed_accuracy_constant}}},
-              {"reference", drive.withheld_fixes ? "withheld_fixes" : "own"},
+              {"reference", drive.withheld_fixes                ? "withheld_fixes"
+                            : drive.document.reference.smoothed ? "smoothed_fixes"
+                                                                : "own"},
               {"notes", facts.notes}};
 }
 
 Json start_json(const drive::Start& start) {
   const Matrix3 axes = ned_axes(start.state.position_ecef_m);
   const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * start.state.attitude);
-  constexpr std::array<const char*, 3> tilt{"stated", "rest", "motion"};
-  constexpr std::array<const char*, 2> heading{"stated", "course"};
+  constexpr std::array<const char*, 3> kTilt{"stated", "rest", "motion"};
+  constexpr std::array<const char*, 2> kHeading{"stated", "course"};
   return Json{{"time_s", number(start.time_s)},
               {"roll_deg", number(angles.roll_rad / kDegree)},
               {"pitch_deg", number(angles.pitch_rad / kDegree)},
               {"heading_deg", number(angles.heading_rad / kDegree)},
-              {"tilt_from", tilt[static_cast<std::size_t>(start.tilt_from)]},
-              {"heading_from", heading[static_cast<std::size_t>(start.heading_from)]}};
+              {"tilt_from", kTilt[static_cast<std::size_t>(start.tilt_from)]},
+              {"heading_from", kHeading[static_cast<std::size_t>(start.heading_from)]}};
 }
 
 }  // namespace
@@ -98,8 +100,8 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
   }
   Json classes = Json::array();
   for (const auto& c : d.classes) {
-    classes.push_back(
-        Json{{"motion", name_of(c.outage_class)}, {"n", c.count}, {"rms_m", number(c.rms_m)}, {"nees", number(c.nees)}});
+    classes.push_back(Json{
+        {"motion", name_of(c.outage_class)}, {"n", c.count}, {"rms_m", number(c.rms_m)}, {"nees", number(c.nees)}});
   }
   return Json{{"duration_s", number(d.duration_s)},
               {"period_s", number(d.period_s)},
@@ -126,10 +128,10 @@ Json to_json(const DriveReport& report) {
   for (const drive::DurationSummary& d : report.evaluation.durations) {
     durations.push_back(to_json(d, report.drive));
   }
-  constexpr std::array<const char*, 5> kinds{"position", "velocity", "constraint", "zero_velocity", "odometer"};
+  constexpr std::array<const char*, 5> kKinds{"position", "velocity", "constraint", "zero_velocity", "odometer"};
   Json innovations = Json::array();
   for (const drive::InnovationSummary& one : report.evaluation.innovations) {
-    innovations.push_back(Json{{"kind", kinds[static_cast<std::size_t>(one.kind)]},
+    innovations.push_back(Json{{"kind", kKinds[static_cast<std::size_t>(one.kind)]},
                                {"n", one.count},
                                {"rms", number(one.rms)},
                                {"stated_rms", number(one.stated_rms)},
@@ -193,7 +195,7 @@ Json durations_json(const drive::DriveEvaluation& evaluation, const drive::Drive
 
 }  // namespace
 
-Json to_json(const DriveSimulation& simulation) {
+Json to_json(const DriveSimulationReport& simulation) {
   Json document = to_json(simulation.measured);
   document["summary"] = sentence_of(simulation);
   document["simulated"] = simulated_json(simulation.simulated);
@@ -206,6 +208,7 @@ Json to_json(const DriveExplanationReport& report) {
   for (const drive::DriveFinding& f : e.findings) {
     Json finding{{"cause", f.cause},
                  {"parameter", f.parameter},
+                 {"words", drive::words_of(f.cause)},
                  {"title", f.title},
                  {"value", number(f.value)},
                  {"se", number(f.se)},
@@ -217,6 +220,7 @@ Json to_json(const DriveExplanationReport& report) {
                  {"held_out_gain", number(f.held_out_gain)}};
     if (!f.pair.empty()) {
       finding["pair"] = f.pair;
+      finding["pair_words"] = drive::words_of(f.pair);
     }
     findings.push_back(std::move(finding));
   }

@@ -8,7 +8,7 @@ namespace driftlab {
 [[nodiscard]] Json to_json(const DriveCheck& checked);
 [[nodiscard]] Json to_json(const DriveReport& report);
 [[nodiscard]] Json to_json(const DriveExplanationReport& report);
-[[nodiscard]] Json to_json(const DriveSimulation& simulation);
+[[nodiscard]] Json to_json(const DriveSimulationReport& simulation);
 [[nodiscard]] Json to_json(const drive::DurationSummary& duration, const drive::Drive& drive);
 
 }  // namespace driftlab

@@ -116,6 +116,19 @@ drive::TimeMeaning drive_time(const Json& document, const std::string& pointer, 
   time.offset_s = reader.real("offset_s").value_or(0.0);
   time.rate_hz = reader.real("rate_hz");
   time.tag = reader.text("tag").value_or("");
+  if (const Json* const dates = reader.member("dates")) {
+    ObjectReader inner(*dates, pointer + "/dates", faults);
+    const auto first = inner.real("first_s");
+    const auto last = inner.real("last_s");
+    inner.reject_unknown();
+    if (!first || !last || !(*last > *first) || !time.tag.empty()) {
+      faults.add(
+          pointer + "/dates", ErrorCode::InvalidArgument,
+          "Dates are what a time tag says, in its place: {\"first_s\", \"last_s\"}, GPS time in seconds since 1970.");
+    } else {
+      time.dates = drive::TimeTag{*first, *last};
+    }
+  }
   reader.reject_unknown();
   if (time.column.empty() && time.scale != drive::TimeScale::Row) {
     faults.add(pointer, ErrorCode::InvalidArgument, "Name the `column` of the time, or say that the scale is `row`.");
@@ -225,8 +238,10 @@ void read_drive_gnss(const Json& document, const std::string& pointer, std::stri
 void read_drive_reference(const Json& document, const std::string& pointer, std::string_view member,
                           drive::ReferenceSource& reference, Faults& faults) {
   if (document.is_string()) {
-    if (document.get<std::string>() != "withheld_fixes") {
-      faults.add(pointer, ErrorCode::InvalidArgument, "A reference is a source or \"withheld_fixes\".");
+    reference.smoothed = document.get<std::string>() == "smoothed_fixes";
+    if (document.get<std::string>() != "withheld_fixes" && !reference.smoothed) {
+      faults.add(pointer, ErrorCode::InvalidArgument,
+                 "A reference is a source, \"withheld_fixes\" or \"smoothed_fixes\".");
     }
     return;
   }

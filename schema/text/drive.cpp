@@ -107,13 +107,13 @@ std::string drive_report_to_text(const DriveReport& report) {
                       std::string(name_of(c.outage_class)).c_str(), c.count, c.rms_m, c.nees);
     }
   }
-  constexpr std::array<const char*, 5> kinds{"position", "velocity", "constraint", "zero velocity", "odometer"};
+  constexpr std::array<const char*, 5> kKinds{"position", "velocity", "constraint", "zero velocity", "odometer"};
   text += "\nInnovations (horizontal), all fixes used:\n";
   for (const drive::InnovationSummary& one : report.evaluation.innovations) {
     text += printed(
         "  %-13s n %6zu  rms %8.3f, stated %8.3f; normalised square %6.2f; correlation: next %.2f, 1 s %.2f, 4 "
         "s %.2f\n",
-        kinds[static_cast<std::size_t>(one.kind)], one.count, one.rms, one.stated_rms, one.normalised,
+        kKinds[static_cast<std::size_t>(one.kind)], one.count, one.rms, one.stated_rms, one.normalised,
         one.correlation_next, one.correlation_1s, one.correlation_4s);
   }
   if (report.evaluation.heading_known_s) {
@@ -148,7 +148,7 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
   for (const drive::DriveFinding& f : e.findings) {
     text += printed("  %s %s: %s %.4g +- %.2g %s (score %.0f, from %s)%s\n", f.cause.c_str(), f.parameter.c_str(),
                     f.title.c_str(), f.value, f.se, f.unit.c_str(), f.score, f.evidence.c_str(),
-                    f.pair.empty() ? "" : (", not told apart from " + f.pair).c_str());
+                    f.pair.empty() ? "" : (", not told apart from " + std::string(drive::words_of(f.pair))).c_str());
     if (f.cause != "sample_clock") {
       text += printed("      held-out outages: log score %+.3f; %s\n", f.held_out_gain,
                       f.kept ? "kept in the mended model" : "found, but no gain: not in the mended model");
@@ -160,11 +160,12 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
   text +=
       "\nRungs (each adds to those kept before it; errors on outages that found its values and on those that did "
       "not):\n"
-      "                                            found           held out\n"
-      "rung                               outage   n   rms m  NEES   n   rms m  median  NEES  in 50 %  in 95 %\n";
+      "                                                      found           held out\n"
+      "rung                                         outage   n   rms m  NEES   n   rms m  median  NEES  in 50 %  in 95 "
+      "%\n";
   for (const drive::Rung& rung : e.rungs) {
     for (const drive::RungFigures& d : rung.durations) {
-      text += printed("%-34s %4.0f s %4zu %7.2f %5.1f %4zu %7.2f %7.2f %5.1f %8.2f %8.2f%s\n", rung.name.c_str(),
+      text += printed("%-44s %4.0f s %4zu %7.2f %5.1f %4zu %7.2f %7.2f %5.1f %8.2f %8.2f%s\n", rung.name.c_str(),
                       d.duration_s, d.found_count, d.found_rms_m, d.found_nees, d.held_out_count, d.held_out_rms_m,
                       d.held_out_median_m, d.held_out_nees, d.held_out_coverage50, d.held_out_coverage95,
                       rung.kept ? "" : "  (not kept)");
@@ -178,10 +179,19 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
   return text + notes_of(notes);
 }
 
-std::string drive_simulation_to_text(const DriveSimulation& simulation) {
+std::string drive_simulation_to_text(const DriveSimulationReport& simulation) {
   return sentence_of(simulation) + "\n\n" + header_of_drive(simulation.measured.drive) + "\nMeasured:\n" +
          duration_rows(simulation.measured.evaluation.durations) + "\nSimulated:\n" +
          simulated_rows(simulation.simulated);
+}
+
+std::string drive_answer_to_text(const DriveAnswer& answer) {
+  if (const auto* const explained = std::get_if<DriveExplanationReport>(&answer)) {
+    return drive_explanation_to_text(*explained);
+  }
+  const auto* const simulated = std::get_if<DriveSimulationReport>(&answer);
+  return simulated != nullptr ? drive_simulation_to_text(*simulated)
+                              : drive_report_to_text(std::get<DriveReport>(answer));
 }
 
 }  // namespace driftlab

@@ -16,7 +16,10 @@ namespace driftlab {
 [[nodiscard]] std::string drive_explanation_to_text(const DriveExplanationReport& report);
 
 /// One sentence, then measured beside simulated outages.
-[[nodiscard]] std::string drive_simulation_to_text(const DriveSimulation& simulation);
+[[nodiscard]] std::string drive_simulation_to_text(const DriveSimulationReport& simulation);
+
+/// Whichever of these it is.
+[[nodiscard]] std::string drive_answer_to_text(const DriveAnswer& answer);
 
 /// The rows of a table of durations: n, rms with interval, median, NEES, coverage.
 [[nodiscard]] std::string duration_rows(const std::vector<drive::DurationSummary>& durations);

@@ -7,6 +7,7 @@
 /// one the other way.
 #include "core/navigate/drive/filter_run.hpp"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Knob {
   void (*turn)(FilterOptions& options, double by) = nullptr;
   bool (*applies)(const Drive& drive, const FilterOptions& options) = nullptr;  ///< null: always
   std::string_view told_apart;  ///< the measurement that separates it from its rivals
+  /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the
+  /// effect is (at most sqrt(dof / 2)); what the likelihood loses without it decides alone.
+  bool ratio = false;
 };
 
 /// Every knob once, in the order of the specification.
@@ -31,5 +35,12 @@ struct Knob {
 
 /// The knob of a cause's parameter; null for an unknown one.
 [[nodiscard]] const Knob* find_knob(std::string_view cause, std::string_view parameter);
+
+/// A cause as people call it, with what a drive's files and readings show without a knob: "lasting errors of
+/// positions". `cause` is one of a knob or of a finding.
+[[nodiscard]] std::string_view words_of(std::string_view cause);
+
+/// One parameter of a cause in words: the cause alone where it has no other, else "misaligned gyroscope axes (xz)".
+[[nodiscard]] std::string words_of(const Knob& knob);
 
 }  // namespace driftlab::drive

@@ -34,15 +34,22 @@ enum class TimeScale {
 [[nodiscard]] std::string_view name_of(TimeScale scale);
 [[nodiscard]] std::optional<TimeScale> parse_time_scale(std::string_view name);
 
+/// The dates that an RTKLIB time tag gives to a file: GPS time of its first and of its last row, seconds since 1970.
+struct TimeTag {
+  double first_s = 0.0;
+  double last_s = 0.0;
+};
+
 /// How the rows of one source lie in time.
 struct TimeMeaning {
   std::string column;    ///< empty only where `scale` is Row
   double unit_s = 1.0;   ///< seconds in one of the column's unit
   bool arrival = false;  ///< the stamp is when the reading arrived, not what moment it describes
   TimeScale scale = TimeScale::Boot;
-  double offset_s = 0.0;          ///< added to the stamps
-  std::optional<double> rate_hz;  ///< of the rows, where `scale` is Row
-  std::string tag;                ///< an RTKLIB time tag that dates the file; empty: none
+  double offset_s = 0.0;                        ///< added to the stamps
+  std::optional<double> rate_hz;                ///< of the rows, where `scale` is Row
+  std::string tag;                              ///< an RTKLIB time tag that dates the file; empty: none
+  std::optional<TimeTag> dates = std::nullopt;  ///< what such a tag says, where the document says it itself
 };
 
 struct ColumnMeaning {
@@ -93,6 +100,7 @@ struct GnssSource {
 
 struct ReferenceSource {
   std::optional<Source> source;  ///< nothing: the withheld fixes
+  bool smoothed = false;         ///< the filter's path smoothed over all fixes, in place of the withheld ones
   Vector3 lever_arm_m = Vector3::Zero();
   double sd_m = 0.0;  ///< of a reference that states none
 };

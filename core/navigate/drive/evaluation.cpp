@@ -44,6 +44,13 @@ std::vector<NaturalOutage> natural_outages(const Drive& drive) {
   return natural;
 }
 
+void turn_heading(NavigationState& state, double by_rad) {
+  if (by_rad != 0.0) {
+    const Vector3 down = ned_axes(state.position_ecef_m).col(2);
+    state.attitude = rotation(by_rad * down) * state.attitude;
+  }
+}
+
 /// Mean over components of the correlation of normalised innovations `lag_s` apart.
 double correlation_at(const std::vector<const Innovation*>& list, double lag_s, double tolerance_s) {
   double product = 0.0;
@@ -163,21 +170,26 @@ Result<PreparedDrive> PreparedDrive::make(const Drive& drive, const FilterOption
       refused = refused ? refused : start.error();
       continue;
     }
+    turn_heading(start->state, options.initial_heading_rad);
     auto design = make_design(drive.document, drive.runs[run].dt_s, *start, options);
     if (!design) {
       return fail(design.error());
     }
-    prepared.parts_.push_back({*start, corrected_readings(drive.runs[run], options.errors), std::move(*design)});
+    const bool shaken = options.gyro_vibration > 0.0 || options.force_vibration > 0.0;
+    prepared.parts_.push_back({*start, corrected_readings(drive.runs[run], options.errors), std::move(*design),
+                               shaken ? Vibration(drive.runs[run].readings, drive.runs[run].dt_s) : Vibration()});
   }
   if (prepared.parts_.empty()) {
-    return fail(*refused);
+    return fail(refused.value_or(Error{ErrorCode::NoSamples, "The drive has no readings.", {}}));
   }
   return prepared;
 }
 
 FilterRun PreparedDrive::run(std::size_t part, const FilterTask& task) const {
   const Part& own = parts_[part];
-  return run_filter(*drive_, own.start, own.readings, *own.design, options_, task);
+  FilterTask whole = task;
+  whole.vibration = task.vibration != nullptr ? task.vibration : &own.vibration;
+  return run_filter(*drive_, own.start, own.readings, own.design, options_, whole);
 }
 
 std::vector<std::vector<DriveOutage>> scored_outages(const PreparedDrive& prepared, const RunControl& control) {
@@ -296,7 +308,7 @@ DurationSummary summarise(std::vector<DriveOutage> outages, double duration_s, d
   summary.mean_m = mean_over(errors);
   std::vector<double> sorted = errors;
   std::sort(sorted.begin(), sorted.end());
-  summary.p95_m = sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1) + 0.5)];
+  summary.p95_m = sorted[static_cast<std::size_t>(std::lround(0.95 * static_cast<double>(sorted.size() - 1)))];
   summary.worst_m = sorted.back();
   summary.along_rms_m = root_mean_square(column([](const DriveOutage& o) { return o.along_m; }));
   summary.across_rms_m = root_mean_square(column([](const DriveOutage& o) { return o.across_m; }));

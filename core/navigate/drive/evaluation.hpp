@@ -85,13 +85,15 @@ class PreparedDrive {
   [[nodiscard]] std::size_t parts() const { return parts_.size(); }
   [[nodiscard]] const Start& start(std::size_t part) const { return parts_[part].start; }
   [[nodiscard]] std::span<const ImuSample> readings(std::size_t part) const { return parts_[part].readings; }
+  [[nodiscard]] const Vibration& vibration(std::size_t part) const { return parts_[part].vibration; }
   [[nodiscard]] FilterRun run(std::size_t part, const FilterTask& task) const;
 
  private:
   struct Part {
     Start start;
     std::vector<ImuSample> readings;
-    std::optional<FilterDesign> design;
+    FilterDesign design;
+    Vibration vibration;  ///< where the options know that noise follows it
   };
   const Drive* drive_ = nullptr;
   FilterOptions options_;

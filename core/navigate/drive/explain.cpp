@@ -15,6 +15,9 @@ constexpr double kNoiseNamed = 1.25;  ///< a factor of the white noise that is w
 /// The options as they are for each fold: what the other fold has shown.
 using FoldOptions = std::array<FilterOptions, LogLikelihood::kFolds>;
 
+/// Whether the two are known to be alike: one set of runs is then enough.
+enum class FoldValues { Apart, Alike };
+
 double log_score(const DriveOutage& o) {
   const Matrix3& p = o.covariance_ned;
   const double determinant = p(0, 0) * p(1, 1) - p(0, 1) * p(1, 0);
@@ -22,7 +25,8 @@ double log_score(const DriveOutage& o) {
 }
 
 /// Outages of the plan under values that fold 0 has shown and under those of fold 1, by whether they were seen.
-Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, const RunControl& control) {
+Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, const RunControl& control,
+             FoldValues values = FoldValues::Apart) {
   Rung rung;
   rung.name = std::move(name);
   const OutagePlan& plan = drive.document.outages;
@@ -30,12 +34,15 @@ Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, c
     std::vector<DriveOutage> found, held_out;
   };
   std::vector<Lists> lists(plan.duration_s.size());
+  std::vector<std::vector<DriveOutage>> scored;
   for (std::size_t fold = 0; fold < by_fold.size(); ++fold) {
-    const auto prepared = PreparedDrive::make(drive, by_fold[fold]);
-    if (!prepared) {
-      continue;
+    if (fold == 0 || values == FoldValues::Apart) {
+      const auto prepared = PreparedDrive::make(drive, by_fold[fold]);
+      if (!prepared) {
+        continue;
+      }
+      scored = scored_outages(*prepared, control);
     }
-    const auto scored = scored_outages(*prepared, control);
     for (std::size_t d = 0; d < scored.size(); ++d) {
       for (const DriveOutage& outage : scored[d]) {
         if (const auto own = fold_of(outage.outage)) {
@@ -125,6 +132,20 @@ DriveFinding finding_of_noise(const char* sensor, double factor, const Drive& dr
   return finding;
 }
 
+DriveFinding finding_of_slips(const WheelSlips& found) {
+  DriveFinding finding;
+  finding.cause = "wheel_slip";
+  finding.parameter = "seconds";
+  finding.title = "the wheel of the odometer slips or locks, " + std::to_string(found.slips.size()) + " times, in all";
+  finding.unit = "s";
+  finding.value = found.seconds();
+  // Each reading of a slip is five standard deviations off and more: 12 nats in half of its square.
+  finding.score = 12.5 * static_cast<double>(found.slips.size());
+  finding.evidence = "odometer and fixes";
+  finding.told_apart = "bursts; a scale factor of the odometer is the same everywhere";
+  return finding;
+}
+
 /// The findings' knobs, fitted again on one fold from the whole drive's values.
 FilterOptions fitted_on(const Drive& drive, std::size_t fold, const FilterOptions& options,
                         const std::vector<const Knob*>& knobs, const RunControl& control) {
@@ -150,6 +171,7 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   }
   FilterOptions unmended = first;
   unmended.date_to_sample = true;
+  unmended.odometer = !drive.odometer.empty();
   control.report("as stamped", 0.0);
   auto before = evaluate_drive(as_stamped, unmended, settings, control);
   if (!before) {
@@ -178,6 +200,14 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
       explanation.findings.push_back(finding_of_delay(delay));
     }
   }
+  if (!drive.odometer.empty()) {
+    first.odometer = start.odometer = true;
+    const auto slips = slips_of(drive, start.velocity_latency_s);
+    if (slips && !slips->slips.empty()) {
+      first.slips = start.slips = slips->slips;
+      explanation.findings.push_back(finding_of_slips(*slips));
+    }
+  }
   const FilterOptions from_files = start;
   auto search = search_causes(drive, start, options.most_causes, control);
   if (!search) {
@@ -198,7 +228,7 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   for (const DriveFinding& finding : search->findings) {
     if (finding.cause == "imu_time_offset") {
       explanation.notes.emplace_back(
-          "An offset of the unit's clock and an equal delay of all fixes (gnss_latency) are the same thing here: only "
+          "An offset of the unit's clock and an equal delay of all fixes are the same thing here: only "
           "the difference of the two clocks shows.");
     }
   }
@@ -224,9 +254,11 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   for (std::size_t fold = 0; fold < fitted.size(); ++fold) {
     fitted[fold] = fitted_on(drive, fold, search->options, knobs, control);
   }
-  explanation.rungs.push_back(rung_of(as_stamped, "as stamped, the document's model", {unmended, unmended}, control));
-  explanation.rungs.push_back(rung_of(
-      drive, drive.facts.sampling.polled_faster ? "repeats out, fixes dated" : "fixes dated", {first, first}, control));
+  explanation.rungs.push_back(
+      rung_of(as_stamped, "as stamped, the document's model", {unmended, unmended}, control, FoldValues::Alike));
+  explanation.rungs.push_back(rung_of(drive,
+                                      drive.facts.sampling.polled_faster ? "repeats out, fixes dated" : "fixes dated",
+                                      {first, first}, control, FoldValues::Alike));
   // The noise level comes first: judged under the document's, every gain would be one of covariance alone.
   FoldOptions current{first, first};
   for (std::size_t fold = 0; fold < current.size(); ++fold) {
@@ -253,7 +285,8 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
       continue;
     }
     set(current, finding, true);
-    explanation.rungs.push_back(rung_of(drive, "+ " + finding.cause + " " + finding.parameter, current, control));
+    explanation.rungs.push_back(
+        rung_of(drive, "+ " + words_of(*find_knob(finding.cause, finding.parameter)), current, control));
     turned.push_back(&finding);
   }
   // What each is worth beside all the others, on outages that it has not seen.

@@ -22,7 +22,7 @@ namespace driftlab::drive {
 
 /// A parameter that the drive shows.
 struct DriveFinding {
-  std::string cause;
+  std::string cause;  ///< its name in documents; people read words_of (causes.hpp)
   std::string parameter;
   std::string title;
   std::string unit;

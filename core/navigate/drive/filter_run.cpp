@@ -1,5 +1,7 @@
 #include "core/navigate/drive/filter_run.hpp"
 
+#include "core/navigate/drive/smoother.hpp"
+#include "core/process/random.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
@@ -8,35 +10,49 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kNearestReference = 1.6;  ///< [s]
-constexpr int kRejectedInARow = 5;         ///< after so many the receiver is believed again
+constexpr int kRejectedInARow = 5;  ///< after so many the receiver is believed again
 constexpr int kMostBelieved = 60;
-constexpr double kRestSpeed = 0.5;         ///< [m/s]
-constexpr double kRestSd = 0.02;           ///< [m/s]
+constexpr double kRestSd = 0.02;  ///< [m/s]
 constexpr double kRestTurnSd = 0.05 * kDegree;
 constexpr double kSteadyRestRate = 0.6 * kDegree;
-constexpr double kSteadyRestForce = 0.2;  ///< [m/s^2]
-constexpr double kTurnWindow = 0.05;      ///< [s] on each side
+constexpr double kSteadyRestForce = 0.2;   ///< [m/s^2]
+constexpr double kTurnWindow = 0.05;       ///< [s] on each side
+constexpr std::size_t kTapedReadings = 9;  ///< the filter itself closes a step after ten
+constexpr double kTapedPoints = 0.08;      ///< [s]
 constexpr double kHeadingKnown = 1.0 * kDegree;
 
 /// Where the constants that a filter estimates stand behind the sensor states.
 struct ConstantLayout {
-  int arm = -1, yaw = -1, axle = -1, odometer = -1;
+  int arm = -1, yaw = -1, axle = -1, odometer = -1, fixes = -1;
 };
 
-std::vector<double> constants_of(const EstimatedConstants& constants, ConstantLayout& layout, int first) {
-  std::vector<double> sd;
+/// Standard deviations of the constants and their correlation times, 0 for what stays.
+struct Constants {
+  std::vector<double> sd, tau_s;
+};
+
+Constants constants_of(const FilterOptions& options, ConstantLayout& layout, int first) {
+  Constants all;
   const auto add = [&](const std::optional<double>& value, int count, int& at) {
     if (value) {
-      at = first + static_cast<int>(sd.size());
-      sd.insert(sd.end(), static_cast<std::size_t>(count), *value);
+      at = first + static_cast<int>(all.sd.size());
+      all.sd.insert(all.sd.end(), static_cast<std::size_t>(count), *value);
     }
   };
+  const EstimatedConstants& constants = options.constants;
   add(constants.lever_arm_sd_m, 3, layout.arm);
   add(constants.mounting_sd_rad, 2, layout.yaw);
   add(constants.axle_sd_m, 1, layout.axle);
   add(constants.odometer_scale_sd, 1, layout.odometer);
-  return sd;
+  all.tau_s.assign(all.sd.size(), 0.0);
+  if (!options.coloured.none()) {
+    layout.fixes = first + static_cast<int>(all.sd.size());
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      all.sd.push_back(options.coloured.sd_m()(k));
+      all.tau_s.push_back(options.coloured.tau_s);
+    }
+  }
+  return all;
 }
 
 enum class Step { Score, Begin, Position, Velocity, Odometer };  // in this order at one moment
@@ -58,7 +74,14 @@ class Driver {
         task_(task),
         filter_(design, start.state),
         done_(start.reading) {
-    (void)constants_of(options.constants, layout_, design.first_constant());
+    (void)constants_of(options, layout_, design.first_constant());
+    if (task.vibration != nullptr && (options.gyro_vibration > 0.0 || options.force_vibration > 0.0)) {
+      vibration_ = task.vibration;
+      for (std::size_t c = 0; c < kImuChannels; ++c) {
+        // The design holds what does not follow the vibration.
+        shaken_[c] = vibration_of(options, c) * white_square_of(design.settings().imu.axes[c]);
+      }
+    }
     constraint_step_ =
         options.constraint
             ? std::max<std::size_t>(
@@ -90,7 +113,7 @@ class Driver {
                        [&](const Outage& outage) { return outage.covers(stamp_s) || outage.covers(described_s); });
   }
 
-  std::vector<FilterEvent> events(double from_s) const {
+  [[nodiscard]] std::vector<FilterEvent> events(double from_s) const {
     std::vector<FilterEvent> list;
     list.reserve(2 * drive_.fixes.size());
     const auto add = [&](double time_s, Step step, std::size_t index) {
@@ -110,7 +133,12 @@ class Driver {
       }
     }
     for (std::size_t i = 0; options_.odometer && i < drive_.odometer.size(); ++i) {
-      add(own(drive_.odometer[i].time_s), Step::Odometer, i);
+      const double at_s = drive_.odometer[i].time_s;
+      const bool slips = std::any_of(options_.slips.begin(), options_.slips.end(),
+                                     [&](const auto& slip) { return at_s >= slip[0] && at_s <= slip[1]; });
+      if (!slips) {
+        add(own(at_s), Step::Odometer, i);
+      }
     }
     for (std::size_t i = 0; i < task_.outages.size(); ++i) {
       add(own(task_.outages[i].start_s), Step::Begin, i);
@@ -131,15 +159,42 @@ class Driver {
       if (options_.zero_velocity) {
         next = std::min(next, (done_ / rest_step_ + 1) * rest_step_);
       }
+      if (vibration_ != nullptr) {
+        next = std::min(next, vibration_->next_block(done_));
+        shake();
+      }
+      if (task_.tape != nullptr) {
+        next = std::min(next, done_ + kTapedReadings);
+      }
       filter_.advance(readings_.subspan(done_, next - done_));
       done_ = next;
-      if (constraint_step_ > 0 && done_ % constraint_step_ == 0) {
-        constrain();
+      if (task_.tape != nullptr) {
+        keep_step();
+      }
+      if (options_.constraint && done_ % constraint_step_ == 0) {
+        constrain(*options_.constraint);
       }
       if (options_.zero_velocity && done_ % rest_step_ == 0) {
         hold_still();
       }
     }
+  }
+
+  void keep_step() {
+    task_.tape->step(filter_.pending_transition());
+    const Eigen::MatrixXd covariance = filter_.covariance().dense();
+    if (now() - task_.tape->last_point_s() > kTapedPoints) {
+      task_.tape->point(now(), filter_.state(), covariance);
+    }
+  }
+
+  /// The noise of the block that begins or goes on here.
+  void shake() {
+    std::array<double, kImuChannels> extra = vibration_->at(done_);
+    for (std::size_t c = 0; c < kImuChannels; ++c) {
+      extra[c] *= shaken_[c];
+    }
+    filter_.set_extra_noise(extra);
   }
 
   void take(const FilterEvent& event) {
@@ -148,17 +203,20 @@ class Driver {
         score(event.index);
         return;
       case Step::Begin:
-        begun_ = filter_.state();
-        begun_s_ = now();
+        begun_ = {now(), filter_.state()};
         return;
       case Step::Position:
         position(drive_.fixes[event.index], event.time_s);
         return;
       case Step::Velocity:
-        velocity(drive_.fixes[event.index], event.time_s);
+        if (const Fix& fix = drive_.fixes[event.index]; fix.velocity_ned_m_s) {
+          velocity(*fix.velocity_ned_m_s, fix.velocity_sd_m_s, event.time_s);
+        }
         return;
       case Step::Odometer:
-        odometer(drive_.odometer[event.index]);
+        if (drive_.document.odometer) {
+          odometer(*drive_.document.odometer, drive_.odometer[event.index]);
+        }
         return;
     }
   }
@@ -179,8 +237,11 @@ class Driver {
       mean += Vector3(readings_[i][0], readings_[i][1], readings_[i][2]);
     }
     mean /= static_cast<double>(last - first);
-    const ImuSample& newest = readings_[done_ - 1];
-    const Vector3 error = Vector3(newest[0], newest[1], newest[2]) - filter_.last_rate();
+    Vector3 error = Vector3::Zero();
+    if (done_ > 0) {  // a fix may come before the first reading
+      const ImuSample& newest = readings_[done_ - 1];
+      error = Vector3(newest[0], newest[1], newest[2]) - filter_.last_rate();
+    }
     return mean - error - filter_.attitude().transpose() * earth_rate();
   }
 
@@ -194,7 +255,10 @@ class Driver {
     const Vector3 arm_velocity = attitude * body_rate().cross(own_arm);
     const Vector3 antenna = state.position_ecef_m + turned - late * (state.velocity_ecef_m_s + arm_velocity) +
                             (0.5 * late * late) * filter_.last_acceleration();
-    const Vector3 gap = fix.position_ecef_m - antenna;
+    Vector3 gap = fix.position_ecef_m - antenna;
+    for (int k = 0; layout_.fixes >= 0 && k < 3; ++k) {
+      gap -= constant(layout_.fixes + k) * axes.col(k);
+    }
     std::array<WideMeasurement, 3> measurements;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3 axis = axes.col(k);
@@ -203,6 +267,9 @@ class Driver {
       m.navigation.innovation = axis.dot(gap);
       m.navigation.variance = fix.position_sd_m(k) * fix.position_sd_m(k);
       add_arm(m, attitude.transpose() * axis);
+      if (layout_.fixes >= 0) {
+        m.add(layout_.fixes + static_cast<int>(k), 1.0);
+      }
     }
     apply(MeasurementKind::Position, time_s, measurements, true);
     if (task_.keep_poses) {
@@ -210,7 +277,7 @@ class Driver {
     }
   }
 
-  void velocity(const Fix& fix, double time_s) {
+  void velocity(const Vector3& velocity_ned_m_s, const Vector3& sd_m_s, double time_s) {
     const double late = options_.date_to_sample ? 0.0 : now() - time_s;
     const NavigationState& state = filter_.state();
     const Matrix3& attitude = filter_.attitude();
@@ -218,14 +285,14 @@ class Driver {
     const Vector3 rate = body_rate();
     const Vector3 arm_velocity = attitude * rate.cross(arm());
     const Vector3 gap =
-        axes * *fix.velocity_ned_m_s - (state.velocity_ecef_m_s + arm_velocity - late * filter_.last_acceleration());
+        axes * velocity_ned_m_s - (state.velocity_ecef_m_s + arm_velocity - late * filter_.last_acceleration());
     std::array<WideMeasurement, 3> measurements;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3 axis = axes.col(k);
       WideMeasurement& m = measurements[static_cast<std::size_t>(k)];
       m.navigation.h << Vector3::Zero(), axis, arm_velocity.cross(axis);
       m.navigation.innovation = axis.dot(gap);
-      m.navigation.variance = fix.velocity_sd_m_s(k) * fix.velocity_sd_m_s(k);
+      m.navigation.variance = sd_m_s(k) * sd_m_s(k);
       add_arm(m, (attitude.transpose() * axis).cross(rate));  // axis . C (w x l) = l . (C^T axis x w)
     }
     apply(MeasurementKind::Velocity, time_s, measurements, true);
@@ -237,8 +304,7 @@ class Driver {
     }
   }
 
-  void constrain() {
-    const Constraint& c = *options_.constraint;
+  void constrain(const Constraint& c) {
     const Matrix3& attitude = filter_.attitude();
     const Vector3 v = filter_.state().velocity_ecef_m_s;
     const Vector3 body = attitude.transpose() * v;
@@ -296,10 +362,10 @@ class Driver {
     apply(MeasurementKind::ZeroVelocity, now(), still, false);
   }
 
-  void odometer(const OdometerReading& reading) {
+  void odometer(const OdometerSource& source, const OdometerReading& reading) {
     const Matrix3& attitude = filter_.attitude();
     const Vector3 v = filter_.state().velocity_ecef_m_s;
-    const Vector3 arm_velocity = body_rate().cross(drive_.document.odometer->lever_arm_m);
+    const Vector3 arm_velocity = body_rate().cross(source.lever_arm_m);
     const double speed = (attitude.transpose() * v).x() + arm_velocity.x();
     const double scale = 1.0 + options_.odometer_scale + constant(layout_.odometer);
     std::array<WideMeasurement, 1> measurement;
@@ -307,7 +373,7 @@ class Driver {
     const Vector3 forward = scale * attitude.col(0);
     m.navigation.h << Vector3::Zero(), forward, forward.cross(v);
     m.navigation.innovation = reading.speed_m_s - scale * speed;
-    m.navigation.variance = drive_.document.odometer->sd_m_s * drive_.document.odometer->sd_m_s;
+    m.navigation.variance = source.sd_m_s * source.sd_m_s;
     if (layout_.odometer >= 0) {
       m.add(layout_.odometer, speed);
     }
@@ -334,6 +400,9 @@ class Driver {
       record.accepted = agrees || believed;
       in_a_row = agrees ? (believed ? in_a_row - 1 : 0) : std::min(in_a_row + 1, kMostBelieved);
       result_.rejected += record.accepted ? 0 : 1;
+    }
+    if (record.accepted && task_.tape != nullptr) {
+      task_.tape->measured(filter_.covariance().dense(), measurements);
     }
     if (record.accepted) {
       filter_.measure(measurements, std::span(record.scalar).first(measurements.size()));
@@ -367,89 +436,12 @@ class Driver {
   }
 
   void score(std::size_t index) {
-    const Outage& outage = task_.outages[index];
-    const double drive_now = now() + options_.imu_offset_s;
-    const auto truth = reference_at(drive_.reference, drive_now);
-    const auto at_start = reference_at(drive_.reference, begun_s_ + options_.imu_offset_s);
-    if (!truth || !at_start) {
-      return;
+    const OutageEnd end{now(),       filter_.state(), filter_.attitude(), arm(), filter_.covariance().navigation(),
+                        heading_sd()};
+    if (auto scored = score_outage(drive_, options_, task_.outages[index], begun_, end)) {
+      scored->phase = task_.phase;
+      result_.outages.push_back(std::move(*scored));
     }
-    DriveOutage scored;
-    scored.outage = outage;
-    scored.phase = task_.phase;
-    scored.reference_ecef_m = *truth;
-    const Matrix3 axes = ned_axes(*truth);
-    const Vector3 reference_arm = drive_.withheld_fixes ? arm() : drive_.document.reference.lever_arm_m;
-    const Vector3 turned = filter_.attitude() * reference_arm;
-    scored.error_ned_m = axes.transpose() * (filter_.state().position_ecef_m + turned - *truth);
-    Eigen::Matrix<double, 3, 9> h = Eigen::Matrix<double, 3, 9>::Zero();
-    h.block<3, 3>(0, 0).setIdentity();
-    h.block<3, 3>(0, 6) = -cross_matrix(turned);
-    const Matrix3 p = h * filter_.covariance().navigation() * h.transpose();
-    scored.covariance_ned = axes.transpose() * p * axes;
-    scored.covariance_ned.diagonal() += reference_variance(drive_now);
-    scored.heading_sd_rad = heading_sd();
-    const Vector3 begun_arm = begun_.attitude * reference_arm;
-    const Vector3 before = axes.transpose() * (begun_.position_ecef_m + begun_arm - *at_start);
-    scored.start_error_m = before.head<2>().norm();
-    const Vector3 straight = axes.transpose() * (begun_.position_ecef_m + begun_arm +
-                                                 (now() - begun_s_) * begun_.velocity_ecef_m_s - *truth);
-    scored.straight_line_error_m = straight.head<2>().norm();
-    classify(scored, drive_now, axes);
-    result_.outages.push_back(scored);
-  }
-
-  [[nodiscard]] Vector3 reference_variance(double time_s) const {
-    const auto after = std::lower_bound(drive_.fixes.begin(), drive_.fixes.end(), time_s,
-                                        [](const Fix& fix, double t) { return fix.time_s < t; });
-    if (drive_.withheld_fixes && after != drive_.fixes.end()) {
-      return after->position_sd_m.cwiseAbs2();
-    }
-    return Vector3::Constant(drive_.document.reference.sd_m * drive_.document.reference.sd_m);
-  }
-
-  /// What the vehicle does in the outage, and how the error lies to its way.
-  void classify(DriveOutage& scored, double end_s, const Matrix3& axes) const {
-    const auto ahead = reference_at(drive_.reference, end_s + 0.5);
-    const auto behind = reference_at(drive_.reference, end_s - 0.5);
-    Vector3 way = Vector3::Zero();
-    if (ahead && behind) {
-      way = axes.transpose() * (*ahead - *behind);
-    }
-    const double length = way.head<2>().norm();
-    const double x = length > 0.25 ? way.x() / length : 1.0;
-    const double y = length > 0.25 ? way.y() / length : 0.0;
-    scored.along_m = x * scored.error_ned_m.x() + y * scored.error_ned_m.y();
-    scored.across_m = x * scored.error_ned_m.y() - y * scored.error_ned_m.x();
-    double longest = 0.0;
-    double turned = 0.0;
-    double most = 0.0;
-    double before = 0.0;
-    const double from = scored.outage.start_s;
-    const auto seconds = static_cast<int>(scored.outage.duration_s);
-    bool moving_before = false;
-    for (int s = 0; s < seconds; ++s) {
-      const auto a = reference_at(drive_.reference, from + s);
-      const auto b = reference_at(drive_.reference, from + s + 1.0);
-      if (!a || !b) {
-        continue;
-      }
-      const Vector3 step = axes.transpose() * (*b - *a);
-      const double speed = step.head<2>().norm();
-      longest = std::max(longest, speed);
-      if (speed > 1.0) {
-        const double course = std::atan2(step.y(), step.x());
-        if (moving_before) {
-          turned += std::remainder(course - before, 2.0 * std::numbers::pi);
-          most = std::max(most, std::abs(turned));
-        }
-        before = course;
-        moving_before = true;
-      }
-    }
-    scored.outage_class = longest < kRestSpeed    ? OutageClass::Rest
-                          : most < 20.0 * kDegree ? OutageClass::Straight
-                                                  : OutageClass::Turning;
   }
 
   const Drive& drive_;
@@ -460,96 +452,36 @@ class Driver {
   NavigationFilter filter_;
   std::size_t done_;
   ConstantLayout layout_;
+  const Vibration* vibration_ = nullptr;
+  std::array<double, kImuChannels> shaken_{};  ///< squared density of the noise that follows the vibration, on average
   std::size_t constraint_step_ = 0;
   std::size_t rest_step_ = 100;
   std::size_t turn_window_ = 5;  ///< readings on each side
   std::array<int, 2> rejected_in_a_row_{};
-  NavigationState begun_;
-  double begun_s_ = 0.0;
+  OutageStart begun_;
   FilterRun result_;
 };
 
 }  // namespace
-
-std::string_view name_of(OutageClass outage_class) {
-  constexpr std::array<std::string_view, 3> names{"rest", "straight", "turning"};
-  return names[static_cast<std::size_t>(outage_class)];
-}
-
-double DriveOutage::nees() const {
-  const Matrix3& p = covariance_ned;
-  const double n = error_ned_m.x();
-  const double e = error_ned_m.y();
-  const double cross = 0.5 * (p(0, 1) + p(1, 0));
-  return (p(1, 1) * n * n - 2.0 * cross * n * e + p(0, 0) * e * e) / (p(0, 0) * p(1, 1) - cross * cross);
-}
-
-void scale_white_noise(AxisModel& axis, double factor) {
-  if (factor == 1.0 || axis.processes.size() != 1) {
-    return;
-  }
-  Model model = axis.processes.model(0);
-  for (Process& process : model) {
-    if (process.kind->white_square != nullptr) {
-      process.parameters[0] *= factor;
-    }
-  }
-  axis.processes = ModelSchedule::constant(std::move(model));
-}
-
-FilterOptions options_of(const Document& document) {
-  FilterOptions options;
-  options.lever_arm_m = document.gnss.lever_arm_m;
-  options.position_latency_s = document.gnss.position_latency_s;
-  options.velocity_latency_s = document.gnss.velocity_latency_s;
-  return options;
-}
 
 Result<FilterDesign> make_design(const Document& document, double dt_s, const Start& start,
                                  const FilterOptions& options) {
   FilterSettings settings;
   settings.imu = document.model;
   for (std::size_t c = 0; c < kImuChannels; ++c) {
-    scale_white_noise(settings.imu.axes[c], c < 3 ? options.gyro_noise : options.force_noise);
+    scale_white_noise(settings.imu.axes[c], even_noise_factor(options, c));
   }
   settings.initial = start.uncertainty;
   ConstantLayout layout;
-  settings.constants_sd = constants_of(options.constants, layout, 0);
+  Constants constants = constants_of(options, layout, 0);
+  settings.constants_sd = std::move(constants.sd);
+  settings.constants_tau_s = std::move(constants.tau_s);
   return FilterDesign::make(settings, dt_s);
 }
 
 FilterRun run_filter(const Drive& drive, const Start& start, std::span<const ImuSample> readings,
                      const FilterDesign& design, const FilterOptions& options, const FilterTask& task) {
   return Driver(drive, start, readings, design, options, task).go(start.time_s);
-}
-
-std::vector<ImuSample> corrected_readings(const UniformRun& run, const ReadingErrors& errors) {
-  std::vector<ImuSample> readings = run.readings;
-  if (errors.none()) {
-    return readings;
-  }
-  const Matrix3 gyroscope = (Matrix3::Identity() + errors.gyroscope).inverse();
-  const Matrix3 accelerometer = (Matrix3::Identity() + errors.accelerometer).inverse();
-  for (ImuSample& sample : readings) {
-    const Vector3 rate = gyroscope * Vector3(sample[0], sample[1], sample[2]);
-    const Vector3 force = accelerometer * Vector3(sample[3], sample[4], sample[5]);
-    sample = {rate.x(), rate.y(), rate.z(), force.x(), force.y(), force.z()};
-  }
-  return readings;
-}
-
-std::optional<Vector3> reference_at(const std::vector<ReferencePoint>& reference, double time_s) {
-  const auto after = std::lower_bound(reference.begin(), reference.end(), time_s,
-                                      [](const ReferencePoint& point, double t) { return point.time_s < t; });
-  if (after == reference.begin() || after == reference.end()) {
-    return std::nullopt;
-  }
-  const auto before = after - 1;
-  if (time_s - before->time_s > kNearestReference || after->time_s - time_s > kNearestReference) {
-    return std::nullopt;
-  }
-  const double u = (time_s - before->time_s) / (after->time_s - before->time_s);
-  return Vector3((1.0 - u) * before->position_ecef_m + u * after->position_ecef_m);
 }
 
 }  // namespace driftlab::drive

@@ -130,8 +130,9 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
   double before_s = 0.0;
   for (std::size_t k = 0; k < stamped.row.size(); ++k) {
     const std::size_t i = stamped.row[k];
-    const std::array<double, 3> numbers = c.lat ? std::array{(*c.lat)[i], (*c.lon)[i], c.height ? (*c.height)[i] : 0.0}
-                                                : std::array{(*c.x)[i], (*c.y)[i], (*c.z)[i]};
+    const auto at = [i](const auto& column) { return column ? (*column)[i] : 0.0; };
+    const std::array<double, 3> numbers =
+        c.lat ? std::array{at(c.lat), at(c.lon), at(c.height)} : std::array{at(c.x), at(c.y), at(c.z)};
     if (!std::isfinite(numbers[0]) || !std::isfinite(numbers[1]) || (numbers[0] == 0.0 && numbers[1] == 0.0)) {
       ++facts.incomplete;
       continue;

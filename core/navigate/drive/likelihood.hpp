@@ -43,4 +43,16 @@ struct FixDelay {
 /// Nothing where too few fixes have a velocity that changes.
 [[nodiscard]] std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes);
 
+/// The odometer against the fixes, without the unit: stretches in which it reads otherwise than its usual ratio to the
+/// speed over ground says, by more than 5 robust standard deviations and 0.5 m/s for 0.3 s and more. A scale factor is
+/// the same everywhere and is no slip.
+struct WheelSlips {
+  double scale = 0.0;                          ///< odometer = (1 + scale) speed, in the median
+  double sd_m_s = 0.0;                         ///< of the odometer about that, robust
+  std::vector<std::array<double, 2>> slips{};  ///< from, to [s]
+  [[nodiscard]] double seconds() const;
+};
+/// Nothing where fewer than 50 readings lie between fixes with a velocity above 3 m/s.
+[[nodiscard]] std::optional<WheelSlips> slips_of(const Drive& drive, double velocity_latency_s);
+
 }  // namespace driftlab::drive

@@ -13,17 +13,18 @@ Result<std::vector<Vector3>> triad_of(const Table& table, const Source& source, 
   std::vector<Vector3> values(stamped.row.size());
   for (Eigen::Index k = 0; k < 3; ++k) {
     const std::string axis(1, "xyz"[k]);
-    auto column = find_quantity(table, source, quantity, axis);
-    if (!column) {
-      return fail(column.error());
+    const auto found = find_quantity(table, source, quantity, axis);
+    if (!found) {
+      return fail(found.error());
     }
-    if (!*column) {
+    const auto& column = *found;
+    if (!column) {
       return fail(ErrorCode::UnknownColumn,
                   "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + axis + ".",
                   {{"parameter", "imu.columns"}});
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i](k) = (**column)[stamped.row[i]];
+      values[i](k) = (*column)[stamped.row[i]];
     }
   }
   return values;
@@ -59,6 +60,10 @@ Result<Log> sensor_log(const Document& document, const Tables& tables, FileFacts
       log.rows.readings.push_back({w.x(), w.y(), w.z(), f.x(), f.y(), f.z()});
     }
     return log;
+  }
+  if (!tables.force) {
+    return fail(ErrorCode::InvalidArgument, "The file of the accelerometer is missing.",
+                {{"parameter", "imu.force.file"}});
   }
   auto force_rows = stamp_rows(*tables.force, imu.force->time);
   if (!force_rows) {
@@ -142,6 +147,9 @@ Status load_reference(const Document& document, const Tables& tables, double epo
     }
     return {};
   }
+  if (!tables.reference) {
+    return fail(ErrorCode::InvalidArgument, "The reference's file is missing.", {{"parameter", "reference.file"}});
+  }
   auto stamped = stamp_rows(*tables.reference, document.reference.source->time);
   if (!stamped) {
     return fail(stamped.error());
@@ -184,6 +192,9 @@ Status load_odometer(const Document& document, const Tables& tables, double epoc
   if (!document.odometer) {
     return {};
   }
+  if (!tables.odometer) {
+    return fail(ErrorCode::InvalidArgument, "The odometer's file is missing.", {{"parameter", "odometer.file"}});
+  }
   const OdometerSource& source = *document.odometer;
   auto stamped = stamp_rows(*tables.odometer, source.source.time);
   if (!stamped) {
@@ -192,24 +203,26 @@ Status load_odometer(const Document& document, const Tables& tables, double epoc
   if (stamped->absolute != absolute) {
     return fail(ErrorCode::InconsistentSampling, "The odometer has another clock than the inertial unit.");
   }
-  auto speed = find_quantity(*tables.odometer, source.source, Quantity::OdometerSpeed);
-  auto ticks = find_quantity(*tables.odometer, source.source, Quantity::OdometerTicks);
-  if (!speed || !ticks) {
-    return fail(!speed ? speed.error() : ticks.error());
+  const auto found_speed = find_quantity(*tables.odometer, source.source, Quantity::OdometerSpeed);
+  const auto found_ticks = find_quantity(*tables.odometer, source.source, Quantity::OdometerTicks);
+  if (!found_speed || !found_ticks) {
+    return fail(!found_speed ? found_speed.error() : found_ticks.error());
   }
-  if (!*speed && !(*ticks && source.metres_per_tick > 0.0)) {
+  const auto& speed = *found_speed;
+  const auto& ticks = *found_ticks;
+  if (!speed && !(ticks && source.metres_per_tick > 0.0)) {
     return fail(ErrorCode::InvalidArgument,
                 "The odometer needs a column of odometer_speed, or odometer_ticks with metres_per_tick above 0.",
                 {{"parameter", "odometer.columns"}});
   }
-  for (std::size_t k = *speed ? 0 : 1; k < stamped->row.size(); ++k) {
+  for (std::size_t k = speed ? 0 : 1; k < stamped->row.size(); ++k) {
     double value = 0.0;
     double time_s = stamped->time_s[k];
-    if (*speed) {
-      value = (**speed)[stamped->row[k]];
-    } else {  // the mean speed between two counts belongs to the middle
+    if (speed) {
+      value = (*speed)[stamped->row[k]];
+    } else if (ticks) {  // the mean speed between two counts belongs to the middle
       const double step = time_s - stamped->time_s[k - 1];
-      value = source.metres_per_tick * ((**ticks)[stamped->row[k]] - (**ticks)[stamped->row[k - 1]]) / step;
+      value = source.metres_per_tick * ((*ticks)[stamped->row[k]] - (*ticks)[stamped->row[k - 1]]) / step;
       time_s -= 0.5 * step;
     }
     if (std::isfinite(value)) {

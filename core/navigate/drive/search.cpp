@@ -48,7 +48,7 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
   std::vector<ProfileEstimate> estimates(knobs.size());
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const Knob& knob = *knobs[i];
-    Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
+    const Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
     estimates[i] = parabola(stride(options, knob, bracket), scale);
     estimates[i].score = std::max(estimates[i].gain_to(at), 0.0) / scale;
   }
@@ -142,7 +142,9 @@ double Profile::value_of(const FilterOptions& options, const Knob& knob) {
   FilterOptions one = zero;
   knob.turn(one, 1.0);
   const auto numbers = [](const FilterOptions& o) {
-    std::vector<double> list{o.imu_offset_s, o.velocity_latency_s, o.position_latency_s, o.odometer_scale};
+    std::vector<double> list{o.imu_offset_s,   o.velocity_latency_s,  o.position_latency_s,
+                             o.odometer_scale, o.initial_heading_rad, o.coloured.sigma_m,
+                             o.coloured.tau_s, o.gyro_vibration,      o.force_vibration};
     for (Eigen::Index i = 0; i < 3; ++i) {
       list.push_back(o.lever_arm_m(i));
       for (Eigen::Index j = 0; j < 3; ++j) {
@@ -174,18 +176,13 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
   const Profile profile(drive, {true, true}, control);
   SearchResult result;
   result.options = profile.with_noise_fitted(options, 4.0);
-  std::vector<const Knob*> all;
-  for (const Knob& knob : all_knobs()) {
-    if (knob.applies == nullptr || knob.applies(drive, result.options)) {
-      all.push_back(&knob);
-    }
-  }
   std::vector<const Knob*> named;
   while (static_cast<int>(named.size()) < most_causes && !control.stop.stop_requested()) {
-    std::vector<const Knob*> open;
-    for (const Knob* knob : all) {
-      if (std::find(named.begin(), named.end(), knob) == named.end()) {
-        open.push_back(knob);
+    std::vector<const Knob*> open;  // setting one may let another apply
+    for (const Knob& knob : all_knobs()) {
+      if (std::find(named.begin(), named.end(), &knob) == named.end() &&
+          (knob.applies == nullptr || knob.applies(drive, result.options))) {
+        open.push_back(&knob);
       }
     }
     const double scale = profile.scale(result.options);
@@ -195,9 +192,9 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     double second = 0.0;
     std::size_t second_at = open.size();
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const bool sure =
-          estimates[i].sound && estimates[i].score >= kNamed && std::abs(estimates[i].value) >= kSure * estimates[i].se;
-      if (sure && (best == open.size() || estimates[i].score > estimates[best].score)) {
+      const bool clear = open[i]->ratio || std::abs(estimates[i].value) >= kSure * estimates[i].se;
+      if (estimates[i].sound && estimates[i].score >= kNamed && clear &&
+          (best == open.size() || estimates[i].score > estimates[best].score)) {
         best = i;
       }
     }

@@ -13,6 +13,8 @@ namespace {
 constexpr std::uint64_t kFixStream = 8;  // the unit's channels take 0 to 5 of 16 streams a run
 constexpr std::uint64_t kStartStream = 9;
 constexpr std::uint64_t kSlipStream = 10;
+constexpr std::uint64_t kVibrationStream = 11;
+constexpr std::uint64_t kColourStream = 12;
 
 /// The truth at a moment of its own clock: from the sample before with its velocity and the change of it.
 NavigationState truth_at(const Trajectory& truth, double time_s) {
@@ -34,6 +36,29 @@ Vector3 drawn(const Vector3& sd, Random& random) {
   const double east = sd.y() * random.normal();
   return {north, east, sd.z() * random.normal()};
 }
+
+/// Errors of positions that last, moment after moment.
+class LastingErrors {
+ public:
+  LastingErrors(const ColouredFixes& coloured, Random random) : coloured_(coloured), random_(random) {}
+  Vector3 at(double time_s) {
+    if (coloured_.none()) {
+      return Vector3::Zero();
+    }
+    const double phi = begun_ ? std::exp(-(time_s - time_s_) / coloured_.tau_s) : 0.0;
+    error_ = phi * error_ + drawn(std::sqrt(1.0 - phi * phi) * coloured_.sd_m(), random_);
+    time_s_ = time_s;
+    begun_ = true;
+    return error_;
+  }
+
+ private:
+  ColouredFixes coloured_;
+  Random random_;
+  Vector3 error_ = Vector3::Zero();
+  double time_s_ = 0.0;
+  bool begun_ = false;
+};
 
 }  // namespace
 
@@ -62,13 +87,16 @@ Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::
   world.truth_ = std::move(*truth);
   world.model_ = drive.document.model;
   for (std::size_t c = 0; c < kImuChannels; ++c) {
-    scale_white_noise(world.model_.axes[c], c < 3 ? world.options_.gyro_noise : world.options_.force_noise);
+    scale_white_noise(world.model_.axes[c], even_noise_factor(world.options_, c));
   }
   world.options_.imu_offset_s = 0.0;
   world.options_.position_latency_s = 0.0;
   world.options_.velocity_latency_s = 0.0;
   world.options_.errors = {};
   world.options_.date_to_sample = false;
+  world.options_.initial_heading_rad = 0.0;
+  const double ahead = (world.start_s_ - drive.runs[world.start_.run].start_s) / dt;
+  world.vibration_ = prepared.vibration(part).from(static_cast<std::size_t>(std::max(std::lround(ahead), 0L)));
   return world;
 }
 
@@ -91,8 +119,13 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
     }
   }
   readings.readings = simulate_imu(ideal, truth_.dt_s, model_, {}, seed, run).readings;
+  if (options_.gyro_vibration > 0.0 || options_.force_vibration > 0.0) {
+    Random shaking(seed, 16 * run + kVibrationStream);
+    add_vibration_noise(vibration_, options_, model_, truth_.dt_s, shaking, readings.readings);
+  }
   world.drive.runs.push_back(std::move(readings));
   Random noise(seed, 16 * run + kFixStream);
+  LastingErrors lasting(options_.coloured, Random(seed, 16 * run + kColourStream));
   const double end = static_cast<double>(truth_.imu.size()) * truth_.dt_s;
   for (const Fix& recorded : recorded_->fixes) {
     const double own = recorded.time_s - start_s_;
@@ -102,8 +135,8 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
     const NavigationState truth = truth_at(truth_, own);
     const Matrix3 axes = ned_axes(truth.position_ecef_m);
     Fix fix = recorded;
-    fix.position_ecef_m =
-        truth.position_ecef_m + truth.attitude * options_.lever_arm_m + axes * drawn(recorded.position_sd_m, noise);
+    fix.position_ecef_m = truth.position_ecef_m + truth.attitude * options_.lever_arm_m +
+                          axes * (drawn(recorded.position_sd_m, noise) + lasting.at(own));
     const Vector3 velocity_error = drawn(recorded.velocity_sd_m_s, noise);
     if (recorded.velocity_ned_m_s) {
       const auto sample = std::min(static_cast<std::size_t>(own / truth_.dt_s), truth_.imu.size() - 1);
@@ -192,6 +225,7 @@ Result<std::vector<SimulatedDuration>> simulate_outages(const PreparedDrive& pre
           task.outages = planned.outages;
           task.phase = planned.phase;
           task.slip = drawn_world.slip.empty() ? nullptr : &slip;
+          task.vibration = &world.vibration();
           const FilterRun run = run_filter(drawn_world.drive, drawn_world.start, drawn_world.drive.runs[0].readings,
                                            *design, world.options(), task);
           auto& list = scored[i][planned.duration];

@@ -43,6 +43,8 @@ class SimulatedWorld {
   /// What the filter believes in the simulated world: the model's options without offsets and errors.
   [[nodiscard]] const FilterOptions& options() const { return options_; }
   [[nodiscard]] const Trajectory& truth() const { return truth_; }
+  /// That of the recording, from the first simulated reading on.
+  [[nodiscard]] const Vibration& vibration() const { return vibration_; }
 
  private:
   const Drive* recorded_ = nullptr;
@@ -50,6 +52,7 @@ class SimulatedWorld {
   FilterOptions options_;
   ImuModel model_;
   Trajectory truth_;
+  Vibration vibration_;
   double start_s_ = 0.0;
 };
 

@@ -9,12 +9,6 @@
 
 namespace driftlab::drive {
 
-/// The dates that an RTKLIB time tag gives to a file: GPS time of its first and of its last row, seconds since 1970.
-struct TimeTag {
-  double first_s = 0.0;
-  double last_s = 0.0;
-};
-
 struct Table {
   ColumnNames names;
   std::vector<std::vector<double>> columns;

@@ -1,0 +1,64 @@
+#include "core/navigate/drive/filter_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace driftlab::drive {
+
+double vibration_of(const FilterOptions& options, std::size_t channel) {
+  return std::max(channel < 3 ? options.gyro_vibration : options.force_vibration, 0.0);
+}
+
+void scale_white_noise(AxisModel& axis, double factor) {
+  if (factor == 1.0 || axis.processes.size() != 1) {
+    return;
+  }
+  Model model = axis.processes.model(0);
+  for (Process& process : model) {
+    if (process.kind->white_square != nullptr) {
+      process.parameters[0] *= factor;
+    }
+  }
+  axis.processes = ModelSchedule::constant(std::move(model));
+}
+
+double even_noise_factor(const FilterOptions& options, std::size_t channel) {
+  return (channel < 3 ? options.gyro_noise : options.force_noise) / std::sqrt(1.0 + vibration_of(options, channel));
+}
+
+FilterOptions options_of(const Document& document) {
+  FilterOptions options;
+  options.lever_arm_m = document.gnss.lever_arm_m;
+  options.position_latency_s = document.gnss.position_latency_s;
+  options.velocity_latency_s = document.gnss.velocity_latency_s;
+  return options;
+}
+
+void add_vibration_noise(const Vibration& vibration, const FilterOptions& options, const ImuModel& model, double dt_s,
+                         Random& random, std::vector<ImuSample>& readings) {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto& relative = vibration.at(i);
+    for (std::size_t c = 0; c < kImuChannels; ++c) {
+      const double variance = vibration_of(options, c) * white_square_of(model.axes[c]) * relative[c] / dt_s;
+      readings[i][c] += std::sqrt(variance) * random.normal();
+    }
+  }
+}
+
+std::vector<ImuSample> corrected_readings(const UniformRun& run, const ReadingErrors& errors) {
+  std::vector<ImuSample> readings = run.readings;
+  if (errors.none()) {
+    return readings;
+  }
+  const Matrix3 gyroscope = (Matrix3::Identity() + errors.gyroscope).inverse();
+  const Matrix3 accelerometer = (Matrix3::Identity() + errors.accelerometer).inverse();
+  for (ImuSample& sample : readings) {
+    const Vector3 rate = gyroscope * Vector3(sample[0], sample[1], sample[2]);
+    const Vector3 force = accelerometer * Vector3(sample[3], sample[4], sample[5]);
+    sample = {rate.x(), rate.y(), rate.z(), force.x(), force.y(), force.z()};
+  }
+  return readings;
+}
+
+}  // namespace driftlab::drive

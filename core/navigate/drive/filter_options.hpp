@@ -1,0 +1,93 @@
+#pragma once
+/// What a filter over a recorded drive assumes beside the error model: clocks, arms, constraints, states that it
+/// estimates; and how those assumptions act on the readings and on their noise.
+#include "core/navigate/drive/drive.hpp"
+#include "core/navigate/drive/vibration.hpp"
+#include "core/process/random.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace driftlab::drive {
+
+/// A vehicle on its axle moves along its nose: with mounting errors yaw and pitch and the axle x ahead of the unit,
+///   v_y = yaw v_x - x w_z,   v_z = -pitch v_x + x w_y      (spec/drives.md, section 6)
+/// in body axes at the unit, up to a white side slip.
+struct Constraint {
+  double rate_hz = 10.0;
+  double sd_m_s = 0.3;
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+  double axle_m = 0.0;  ///< forward of the unit; of a rear axle mostly negative
+};
+
+/// Errors of the readings that are taken off before the filter: reading = (I + M) truth, in body axes.
+struct ReadingErrors {
+  Matrix3 gyroscope = Matrix3::Zero();
+  Matrix3 accelerometer = Matrix3::Zero();
+  [[nodiscard]] bool none() const { return gyroscope.isZero(0.0) && accelerometer.isZero(0.0); }
+};
+
+/// Constants that a filter estimates beside everything else: their standard deviations; nothing: they are known.
+struct EstimatedConstants {
+  std::optional<double> lever_arm_sd_m;
+  std::optional<double> mounting_sd_rad;  ///< yaw and pitch of the constraint
+  std::optional<double> axle_sd_m;
+  std::optional<double> odometer_scale_sd;
+};
+
+/// Errors of a receiver's positions that last: a Gauss-Markov process in north, east and, one and a half times as
+/// large, down. The filter estimates them beside everything else.
+struct ColouredFixes {
+  double sigma_m = 0.0;  ///< 0: there are none; the sign does not count
+  double tau_s = 10.0;
+  [[nodiscard]] bool none() const { return std::abs(sigma_m) < 1e-4; }
+  [[nodiscard]] Vector3 sd_m() const { return std::abs(sigma_m) * Vector3(1.0, 1.0, 1.5); }
+};
+
+struct FilterOptions {
+  double imu_offset_s = 0.0;        ///< added to the unit's stamps
+  double position_latency_s = 0.0;  ///< stamp minus the moment that a position describes
+  double velocity_latency_s = 0.0;
+  Vector3 lever_arm_m = Vector3::Zero();
+  ReadingErrors errors;
+  double gyro_noise = 1.0;  ///< factor of the model's white noise
+  double force_noise = 1.0;
+  double gyro_vibration = 0.0;  ///< mean noise that follows the vibration over that which does not (vibration.hpp)
+  double force_vibration = 0.0;
+  ColouredFixes coloured;
+  double initial_heading_rad = 0.0;  ///< added to the heading of the start
+  std::optional<Constraint> constraint;
+  bool zero_velocity = false;
+  bool odometer = false;
+  double odometer_scale = 0.0;                    ///< odometer = (1 + scale) speed
+  std::vector<std::array<double, 2>> slips = {};  ///< from, to [s]: the wheel slips, and its readings are not used
+  EstimatedConstants constants;
+  double gate = 0.0;  ///< a fix whose normalised squared innovation is above is rejected; 0: none
+  bool date_to_sample =
+      false;  ///< fixes count as of the end of their sample: what a filter does that ignores their dates
+};
+
+/// What the document says: arm, latencies and their uncertainty.
+[[nodiscard]] FilterOptions options_of(const Document& document);
+
+/// Mean noise of a channel that follows the vibration over that which does not.
+[[nodiscard]] double vibration_of(const FilterOptions& options, std::size_t channel);
+
+/// Multiplies the white noise of an axis whose model does not depend on the rate.
+void scale_white_noise(AxisModel& axis, double factor);
+
+/// Adds the noise that follows the vibration, by the options' ratios, to readings whose other noise is of `model`,
+/// which is the design's: what does not follow it.
+void add_vibration_noise(const Vibration& vibration, const FilterOptions& options, const ImuModel& model, double dt_s,
+                         Random& random, std::vector<ImuSample>& readings);
+
+/// Factors of the white noise of an axis that do not follow the vibration.
+[[nodiscard]] double even_noise_factor(const FilterOptions& options, std::size_t channel);
+
+[[nodiscard]] std::vector<ImuSample> corrected_readings(const UniformRun& run, const ReadingErrors& errors);
+
+}  // namespace driftlab::drive
