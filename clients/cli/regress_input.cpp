@@ -46,7 +46,8 @@ Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::stri
       }
       recording.file = file;
       recording.spec = described->files.front().spec;
-      recording.spec.id = label.empty() ? file : label + "/" + file;
+      recording.spec.id = label;
+      recording.spec.id.append(label.empty() ? "" : "/").append(file);
     }
     arm.recordings.push_back(std::move(recording));
   }

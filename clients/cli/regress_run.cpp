@@ -1,6 +1,7 @@
 #include "clients/cli/regress_run.hpp"
 
 #include "clients/cli/regress_input.hpp"
+#include "clients/cli/regress_outputs.hpp"
 #include "clients/cli/regress_state.hpp"
 #include "schema/text/regression.hpp"
 
@@ -8,9 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 
 namespace driftlab::cli {
 namespace {
@@ -159,63 +157,24 @@ Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultRead
   return prepared;
 }
 
-Status write_file(const std::string& path, const std::string& text) {
-  std::ofstream stream(path, std::ios::binary);
-  stream << text;
-  stream.close();
-  return stream ? Status{} : fail(ErrorCode::Io, "The file " + path + " cannot be written.", {{"path", path}});
-}
-
-Status write_outputs(const RegressFlags& flags, const RegressReport& report, bool skip_open) {
-  std::string junit = flags.junit;
-  std::string markdown = flags.markdown;
-  std::string figure = flags.figure;
-  std::string badge = flags.badge;
-  std::string document;
-  if (!flags.out.empty()) {
-    const std::filesystem::path folder(flags.out);
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    const auto within = [&](const std::string& given, const char* name) {
-      return given.empty() ? (folder / name).string() : given;
-    };
-    junit = within(junit, "junit.xml");
-    markdown = within(markdown, "summary.md");
-    figure = within(figure, "ratio.svg");
-    badge = within(badge, "badge.svg");
-    document = (folder / "regression.json").string();
-  }
-  const std::string shown =
-      figure.empty() ? ""
-                     : std::filesystem::path(figure).lexically_relative(std::filesystem::path(markdown).parent_path());
-  for (const auto& [path, text] :
-       {std::pair<std::string, std::function<std::string()>>{document, [&] { return to_json(report).dump(2) + "\n"; }},
-        {junit, [&] { return regression_to_junit(report, skip_open); }},
-        {markdown, [&] { return regression_to_markdown(report, shown); }},
-        {figure, [&] { return regression_to_svg(report); }},
-        {badge, [&] { return regression_to_badge(report); }}}) {
-    if (!path.empty()) {
-      if (auto written = write_file(path, text()); !written) {
-        return written;
-      }
-    }
-  }
-  return {};
-}
-
-Exit exit_of(regression::Verdict verdict, Inconclusive inconclusive) {
-  if (verdict == regression::Verdict::Inconclusive) {
-    return inconclusive == Inconclusive::Pass   ? Exit::Success
-           : inconclusive == Inconclusive::Fail ? Exit::Negative
-                                                : Exit::Inconclusive;
-  }
-  return verdict == regression::Verdict::Pass ? Exit::Success : Exit::Negative;
+/// `report` must outlive the forms.
+RunForms forms_of(const RegressReport& report, Inconclusive inconclusive) {
+  RunForms forms;
+  forms.verdict = report.report.verdict;
+  forms.document = [&report] { return to_json(report).dump(2) + "\n"; };
+  forms.text = [&report] { return regression_to_text(report); };
+  forms.junit = [&report, inconclusive] { return regression_to_junit(report, inconclusive == Inconclusive::Pass); };
+  forms.markdown = [&report](const std::string& figure) { return regression_to_markdown(report, figure); };
+  forms.figure = [&report] { return regression_to_svg(report); };
+  forms.badge = [&report] { return regression_to_badge(report); };
+  return forms;
 }
 
 Exit accept(const RegressFlags& flags) {
   if (flags.state.empty() || flags.reason.empty()) {
-    return complain(
-        {ErrorCode::InvalidArgument, "--accept moves the anchor: it needs --state FILE and --reason TEXT.", {}});
+    return complain({ErrorCode::InvalidArgument,
+                     "--accept moves the anchor: it needs --reason TEXT, and --state FILE or --server URL.",
+                     {}});
   }
   auto state = RegressState::open(flags.state);
   if (!state) {
@@ -263,9 +222,14 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
   command.add_option("--figure", flags.figure, "Write the figure as SVG to this file");
   command.add_option("--badge", flags.badge, "Write a badge as SVG to this file");
   command.add_flag("--json", flags.json, "Print the document instead of text");
+  command.add_option("--server", flags.server,
+                     "Run in the daemon at this address, which keeps recordings, anchor, looks and history");
 }
 
 Exit run_regress(const RegressFlags& flags) {
+  if (!flags.server.empty()) {
+    return regress_there(flags);
+  }
   if (!flags.accept.empty()) {
     return accept(flags);
   }
@@ -298,12 +262,7 @@ Exit run_regress(const RegressFlags& flags) {
       return complain(saved.error());
     }
   }
-  if (auto written = write_outputs(flags, *report, run->inconclusive == Inconclusive::Pass); !written) {
-    return complain(written.error());
-  }
-  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : regression_to_text(*report);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  return exit_of(report->report.verdict, run->inconclusive);
+  return finish_run(flags, forms_of(*report, run->inconclusive), run->inconclusive);
 }
 
 }  // namespace driftlab::cli

@@ -27,10 +27,14 @@ struct RegressFlags {
   std::string junit, markdown, figure, badge;  ///< files to write
   std::string out;                             ///< a folder for all of them and the document
   bool json = false;
+  std::string server;  ///< the daemon that runs it; empty: here
 };
 
 /// Adds the flags that both commands have.
 void add_regress_flags(CLI::App& command, RegressFlags& flags);
+
+/// The same through a daemon: files are uploaded with their labels and sessions, characterised and compared there.
+[[nodiscard]] Exit regress_there(const RegressFlags& flags);
 
 /// Runs, writes the files, prints the text or the document, and says how the process ends: 0 pass, 1 fail, 3
 /// inconclusive.

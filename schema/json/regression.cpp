@@ -25,6 +25,9 @@ regression::ChannelFacts regression_facts_of(const Json& quality, const Json& ch
       facts.resolution = finite_member(known, "resolution", 0.0);
     }
   }
+  if (const auto mean = channel.find("mean"); mean != channel.end() && mean->is_number()) {
+    facts.mean = mean->get<double>();
+  }
   if (const auto found = channel.find("contamination"); found != channel.end() && found->is_object()) {
     facts.flagged = regression_count_member(*found, "flagged_samples");
   }
@@ -148,7 +151,10 @@ Json to_json(const regression::Settings& settings, std::size_t looks) {
                {{"gyroscope", settings.gyroscope.percent},
                 {"accelerometer", settings.accelerometer.percent},
                 {"sigma", number(settings.margin_sigma_percent)},
-                {"slow", number(settings.margin_slow_percent)}}},
+                {"slow", number(settings.margin_slow_percent)},
+                {"bias",
+                 {{"gyroscope", number(settings.bias.gyroscope / kRegressionDegS)},
+                  {"accelerometer", number(settings.bias.accelerometer / kRegressionMg)}}}}},
               {"through_s", number(settings.test.through_s)},
               {"min_edf", number(settings.min_edf)},
               {"design_power", number(settings.test.design_power)},

@@ -11,6 +11,10 @@
 
 namespace driftlab {
 
+/// Units in which margins of a bias are written: deg/s [rad/s] and mg [m/s^2].
+inline constexpr double kRegressionDegS = 0.017453292519943295;
+inline constexpr double kRegressionMg = 9.80665e-3;
+
 /// One recording of a request, before anything is read: a file to be characterised, a file with a characterisation, or
 /// a recording that a server has.
 struct WrittenRecording {

@@ -1,11 +1,11 @@
 /// Reads what a regression run is asked.
+#include "core/read/text_shape.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/regression.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace driftlab {
 namespace {
@@ -36,6 +36,15 @@ void regression_read_margin(const Json& document, const std::string& pointer, re
   }
   settings.margin_sigma_percent = reader.real("sigma").value_or(settings.margin_sigma_percent);
   settings.margin_slow_percent = reader.real("slow").value_or(settings.margin_slow_percent);
+  if (const Json* const bias = reader.member("bias")) {
+    ObjectReader margins(*bias, reader.pointer("bias"), faults);
+    settings.bias.gyroscope = kRegressionDegS * margins.real("gyroscope").value_or(0.0);
+    settings.bias.accelerometer = kRegressionMg * margins.real("accelerometer").value_or(0.0);
+    margins.reject_unknown();
+    if (settings.bias.gyroscope < 0.0 || settings.bias.accelerometer < 0.0) {
+      faults.add(reader.pointer("bias"), ErrorCode::InvalidArgument, "A margin must not be negative.");
+    }
+  }
   reader.reject_unknown();
 }
 
@@ -122,6 +131,9 @@ WrittenArm regression_read_arm(const Json& document, const std::string& pointer,
   if (const Json* const recordings = reader.member("recordings")) {
     if (!recordings->is_array()) {
       faults.add(reader.pointer("recordings"), ErrorCode::ParseError, "The recordings must be an array.");
+    } else if (recordings->empty()) {
+      faults.add(reader.pointer("recordings"), ErrorCode::InvalidArgument,
+                 "Name a recording, or leave the list out where labels say which.");
     } else {
       for (std::size_t i = 0; i < recordings->size(); ++i) {
         arm.recordings.push_back(regression_read_recording(
@@ -150,14 +162,11 @@ void regression_read_excluded(const Json& document, std::vector<regression::Excl
   }
 }
 
-/// Days since 1970 of a Gregorian date (Howard Hinnant, "chrono-compatible low-level date algorithms").
-long regression_days_of(int year, int month, int day) {
-  const int y = year - (month <= 2 ? 1 : 0);
-  const int era = (y >= 0 ? y : y - 399) / 400;
-  const int of_era = y - era * 400;
-  const int of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  const int days = of_era * 365 + of_era / 4 - of_era / 100 + of_year;
-  return static_cast<long>(era) * 146097 + days - 719468;
+/// `Z`, `+hh:mm` or `-hh:mm` at the end, without which a time is a local one.
+bool names_its_zone(std::string_view time) {
+  constexpr std::size_t kOffset = 6;
+  const std::string_view end = time.substr(time.size() - std::min(time.size(), kOffset));
+  return time.ends_with('Z') || (end.size() == kOffset && (end[0] == '+' || end[0] == '-') && end[3] == ':');
 }
 
 }  // namespace
@@ -182,32 +191,18 @@ std::string label_text(const Json& labels) {
 }
 
 Result<double> seconds_of(const std::string& time) {
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  int hour = 0;
-  int minute = 0;
-  double second = 0.0;
-  int used = 0;
-  const int found = std::sscanf(time.c_str(), "%4d-%2d-%2d%*1[Tt ]%2d:%2d:%lf%n", &year, &month, &day, &hour, &minute,
-                                &second, &used);
-  const std::string zone = found == 6 ? time.substr(static_cast<std::size_t>(used)) : "?";
-  double offset_s = 0.0;
-  int hours = 0;
-  int minutes = 0;
-  bool zoned = zone == "Z" || zone == "z";
-  if (!zoned && zone.size() == 6 && (zone[0] == '+' || zone[0] == '-') &&
-      std::sscanf(zone.c_str() + 1, "%2d:%2d", &hours, &minutes) == 2) {
-    zoned = true;
-    offset_s = (zone[0] == '+' ? 1.0 : -1.0) * (3600.0 * hours + 60.0 * minutes);
+  std::string written = time;
+  if (written.size() > 10) {
+    written[10] = written[10] == 't' ? 'T' : written[10];
+    written.back() = written.back() == 'z' ? 'Z' : written.back();
   }
-  if (!zoned || month < 1 || month > 12 || day < 1 || day > 31 || hour > 23 || minute > 59 || !(second < 61.0)) {
+  const auto seconds = names_its_zone(written) ? text::seconds_of_date(written) : std::nullopt;
+  if (!seconds) {
     return fail(ErrorCode::InvalidArgument,
                 "A time is written as RFC 3339 has it, for example 2026-11-22T10:00:00Z; '" + time + "' is not.",
                 {{"parameter", "recorded_at"}});
   }
-  return 86400.0 * static_cast<double>(regression_days_of(year, month, day)) + 3600.0 * hour + 60.0 * minute + second -
-         offset_s;
+  return *seconds;
 }
 
 void regression_settings_from_json(const Json& document, const std::string& pointer, WrittenRegression& into,

@@ -144,8 +144,10 @@ std::string badge_words(const regression::Report& report) {
     return "worse: " + (failed == report.checks.end() ? std::string("see report") : failed->check);
   }
   const auto& sessions = report.comparison.needs.sessions_per_arm;
-  const bool asked = report.comparability.empty() && sessions.has_value();
-  return asked ? "undecided: " + std::to_string(*sessions) + " sessions" : std::string("undecided");
+  if (!report.comparability.empty() || !sessions) {
+    return "undecided";
+  }
+  return "undecided: " + std::to_string(*sessions) + " sessions";
 }
 
 }  // namespace
@@ -163,8 +165,9 @@ std::string regression_to_svg(const RegressReport& run) {
   svg += "<title>" + svg_text(report.summary.verdict) + "</title>\n";
   svg += svg_written("<rect width=\"%.0f\" height=\"%.0f\" fill=\"#ffffff\"/>\n", wide, high);
   for (std::size_t u = 0; u < report.units.size(); ++u) {
+    const std::size_t line = u / columns;
     svg += svg_written("<g transform=\"translate(%.0f %.0f)\">\n", kPanelWide * static_cast<double>(u % columns),
-                       kPanelHigh * static_cast<double>(u / columns)) +
+                       kPanelHigh * static_cast<double>(line)) +
            ratio_panel(report.units[u], report.scope_s) + "</g>\n";
   }
   svg += svg_written(

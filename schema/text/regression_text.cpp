@@ -1,5 +1,6 @@
 /// Terminal text and Markdown page of a regression run.
 #include "core/signal/sort_keeping_ties.hpp"
+#include "schema/text/fields.hpp"
 #include "schema/text/regression.hpp"
 
 #include <algorithm>
@@ -82,23 +83,6 @@ std::string worst_row(const ListedTest& listed) {
 
 const char* const kWorstHead = "| axis | at | change | finding |\n|---|---|---|---|\n";
 
-/// Text that may stand in a Markdown line: what a label or a name could smuggle in is escaped.
-std::string markdown_safe(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '\n' || c == '\r') {
-      out += ' ';
-      continue;
-    }
-    if (c == '|' || c == '<' || c == '>' || c == '`' || c == '[' || c == ']') {
-      out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string("\\") + c;
-      continue;
-    }
-    out += c;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string regression_to_text(const RegressReport& run) {
@@ -129,19 +113,19 @@ std::string regression_to_text(const RegressReport& run) {
 
 std::string regression_to_markdown(const RegressReport& run, const std::string& figure) {
   const regression::Report& report = run.report;
-  std::string page = "**" + head_word(report.verdict) + "**: " + markdown_safe(report.summary.verdict) + "\n";
+  std::string page = "**" + head_word(report.verdict) + "**: " + markdown_field(report.summary.verdict) + "\n";
   page += "<!-- driftlab-regression -->\n\n";
   for (const std::string& detail : report.summary.details) {
-    page += "- " + markdown_safe(detail) + "\n";
+    page += "- " + markdown_field(detail) + "\n";
   }
   if (!report.excluded.empty()) {
     for (const regression::Exclusion& exclusion : report.excluded) {
-      page += "- Left out: " + markdown_safe(exclusion.recording) + " (" + markdown_safe(exclusion.reason) + ")\n";
+      page += "- Left out: " + markdown_field(exclusion.recording) + " (" + markdown_field(exclusion.reason) + ")\n";
     }
   }
   if (run.versus_previous) {
-    page += "- Against " + markdown_safe(run.versus_previous->label) +
-            ", as information: " + markdown_safe(run.versus_previous->sentence) + "\n";
+    page += "- Against " + markdown_field(run.versus_previous->label) +
+            ", as information: " + markdown_field(run.versus_previous->sentence) + "\n";
   }
   const std::vector<ListedTest> tests = by_distance(report);
   if (!tests.empty()) {
@@ -154,8 +138,8 @@ std::string regression_to_markdown(const RegressReport& run, const std::string& 
     page += "\n![Candidate over baseline against averaging time, with margin and scope](" + figure + ")\n";
   }
   page += "\n<details><summary>All tests, sessions and settings</summary>\n\n";
-  page += "- " + markdown_safe(arm_line("Baseline", report.baseline)) + "\n- " +
-          markdown_safe(arm_line("Candidate", report.candidate)) + "\n- " + look_line(run.look) + "\n\n";
+  page += "- " + markdown_field(arm_line("Baseline", report.baseline)) + "\n- " +
+          markdown_field(arm_line("Candidate", report.candidate)) + "\n- " + look_line(run.look) + "\n\n";
   if (!tests.empty()) {
     page += kWorstHead;
     for (const ListedTest& listed : tests) {

@@ -2,25 +2,25 @@
 /// (core/analysis/regress.hpp).
 ///
 /// `inputs`: `device`, `baseline`, `candidate`, `history` and `excluded` of a regression request, whose recordings are
-/// those of the server (`{"recording": "rec_..."}`). `parameters`: its `settings`. The results are pinned when the job
-/// is asked for; recordings without one are refused. Looks are counted over the jobs of this kind that have the same
-/// device and candidate label: a run over the same recordings is the same look.
+/// those of the server (`{"recording": "rec_..."}`). An arm with labels alone is all recordings of the device that have
+/// them; the baseline may be "anchor" or "last_pass"; without a `history` it is the releases of earlier runs.
+/// `parameters`: its `settings`. The results are pinned when the job is asked for; recordings without one are refused.
+/// Looks are counted over the jobs of this kind that have the same device and candidate label: a run over the same
+/// recordings is the same look.
 #include "core/analysis/regress.hpp"
 
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/regression.hpp"
+#include "schema/text/regression.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/jobs/regression_arms.hpp"
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace driftlab::server {
 namespace {
-
-constexpr std::string_view kRegressKind = "regress";
-constexpr int kPage = 500;
 
 /// The latest results of all sensor axes of a device, by recording.
 using ResultsByRecording = std::map<std::string, std::vector<ChannelResult>>;
@@ -67,9 +67,12 @@ Json pinned_recording(const WrittenRecording& written, const Device& device, con
     ids.push_back(result.id);
   }
   Json pinned{{"recording", written.recording}, {"revision", recording->revision}, {"results", std::move(ids)}};
+  // What the request says of session and time is for this run; what it does not say the recording does.
+  const auto tags = parse_json(recording->tags_json);
   for (const auto& [name, text] : {std::pair{"session", written.session}, {"recorded_at", written.recorded_at}}) {
-    if (!text.empty()) {
-      pinned[name] = text;
+    const std::string stored = tags && tags->is_object() ? tags->value(name, "") : "";
+    if (!text.empty() || !stored.empty()) {
+      pinned[name] = text.empty() ? stored : text;
     }
   }
   if (!written.recorded_at.empty()) {
@@ -84,44 +87,6 @@ Json pinned_recording(const WrittenRecording& written, const Device& device, con
     pinned["causes"] = written.causes;
   }
   return pinned;
-}
-
-std::vector<std::string> ids_of(const Json& arm) {
-  std::vector<std::string> ids;
-  for (const Json& recording : arm["recordings"]) {
-    ids.push_back(recording["recording"].get<std::string>());
-  }
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
-/// The number of the look that a run over the candidate is, among those asked for before.
-Result<std::size_t> count_look(Store& store, const std::string& device_id, const Json& candidate) {
-  std::set<std::vector<std::string>> before;
-  const std::vector<std::string> own = ids_of(candidate);
-  std::vector<std::vector<std::string>> order;
-  Page page{.after = "", .limit = kPage};
-  for (bool more = true; more;) {
-    auto jobs = store.jobs({std::string(kRegressKind), std::nullopt}, page);
-    if (!jobs) {
-      return fail(jobs.error());
-    }
-    for (const Job& job : *jobs) {
-      const bool stands =
-          job.state == JobState::Queued || job.state == JobState::Running || job.state == JobState::Succeeded;
-      const auto request = parse_json(job.request_json);
-      if (!stands || !request || (*request)["inputs"]["device"] != device_id ||
-          (*request)["inputs"]["candidate"]["label"] != candidate["label"]) {
-        continue;
-      }
-      if (const auto ids = ids_of((*request)["inputs"]["candidate"]); before.insert(ids).second) {
-        order.push_back(ids);
-      }
-    }
-    more = static_cast<int>(jobs->size()) == kPage;
-    page.after = jobs->empty() ? "" : jobs->back().id;
-  }
-  return static_cast<std::size_t>(std::find(order.begin(), order.end(), own) - order.begin()) + 1;
 }
 
 /// A stored recording as a member of a characterisation (core/campaign/regression/recordings.hpp reads no more).
@@ -187,6 +152,163 @@ Result<regression::Recordings> recordings_of(Store& store, const Json& arm, cons
   return recordings;
 }
 
+/// The arms of a request with the recordings that they mean, each with the results that it is compared by.
+class PinnedArms {
+ public:
+  PinnedArms(Store& store, const Device& device, const RegressionMemory& memory, const ResultsByRecording& results,
+             const std::vector<regression::Exclusion>& excluded, Faults& faults)
+      : store_(store), device_(device), memory_(memory), results_(results), excluded_(excluded), faults_(faults) {}
+
+  /// Finds the recordings of an arm that names none. Errors: those of the store.
+  [[nodiscard]] Status complete(WrittenArm& arm, const std::string& pointer) const {
+    if (!arm.special.empty()) {
+      auto label = arm.special == "anchor" ? memory_.anchor() : memory_.last_pass();
+      if (!label) {
+        return fail(label.error());
+      }
+      arm.label = std::move(*label);
+      if (arm.label.empty()) {
+        faults_.add(pointer, ErrorCode::InvalidArgument,
+                    arm.special == "anchor"
+                        ? "This device has no anchor yet: name a baseline with labels, which becomes the anchor."
+                        : "No run of this device has passed yet: name a baseline.");
+        return {};
+      }
+    }
+    if (!arm.recordings.empty()) {
+      return {};
+    }
+    if (arm.label.empty()) {
+      faults_.add(pointer, ErrorCode::InvalidArgument, "Name the recordings of this arm, or labels that they have.");
+      return {};
+    }
+    auto found = memory_.recordings(arm.label, pointer);
+    if (!found) {
+      return fail(found.error());
+    }
+    arm.recordings = std::move(*found);
+    if (arm.recordings.empty()) {
+      auto sentence = memory_.unknown_label(arm.label);
+      if (!sentence) {
+        return fail(sentence.error());
+      }
+      faults_.add(pointer + "/labels", ErrorCode::NotFound, std::move(*sentence));
+    }
+    return {};
+  }
+
+  [[nodiscard]] Json pinned(const WrittenArm& arm) const {
+    Json recordings = Json::array();
+    for (const WrittenRecording& recording : arm.recordings) {
+      if (!is_excluded(recording.recording)) {
+        recordings.push_back(pinned_recording(recording, device_, results_, store_, faults_));
+      }
+    }
+    return Json{{"label", arm.label}, {"recordings", std::move(recordings)}};
+  }
+
+  /// The releases of earlier runs, oldest first, as far as their recordings are there, have results and are in neither
+  /// arm. Errors: those of the store.
+  [[nodiscard]] Result<Json> earlier_releases(const WrittenArm& baseline, const WrittenArm& candidate) const {
+    Json releases = Json::array();
+    for (const std::string& label : memory_.labels()) {
+      auto found = label == baseline.label || label == candidate.label
+                       ? Result<std::vector<WrittenRecording>>(std::vector<WrittenRecording>{})
+                       : memory_.recordings(label, "/inputs/history");
+      if (!found) {
+        return fail(found.error());
+      }
+      WrittenArm release{label, "", {}};
+      for (WrittenRecording& recording : *found) {
+        const auto same = [&](const WrittenRecording& other) { return other.recording == recording.recording; };
+        const bool elsewhere = std::any_of(baseline.recordings.begin(), baseline.recordings.end(), same) ||
+                               std::any_of(candidate.recordings.begin(), candidate.recordings.end(), same);
+        if (!elsewhere && results_.contains(recording.recording) && !is_excluded(recording.recording)) {
+          release.recordings.push_back(std::move(recording));
+        }
+      }
+      if (!release.recordings.empty()) {
+        releases.push_back(pinned(release));
+      }
+    }
+    return releases;
+  }
+
+ private:
+  [[nodiscard]] bool is_excluded(const std::string& id) const {
+    return std::any_of(excluded_.begin(), excluded_.end(),
+                       [&](const regression::Exclusion& exclusion) { return exclusion.recording == id; });
+  }
+
+  Store& store_;
+  const Device& device_;
+  const RegressionMemory& memory_;
+  const ResultsByRecording& results_;
+  const std::vector<regression::Exclusion>& excluded_;
+  Faults& faults_;
+};
+
+/// How many of the releases came before the baseline, in the order in which runs named them.
+std::size_t releases_before(const Json& releases, const RegressionMemory& memory, const std::string& baseline) {
+  const auto& order = memory.labels();
+  const auto place = std::find(order.begin(), order.end(), baseline);
+  return static_cast<std::size_t>(std::count_if(releases.begin(), releases.end(), [&](const Json& release) {
+    return std::find(order.begin(), place, release["label"].get<std::string>()) != place;
+  }));
+}
+
+/// The inputs with everything pinned. `history` is that of the request, or what the server remembers.
+Result<Json> pinned_inputs(WrittenRegression& written, const Device& device, const RegressionMemory& memory,
+                           const ResultsByRecording& results, Store& store, Faults& faults) {
+  const PinnedArms arms(store, device, memory, results, written.excluded, faults);
+  for (const auto& [arm, pointer] :
+       {std::pair{&written.baseline, "/inputs/baseline"}, {&written.candidate, "/inputs/candidate"}}) {
+    if (Status found = arms.complete(*arm, pointer); !found) {
+      return fail(found.error());
+    }
+  }
+  const std::string& label = written.candidate.label;
+  if (!label.empty() && label == written.baseline.label) {
+    faults.add("/inputs/candidate", ErrorCode::InvalidArgument,
+               "Baseline and candidate have the same label, " + label + ".");
+  }
+  Json inputs{{"device", device.id},
+              {"device_name", device.name},
+              {"baseline", arms.pinned(written.baseline)},
+              {"candidate", arms.pinned(written.candidate)},
+              {"history", Json::array()},
+              {"excluded", Json::array()}};
+  for (std::size_t i = 0; i < written.history.size(); ++i) {
+    if (Status found = arms.complete(written.history[i], "/inputs/history/" + std::to_string(i)); !found) {
+      return fail(found.error());
+    }
+    inputs["history"].push_back(arms.pinned(written.history[i]));
+  }
+  if (written.history.empty() && !label.empty() && faults.none()) {
+    auto releases = arms.earlier_releases(written.baseline, written.candidate);
+    if (!releases) {
+      return fail(releases.error());
+    }
+    if (!releases->empty()) {
+      inputs["before_baseline"] = releases_before(*releases, memory, written.baseline.label);
+      inputs["previous"] = releases->size() - 1;
+    }
+    inputs["history"] = std::move(*releases);
+  }
+  for (const regression::Exclusion& exclusion : written.excluded) {
+    inputs["excluded"].push_back(Json{{"recording", exclusion.recording}, {"reason", exclusion.reason}});
+  }
+  return inputs;
+}
+
+/// What people and pipelines read beside the document. The page shows the figure at an address that is filled in when
+/// the page is asked for.
+std::vector<Artefact> artefacts_of(const RegressReport& report) {
+  return {{"text", regression_to_text(report)},          {"markdown", regression_to_markdown(report, "FIGURE")},
+          {"junit", regression_to_junit(report, false)}, {"junit_open_skipped", regression_to_junit(report, true)},
+          {"figure", regression_to_svg(report)},         {"badge", regression_to_badge(report)}};
+}
+
 class Regress final : public JobKind {
  public:
   [[nodiscard]] std::string_view name() const override { return kRegressKind; }
@@ -205,53 +327,28 @@ class Regress final : public JobKind {
       return fail(faults.error());
     }
     auto results = results_of(context.store, device->id);
-    if (!results) {
-      return fail(results.error());
+    auto memory = RegressionMemory::of(context.store, *device);
+    if (!results || !memory) {
+      return fail(!results ? results.error() : memory.error());
     }
-    const auto pinned_arm = [&](const WrittenArm& arm, const std::string& pointer) {
-      Json recordings = Json::array();
-      if (!arm.special.empty() || arm.recordings.empty()) {
-        faults.add(pointer, ErrorCode::InvalidArgument, "Name the recordings of this arm.");
-      }
-      for (const WrittenRecording& recording : arm.recordings) {
-        const bool left_out = std::any_of(
-            written.excluded.begin(), written.excluded.end(),
-            [&](const regression::Exclusion& exclusion) { return exclusion.recording == recording.recording; });
-        if (!left_out) {
-          recordings.push_back(pinned_recording(recording, *device, *results, context.store, faults));
-        }
-      }
-      return Json{{"label", arm.label}, {"recordings", std::move(recordings)}};
-    };
-    Json canonical{{"device", device->id},
-                   {"device_name", device->name},
-                   {"baseline", pinned_arm(written.baseline, "/inputs/baseline")},
-                   {"candidate", pinned_arm(written.candidate, "/inputs/candidate")},
-                   {"history", Json::array()},
-                   {"excluded", Json::array()}};
-    for (const WrittenArm& release : written.history) {
-      canonical["history"].push_back(
-          pinned_arm(release, "/inputs/history/" + std::to_string(canonical["history"].size())));
-    }
-    for (const regression::Exclusion& exclusion : written.excluded) {
-      canonical["excluded"].push_back(Json{{"recording", exclusion.recording}, {"reason", exclusion.reason}});
+    auto canonical = pinned_inputs(written, *device, *memory, *results, context.store, faults);
+    if (!canonical) {
+      return fail(canonical.error());
     }
     if (!faults.none()) {
       return fail(faults.error());
     }
     const bool counted = !written.candidate.label.empty();
-    auto look = counted ? count_look(context.store, device->id, canonical["candidate"]) : Result<std::size_t>(1);
-    if (!look) {
-      return fail(look.error());
-    }
-    if (const auto share = look_share({*look, written.looks, counted}); !share) {
+    const std::size_t look =
+        counted ? memory->look(written.candidate.label, regressed_ids((*canonical)["candidate"])) : 1;
+    if (const auto share = look_share({look, written.looks, counted}); !share) {
       return fail(share.error());
     }
     Json settings = driftlab::to_json(written.settings, written.looks);
     return Json{{"kind", name()},
-                {"inputs", std::move(canonical)},
+                {"inputs", std::move(*canonical)},
                 {"parameters", std::move(settings)},
-                {"look", {{"number", *look}, {"counted", counted}}},
+                {"look", {{"number", look}, {"counted", counted}}},
                 {"algorithm_version", kRegressionVersion}};
   }
 
@@ -292,12 +389,17 @@ class Regress final : public JobKind {
       }
       comparison.history.push_back(std::move(*recordings));
     }
+    if (inputs.contains("previous")) {
+      comparison.before_baseline = inputs["before_baseline"].get<std::size_t>();
+      wanted.previous = comparison.history[inputs["previous"].get<std::size_t>()];
+    }
     const auto report = regress(wanted);
     if (!report) {
       return fail(report.error());
     }
     JobResults made;
     made.document_json = to_text(driftlab::to_json(*report));
+    made.artefacts = artefacts_of(*report);
     return made;
   }
 };

@@ -9,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -16,15 +17,29 @@
 
 namespace driftlab::accuracy {
 
-/// One axis of the simulated device: white noise and a random walk, 100 Hz.
+/// How the sessions of simulated rigs scatter. The defaults are the form that the comparison assumes.
+struct Scatter {
+  double factor_sd = 0.5;  ///< of ln kL and ln kS between rigs
+  double octaves = 1.5;    ///< over which what a session adds to a scale is alike
+};
+
+/// What all axes of a simulated device are made of.
+enum class Made { WhiteFlickerWalk, WhiteWalk };
+
+/// A device of six axes with white noise, flicker and a little random walk, 100 Hz; or without the flicker.
 class Rig {
  public:
   static constexpr double kDt = 0.01;
   static constexpr std::size_t kAxes = 6;
 
-  explicit Rig(double duration_s, double rig_factor_sd = 0.5) : factor_sd_(rig_factor_sd) {
-    model_ = {*make_process("white_noise", {1.0}), *make_process("flicker_noise", {0.8}),
-              *make_process("random_walk", {0.02})};
+  explicit Rig(double duration_s, Scatter scatter = {}, Made made = Made::WhiteFlickerWalk)
+      : factor_sd_(scatter.factor_sd) {
+    model_ = {*make_process("white_noise", {1.0}), *make_process("random_walk", {0.02})};
+    std::vector<regression::Level> levels{{"white_noise", "N", 0.0, true}, {"random_walk", "K", std::log(1.5), false}};
+    if (made == Made::WhiteFlickerWalk) {
+      model_.insert(model_.begin() + 1, *make_process("flicker_noise", {0.8}));
+      levels.insert(levels.begin() + 1, {"flicker_noise", "B", std::log(1.25), false});
+    }
     const auto samples = static_cast<std::size_t>(duration_s / kDt);
     std::vector<std::size_t> half;
     for (std::size_t m = 1; 2 * m <= samples; m *= 2) {
@@ -46,17 +61,16 @@ class Rig {
       unit.tau0 = gyroscope ? regression::Tau0{0.010, 0.012, 0.012} : regression::Tau0{0.015, 0.025, 0.025};
       unit.first = axis * scales;
       unit.count = scales;
-      unit.levels = {{"white_noise", "N", std::log(gyroscope ? 1.1 : 1.2), true},
-                     {"flicker_noise", "B", std::log(1.25), false},
-                     {"random_walk", "K", std::log(1.5), false}};
+      unit.levels = levels;
+      unit.levels.front().margin = std::log(gyroscope ? 1.1 : 1.2);
       unit.modelled.resize(rows);
-      unit.sensitivity.resize(rows, 3);
+      unit.sensitivity.resize(rows, static_cast<Eigen::Index>(model_.size()));
       for (std::size_t j = 0; j < scales; ++j) {
         const auto m = static_cast<double>(half[j]);
         const double tau = m * kDt;
         const double total = haar_variance(model_, m, kDt);
         unit.modelled(static_cast<Eigen::Index>(j)) = 0.5 * std::log(total);
-        for (std::size_t p = 0; p < 3; ++p) {
+        for (std::size_t p = 0; p < model_.size(); ++p) {
           unit.sensitivity(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(p)) =
               model_[p].haar_variance(m, kDt) / total;
         }
@@ -65,9 +79,18 @@ class Rig {
       }
       design_.units.push_back(std::move(unit));
     }
-    terms_ = regression::scatter_terms(design_);
-    common_ = root(terms_.common);
-    local_ = root(terms_.local);
+    common_ = root(regression::scatter_terms(design_).common);
+    local_ = root(local_scatter(scatter.octaves));
+  }
+
+  /// By how much a rig is more restless than the prior: what all scales share, and what each has of its own.
+  struct Factors {
+    double common = 1.0;
+    double local = 1.0;
+  };
+  [[nodiscard]] Factors draw_factors(Random& random) const {
+    const double common = std::exp(factor_sd_ * random.normal());
+    return {common, std::exp(factor_sd_ * random.normal())};
   }
 
   /// What is added to the candidate's rows.
@@ -82,11 +105,10 @@ class Rig {
   [[nodiscard]] regression::Design draw(Random& random, std::size_t baseline, std::size_t candidate,
                                         std::size_t history, const Change& change, double scale = 0.0) const {
     regression::Design design = design_;
-    const double kl = scale > 0.0 ? scale : std::exp(factor_sd_ * random.normal());
-    const double ks = scale > 0.0 ? scale : std::exp(factor_sd_ * random.normal());
+    const Factors factors = scale > 0.0 ? Factors{scale, scale} : draw_factors(random);
     const auto add = [&](regression::Arm arm, std::size_t count) {
       for (std::size_t r = 0; r < count; ++r) {
-        design.sessions.push_back(session(random, arm, kl, ks));
+        design.sessions.push_back(session(random, arm, factors));
         for (Eigen::Index row = 0; arm == regression::Arm::Candidate && row < design.size(); ++row) {
           design.sessions.back().x(row) += change(design.rows[static_cast<std::size_t>(row)]);
         }
@@ -98,27 +120,7 @@ class Rig {
     return design;
   }
 
- private:
-  static Eigen::MatrixXd root(const Eigen::MatrixXd& a) {
-    const Eigen::MatrixXd raised = a + 1e-12 * a.trace() * Eigen::MatrixXd::Identity(a.rows(), a.cols());
-    return Eigen::LLT<Eigen::MatrixXd>(raised).matrixL();
-  }
-
-  [[nodiscard]] Eigen::MatrixXd relative_covariance(const std::vector<std::size_t>& half, std::size_t samples) const {
-    HaarCovariance plan(half, samples, kDt);
-    Eigen::MatrixXd covariance = plan.matrix(model_);
-    Eigen::VectorXd nu(covariance.rows());
-    for (Eigen::Index j = 0; j < nu.size(); ++j) {
-      nu(j) = haar_variance(model_, static_cast<double>(half[static_cast<std::size_t>(j)]), kDt);
-    }
-    covariance = nu.cwiseInverse().asDiagonal() * covariance * nu.cwiseInverse().asDiagonal();
-    for (Eigen::Index j = 0; j < nu.size(); ++j) {
-      covariance(j, j) = trigamma(1.0 / covariance(j, j));
-    }
-    return covariance;
-  }
-
-  [[nodiscard]] regression::Session session(Random& random, regression::Arm arm, double kl, double ks) const {
+  [[nodiscard]] regression::Session session(Random& random, regression::Arm arm, const Factors& factors) const {
     regression::Session session;
     session.arm = arm;
     session.has.assign(design_.rows.size(), true);
@@ -141,8 +143,44 @@ class Rig {
       chi_square += z * z;
     }
     const double student = std::sqrt(3.0 / chi_square);
-    session.x += student * (kl * (common_ * normals(design_.size())) + ks * (local_ * normals(design_.size())));
+    session.x += student * (factors.common * (common_ * normals(design_.size())) +
+                            factors.local * (local_ * normals(design_.size())));
     return session;
+  }
+
+ private:
+  static Eigen::MatrixXd root(const Eigen::MatrixXd& a) {
+    const Eigen::MatrixXd raised = a + 1e-12 * a.trace() * Eigen::MatrixXd::Identity(a.rows(), a.cols());
+    return Eigen::LLT<Eigen::MatrixXd>(raised).matrixL();
+  }
+
+  /// What a session adds to the scales of each axis, correlated over so many octaves.
+  [[nodiscard]] Eigen::MatrixXd local_scatter(double octaves) const {
+    Eigen::MatrixXd local = Eigen::MatrixXd::Zero(design_.size(), design_.size());
+    for (const regression::Unit& unit : design_.units) {
+      for (std::size_t j = 0; j < unit.count; ++j) {
+        for (std::size_t other = 0; other < unit.count; ++other) {
+          const double apart = std::abs(static_cast<double>(j) - static_cast<double>(other));
+          local(static_cast<Eigen::Index>(unit.first + j), static_cast<Eigen::Index>(unit.first + other)) =
+              unit.tau0.scale * unit.tau0.scale * std::exp(-apart / octaves);
+        }
+      }
+    }
+    return local;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd relative_covariance(const std::vector<std::size_t>& half, std::size_t samples) const {
+    HaarCovariance plan(half, samples, kDt);
+    Eigen::MatrixXd covariance = plan.matrix(model_);
+    Eigen::VectorXd nu(covariance.rows());
+    for (Eigen::Index j = 0; j < nu.size(); ++j) {
+      nu(j) = haar_variance(model_, static_cast<double>(half[static_cast<std::size_t>(j)]), kDt);
+    }
+    covariance = nu.cwiseInverse().asDiagonal() * covariance * nu.cwiseInverse().asDiagonal();
+    for (Eigen::Index j = 0; j < nu.size(); ++j) {
+      covariance(j, j) = trigamma(1.0 / covariance(j, j));
+    }
+    return covariance;
   }
 
   double factor_sd_;
@@ -151,10 +189,56 @@ class Rig {
   Eigen::MatrixXd root_;
   std::shared_ptr<const regression::Sampling> sampling_;
   regression::Design design_;
-  regression::ScatterTerms terms_;
   Eigen::MatrixXd common_;
   Eigen::MatrixXd local_;
 };
+
+/// The first so many sessions of each of the two arms.
+inline regression::Design first_sessions(const regression::Design& all, std::size_t per_arm) {
+  regression::Design design = all;
+  design.sessions.clear();
+  for (const regression::Session& session : all.sessions) {
+    if (design.count(session.arm) < per_arm) {
+      design.sessions.push_back(session);
+    }
+  }
+  return design;
+}
+
+/// A baseline of long sessions against a candidate of short ones of the same device, which lack the longest scales.
+inline regression::Design draw_unequal(const Rig& longer, const Rig& shorter, Random& random, std::size_t sessions,
+                                       const Rig::Change& change) {
+  regression::Design design = longer.rows();
+  const Rig::Factors factors = longer.draw_factors(random);
+  for (std::size_t r = 0; r < sessions; ++r) {
+    design.sessions.push_back(longer.session(random, regression::Arm::Baseline, factors));
+  }
+  auto sampling = std::make_shared<regression::Sampling>();
+  for (std::size_t r = 0; r < sessions; ++r) {
+    const regression::Session drawn = shorter.session(random, regression::Arm::Candidate, factors);
+    regression::Session widened = drawn;
+    widened.has.assign(design.rows.size(), false);
+    widened.x = Eigen::VectorXd::Zero(design.size());
+    for (std::size_t u = 0; u < design.units.size(); ++u) {
+      const regression::Unit& unit = design.units[u];
+      const regression::Unit& own = shorter.rows().units[u];
+      if (r == 0) {  // rows that the session lacks have no weight: any variance will do
+        const auto count = static_cast<Eigen::Index>(unit.count);
+        const auto known = static_cast<Eigen::Index>(own.count);
+        sampling->push_back(Eigen::MatrixXd::Identity(count, count));
+        sampling->back().topLeftCorner(known, known) = (*drawn.sampling)[u];
+      }
+      for (std::size_t j = 0; j < own.count; ++j) {
+        const auto row = static_cast<Eigen::Index>(unit.first + j);
+        widened.has[unit.first + j] = true;
+        widened.x(row) = drawn.x(static_cast<Eigen::Index>(own.first + j)) + change(design.rows[unit.first + j]);
+      }
+    }
+    widened.sampling = sampling;
+    design.sessions.push_back(std::move(widened));
+  }
+  return design;
+}
 
 /// Releases of one device, each of some sessions; the anchor is the first, the candidate the last.
 struct Releases {
@@ -207,6 +291,12 @@ struct Shares {
   }
   [[nodiscard]] double percent(std::size_t count) const {
     return 100.0 * static_cast<double>(count) / static_cast<double>(runs);
+  }
+  [[nodiscard]] std::size_t inconclusive() const { return runs - pass - fail; }
+  [[nodiscard]] double median_scope() const {
+    std::vector<double> sorted = scope_s;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2];
   }
 };
 

@@ -1,132 +1,297 @@
-// Operating characteristics of regression runs: wrong failures, wrong passes and power.
-#include "tests/accuracy/regression_rig.hpp"
+// Operating characteristics of regression runs: wrong failures, wrong passes and power, cell by cell beside those that
+// spec/regression.md, section 10, asks for.
+#include "tests/accuracy/regression_changes.hpp"
 #include "tests/accuracy/section.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <vector>
 
 namespace driftlab::accuracy {
 namespace {
 
 using regression::Row;
 
-double at_margin_once(const Row& row) { return row.unit == 2 && row.octave == 4 ? row.margin : std::log(0.7); }
-double at_margins(const Row& row) { return row.margin; }
-double unchanged(const Row& /*row*/) { return 0.0; }
-
-/// White noise of gyro y with its deviation larger by `share`.
-Rig::Change white_noise(const Rig& rig, double share) {
-  return [&rig, share](const Row& row) {
-    const double m = std::exp2(row.octave);
-    const double more = (1.0 + share) * (1.0 + share) - 1.0;
-    return row.unit == 1 ? 0.5 * std::log(1.0 + more * rig.white(m) / rig.variance(m)) : 0.0;
-  };
-}
-
-/// A process that was not there, of such a level that the deviation of gyro z grows by `share` at `octave`.
-Rig::Change new_process(const Rig& rig, Process process, int octave, double share) {
-  process.parameters[0] = 1.0;
-  const double at = std::exp2(octave);
-  const double level = ((1.0 + share) * (1.0 + share) - 1.0) * rig.variance(at) / process.haar_variance(at, Rig::kDt);
-  return [&rig, process, level](const Row& row) {
-    const double m = std::exp2(row.octave);
-    return row.unit == 2 ? 0.5 * std::log(1.0 + level * process.haar_variance(m, Rig::kDt) / rig.variance(m)) : 0.0;
-  };
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-struct Design {
+struct Plan {
   const char* name;
   Sessions sessions;
 };
 
-const Design kDesigns[] = {
-    {"1 v 1", {1, 1, 0}}, {"1 v 1, 8 old sessions", {1, 1, 8}}, {"3 v 3", {3, 3, 0}}, {"5 v 5", {5, 5, 0}}};
+constexpr std::array kPlans{Plan{"1 v 1", {1, 1, 0}}, Plan{"1 v 1, 8 old sessions", {1, 1, 8}},
+                            Plan{"5 v 1", {5, 1, 0}}, Plan{"3 v 3", {3, 3, 0}}, Plan{"5 v 5", {5, 5, 0}}};
+
+/// What the specification measured, in per cent of runs; nothing where it has no figure.
+struct Asked {
+  std::optional<double> pass = {};
+  std::optional<double> fail = {};
+};
+using AskedOfPlans = std::array<Asked, kPlans.size()>;
+
+enum class Wrong { Neither, Pass, Fail };
+
+struct Case {
+  const char* name;
+  Rig::Change change;
+  std::size_t runs;
+  std::uint64_t seed;
+  Wrong wrong;  ///< the verdict that would be an error of the comparison: at most 5 %
+  regression::TestSettings settings;
+  AskedOfPlans asked;
+};
+
+std::string short_percent(const std::optional<double>& value) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value.value_or(0.0));
+  return value ? text.data() : "-";
+}
+
+std::string asked_text(const Asked& asked) {
+  return asked.pass || asked.fail ? " (" + short_percent(asked.pass) + " / " + short_percent(asked.fail) + ")" : "";
+}
+
+/// Goals of 5 % with twice the standard error of 500 runs.
+constexpr double kMostWrong = 7.0;
+
+void print_cell(Section& section, const Case& row, std::size_t plan, const Shares& shares) {
+  section.print(" %.1f / %.1f / %.1f%s |", shares.percent(shares.pass), shares.percent(shares.inconclusive()),
+                shares.percent(shares.fail), asked_text(row.asked[plan]).c_str());
+  if (row.wrong != Wrong::Neither) {
+    const std::size_t wrong = row.wrong == Wrong::Fail ? shares.fail : shares.pass;
+    EXPECT_LE(shares.percent(wrong), kMostWrong) << row.name << ", " << kPlans[plan].name;
+  }
+}
+
+void print_row(Section& section, const Rig& rig, const Case& row) {
+  const std::size_t runs = repetitions(row.runs);
+  section.print("| %s | %zu |", row.name, runs);
+  for (std::size_t plan = 0; plan < kPlans.size(); ++plan) {
+    print_cell(section, row, plan, run_many(rig, kPlans[plan].sessions, row.change, runs, row.seed, row.settings));
+  }
+  section.print("\n");
+}
+
+regression::TestSettings worse_settings() {
+  regression::TestSettings settings = table_settings();
+  settings.fail_on_worse = true;
+  return settings;
+}
+
+std::vector<Case> cases_of(const Rig& rig) {
+  const regression::TestSettings one_look = table_settings();
+  const regression::TestSettings first_look;
+  return {
+      {"one scale of one axis at its margin, all others 30 % better",
+       at_margin_once,
+       500,
+       103,
+       Wrong::Pass,
+       one_look,
+       {{{0.5, {}}, {3.3, {}}, {1.3, {}}, {3.8, {}}, {4.0, {}}}}},
+      {"all axes and scales at their margins",
+       at_margins,
+       500,
+       104,
+       Wrong::Fail,
+       one_look,
+       {{{{}, 4.8}, {}, {}, {{}, 2.8}, {{}, 2.0}}}},
+      {"white noise of one axis + 10 %, its margin",
+       white_noise(rig, 0.1),
+       200,
+       111,
+       Wrong::Pass,
+       one_look,
+       {{{0.3, 1.3}, {}, {}, {0.2, 0.2}, {}}}},
+      {"unchanged", unchanged, 600, 101, Wrong::Fail, one_look, {{{20, 1.0}, {45, 2.0}, {62, 0}, {84, 0}, {91, 0}}}},
+      {"unchanged, `fail_on: worse`",
+       unchanged,
+       400,
+       102,
+       Wrong::Neither,
+       worse_settings(),
+       {{{{}, 5.2}, {{}, 5.3}, {}, {{}, 0.3}, {{}, 0}}}},
+      {"white noise of one axis + 20 %",
+       white_noise(rig, 0.2),
+       150,
+       105,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 17}, {{}, 59}, {{}, 75}, {{}, 89}, {{}, 95}}}},
+      {"white noise of one axis + 50 %",
+       white_noise(rig, 0.5),
+       100,
+       106,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 100}, {}, {}, {{}, 100}, {}}}},
+      {"white noise of one axis + 100 %",
+       white_noise(rig, 1.0),
+       60,
+       112,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 100}, {{}, 100}, {{}, 100}, {{}, 100}, {{}, 100}}}},
+      {"new GM of 0.32 s, + 20 % at 0.64 s",
+       new_markov(rig, 0.2),
+       150,
+       113,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 2}, {}, {}, {{}, 4}, {{}, 18}}}},
+      {"new GM of 0.32 s, + 50 % at 0.64 s",
+       new_markov(rig, 0.5),
+       100,
+       107,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 85}, {}, {}, {{}, 100}, {{}, 100}}}},
+      {"new RW, + 20 % at 10 s",
+       new_walk(rig, 0.2),
+       150,
+       114,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 27}, {}, {}, {{}, 81}, {{}, 96}}}},
+      {"new RW, + 50 % at 10 s",
+       new_walk(rig, 0.5),
+       100,
+       108,
+       Wrong::Neither,
+       one_look,
+       {{{{}, 74}, {}, {}, {{}, 100}, {{}, 100}}}},
+      {"unchanged, first of three looks",
+       unchanged,
+       200,
+       115,
+       Wrong::Fail,
+       first_look,
+       {{{0, {}}, {}, {}, {75, {}}, {76, {}}}}},
+      {"white noise of one axis + 20 %, first of three looks",
+       white_noise(rig, 0.2),
+       150,
+       116,
+       Wrong::Neither,
+       first_look,
+       {{{}, {}, {}, {{}, 87}, {}}}},
+  };
+}
+
+/// Rules that know no sessions, as people build them.
+struct Naive {
+  bool intervals_apart = false;  ///< 95 % intervals of a scale, sampling alone
+  bool ratio = false;            ///< any scale 10 % above
+  bool largest = false;          ///< the largest z beyond its critical value, sampling alone
+};
+
+Naive judge_naively(const regression::Design& design, const regression::ScatterTerms& terms,
+                    const regression::TestSettings& settings) {
+  const regression::ScatterTerms none{0.0 * terms.common, 0.0 * terms.local};
+  const regression::SessionScatter scatter = regression::learn_scatter(design, none, settings.prior_df);
+  const regression::Contrast contrast = regression::make_contrast(design, none, scatter);
+  const regression::Critical critical = regression::critical_values(design, contrast, scatter, settings);
+  Naive naive;
+  for (Eigen::Index t = 0; t < contrast.theta.size(); ++t) {
+    const double theta = contrast.theta(t);
+    // Arms of equal lengths: an arm's standard error is se/sqrt(2), and intervals part at 2 x 1.96 of these.
+    naive.intervals_apart = naive.intervals_apart || std::abs(theta) > std::sqrt(2.0) * 1.96 * contrast.se(t);
+    naive.ratio = naive.ratio || theta > std::log(1.1);
+    naive.largest = naive.largest || theta > critical.c_max * contrast.se(t);
+  }
+  return naive;
+}
+
+/// A table of those rows for which `shown` holds, under a heading.
+template <typename Shown>
+void print_table(const char* file, const char* heading, const Rig& rig, const Shown& shown) {
+  Section section(file);
+  section.print("\n## %s\n\n| 15 min | runs |", heading);
+  for (const Plan& plan : kPlans) {
+    section.print(" %s |", plan.name);
+  }
+  section.print("\n|---|---|---|---|---|---|---|\n");
+  for (const Case& row : cases_of(rig)) {
+    if (shown(row)) {
+      print_row(section, rig, row);
+    }
+  }
+}
+
+bool is_about_power(const Case& row) {
+  return row.wrong == Wrong::Neither && std::string_view(row.name).find("unchanged") == std::string_view::npos;
+}
 
 }  // namespace
 
-TEST(Accuracy, RegressionRunsKeepTheirPromises) {
-  Section section("regression");
-  section.print(
-      "\n## Regression runs: wrong verdicts and power\n\nSix axes at 100 Hz, 15 min a session, rigs with ln k ~ N(0, "
-      "0.5), sessions Student t5 by the law of the comparison (core/campaign/regression/session_scatter.hpp), one "
-      "look. "
-      "Shares [%%] of runs: pass / inconclusive / fail. Goals: wrong fail and wrong pass at most 5.\n\n| 15 min | runs "
-      "|");
-  for (const Design& design : kDesigns) {
-    section.print(" %s |", design.name);
-  }
-  section.print("\n|---|---|---|---|---|---|\n");
-  const Rig rig(900.0);
-  const auto row = [&](const char* name, const Rig::Change& change, std::size_t runs, std::uint64_t seed, auto told,
-                       const regression::TestSettings& settings) {
-    section.print("| %s | %zu |", name, repetitions(runs));
-    for (const Design& design : kDesigns) {
-      told(design, run_many(rig, design.sessions, change, repetitions(runs), seed, settings));
-    }
-    section.print("\n");
-  };
-  const auto all = [&](const Design& /*design*/, const Shares& shares) {
-    section.print(" %.1f / %.1f / %.1f |", shares.percent(shares.pass),
-                  100.0 - shares.percent(shares.pass) - shares.percent(shares.fail), shares.percent(shares.fail));
-  };
-  const auto wrong_fail = [&](const Design& design, const Shares& shares) {
-    all(design, shares);
-    EXPECT_LE(shares.percent(shares.fail), 7.0) << design.name;
-  };
-  const auto wrong_pass = [&](const Design& design, const Shares& shares) {
-    all(design, shares);
-    EXPECT_LE(shares.percent(shares.pass), 7.0) << design.name;
-  };
-  const regression::TestSettings settings = table_settings();
-  regression::TestSettings worse = settings;
-  worse.fail_on_worse = true;
-  row("unchanged", unchanged, 500, 101, wrong_fail, settings);
-  row("unchanged, `fail_on: worse`", unchanged, 200, 102, all, worse);
-  row("one scale of one axis at its margin, all others 30 % better", at_margin_once, 300, 103, wrong_pass, settings);
-  row("all axes and scales at their margins", at_margins, 300, 104, wrong_fail, settings);
-  row("white noise of one axis + 20 %", white_noise(rig, 0.2), 100, 105, all, settings);
-  row("white noise of one axis + 50 %", white_noise(rig, 0.5), 100, 106, all, settings);
-  const Process markov = *make_process("gauss_markov", {1.0, 1.0 / 0.32});
-  row("new GM of 0.32 s, + 50 % at 0.64 s", new_process(rig, markov, 6, 0.5), 100, 107, all, settings);
-  const Process walk = *make_process("random_walk", {1.0});
-  row("new RW, + 50 % at 10 s", new_process(rig, walk, 10, 0.5), 100, 108, all, settings);
+TEST(Accuracy, RegressionRunsAreSeldomWrong) {
+  print_table(
+      "regression",
+      "Regression runs: wrong verdicts\n\nSix axes at 100 Hz, 15 min a session, rigs with ln k ~ N(0, 0.5), sessions "
+      "Student t5 by the law of the comparison (core/campaign/regression/session_scatter.hpp), one look. Shares [%] of "
+      "runs: pass / inconclusive / fail, and in brackets pass / fail as spec/regression.md asks for. Goals: wrong fail "
+      "and wrong pass at most 5. Seeds 101 to 115.",
+      Rig(900.0), [](const Case& row) { return !is_about_power(row); });
+}
 
+TEST(Accuracy, RegressionRunsFindWhatGrew) {
+  print_table(
+      "regression power",
+      "Regression runs: power\n\nThe devices of the section on wrong verdicts with one thing changed, seeds 105 "
+      "to 116: pass / inconclusive / fail [%], in brackets pass / fail as spec/regression.md asks for.",
+      Rig(900.0), is_about_power);
+}
+
+/// What a new process does to the curve depends on what was there: the same on a device without flicker.
+TEST(Accuracy, RegressionRunsFindNewProcessesWithoutFlicker) {
+  print_table(
+      "regression devices",
+      "Regression runs: a device without flicker\n\nThe same with axes of white noise and a random walk alone, "
+      "seeds 101 to 114: pass / inconclusive / fail [%], in brackets pass / fail as spec/regression.md asks for, "
+      "which does not say of what its devices were made.",
+      Rig(900.0, {}, Made::WhiteWalk), [](const Case& row) {
+        const std::string_view name = row.name;
+        return name == "unchanged" || name.starts_with("new ");
+      });
+}
+
+/// What the comparison is for: rules without sessions fail what nobody changed.
+TEST(Accuracy, RulesWithoutSessionsFailUnchangedDevices) {
+  Section section("regression rules");
+  const std::size_t runs = repetitions(200);
   section.print(
-      "\nOther lengths, unchanged, %zu runs: pass / inconclusive / fail, median scope.\n\n| | 1 v 1 | 3 v 3 "
-      "|\n|---|---|---|\n",
-      repetitions(200));
-  for (const auto& [name, seconds] : {std::pair{"5 min", 300.0}, std::pair{"60 min", 3600.0}}) {
-    const Rig other(seconds);
-    section.print("| %s |", name);
-    for (const std::size_t n : {std::size_t{1}, std::size_t{3}}) {
-      const Shares shares = run_many(other, {n, n, 0}, unchanged, repetitions(200), 109);
-      section.print(" %.1f / %.1f / %.1f, %.2g s |", shares.percent(shares.pass),
-                    100.0 - shares.percent(shares.pass) - shares.percent(shares.fail), shares.percent(shares.fail),
-                    median(shares.scope_s));
+      "\n## Regression runs: rules that are not built\n\nThe unchanged devices of the section before, seed 117, %zu "
+      "runs: how often a rule without sessions finds them worse [%%], in brackets what spec/regression.md "
+      "found.\n\n| rule | 1 v 1 | 3 v 3 | 5 v 5 |\n|---|---|---|---|\n",
+      runs);
+  const Rig rig(900.0);
+  const regression::ScatterTerms terms = regression::scatter_terms(rig.rows());
+  std::array<std::array<double, 3>, 3> shares{};
+  constexpr std::array<std::size_t, 3> kSessions{1, 3, 5};
+  for (std::size_t plan = 0; plan < kSessions.size(); ++plan) {
+    for (std::size_t run = 0; run < runs; ++run) {
+      Random random(117, run);
+      const Naive naive =
+          judge_naively(rig.draw(random, kSessions[plan], kSessions[plan], 0, unchanged), terms, table_settings());
+      const double share = 100.0 / static_cast<double>(runs);
+      shares[0][plan] += naive.intervals_apart ? share : 0.0;
+      shares[1][plan] += naive.ratio ? share : 0.0;
+      shares[2][plan] += naive.largest ? share : 0.0;
+    }
+  }
+  constexpr std::array kRules{"95 % intervals apart", "any ratio above 1.1", "largest of all z, sampling error alone"};
+  constexpr std::array<std::array<int, 3>, 3> kFound{{{95, 96, 97}, {100, 94, 86}, {93, 94, 96}}};
+  for (std::size_t rule = 0; rule < kRules.size(); ++rule) {
+    section.print("| %s |", kRules[rule]);
+    for (std::size_t plan = 0; plan < kSessions.size(); ++plan) {
+      section.print(" %.1f (%d) |", shares[rule][plan], kFound[rule][plan]);
     }
     section.print("\n");
   }
-  section.print(
-      "\nA rig more restless than the prior, unchanged, 15 min, %zu runs.\n\n| factor | 1 v 1 | 3 v 3 "
-      "|\n|---|---|---|\n",
-      repetitions(200));
-  for (const double scale : {2.0, 3.0}) {
-    section.print("| %.0f |", scale);
-    for (const std::size_t n : {std::size_t{1}, std::size_t{3}}) {
-      const Shares shares = run_many(rig, {n, n, 0}, unchanged, repetitions(200), 110, settings, scale);
-      section.print(" %.1f / %.1f / %.1f |", shares.percent(shares.pass),
-                    100.0 - shares.percent(shares.pass) - shares.percent(shares.fail), shares.percent(shares.fail));
-    }
-    section.print("\n");
-  }
+  EXPECT_GT(shares[0][1], 50.0);
 }
 
 /// Whether a unit's trend over the releases warns, and how often its interval holds the truth.

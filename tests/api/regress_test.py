@@ -16,6 +16,7 @@ from typing import Any
 import jsonschema
 import yaml
 from contract import closed
+from daemon import Daemon
 
 PROGRAM = os.environ["DRIFTLAB"]
 ROOT = Path(__file__).resolve().parents[2]
@@ -122,6 +123,35 @@ class Regress(unittest.TestCase):
         self.regress(2, *state, "--accept", "firmware=9", "--reason", "none")
         self.regress(2, *state, "--accept", "firmware=1.1")
         self.assertIn("firmware=1.1", self.regress(0, *state, "--accept", "firmware=1.1", "--reason", "meant so"))
+
+    def test_a_daemon_runs_it_and_remembers(self) -> None:
+        with Daemon() as daemon:
+            server = ("--server", f"http://127.0.0.1:{daemon.port}", "--device", "imu-07")
+            old = ("--baseline", *self.files("baseline"), "--baseline-label", "firmware=1.0")
+            there = self.document(0, *server, *old, "--candidate", *self.files("candidate"), "--candidate-label", "firmware=1.1")
+            here = self.document(0, *old, "--candidate", *self.files("candidate"), "--candidate-label", "firmware=1.1")
+            self.assertEqual(there["look"]["counted"], True)
+            self.assertEqual([test["verdict"] for test in there["units"][0]["tests"]], [test["verdict"] for test in here["units"][0]["tests"]])
+            worse = (*server, "--candidate", *self.files("worse"), "--candidate-label", "firmware=1.2")
+            text = self.regress(1, *worse)
+            self.assertTrue(text.startswith("FAIL: gyro z is worse"), text)
+            out = self.folder / "there"
+            self.assertEqual(self.regress(1, *worse, "--out", str(out)), text)
+            self.assertEqual(sorted(path.name for path in out.iterdir()), ["badge.svg", "junit.xml", "ratio.svg", "regression.json", "summary.md"])
+            document = json.loads((out / "regression.json").read_text())
+            self.assertEqual(([arm["label"] for arm in document["arms"]["history"]], document["look"]["number"]), (["firmware=1.1"], 1))
+            self.assertIn("](ratio.svg)", (out / "summary.md").read_text())
+            self.regress(1, *worse, "--markdown", str(self.folder / "page.md"))
+            self.assertNotIn("![", (self.folder / "page.md").read_text())
+            ElementTree.parse(out / "junit.xml")
+            self.assertIn("--reason", self.regress(2, *server, "--accept", "firmware=1.1"))
+            self.assertIn("firmware=9", self.regress(2, *server, "--accept", "firmware=9", "--reason", "none"))
+            self.assertIn("firmware=1.1", self.regress(0, *server, "--accept", "firmware=1.1", "--reason", "meant so"))
+            moved = self.document(1, *server, "--candidate-label", "firmware=1.2")
+            self.assertEqual(moved["arms"]["baseline"]["label"], "firmware=1.1")
+            for words, *arguments in (("--device", "--server", server[1], "--candidate", "candidate/0.csv"), ("--state", *worse, "--state", "gate.json"),
+                                      ("--candidate", *server), ("has the label firmware=7", *server, "--candidate-label", "firmware=7")):
+                self.assertIn(words, self.regress(2, *arguments))
 
     def test_a_drift_over_releases_is_told(self) -> None:
         """Five releases, each 6 % noisier than the one before, listed oldest first: the trend says so, and by how much since the baseline."""

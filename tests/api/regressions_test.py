@@ -58,5 +58,124 @@ class Regressions(DaemonTest):
         self.assertEqual(self.ask(before, before, "2.0", margins=3).status, 400)
 
 
+
+class Labels(DaemonTest):
+    """Arms by label: everything that has it, and what the daemon remembers of the runs before."""
+
+    def recorded(self, seed: int, firmware: str, white: float = 1.0, session: str | None = None, device: str = "imu-08", **more: Any) -> str:
+        [column] = samples.noise(12000, 1, seed)
+        content = samples.csv([[white * value for value in column]], ["gz"])
+        made = self.expect(201, self.daemon.upload(content, device=device, rate_hz=20, columns=samples.GYRO_Z, labels=f"firmware={firmware}",
+                                                   session=session, **more)).json["id"]
+        self.daemon.finished(self.daemon.characterise(made, models=["WN", "WN+GM"]).json["id"])
+        return str(made)
+
+    def ask(self, candidate: Any, baseline: Any = None, device: str = "imu-08", **more: Any) -> Answer:
+        inputs = {"device": device, "candidate": candidate, **({} if baseline is None else {"baseline": baseline}), **more}
+        return self.daemon.post("/v1/jobs", {"kind": "regress", "inputs": inputs})
+
+    def run_of(self, asked: Answer) -> dict[str, Any]:
+        job = self.daemon.finished(self.expect(202, asked).json["id"])
+        self.assertEqual(job["state"], "succeeded", job)
+        return {"id": job["id"], **self.expect(200, self.daemon.get(f"/v1/regressions/{job['id']}")).json}
+
+    @staticmethod
+    def label(firmware: str) -> dict[str, Any]:
+        return {"labels": {"firmware": firmware}}
+
+    def test_labels_alone_mean_all_recordings_and_the_daemon_remembers(self) -> None:
+        first = [self.recorded(seed, "1.0") for seed in (1, 2, 3)]
+        for seed in (1, 2, 3):
+            self.recorded(seed, "1.1", 1.01)
+            self.recorded(20 + seed, "1.2", 1.7)
+        listed = self.daemon.items("/v1/recordings?device=imu-08&labels=firmware=1.0")
+        self.assertEqual([each["id"] for each in listed], first)
+        self.assertEqual(listed[0]["metadata"]["labels"], {"firmware": "1.0"})
+        unknown = self.ask(self.label("9"), self.label("1.0"))
+        self.assertIn("No recording of imu-08 has the label firmware=9; labels of this device: firmware=1.0, firmware=1.1, firmware=1.2.",
+                      str(self.problem(404, "not_found", unknown)["errors"]))
+        self.assertIn("no anchor yet", str(self.problem(400, "invalid_argument", self.ask(self.label("1.1")))["errors"]))
+        self.problem(400, "invalid_argument", self.ask(self.label("1.0"), self.label("1.0")))
+
+        run = self.run_of(self.ask(self.label("1.1"), self.label("1.0")))
+        self.assertEqual((run["verdict"], len(run["arms"]["candidate"]["sessions"]), run["arms"]["history"]), ("pass", 3, []))
+        # Later runs need a candidate alone: the first baseline is the anchor, and the release between is history.
+        second = self.run_of(self.ask(self.label("1.2")))
+        self.assertEqual((second["verdict"], second["arms"]["baseline"]["label"]), ("fail", "firmware=1.0"))
+        self.assertEqual([arm["label"] for arm in second["arms"]["history"]], ["firmware=1.1"])
+        self.assertEqual(second["versus_previous"]["label"], "firmware=1.1")
+        passed = self.run_of(self.ask(self.label("1.2"), "last_pass"))
+        self.assertEqual(passed["arms"]["baseline"]["label"], "firmware=1.1")
+        self.assertEqual(passed["look"]["number"], 1, "the same recordings are the same look")
+        self.recorded(31, "1.2", 1.7)
+        self.assertEqual(self.run_of(self.ask(self.label("1.2")))["look"]["number"], 2)
+
+        moved = {"device": "imu-08", "label": "firmware=1.1", "reason": "filter widened"}
+        self.problem(404, "not_found", self.daemon.post("/v1/regression-anchors", {**moved, "label": "firmware=9"}))
+        self.problem(400, "invalid_argument", self.daemon.post("/v1/regression-anchors", {**moved, "label": "9"}))
+        self.problem(400, "invalid_argument", self.daemon.post("/v1/regression-anchors", {**moved, "reason": ""}))
+        self.expect(201, self.daemon.post("/v1/regression-anchors", moved))
+        [anchor] = self.daemon.items("/v1/regression-anchors?device=imu-08")
+        self.assertEqual((anchor["label"], anchor["reason"]), ("firmware=1.1", "filter widened"))
+        self.assertEqual(self.run_of(self.ask(self.label("1.2")))["arms"]["baseline"]["label"], "firmware=1.1")
+
+        runs = self.daemon.items("/v1/regressions?device=imu-08&label=firmware=1.2")
+        self.assertEqual({run["candidate"] for run in runs}, {"firmware=1.2"})
+        self.assertEqual((runs[0]["id"], runs[0]["verdict"]), (second["id"], "fail"))
+        self.assertGreater(runs[0]["worst"]["ci"][0], runs[0]["worst"]["margin"])
+        self.assertGreater(runs[0]["between"]["common"]["value"], 0)
+        self.problem(404, "not_found", self.daemon.get("/v1/regressions?device=nobody"))
+
+    def test_a_run_is_shown_in_every_form(self) -> None:
+        arms = {name: {"recordings": [{"recording": self.recorded(41, name, white, device="forms")}]} for name, white in (("baseline", 1.0), ("candidate", 1.09))}
+        run = self.run_of(self.ask(arms["candidate"], arms["baseline"], device="forms"))
+        target = f"/v1/regressions/{run['id']}"
+        self.assertEqual(run["verdict"], "inconclusive", "9 % beside a margin of 10 %")
+        self.assertTrue(self.expect(200, self.daemon.get(target, Accept="text/plain")).text.startswith("INCONCLUSIVE: "))
+        page = self.expect(200, self.daemon.get(target, Accept="text/markdown")).text
+        self.assertTrue(page.startswith("**INCONCLUSIVE**"))
+        self.assertIn(f"({target}/figure)", page)
+        self.assertIn("<error", self.expect(200, self.daemon.get(target + "/junit")).text)
+        self.assertIn("<skipped", self.expect(200, self.daemon.get(target + "/junit?inconclusive=pass")).text)
+        self.problem(400, "invalid_argument", self.daemon.get(target + "/junit?inconclusive=maybe"), parameter="inconclusive")
+        for drawing in ("figure", "badge"):
+            answer = self.expect(200, self.daemon.get(f"{target}/{drawing}"))
+            self.assertTrue(answer.headers["content-type"].startswith("image/svg+xml"))
+        self.problem(404, "not_found", self.daemon.get(f"/v1/regressions/{self.daemon.items('/v1/jobs?kind=characterise')[0]['id']}/badge"))
+
+    def test_sessions_come_from_the_recordings(self) -> None:
+        for seed in (51, 52):
+            self.recorded(seed, "1.0", session="Monday", device="sessions")
+        other = self.recorded(53, "1.0", device="sessions", recorded_at="2026-11-22T10:00:00Z")
+        for seed in (54, 55):
+            self.recorded(seed, "1.1", session=f"session {seed}", device="sessions")
+        run = self.run_of(self.ask(self.label("1.1"), self.label("1.0"), device="sessions"))
+        self.assertEqual(sorted(len(session["recordings"]) for session in run["arms"]["baseline"]["sessions"]), [1, 2])
+        self.assertEqual(len(run["arms"]["candidate"]["sessions"]), 2)
+        excluded = self.run_of(self.ask(self.label("1.1"), self.label("1.0"), device="sessions", excluded=[{"recording": other, "reason": "cable touched"}]))
+        self.assertEqual(len(excluded["arms"]["baseline"]["sessions"]), 1)
+        self.assertEqual(excluded["arms"]["excluded"], [{"recording": other, "reason": "cable touched"}])
+
+    def test_labels_change_without_a_revision(self) -> None:
+        recording = self.recorded(61, "1.0", device="relabelled")
+        target = f"/v1/recordings/{recording}"
+        before = self.daemon.get(target)
+        change = self.expect(200, self.daemon.request("PATCH", target, {"labels": {"firmware": "1.1"}, "session": "Tuesday"}, {"If-Match": before.headers["etag"]}))
+        self.assertEqual((change.json["revision"], change.json["metadata"]["session"]), (1, "Tuesday"))
+        self.assertNotEqual(change.headers["etag"], before.headers["etag"])
+        self.problem(412, "precondition_failed", self.daemon.request("PATCH", target, {"labels": None}, {"If-Match": before.headers["etag"]}))
+        self.expect(200, self.daemon.get(f"{target}/characterisation"))
+        self.assertEqual(self.daemon.items("/v1/recordings?labels=firmware=1.0&device=relabelled"), [])
+        self.problem(400, "invalid_argument", self.daemon.request("PATCH", target, {"labels": {"a": "b,c"}}, {"If-Match": "*"}))
+        self.problem(400, "invalid_argument", self.daemon.request("PATCH", target, {"recorded_at": "yesterday"}, {"If-Match": "*"}))
+        self.problem(400, "invalid_argument", self.daemon.get("/v1/recordings?labels=firmware"), parameter="labels")
+        gone = self.expect(200, self.daemon.request("PATCH", target, {"labels": None, "session": None}, {"If-Match": "*"}))
+        self.assertNotIn("labels", gone.json["metadata"])
+        [column] = samples.noise(12000, 1, 61)
+        again = dict(device="relabelled", rate_hz=20, columns=samples.GYRO_Z)
+        self.expect(200, self.daemon.upload(samples.csv([column], ["gz"]), **again))
+        self.problem(409, "conflict", self.daemon.upload(samples.csv([column], ["gz"]), labels="firmware=2", **again), recording_id=recording)
+
+
 if __name__ == "__main__":
     unittest.main()

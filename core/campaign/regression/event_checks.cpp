@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace driftlab::regression {
 namespace {
@@ -294,6 +296,31 @@ std::set<std::string> units_of(const std::vector<PowerUp>& sessions) {
   return units;
 }
 
+/// Sentences of sessions that were recorded under a condition of the arm's other sessions and lack an axis of theirs:
+/// what is broken in one session must not be left out of the comparison in silence.
+std::vector<std::string> lacking_sessions(const std::vector<PowerUp>& sessions, const std::string& arm) {
+  std::map<std::string, std::set<std::string>> units;  // by condition
+  for (const PowerUp& session : sessions) {
+    for (const ComparedRecording* recording : session.recordings) {
+      units[recording->condition].merge(units_of({PowerUp{session.name, {recording}}}));
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const PowerUp& session : sessions) {
+    const std::set<std::string> own = units_of({session});
+    std::set<std::string> lacking;
+    for (const ComparedRecording* recording : session.recordings) {
+      std::set_difference(units[recording->condition].begin(), units[recording->condition].end(), own.begin(),
+                          own.end(), std::inserter(lacking, lacking.end()));
+    }
+    for (const std::string& unit : lacking) {
+      std::string sentence = "Session " + session.name + " of the ";
+      sentences.push_back(sentence.append(arm).append(" lacks ").append(unit).append(", which its others have."));
+    }
+  }
+  return sentences;
+}
+
 std::vector<double> temperatures_of(const std::vector<PowerUp>& sessions) {
   std::vector<double> all;
   for (const PowerUp& session : sessions) {
@@ -359,6 +386,11 @@ std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, con
   for (const std::string& unit : now) {
     if (!before.contains(unit)) {
       found.push_back({"unit", "Baseline lacks " + unit + "."});
+    }
+  }
+  for (const auto& [sessions, arm] : {std::pair{&baseline, "baseline"}, std::pair{&candidate, "candidate"}}) {
+    for (std::string& sentence : lacking_sessions(*sessions, arm)) {
+      found.push_back({"unit", std::move(sentence)});
     }
   }
   const std::vector<double> cold = temperatures_of(baseline);

@@ -17,7 +17,8 @@ enum class CheckVerdict { Ok, Note, Fail };
 [[nodiscard]] std::string_view name_of(CheckVerdict verdict);
 
 struct EventCheck {
-  std::string check;  ///< full_scale, missing, frozen, repeated, timestamps, resolution, contamination, findings, rate
+  std::string check;  ///< full_scale, missing, frozen, repeated, timestamps, resolution, contamination, findings, rate,
+                      ///< bias (bias_check.hpp)
   CheckVerdict verdict = CheckVerdict::Ok;
   std::string sentence;               ///< empty where it is fine
   std::vector<std::string> sessions;  ///< the candidate's that show it
@@ -34,7 +35,8 @@ struct Incomparable {
   std::string sentence;
 };
 
-/// Units that one arm lacks, and temperatures more than 5 K apart.
+/// Units that one arm lacks, or a session that its arm's others have under the same condition, and temperatures more
+/// than 5 K apart.
 [[nodiscard]] std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline,
                                                      const std::vector<PowerUp>& candidate);
 

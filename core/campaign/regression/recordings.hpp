@@ -17,13 +17,14 @@ namespace driftlab::regression {
 
 /// What is true of one channel as it came.
 struct ChannelFacts {
-  std::size_t samples = 0;    ///< of the file
-  std::size_t missing = 0;    ///< cells without a number, or with one that stands for none
-  std::size_t frozen = 0;     ///< samples of a stretch in which the sensor gives one value only
-  std::size_t repeated = 0;   ///< samples equal to the one before
-  std::size_t saturated = 0;  ///< samples at a full-scale value
-  std::size_t flagged = 0;    ///< gross errors
-  double resolution = 0.0;    ///< step of the lattice [channel unit]; 0: none
+  std::size_t samples = 0;                    ///< of the file
+  std::size_t missing = 0;                    ///< cells without a number, or with one that stands for none
+  std::size_t frozen = 0;                     ///< samples of a stretch in which the sensor gives one value only
+  std::size_t repeated = 0;                   ///< samples equal to the one before
+  std::size_t saturated = 0;                  ///< samples at a full-scale value
+  std::size_t flagged = 0;                    ///< gross errors
+  double resolution = 0.0;                    ///< step of the lattice [channel unit]; 0: none
+  std::optional<double> mean = std::nullopt;  ///< of the analysed samples [channel unit]
 };
 
 struct ComparedChannel {
@@ -63,6 +64,13 @@ struct Margins {
   std::array<double, 3> percent = {10.0, 25.0, 50.0};
 };
 
+/// How far a bias may move; 0: it is told and not tested.
+struct BiasMargins {
+  double gyroscope = 0.0;      ///< [rad/s]
+  double accelerometer = 0.0;  ///< [m/s^2]
+  [[nodiscard]] bool any() const { return gyroscope > 0.0 || accelerometer > 0.0; }
+};
+
 struct Settings {
   TestSettings test;
   Margins gyroscope = {};
@@ -72,6 +80,7 @@ struct Settings {
   Tau0 tau0_gyroscope = {0.010, 0.012, 0.012};
   Tau0 tau0_accelerometer = {0.015, 0.025, 0.025};
   double min_edf = 10.0;
+  BiasMargins bias = {};
 };
 
 struct Request {

@@ -1,5 +1,6 @@
 #include "core/campaign/regression/report.hpp"
 
+#include "core/campaign/regression/bias_check.hpp"
 #include "core/campaign/regression/pooled_unit.hpp"
 #include "core/process/registry.hpp"
 
@@ -142,10 +143,10 @@ class Builder {
       channels.push_back(channels_of(*session, named.name));
     }
     const auto pooled = pool_unit(channels, sessions_.compared());
-    const std::size_t rows = pooled ? rows_of(*pooled) : 0;
-    if (rows == 0) {
+    if (!pooled || rows_of(*pooled) == 0) {
       return false;
     }
+    const std::size_t rows = rows_of(*pooled);
     mixed_rates = mixed_rates || pooled->mixed_rates;
     const bool gyroscope = named.quantity == Quantity::AngularRate;
     const Margins& margins = gyroscope ? settings_.gyroscope : settings_.accelerometer;
@@ -483,8 +484,12 @@ Result<Report> run_regression(const Request& request) {
          "The rig does not repeat: sessions without a change differ more than four times as much as "
          "sessions of such sensors do."});
   }
-  report.checks = check_events(sessions.baseline.sessions, sessions.candidate.sessions,
-                               request.settings.test.look_share * request.settings.test.event_alpha);
+  // Where the bias is tested too, it takes half of the level of the events.
+  const double level =
+      request.settings.test.look_share * request.settings.test.event_alpha * (request.settings.bias.any() ? 0.5 : 1.0);
+  report.checks = check_events(sessions.baseline.sessions, sessions.candidate.sessions, level);
+  report.checks.push_back(
+      check_bias(sessions.baseline.sessions, sessions.candidate.sessions, request.settings.bias, level));
   const bool event = std::any_of(report.checks.begin(), report.checks.end(),
                                  [](const EventCheck& check) { return check.verdict == CheckVerdict::Fail; });
   report.verdict = event                           ? Verdict::Fail

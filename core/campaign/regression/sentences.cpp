@@ -83,14 +83,14 @@ std::string needs_sentence(const Report& report, const Told& open) {
     return short_name(open.unit->name) + " sits on the margin; no affordable recording decides; the margin does.";
   }
   const Needs& needs = report.comparison.needs;
-  const std::string longer =
-      report.needed_length_s ? "sessions of " + duration_text(*report.needed_length_s) : std::string();
+  const std::string length = report.needed_length_s ? duration_text(*report.needed_length_s) : std::string();
+  const std::string longer = length.empty() ? "" : "sessions of " + length;
   if (needs.sessions_per_arm) {
     return counted(*needs.sessions_per_arm, "session") + " an arm decide; " +
            (longer.empty() ? "longer recordings do not." : "so do " + longer + ".");
   }
   return longer.empty() ? "Neither more sessions (to 30) nor longer ones (to 64 times) decide."
-                        : "Sessions of " + duration_text(*report.needed_length_s) + " decide.";
+                        : "Sessions of " + length + " decide.";
 }
 
 std::string undecided_sentence(const Report& report, const Told& open) {

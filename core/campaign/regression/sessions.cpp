@@ -8,20 +8,25 @@ namespace {
 
 constexpr double kSamePowerUp = 600.0;
 
+struct Timed {
+  double began_s = 0.0;
+  const ComparedRecording* recording = nullptr;
+};
+
 /// Recordings without a session but with a time, cut where more than ten minutes lie between two of them.
-void group_by_time(std::vector<const ComparedRecording*> timed, PowerUps& found) {
-  std::sort(timed.begin(), timed.end(), [](const ComparedRecording* a, const ComparedRecording* b) {
-    return std::pair(*a->began_s, a->id) < std::pair(*b->began_s, b->id);
+void group_by_time(std::vector<Timed> timed, PowerUps& found) {
+  std::sort(timed.begin(), timed.end(), [](const Timed& a, const Timed& b) {
+    return std::pair(a.began_s, a.recording->id) < std::pair(b.began_s, b.recording->id);
   });
   double end_s = 0.0;
   std::vector<PowerUp> sessions;
-  for (const ComparedRecording* recording : timed) {
-    if (sessions.empty() || *recording->began_s > end_s + kSamePowerUp) {
+  for (const auto& [began_s, recording] : timed) {
+    if (sessions.empty() || began_s > end_s + kSamePowerUp) {
       sessions.push_back({recording->id, {}});
-      end_s = *recording->began_s;
+      end_s = began_s;
     }
     sessions.back().recordings.push_back(recording);
-    end_s = std::max(end_s, *recording->began_s + recording->duration_s);
+    end_s = std::max(end_s, began_s + recording->duration_s);
   }
   for (PowerUp& session : sessions) {
     if (const std::size_t count = session.recordings.size(); count > 1) {
@@ -37,14 +42,14 @@ void group_by_time(std::vector<const ComparedRecording*> timed, PowerUps& found)
 PowerUps group_sessions(const Recordings& arm) {
   PowerUps found;
   std::map<std::string, PowerUp> stated;
-  std::vector<const ComparedRecording*> timed;
+  std::vector<Timed> timed;
   std::size_t untold = 0;
   for (const ComparedRecording& recording : arm.recordings) {
     if (!recording.session.empty()) {
       stated[recording.session].name = recording.session;
       stated[recording.session].recordings.push_back(&recording);
     } else if (recording.began_s) {
-      timed.push_back(&recording);
+      timed.push_back({*recording.began_s, &recording});
     } else {
       ++untold;
       found.sessions.push_back({recording.id, {&recording}});

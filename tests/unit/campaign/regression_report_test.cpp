@@ -157,6 +157,16 @@ TEST(RegressionReport, WhatCannotBeComparedIsInconclusive) {
   EXPECT_EQ(lacking->comparability.front().sentence, "Candidate lacks gyroscope x.");
 }
 
+TEST(RegressionReport, ASessionWithoutAnAxisOfItsArmIsNotLeftOutInSilence) {
+  Request made = request(0.05);
+  made.candidate.recordings[0].channels[0].result.axis = "";  // nobody can say what it measures
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->verdict, Verdict::Inconclusive);
+  ASSERT_EQ(report->comparability.size(), 1U);
+  EXPECT_NE(report->comparability.front().sentence.find("lacks gyroscope"), std::string::npos);
+}
+
 TEST(RegressionReport, RefusesTheSameSamplesTwice) {
   Request made = request(0.05);
   made.candidate.recordings[0] = made.baseline.recordings[0];

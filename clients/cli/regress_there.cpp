@@ -1,0 +1,273 @@
+#include "clients/cli/progress.hpp"
+#include "clients/cli/regress_input.hpp"
+#include "clients/cli/regress_outputs.hpp"
+#include "clients/cli/remote_upload.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+namespace driftlab::cli {
+namespace {
+
+constexpr double kUploads = 0.2;  ///< shares of the progress bar
+constexpr double kAnalysis = 0.95;
+
+/// The labels of `firmware=1.5.0,board=b`; empty where it is none.
+tl::expected<std::map<std::string, std::string>, Failure> labels_of(const std::string& label) {
+  if (label.empty()) {
+    return std::map<std::string, std::string>{};
+  }
+  auto labels = parse_labels(label);
+  return labels ? tl::expected<std::map<std::string, std::string>, Failure>(std::move(*labels))
+                : tl::unexpected(Failure{labels.error(), Exit::BadInput});
+}
+
+/// Sends the files of a run and has each characterised; arms then name what the daemon has.
+class ArmSender {
+ public:
+  ArmSender(HttpClient& client, const WrittenRegression& run, std::vector<std::string> models, std::size_t files)
+      : client_(client), device_(run.device), models_(std::move(models)), files_(files) {}
+
+  /// The arm as the job's request has it. With labels it is all recordings that have them, those sent now among them.
+  [[nodiscard]] tl::expected<Json, Failure> sent(const WrittenArm& arm) {
+    if (!arm.special.empty()) {
+      return Json(arm.special);
+    }
+    auto labels = labels_of(arm.label);
+    if (!labels) {
+      return tl::unexpected(labels.error());
+    }
+    Json document = Json::object();
+    if (!labels->empty()) {
+      document["labels"] = *labels;
+    }
+    Json recordings = Json::array();
+    bool label_says_all = true;  // what was sent now has it; what the request says of a recording beside needs the list
+    for (const WrittenRecording& recording : arm.recordings) {
+      label_says_all =
+          label_says_all && !recording.file.empty() && !recording.temperature_degc && recording.causes.empty();
+      auto one = sent(recording, *labels);
+      if (!one) {
+        return tl::unexpected(one.error());
+      }
+      recordings.push_back(std::move(*one));
+    }
+    if (labels->empty() || !label_says_all) {
+      document["recordings"] = std::move(recordings);
+    }
+    return document;
+  }
+
+ private:
+  [[nodiscard]] tl::expected<Json, Failure> sent(const WrittenRecording& recording,
+                                                 const std::map<std::string, std::string>& labels) {
+    Json document = Json::object();
+    if (!recording.recording.empty()) {
+      document["recording"] = recording.recording;
+    } else if (!recording.file.empty()) {
+      InputFile file;
+      file.path = recording.file;
+      file.spec = recording.spec;
+      // A name that is only the path differs from machine to machine; the daemon would take it for other metadata.
+      if (file.spec.id.ends_with(recording.file) || recording.file.ends_with(file.spec.id)) {
+        file.spec.id = file.path.filename().string();
+      }
+      const double before = kUploads * static_cast<double>(done_) / static_cast<double>(files_);
+      auto id =
+          upload_file(client_, device_, file, {labels, recording.session, recording.recorded_at}, [&](double fraction) {
+            bar_.show("upload " + recording.file, before + kUploads * fraction / static_cast<double>(files_));
+          });
+      if (!id) {
+        return tl::unexpected(id.error());
+      }
+      if (auto analysed = characterise(*id); !analysed) {
+        return tl::unexpected(analysed.error());
+      }
+      document["recording"] = std::move(*id);
+    } else {
+      return tl::unexpected(Failure{
+          {ErrorCode::InvalidArgument,
+           "The result " + recording.result + " lies on this machine: compare it without --server, or name its file.",
+           {{"path", recording.result}}},
+          Exit::BadInput});
+    }
+    for (const auto& [name, text] :
+         {std::pair{"session", &recording.session}, {"recorded_at", &recording.recorded_at}}) {
+      if (!text->empty()) {
+        document[name] = *text;
+      }
+    }
+    if (recording.temperature_degc) {
+      document["temperature_degc"] = *recording.temperature_degc;
+    }
+    if (!recording.causes.empty()) {
+      document["causes"] = recording.causes;
+    }
+    return document;
+  }
+
+  /// One job for each recording: the same recording is then the same job in every run.
+  [[nodiscard]] tl::expected<void, Failure> characterise(const Json& id) {
+    Json request{{"kind", "characterise"}, {"inputs", {{"recordings", Json::array({id})}}}};
+    if (!models_.empty()) {
+      request["parameters"] = Json{{"models", models_}};
+    }
+    const double step = (kAnalysis - kUploads) / static_cast<double>(files_);
+    const double before = kUploads + step * static_cast<double>(done_);
+    ++done_;
+    auto job = succeeded_job(client_, request, bar_, before, before + step);
+    return job ? tl::expected<void, Failure>() : tl::unexpected(job.error());
+  }
+
+  HttpClient& client_;
+  std::string device_;
+  std::vector<std::string> models_;
+  std::size_t files_;
+  std::size_t done_ = 0;
+  ProgressBar bar_;
+};
+
+std::size_t files_in(const WrittenRegression& run) {
+  std::size_t files = run.baseline.recordings.size() + run.candidate.recordings.size();
+  for (const WrittenArm& release : run.history) {
+    files += release.recordings.size();
+  }
+  return std::max<std::size_t>(files, 1);
+}
+
+/// The request of the job that compares.
+tl::expected<Json, Failure> request_of(HttpClient& client, const WrittenRegression& run,
+                                       const std::vector<std::string>& models) {
+  ArmSender sender(client, run, models, files_in(run));
+  Json inputs{{"device", run.device}};
+  for (const auto& [name, arm] : {std::pair{"baseline", &run.baseline}, {"candidate", &run.candidate}}) {
+    auto sent = sender.sent(*arm);
+    if (!sent) {
+      return tl::unexpected(sent.error());
+    }
+    inputs[name] = std::move(*sent);
+  }
+  for (const WrittenArm& release : run.history) {
+    auto sent = sender.sent(release);
+    if (!sent) {
+      return tl::unexpected(sent.error());
+    }
+    inputs["history"].push_back(std::move(*sent));
+  }
+  for (const regression::Exclusion& exclusion : run.excluded) {
+    inputs["excluded"].push_back(Json{{"recording", exclusion.recording}, {"reason", exclusion.reason}});
+  }
+  return Json{{"kind", "regress"}, {"inputs", std::move(inputs)}, {"parameters", to_json(run.settings, run.looks)}};
+}
+
+/// The forms of a run that a daemon has.
+class StoredRun {
+ public:
+  StoredRun(HttpClient client, const std::string& id) : client_(std::move(client)), target_("/v1/regressions/" + id) {}
+
+  [[nodiscard]] Result<std::string> get(const std::string& more, const std::string& accept) {
+    auto reply = client_.get(target_ + more, accept);
+    if (!reply) {
+      return fail(reply.error());
+    }
+    return reply->status == 200 ? Result<std::string>(std::move(reply->body)) : fail(refused(*reply).value().error);
+  }
+
+  /// The page with the figure where it lies, or without it.
+  [[nodiscard]] Result<std::string> page(const std::string& figure) {
+    auto text = get("", "text/markdown");
+    const std::string place = "(" + target_ + "/figure)";
+    const std::size_t at = text ? text->find(place) : std::string::npos;
+    if (at == std::string::npos) {
+      return text;
+    }
+    if (!figure.empty()) {
+      text->replace(at, place.size(), "(" + figure + ")");
+    } else {
+      const std::size_t line = text->rfind('\n', at) + 1;
+      text->erase(line, text->find('\n', at) + 1 - line);
+    }
+    return text;
+  }
+
+ private:
+  HttpClient client_;
+  std::string target_;
+};
+
+/// Makes a label the anchor of its device.
+Exit accept_there(HttpClient& client, const RegressFlags& flags) {
+  if (flags.reason.empty() || flags.file.device.empty()) {
+    return complain({ErrorCode::InvalidArgument, "--accept with --server needs --device NAME and --reason TEXT.", {}});
+  }
+  const Json anchor{{"device", flags.file.device}, {"label", flags.accept}, {"reason", flags.reason}};
+  const auto moved = post_for_id(client, "/v1/regression-anchors", anchor, "an anchor");
+  if (!moved) {
+    return complain(moved.error().error, moved.error().exit);
+  }
+  std::printf("The baseline is %s from now on: %s\n", flags.accept.c_str(), flags.reason.c_str());
+  return Exit::Success;
+}
+
+}  // namespace
+
+Exit regress_there(const RegressFlags& flags) {
+  if (!flags.state.empty()) {
+    return complain({ErrorCode::InvalidArgument, "The daemon keeps anchor, looks and history: leave --state out.", {}});
+  }
+  auto client = HttpClient::to(flags.server);
+  if (!client) {
+    return complain(client.error());
+  }
+  if (!flags.accept.empty()) {
+    return accept_there(*client, flags);
+  }
+  auto run = written_run(flags);
+  if (!run) {
+    return complain(run.error());
+  }
+  if (flags.run.empty() && flags.file.device.empty()) {
+    return complain(
+        {ErrorCode::InvalidArgument, "Name the device whose recordings the daemon keeps: --device NAME.", {}});
+  }
+  if (!flags.baseline_label.empty()) {
+    run->baseline.special.clear();  // the daemon knows which recordings have it
+  }
+  if (run->candidate.recordings.empty() && run->candidate.label.empty()) {
+    return complain({ErrorCode::InvalidArgument,
+                     "A run needs a candidate: --candidate FILE..., --candidate-label, or a run.json that names one.",
+                     {}});
+  }
+  const auto request = request_of(*client, *run, flags.models);
+  if (!request) {
+    return complain(request.error().error, request.error().exit);
+  }
+  ProgressBar bar;
+  const auto job = succeeded_job(*client, *request, bar, kAnalysis);
+  if (!job) {
+    return complain(job.error().error, job.error().exit);
+  }
+  StoredRun stored(*client, *job);
+  const auto body = stored.get("", "application/json");
+  const auto document = body ? parse_json(*body) : fail(body.error());
+  if (!document) {
+    return complain(document.error(), Exit::ServerOrJob);
+  }
+  const std::string verdict = document->value("verdict", "");
+  RunForms forms;
+  forms.verdict = verdict == "pass"   ? regression::Verdict::Pass
+                  : verdict == "fail" ? regression::Verdict::Fail
+                                      : regression::Verdict::Inconclusive;
+  const std::string open = run->inconclusive == Inconclusive::Pass ? "?inconclusive=pass" : "";
+  forms.document = [&] { return document->dump(2) + "\n"; };
+  forms.text = [&] { return stored.get("", "text/plain"); };
+  forms.junit = [&] { return stored.get("/junit" + open, "text/xml"); };
+  forms.markdown = [&](const std::string& figure) { return stored.page(figure); };
+  forms.figure = [&] { return stored.get("/figure", "image/svg+xml"); };
+  forms.badge = [&] { return stored.get("/badge", "image/svg+xml"); };
+  return finish_run(flags, forms, run->inconclusive);
+}
+
+}  // namespace driftlab::cli

@@ -1,0 +1,190 @@
+#include "server/jobs/regression_arms.hpp"
+
+#include "core/signal/text.hpp"
+#include "schema/json/recording_tags.hpp"
+
+#include <algorithm>
+
+namespace driftlab::server {
+namespace {
+
+constexpr int kPage = 500;
+
+/// Calls `take` with every row of a list, page by page.
+template <class Fetch, class Take>
+Status for_each_row(const Fetch& fetch, const Take& take) {
+  Page page{.after = "", .limit = kPage};
+  while (true) {
+    const auto rows = fetch(page);
+    if (!rows) {
+      return fail(rows.error());
+    }
+    for (const auto& row : *rows) {
+      take(row);
+    }
+    if (static_cast<int>(rows->size()) < kPage) {
+      return {};
+    }
+    page.after = rows->back().id;
+  }
+}
+
+WrittenRecording labelled_recording(const Recording& row, const std::string& pointer) {
+  Faults ignored;
+  WrittenRecording recording;
+  recording.recording = row.id;
+  recording.pointer = pointer;
+  const auto tags = parse_json(row.tags_json);
+  const RecordingTags read = tags ? recording_tags_from_json(*tags, "", ignored) : RecordingTags{};
+  recording.session = read.session;
+  recording.recorded_at = read.recorded_at;
+  return recording;
+}
+
+}  // namespace
+
+std::vector<std::string> regressed_ids(const Json& arm) {
+  std::vector<std::string> ids;
+  for (const Json& recording : arm["recordings"]) {
+    ids.push_back(recording["recording"].get<std::string>());
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device) {
+  RegressionMemory memory(store, device);
+  JobFilter filter;
+  filter.kind = std::string(kRegressKind);
+  filter.input_device = device.id;
+  const auto note = [&](const Json& arm) {
+    const std::string label = arm.value("label", "");
+    if (label.empty()) {
+      return;
+    }
+    if (std::find(memory.labels_.begin(), memory.labels_.end(), label) == memory.labels_.end()) {
+      memory.labels_.push_back(label);
+    }
+    for (const std::string& id : regressed_ids(arm)) {
+      memory.named_[label].insert(id);
+    }
+  };
+  const Status read = for_each_row(
+      [&](const Page& page) { return store.jobs(filter, page); },
+      [&](const Job& job) {
+        const auto request = parse_json(job.request_json);
+        const bool stands =
+            job.state == JobState::Queued || job.state == JobState::Running || job.state == JobState::Succeeded;
+        if (!stands || !request) {
+          return;
+        }
+        const Json& inputs = (*request)["inputs"];
+        for (const Json& release : inputs.value("history", Json::array())) {
+          note(release);
+        }
+        note(inputs["baseline"]);
+        note(inputs["candidate"]);
+        const std::string candidate = inputs["candidate"].value("label", "");
+        if (memory.first_baseline_.empty()) {
+          memory.first_baseline_ = inputs["baseline"].value("label", "");
+        }
+        if (job.state == JobState::Succeeded) {
+          memory.succeeded_.push_back(job.id);
+        }
+        auto& looks = memory.looked_[candidate];
+        if (auto ids = regressed_ids(inputs["candidate"]); std::find(looks.begin(), looks.end(), ids) == looks.end()) {
+          looks.push_back(std::move(ids));
+        }
+      });
+  return read ? Result<RegressionMemory>(std::move(memory)) : fail(read.error());
+}
+
+Result<std::string> RegressionMemory::anchor() const {
+  const auto moved = store_->anchors(device_.id, {.after = "", .limit = 1, .newest_first = true});
+  if (!moved) {
+    return fail(moved.error());
+  }
+  return moved->empty() ? first_baseline_ : moved->front().label;
+}
+
+Result<std::string> RegressionMemory::last_pass() const {
+  for (auto id = succeeded_.rbegin(); id != succeeded_.rend(); ++id) {
+    const auto text = store_->result_document(*id);
+    if (!text && text.error().code == ErrorCode::NotFound) {
+      continue;  // it went with a recording that was deleted
+    }
+    const auto document = text ? parse_json(*text) : fail(text.error());
+    if (!document) {
+      return fail(document.error());
+    }
+    const Json label = (*document)["arms"]["candidate"]["label"];
+    if ((*document)["verdict"] == "pass" && label.is_string()) {
+      return label.get<std::string>();
+    }
+  }
+  return std::string();
+}
+
+Result<std::vector<WrittenRecording>> RegressionMemory::recordings(const std::string& label,
+                                                                   const std::string& pointer) const {
+  std::vector<WrittenRecording> found;
+  RecordingFilter filter;
+  filter.device_id = device_.id;
+  for (const std::string_view word : split(label, ',')) {
+    filter.labels.emplace_back(word);
+  }
+  const Status read = for_each_row([&](const Page& page) { return store_->recordings(filter, page); },
+                                   [&](const Recording& row) { found.push_back(labelled_recording(row, pointer)); });
+  if (!read) {
+    return fail(read.error());
+  }
+  const auto before = named_.find(label);
+  if (!found.empty() || before == named_.end()) {
+    return found;
+  }
+  for (const std::string& id : before->second) {
+    const auto row = store_->recording(id);
+    if (row) {
+      found.push_back(labelled_recording(*row, pointer));
+    } else if (row.error().code != ErrorCode::NotFound) {
+      return fail(row.error());
+    }
+  }
+  return found;
+}
+
+Result<std::string> RegressionMemory::unknown_label(const std::string& label) const {
+  std::set<std::string> known(labels_.begin(), labels_.end());
+  RecordingFilter filter;
+  filter.device_id = device_.id;
+  const Status read = for_each_row(
+      [&](const Page& page) { return store_->recordings(filter, page); },
+      [&](const Recording& row) {
+        Faults ignored;
+        const auto tags = parse_json(row.tags_json);
+        for (const std::string& word : label_words(tags ? recording_tags_from_json(*tags, "", ignored).labels
+                                                        : std::map<std::string, std::string>())) {
+          known.insert(word);
+        }
+      });
+  if (!read) {
+    return fail(read.error());
+  }
+  std::string list;
+  for (const std::string& word : known) {
+    list += (list.empty() ? "" : ", ") + word;
+  }
+  return "No recording of " + device_.name + " has the label " + label +
+         "; labels of this device: " + (list.empty() ? "none" : list) + ".";
+}
+
+std::size_t RegressionMemory::look(const std::string& label, const std::vector<std::string>& ids) const {
+  const auto looks = looked_.find(label);
+  if (looks == looked_.end()) {
+    return 1;
+  }
+  return static_cast<std::size_t>(std::find(looks->second.begin(), looks->second.end(), ids) - looks->second.begin()) +
+         1;
+}
+
+}  // namespace driftlab::server

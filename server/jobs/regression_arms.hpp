@@ -1,0 +1,53 @@
+#pragma once
+/// What the server remembers of regression runs of one device: which recordings a label means, the anchor, the last
+/// label that passed, the releases before, and how many looks a candidate has had (spec/regression.md, sections 2 and
+/// 8).
+#include "schema/json/regression.hpp"
+#include "server/store/store.hpp"
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::server {
+
+inline constexpr std::string_view kRegressKind = "regress";
+
+/// The ids of the recordings of an arm of a pinned request, sorted: equal for equal looks.
+[[nodiscard]] std::vector<std::string> regressed_ids(const Json& arm);
+
+/// The runs of a device that stand: queued, running or succeeded.
+class RegressionMemory {
+ public:
+  [[nodiscard]] static Result<RegressionMemory> of(Store& store, const Device& device);
+
+  /// Labels of arms in the order in which runs first named them.
+  [[nodiscard]] const std::vector<std::string>& labels() const { return labels_; }
+  /// The label that was made the baseline last; until somebody does, the first baseline that had one. Empty: none.
+  [[nodiscard]] Result<std::string> anchor() const;
+  /// The candidate of the newest run that passed; empty: none.
+  [[nodiscard]] Result<std::string> last_pass() const;
+  /// The device's recordings that have the label, `firmware=1.5.0,board=b` all of it; without any, those that runs
+  /// named under that label. Never the latest few: leaving one out needs a reason.
+  [[nodiscard]] Result<std::vector<WrittenRecording>> recordings(const std::string& label,
+                                                                 const std::string& pointer) const;
+  /// "No recording of imu-07 has the label …; labels of this device: …".
+  [[nodiscard]] Result<std::string> unknown_label(const std::string& label) const;
+  /// The number of the look that a run over these candidates (sorted ids) is: the same recordings are the same look.
+  [[nodiscard]] std::size_t look(const std::string& label, const std::vector<std::string>& ids) const;
+
+ private:
+  RegressionMemory(Store& store, const Device& device) : store_(&store), device_(device) {}
+
+  Store* store_;
+  Device device_;
+  std::vector<std::string> labels_;
+  std::string first_baseline_;
+  std::vector<std::string> succeeded_;                                   ///< ids of runs, oldest first
+  std::map<std::string, std::set<std::string>> named_;                   ///< recordings by label
+  std::map<std::string, std::vector<std::vector<std::string>>> looked_;  ///< candidates by label, each set once
+};
+
+}  // namespace driftlab::server
