@@ -34,8 +34,10 @@ class IncomingFile final : public IncomingBlob {
   IncomingFile& operator=(const IncomingFile&) = delete;
   ~IncomingFile() override {
     (void)remove_file(path_);
-    (void)remove_file(columns_path());
-    (void)remove_file(columns_checksum_path(columns_path()));
+    for (const fs::path& columns : {columns_path(), pyramid_path(columns_path())}) {
+      (void)remove_file(columns);
+      (void)remove_file(columns_checksum_path(columns));
+    }
   }
 
   [[nodiscard]] Status append(std::span<const std::byte> bytes) override;
@@ -149,6 +151,20 @@ Status move_or_refresh(const fs::path& from, const fs::path& to) {
   return rename_durably(from, to);
 }
 
+/// Moves the pyramid that was written beside incoming columns, if there is one, with its checksum.
+Status move_pyramid(const fs::path& from, const fs::path& to) {
+  if (::access(from.c_str(), F_OK) != 0) {
+    return {};
+  }
+  if (Status summed = write_columns_checksum(from); !summed) {
+    return summed;
+  }
+  if (Status moved = rename_durably(from, to); !moved) {
+    return moved;
+  }
+  return rename_durably(columns_checksum_path(from), columns_checksum_path(to));
+}
+
 Status BlobDirectory::place(const IncomingFile& incoming) {
   const fs::path from = incoming.columns_path();
   const fs::path columns = columns_path(incoming.sha256());
@@ -178,7 +194,7 @@ Status BlobDirectory::place(const IncomingFile& incoming) {
     return moved;
   }
   crash_point("upload.kept");
-  return {};
+  return decoded ? move_pyramid(pyramid_path(from), pyramid_path(columns)) : Status{};
 }
 
 Result<std::unique_ptr<IncomingBlob>> BlobDirectory::begin() {
@@ -194,11 +210,12 @@ Status BlobDirectory::remove_both(std::string_view sha256) {
   if (!is_sha256_hex(sha256)) {
     return fail(ErrorCode::InvalidArgument, "A blob is named by 64 hexadecimal digits.", {{"parameter", "sha256"}});
   }
-  if (Status removed = remove_file(columns_checksum_path(columns_path(sha256))); !removed) {
-    return removed;
-  }
-  if (Status removed = remove_file(columns_path(sha256)); !removed) {
-    return removed;
+  const fs::path columns = columns_path(sha256);
+  const fs::path pyramid = pyramid_path(columns);
+  for (const fs::path& path : {columns_checksum_path(pyramid), pyramid, columns_checksum_path(columns), columns}) {
+    if (Status removed = remove_file(path); !removed) {
+      return removed;
+    }
   }
   return remove_file(bytes_path(sha256));
 }
@@ -251,6 +268,12 @@ Result<BlobStore::Space> BlobDirectory::space() const {
 }
 
 }  // namespace
+
+fs::path pyramid_path(const fs::path& columns) {
+  fs::path path = columns;
+  path += ".pyramid";
+  return path;
+}
 
 Result<std::unique_ptr<BlobStore>> open_blob_directory(const fs::path& root) {
   for (const char* folder : {"blobs", "columns", "incoming"}) {

@@ -4,6 +4,8 @@
 ///   <root>/blobs/ab/abcdef...            the bytes as uploaded, named by their SHA-256
 ///   <root>/columns/ab/abcdef....columns  their decoded columns (core/read/column_file.hpp)
 ///   <root>/columns/ab/abcdef....columns.sha256  their checksum (server/store/checksums.hpp)
+///   <root>/columns/ab/abcdef....columns.pyramid  of long columns: what traces show (core/read/trace_pyramid.hpp), made
+///                                        again from the columns where it is missing; its checksum beside it
 ///   <root>/incoming/                     files being written; emptied when a daemon starts
 ///
 /// A file appears under its final name complete or not at all: temporary file, fsync, rename, fsync of the directory. A
@@ -37,13 +39,16 @@ class IncomingBlob {
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// The temporary file, for decoding before it is kept.
   [[nodiscard]] virtual const std::filesystem::path& path() const = 0;
-  /// Where the decoded columns are to be written; `keep` moves them in place with the bytes.
+  /// Where the decoded columns are to be written; `keep` moves them in place with the bytes, and a pyramid beside them.
   [[nodiscard]] virtual std::filesystem::path columns_path() const = 0;
   /// Moves bytes and columns to their final names, durably. Already there: there is one copy still, it counts as new
   /// again for the sweeper, success; columns need not be written again. Errors: DiskFull, Io; Internal where no columns
   /// were ever written.
   [[nodiscard]] virtual Status keep() = 0;
 };
+
+/// Where the pyramid of a columns file lies, whether there is one or not.
+[[nodiscard]] std::filesystem::path pyramid_path(const std::filesystem::path& columns);
 
 class BlobStore {
  public:
@@ -54,7 +59,7 @@ class BlobStore {
   [[nodiscard]] virtual Result<std::unique_ptr<IncomingBlob>> begin() = 0;
   [[nodiscard]] virtual std::filesystem::path bytes_path(std::string_view sha256) const = 0;
   [[nodiscard]] virtual std::filesystem::path columns_path(std::string_view sha256) const = 0;
-  /// Removes both files of a blob. Absent: success.
+  /// Removes the files of a blob. Absent: success.
   [[nodiscard]] virtual Status remove(std::string_view sha256) = 0;
   /// Removes both files if both are still older than `before`; true if removed. For the sweeper: a blob that is kept
   /// again meanwhile stays.

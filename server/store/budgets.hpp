@@ -30,6 +30,7 @@
   /* documents */                                                                                                       \
   BUDGET(document_bytes, 1'048'576, 1024, 67'108'864, "Size of a JSON document that is sent")                           \
   BUDGET(page_bytes, 4'194'304, 4096, 268'435'456, "Size of a page of a list; one larger item comes alone")             \
+  BUDGET(answer_cache_bytes, 33'554'432, 0, 17'179'869'184, "Answers kept until a row of the store changes; 0: none")    \
   BUDGET(labels, 64, 0, 10'000, "Labels of a device")                                                                   \
   BUDGET(label_bytes, 256, 1, 65'536, "Length of a label's name, and of its value")                                     \
   BUDGET(name_bytes, 256, 1, 65'536, "Length of a name")                                                                \
@@ -37,6 +38,8 @@
   /* uploads */                                                                                                         \
   BUDGET(upload_bytes, 8'589'934'592, 1, 1'099'511'627'776, "Size of an upload")                                        \
   BUDGET(uploads, 16, 1, 10'000, "Uploads at once")                                                                     \
+  BUDGET(uploads_waiting, 1024, 0, 1'000'000, "Uploads that wait for a place, their bodies unread; beyond it 503")       \
+  BUDGET(upload_wait_seconds, 60, 0, 3600, "An upload that has waited this long for a place gets 503")                  \
   BUDGET(uploads_per_address, 4, 1, 10'000, "Uploads of one address at once; this machine is exempt")                   \
   BUDGET(decodings, 16, 1, 256, "Uploads decoded at once, each on a thread of its own")                                 \
   BUDGET(decode_seconds, 60, 1, 86'400, "Time to decode an upload, beside that for its size")                           \
@@ -57,6 +60,15 @@
   BUDGET(job_seconds, 21'600, 1, 31'536'000, "A job is ended after this time")                                          \
   BUDGET(queued_jobs, 10'000, 1, 10'000'000, "Jobs that wait; beyond it 503")                                           \
   BUDGET(scrub_bytes_per_second, 8'388'608, 0, 1'000'000'000'000, "Stored files read again in the background; 0: none") \
+  /* webhooks */                                                                                                        \
+  BUDGET(webhooks, 32, 0, 10'000, "Webhooks")                                                                           \
+  BUDGET(webhook_waiting, 10'000, 1, 10'000'000, "Deliveries of a webhook that wait; beyond it it is disabled")         \
+  BUDGET(webhook_deliveries, 4, 1, 64, "Deliveries under way at once")                                                  \
+  BUDGET(webhook_seconds, 15, 1, 600, "A receiver must have answered in this time")                                     \
+  BUDGET(webhook_attempts, 8, 1, 100, "Attempts at a delivery before it is given up")                                   \
+  BUDGET(webhook_pause_milliseconds, 5000, 1, 3'600'000, "Pause after the first attempt; six times as long each time")  \
+  BUDGET(webhook_give_ups, 3, 1, 1000, "Deliveries given up in a row before the webhook is disabled")                   \
+  BUDGET(keep_deliveries_days, 30, 1, 36'500, "Deliveries that ended are listed for this time")                         \
   /* the end */                                                                                                         \
   BUDGET(stop_seconds, 10, 1, 600, "From SIGTERM to the end")                                                           \
   BUDGET(drain_milliseconds, 500, 0, 600'000, "Of that, not ready but still answering, for load balancers to notice")

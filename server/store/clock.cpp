@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 
 namespace driftlab::server {
 namespace {
@@ -14,6 +15,47 @@ namespace {
 constexpr std::string_view kAlphabet = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
 constexpr std::size_t kBodyLength = 26;
 constexpr std::size_t kTimeLength = 10;
+
+/// What follows the time in an id: a number of 80 bits, most significant digit first.
+using Tail = std::array<unsigned char, kBodyLength - kTimeLength>;
+
+Tail random_tail() {
+  Tail tail{};
+  if (RAND_bytes(tail.data(), static_cast<int>(tail.size())) != 1) {
+    std::abort();  // an operating system without randomness cannot give unique names
+  }
+  std::ranges::for_each(tail, [](unsigned char& digit) { digit &= 31U; });
+  return tail;
+}
+
+/// Adds a random step of 1 to 2^30 to a tail: its successor sorts behind it and cannot be guessed.
+void step(Tail& tail) {
+  constexpr std::size_t kStepDigits = 6;
+  Tail by = random_tail();
+  std::fill(by.begin(), by.end() - kStepDigits, static_cast<unsigned char>(0));
+  unsigned carry = 1;
+  for (std::size_t i = tail.size(); i-- > 0;) {
+    const unsigned sum = tail[i] + by[i] + carry;
+    tail[i] = static_cast<unsigned char>(sum & 31U);
+    carry = sum >> 5U;
+  }
+}
+
+/// Fresh for a new millisecond, behind the tail given last within the same one.
+Tail next_tail(std::uint64_t milliseconds) {
+  static std::mutex guard;
+  static std::uint64_t last_milliseconds = 0;
+  static Tail last{};
+  const std::scoped_lock lock(guard);
+  if (milliseconds == last_milliseconds) {
+    step(last);
+  } else {
+    last_milliseconds = milliseconds;
+    last = random_tail();
+    last.front() &= 15U;  // the upper half is room for the steps, which therefore never overflow
+  }
+  return last;
+}
 
 }  // namespace
 
@@ -37,19 +79,15 @@ std::string rfc3339(UtcMicros time) {
 }
 
 std::string make_id(std::string_view prefix, UtcMicros now) {
-  // 26 characters hold 130 bits: the first ten are 48 bits of milliseconds (two bits unused), the rest 80 random bits.
+  // 26 characters hold 130 bits: the first ten are 48 bits of milliseconds (two bits unused), the rest the tail.
+  const auto milliseconds = static_cast<std::uint64_t>(std::max<UtcMicros>(now, 0) / 1000);
   std::string id(prefix);
   id.push_back('_');
-  const auto milliseconds = static_cast<std::uint64_t>(std::max<UtcMicros>(now, 0) / 1000);
   for (std::size_t i = 0; i < kTimeLength; ++i) {
     id.push_back(kAlphabet[(milliseconds >> (5 * (kTimeLength - 1 - i))) & 31U]);
   }
-  std::array<unsigned char, kBodyLength - kTimeLength> random{};  // one byte for each 5-bit character
-  if (RAND_bytes(random.data(), static_cast<int>(random.size())) != 1) {
-    std::abort();  // an operating system without randomness cannot give unique names
-  }
-  for (const unsigned char byte : random) {
-    id.push_back(kAlphabet[byte & 31U]);
+  for (const unsigned char digit : next_tail(milliseconds)) {
+    id.push_back(kAlphabet[digit]);
   }
   return id;
 }

@@ -30,7 +30,8 @@ class SystemClock final : public Clock {
 [[nodiscard]] std::string rfc3339(UtcMicros time);
 
 /// A fresh id: `<prefix>_` and 26 characters of Crockford base32 (48 bits of milliseconds, 80 random bits), so that ids
-/// sort by creation time. Randomness comes from the operating system. Thread safe.
+/// sort by creation time. Of two made by one process in the same millisecond the later sorts later too: its random bits
+/// are those of the earlier plus a random step. Randomness comes from the operating system. Thread safe.
 [[nodiscard]] std::string make_id(std::string_view prefix, UtcMicros now);
 
 /// True for `<prefix>_` + 26 characters of the alphabet: the only ids that reach a store.

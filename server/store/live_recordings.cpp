@@ -32,8 +32,7 @@ struct PieceHead {
 std::size_t row_bytes(std::size_t columns) { return sizeof(double) + columns * sizeof(float); }
 
 tl::unexpected<Error> unknown_live(std::string_view id) {
-  return fail(ErrorCode::NotFound,
-              "There is no live recording \"" + std::string(id) + "\"; it may have been finished.",
+  return fail(ErrorCode::NotFound, "There is no live recording \"" + std::string(id) + "\"; it may have been finished.",
               {{"live_recording", std::string(id)}});
 }
 
@@ -46,9 +45,9 @@ double time_in(std::span<const std::byte> row) {
 Status check_rows(std::span<const std::byte> rows, std::size_t columns) {
   const std::size_t length = row_bytes(columns);
   if (rows.empty() || rows.size() % length != 0) {
-    return fail(ErrorCode::InvalidArgument,
-                "A piece is whole rows of " + std::to_string(length) + " bytes: a float64 time in seconds and " +
-                    std::to_string(columns) + " float32 values.");
+    return fail(ErrorCode::InvalidArgument, "A piece is whole rows of " + std::to_string(length) +
+                                                " bytes: a float64 time in seconds and " + std::to_string(columns) +
+                                                " float32 values.");
   }
   double before = -std::numeric_limits<double>::infinity();
   for (std::size_t at = 0; at < rows.size(); at += length) {
@@ -146,11 +145,9 @@ Result<LiveRecording> LiveRecordings::create(std::string_view about_json, std::s
     return fail(made.error());
   }
   const UtcMicros now = clock_.now();
-  LiveRecording recording{
-      make_id("live", now), std::string(about_json), std::string(token_sha256), columns, 0, 0, now};
+  LiveRecording recording{make_id("live", now), std::string(about_json), std::string(token_sha256), columns, 0, 0, now};
   const std::string text = std::to_string(columns) + ' ' + recording.token_sha256 + '\n' + recording.about_json + '\n';
-  if (Status written = write_whole(path_of(recording.id, ".about"), O_EXCL, std::as_bytes(std::span(text)));
-      !written) {
+  if (Status written = write_whole(path_of(recording.id, ".about"), O_EXCL, std::as_bytes(std::span(text))); !written) {
     return fail(written.error());
   }
   if (Status synced = sync_path(directory_); !synced) {

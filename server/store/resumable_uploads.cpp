@@ -1,6 +1,7 @@
 #include "server/store/resumable_uploads.hpp"
 
 #include "server/store/files.hpp"
+#include "server/store/principal.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -27,9 +28,16 @@ tl::unexpected<Error> elsewhere(std::string sentence, std::uint64_t offset) {
   return fail(ErrorCode::Conflict, std::move(sentence), {{"offset", std::to_string(offset)}});
 }
 
+/// Whether this thread's caller is another than who began the upload, and no admin.
+bool is_foreign(const ResumableUpload& upload) {
+  const Caller* const caller = caller_of_thread();
+  return caller != nullptr && !upload.token.empty() && caller->principal.token != upload.token &&
+         caller->principal.scope != Scope::Admin;
+}
+
 /// Microseconds of the last change of a file; 0 where there is none.
 UtcMicros changed_at(const fs::path& path) {
-  struct stat status {};
+  struct stat status{};
   if (::stat(path.c_str(), &status) != 0) {
     return 0;
   }
@@ -45,7 +53,9 @@ Result<ResumableUpload> ResumableUploads::create(std::uint64_t length, std::stri
     return fail(made.error());
   }
   const UtcMicros now = clock_.now();
-  ResumableUpload upload{make_id("upl", now), length, 0, std::string(file_name), now + kKeptMicros};
+  const Caller* const caller = caller_of_thread();
+  const std::string token = caller != nullptr ? caller->principal.token : "";
+  ResumableUpload upload{make_id("upl", now), length, 0, std::string(file_name), token, now + kKeptMicros};
   // One line of length and name: the name is the client's and may hold anything but a line break.
   const fs::path about = directory_ / (upload.id + ".about");
   for (const fs::path& path : {bytes_path(upload.id), about}) {
@@ -55,7 +65,7 @@ Result<ResumableUpload> ResumableUploads::create(std::uint64_t length, std::stri
     }
   }
   std::ofstream text(about, std::ios::binary | std::ios::trunc);
-  text << length << ' ' << upload.file_name;
+  text << length << ' ' << upload.file_name << '\n' << upload.token;
   text.close();
   if (!text) {
     return fail(file_error(ENOSPC, "write", about));
@@ -81,6 +91,10 @@ Result<ResumableUpload> ResumableUploads::find(std::string_view id) {
   }
   about.get();
   std::getline(about, upload.file_name);
+  std::getline(about, upload.token);
+  if (is_foreign(upload)) {
+    return unknown(id);
+  }
   std::error_code error;
   upload.offset = fs::file_size(bytes, error);
   upload.expires_at = changed_at(bytes) + kKeptMicros;

@@ -1,11 +1,12 @@
 #pragma once
 /// Uploads that may stop and go on: bytes in a file that only grows, beside what is known of it.
 ///
-///   <directory>/upl_….about  length and file name, one line
+///   <directory>/upl_….about  length and file name, one line; the token that began it, another
 ///   <directory>/upl_….part   the bytes so far; its size is the offset
 ///
-/// The offset advances after the bytes are flushed to disk, so what was acknowledged survives power loss. An upload that
-/// nobody touched for a day is forgotten. Thread safe; one writer at a time for each upload.
+/// The offset advances after the bytes are flushed to disk, so what was acknowledged survives power loss. An upload
+/// that nobody touched for a day is forgotten. An upload is there for the token that began it and for admins; for
+/// another there is none. Thread safe; one writer at a time for each upload.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 
@@ -25,6 +26,7 @@ struct ResumableUpload {
   std::uint64_t length = 0;
   std::uint64_t offset = 0;
   std::string file_name;  ///< as the client calls it; may be empty
+  std::string token;      ///< public id of the token that began it; empty where none was asked for
   UtcMicros expires_at = 0;
 };
 

@@ -47,6 +47,23 @@ struct Recording {
   std::string quality_json = "{}";
   UtcMicros created_at = 0;
   UtcMicros updated_at = 0;
+  std::string tags_json = "{}";  ///< canonical text of labels, session and recorded_at; no result depends on them
+  std::int64_t tags_revision = 0;
+};
+
+/// The label that regression runs of a device compare with, from then on.
+struct Anchor {
+  std::string id;  ///< `anc_...`
+  std::string device_id;
+  std::string label;  ///< `firmware=1.4.2`
+  std::string reason;
+  UtcMicros created_at = 0;
+};
+
+/// A text or a figure that a job made of its result.
+struct Artefact {
+  std::string name;
+  std::string content;
 };
 
 enum class JobState { Queued, Running, Succeeded, Failed, Cancelled, Dead };
@@ -147,6 +164,15 @@ struct Study {
   UtcMicros created_at = 0;
 };
 
+/// A drive document over recordings of one device. It never changes.
+struct StoredDrive {
+  std::string id;  ///< `drv_...`
+  std::string device_id;
+  std::string unique_key;  ///< SHA-256 of device and document
+  std::string document_json;
+  UtcMicros created_at = 0;
+};
+
 /// A calibration of a device's sensors. It never changes.
 struct StoredCalibration {
   std::string id;  ///< `cal_...`
@@ -190,6 +216,7 @@ struct JobResults {
   bool pooled = false;
   std::vector<Model> models = {};  ///< parents before children
   std::vector<Investigation> investigations = {};
+  std::vector<Artefact> artefacts = {};
 };
 
 /// A stored answer to a POST that carried an Idempotency-Key.

@@ -1,7 +1,7 @@
 #pragma once
 /// The store: everything the daemon remembers, behind one interface.
 ///
-/// One suite (tests/unit/store/store_suite.hpp) runs over every implementation; today that is SQLite. Methods are
+/// One suite (tests/unit/store/store_suite.hpp) runs over every implementation: SQLite and PostgreSQL. Methods are
 /// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A
 /// write that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors
 /// are named. Lists are keyset pages in order of id, which is that of making: `after` is the last id of the page
@@ -53,11 +53,14 @@ struct DeviceUsage {
 struct RecordingFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> condition;
+  std::vector<std::string> labels = {};  ///< `name=value`; a recording has them all
 };
 
 struct JobFilter {
   std::optional<std::string> kind;
   std::optional<JobState> state;
+  std::optional<std::string> input_device = std::nullopt;  ///< id: `inputs.device` of the request
+  std::optional<std::string> candidate = std::nullopt;     ///< label: `inputs.candidate.label` of the request
 };
 
 /// For fits and channel results. Only the latest result per (recording, channel) is listed when `latest_only`.
@@ -142,6 +145,10 @@ class Store {
   /// Whether that token asked for the object.
   [[nodiscard]] virtual Result<bool> is_owner(std::string_view object, std::string_view token) = 0;
 
+  /// Grows with every write that changed a row, before whoever asked for the write is told that it is stored. Reads a
+  /// number in memory.
+  [[nodiscard]] virtual std::uint64_t changes() const = 0;
+
   // ---- devices
   /// The device of that name, created if absent. `created` tells.
   struct DeviceOutcome {
@@ -156,6 +163,10 @@ class Store {
   [[nodiscard]] virtual Result<Device> update_device(std::string_view id, const DeviceChange& change,
                                                      std::int64_t expected_revision) = 0;
 
+  /// Removes a device on which nothing depends; jobs that have ended go with it. NotFound; Conflict (revision; what
+  /// depends on it, in the sentence and in a field for each kind).
+  [[nodiscard]] virtual Status remove_device(std::string_view id, std::int64_t expected_revision) = 0;
+
   // ---- blobs and recordings
   [[nodiscard]] virtual Result<std::optional<Blob>> blob(std::string_view sha256) = 0;
   /// Adds the blob row if absent and the recording of (device, blob) if absent, in one transaction. The same metadata
@@ -167,8 +178,8 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// The conditions of a device's recordings, each once, in the order of their text.
   [[nodiscard]] virtual Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) = 0;
-  /// New metadata, one revision higher, if the revision is still `expected_revision`. What its results took part in is
-  /// pooled anew without them. NotFound; Conflict.
+  /// New metadata, one revision higher, if revision and tags are still those that were read. What its results took part
+  /// in is pooled anew without them. New tags alone are no new revision, and results stay. NotFound; Conflict.
   [[nodiscard]] virtual Result<Recording> revise_recording(const Recording& recording,
                                                            std::int64_t expected_revision) = 0;
   /// Removes a recording that no job is using; its results go with it, and what they took part in is pooled anew
@@ -231,6 +242,20 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<Study>> studies(const std::optional<std::string>& device_id,
                                                            const Page& page) = 0;
 
+  /// Removes a study of which there is no investigation. NotFound; Conflict, as of a device.
+  [[nodiscard]] virtual Status remove_study(std::string_view id) = 0;
+
+  // ---- drives
+  struct DriveOutcome {
+    StoredDrive drive;
+    bool created = false;
+  };
+  /// The drive of that unique key, added if absent.
+  [[nodiscard]] virtual Result<DriveOutcome> add_drive(const StoredDrive& drive) = 0;
+  [[nodiscard]] virtual Result<StoredDrive> drive(std::string_view id) = 0;
+  [[nodiscard]] virtual Result<std::vector<StoredDrive>> drives(const std::optional<std::string>& device_id,
+                                                                const Page& page) = 0;
+
   // ---- calibrations
   struct CalibrationOutcome {
     StoredCalibration calibration;
@@ -241,6 +266,9 @@ class Store {
   [[nodiscard]] virtual Result<StoredCalibration> calibration(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<StoredCalibration>> calibrations(const std::optional<std::string>& device_id,
                                                                             const Page& page) = 0;
+
+  /// Removes a calibration that no recording and no study names. NotFound; Conflict, as of a device.
+  [[nodiscard]] virtual Status remove_calibration(std::string_view id) = 0;
 
   // ---- models and investigations (written by `succeed`; models also by people)
   struct ModelOutcome {
@@ -254,6 +282,19 @@ class Store {
   [[nodiscard]] virtual Result<Investigation> investigation(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Investigation>> investigations(const InvestigationFilter& filter,
                                                                           const Page& page) = 0;
+
+  /// Removes a model that has no child and that no investigation began or ended with. NotFound; Conflict, as of a
+  /// device.
+  [[nodiscard]] virtual Status remove_model(std::string_view id) = 0;
+  /// Removes an investigation with its job; the models that it made stay. NotFound.
+  [[nodiscard]] virtual Status remove_investigation(std::string_view id) = 0;
+
+  // ---- regression runs
+  [[nodiscard]] virtual Result<Anchor> add_anchor(const Anchor& anchor) = 0;
+  [[nodiscard]] virtual Result<std::vector<Anchor>> anchors(const std::optional<std::string>& device_id,
+                                                            const Page& page) = 0;
+  /// What a job made of its result under that name. NotFound.
+  [[nodiscard]] virtual Result<std::string> artefact(std::string_view job_id, std::string_view name) = 0;
 
   // ---- idempotency
   /// The stored reply for a key younger than 24 h.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import http.client
+import os
 import random
 import signal
 import sqlite3
@@ -21,6 +22,9 @@ import samples
 from daemon import PROGRAM, Daemon, events
 
 MODELS = ["WN", "WN+GM"]
+LIVES = int(os.environ.get("DRIFTLAB_CRASH_LIVES", "30"))
+SEED = int(os.environ.get("DRIFTLAB_CRASH_SEED", "20261121"))
+LIVES_OF_A_DIRECTORY = 50  # the last look reads every recording that there is
 LOST = (http.client.HTTPException, OSError)  # what a client sees of a daemon that dies
 
 
@@ -150,38 +154,41 @@ class NamedPoints(CrashTest):
 
 
 class RandomMoments(CrashTest):
-    def test_ten_lives_of_one_directory(self) -> None:
-        """Clients upload and queue all the time; the daemon is killed after a random while, ten times over."""
-        generator = random.Random(20261121)
-        with tempfile.TemporaryDirectory(prefix="driftlab-crash-") as folder:
-            data = Path(folder) / "data"
-            told = Acknowledged()
-            for life in range(10):
-                with Daemon(data) as daemon:
-                    self.assertEqual(daemon.files("incoming"), [])
-                    stop = threading.Event()
+    def test_many_lives(self) -> None:
+        """Clients upload and queue all the time; the daemon is killed after a random while, life after life of one directory."""
+        generator = random.Random(SEED)
+        for first in range(0, LIVES, LIVES_OF_A_DIRECTORY):
+            with self.subTest(first=first), tempfile.TemporaryDirectory(prefix="driftlab-crash-") as folder:
+                self.live_and_die(Path(folder) / "data", range(first, min(first + LIVES_OF_A_DIRECTORY, LIVES)), generator)
 
-                    def client(number: int, daemon: Daemon = daemon, life: int = life) -> None:
-                        seed = 1000 * life + 100 * number
-                        while not stop.is_set():
-                            seed += 1
-                            try:
-                                told.finish(daemon, told.queue(daemon, told.upload(daemon, samples.gyro_csv(300, seed=seed))))
-                            except LOST:
-                                return
-
-                    threads = [threading.Thread(target=client, args=(number,)) for number in range(2)]
-                    for thread in threads:
-                        thread.start()
-                    time.sleep(generator.uniform(0.02, 0.5))
-                    daemon.kill()
-                    stop.set()
-                    for thread in threads:
-                        thread.join()
-            self.assertGreater(len(told.recordings), 10, "the clients did too little")
+    def live_and_die(self, data: Path, lives: range, generator: random.Random) -> None:
+        told = Acknowledged()
+        for life in lives:
             with Daemon(data) as daemon:
-                self.check(daemon, told)
-                self.check_at_rest(daemon)
+                self.assertEqual(daemon.files("incoming"), [])
+                stop = threading.Event()
+
+                def client(number: int, daemon: Daemon = daemon, life: int = life) -> None:
+                    seed = 1000 * life + 100 * number
+                    while not stop.is_set():
+                        seed += 1
+                        try:
+                            told.finish(daemon, told.queue(daemon, told.upload(daemon, samples.gyro_csv(300, seed=seed))))
+                        except LOST:
+                            return
+
+                threads = [threading.Thread(target=client, args=(number,)) for number in range(2)]
+                for thread in threads:
+                    thread.start()
+                time.sleep(generator.uniform(0.02, 0.5))
+                daemon.kill()
+                stop.set()
+                for thread in threads:
+                    thread.join()
+        self.assertGreater(len(told.recordings), len(lives) // 3, "the clients did too little")
+        with Daemon(data) as daemon:
+            self.check(daemon, told)
+            self.check_at_rest(daemon)
 
 
 if __name__ == "__main__":

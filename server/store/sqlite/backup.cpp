@@ -26,16 +26,16 @@ fs::path columns_below(const fs::path& root, const std::string& sha256) {
   return root / "columns" / sha256.substr(0, 2) / (sha256 + ".columns");
 }
 
-Result<std::unique_ptr<Connection>> open_to_read(const fs::path& directory) {
+Result<std::unique_ptr<SqliteConnection>> open_to_read(const fs::path& directory) {
   std::error_code none;
   if (!fs::exists(directory / kDatabase, none)) {
     return fail(ErrorCode::NotFound, "There is no driftlab database in " + directory.string() + ".",
                 {{"parameter", "data"}});
   }
-  return Connection::open(directory / kDatabase, Access::ReadOnly);
+  return SqliteConnection::open(directory / kDatabase, Access::ReadOnly);
 }
 
-Result<std::vector<std::string>> blobs_of(Connection& connection) {
+Result<std::vector<std::string>> blobs_of(SqliteConnection& connection) {
   std::vector<std::string> hashes;
   Statement statement = connection.prepare("SELECT sha256 FROM blobs ORDER BY sha256");
   while (true) {
@@ -50,7 +50,7 @@ Result<std::vector<std::string>> blobs_of(Connection& connection) {
   }
 }
 
-Status check_database(Connection& connection, std::vector<std::string>& faults) {
+Status check_database(SqliteConnection& connection, std::vector<std::string>& faults) {
   const auto integrity = connection.query_text("PRAGMA integrity_check(1)");
   if (!integrity) {
     return fail(integrity.error());
@@ -58,12 +58,12 @@ Status check_database(Connection& connection, std::vector<std::string>& faults) 
   if (integrity->value_or("") != "ok") {
     faults.push_back("The database is damaged: " + integrity->value_or("no answer") + ".");
   }
-  const auto orphan = connection.query_text("SELECT \"table\" FROM pragma_foreign_key_check LIMIT 1");
-  if (!orphan) {
-    return fail(orphan.error());
+  const auto found = connection.query_text("SELECT \"table\" FROM pragma_foreign_key_check LIMIT 1");
+  if (!found) {
+    return fail(found.error());
   }
-  if (*orphan) {
-    faults.push_back("A row of the table " + **orphan + " refers to one that is not there.");
+  if (const std::optional<std::string>& orphan = *found) {
+    faults.push_back("A row of the table " + *orphan + " refers to one that is not there.");
   }
   return {};
 }
@@ -187,6 +187,22 @@ class Construction {
   fs::path part_;
 };
 
+/// Checks the database that was copied to `part` and copies every blob that it names from the folder `from`.
+Status copy_what_is_named(const fs::path& from, const fs::path& part, StoreReport& report) {
+  auto copy = SqliteConnection::open(part / kDatabase, Access::ReadOnly);
+  if (!copy) {
+    return fail(copy.error());
+  }
+  if (Status whole = check_database(**copy, report.faults); !whole) {
+    return whole;
+  }
+  const auto hashes = blobs_of(**copy);
+  if (!hashes) {
+    return fail(hashes.error());
+  }
+  return copy_files(from, part, *hashes, report);
+}
+
 }  // namespace
 
 Result<StoreReport> check_data(const fs::path& data) {
@@ -223,21 +239,8 @@ Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const 
     return fail(done.error());
   }
   StoreReport report;
-  {
-    auto copy = Connection::open(construction.part() / kDatabase, Access::ReadOnly);
-    if (!copy) {
-      return fail(copy.error());
-    }
-    if (done = check_database(**copy, report.faults); !done) {
-      return fail(done.error());
-    }
-    const auto hashes = blobs_of(**copy);
-    if (!hashes) {
-      return fail(hashes.error());
-    }
-    if (done = copy_files(data, construction.part(), *hashes, report); !done) {
-      return fail(done.error());
-    }
+  if (done = copy_what_is_named(data, construction.part(), report); !done) {
+    return fail(done.error());
   }
   done = write_manifest(construction.part(), report, now);
   if (done) {
@@ -273,21 +276,8 @@ Result<StoreReport> restore(const fs::path& backup, const fs::path& data) {
     return fail(done.error());
   }
   StoreReport report;
-  {
-    auto copy = Connection::open(construction.part() / kDatabase, Access::ReadOnly);
-    if (!copy) {
-      return fail(copy.error());
-    }
-    if (done = check_database(**copy, report.faults); !done) {
-      return fail(done.error());
-    }
-    const auto hashes = blobs_of(**copy);
-    if (!hashes) {
-      return fail(hashes.error());
-    }
-    if (done = copy_files(backup, construction.part(), *hashes, report); !done) {
-      return fail(done.error());
-    }
+  if (done = copy_what_is_named(backup, construction.part(), report); !done) {
+    return fail(done.error());
   }
   if (done = construction.finish(); !done) {
     return fail(done.error());

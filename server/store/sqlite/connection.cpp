@@ -4,92 +4,86 @@
 
 namespace driftlab::server {
 
-Statement::Statement(Connection& connection, sqlite3_stmt* statement, int status)
-    : connection_(connection), statement_(statement), status_(status) {}
+namespace {
 
-Statement::~Statement() {
-  if (statement_ != nullptr) {
-    (void)sqlite3_reset(statement_);
-    (void)sqlite3_clear_bindings(statement_);
-  }
-}
-
-Statement& Statement::bind(std::int64_t value) {
-  if (status_ == SQLITE_OK) {
-    status_ = sqlite3_bind_int64(statement_, ++bound_, value);
-  }
-  return *this;
-}
-
-Statement& Statement::bind(double value) {
-  if (status_ == SQLITE_OK) {
-    status_ = sqlite3_bind_double(statement_, ++bound_, value);
-  }
-  return *this;
-}
-
-Statement& Statement::bind(std::string_view value) {
-  if (status_ == SQLITE_OK) {
-    // SQLite copies the text; an empty view may have no address, and a null address would bind NULL.
-    const char* address = value.empty() ? "" : value.data();
-    status_ = sqlite3_bind_text64(statement_, ++bound_, address, value.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
-  }
-  return *this;
-}
-
-Statement& Statement::bind_null() {
-  if (status_ == SQLITE_OK) {
-    status_ = sqlite3_bind_null(statement_, ++bound_);
-  }
-  return *this;
-}
-
-Result<bool> Statement::step() {
-  if (status_ != SQLITE_OK) {
-    return fail(connection_.error(status_));
-  }
-  const int status = sqlite3_step(statement_);
-  if (status == SQLITE_ROW) {
-    return true;
-  }
-  if (status == SQLITE_DONE) {
-    return false;
-  }
-  return fail(connection_.error(status));
-}
-
-Status Statement::run() {
-  while (true) {
-    const Result<bool> row = step();
-    if (!row) {
-      return fail(row.error());
-    }
-    if (!*row) {
-      return {};
+/// On loan from its connection; goes back (reset, bindings cleared) when this object dies.
+class SqliteStatement final : public EngineStatement {
+ public:
+  SqliteStatement(const SqliteConnection& connection, sqlite3_stmt* statement, int status)
+      : connection_(connection), statement_(statement), status_(status) {}
+  SqliteStatement(const SqliteStatement&) = delete;
+  SqliteStatement& operator=(const SqliteStatement&) = delete;
+  ~SqliteStatement() override {
+    if (statement_ != nullptr) {
+      (void)sqlite3_reset(statement_);
+      (void)sqlite3_clear_bindings(statement_);
     }
   }
-}
 
-std::string Statement::text(int column) const {
-  const unsigned char* bytes = sqlite3_column_text(statement_, column);
-  const int size = sqlite3_column_bytes(statement_, column);
-  return bytes == nullptr ? std::string()
-                          : std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
-}
-
-std::optional<std::int64_t> Statement::optional_integer(int column) const {
-  if (sqlite3_column_type(statement_, column) == SQLITE_NULL) {
-    return std::nullopt;
+  void bind_integer(std::int64_t value) override {
+    if (status_ == SQLITE_OK) {
+      status_ = sqlite3_bind_int64(statement_, ++bound_, value);
+    }
   }
-  return integer(column);
-}
+  void bind_real(double value) override {
+    if (status_ == SQLITE_OK) {
+      status_ = sqlite3_bind_double(statement_, ++bound_, value);
+    }
+  }
+  void bind_text(std::string_view value) override {
+    if (status_ == SQLITE_OK) {
+      // SQLite copies the text; an empty view may have no address, and a null address would bind NULL.
+      const char* address = value.empty() ? "" : value.data();
+      status_ = sqlite3_bind_text64(statement_, ++bound_, address, value.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+    }
+  }
+  void bind_null() override {
+    if (status_ == SQLITE_OK) {
+      status_ = sqlite3_bind_null(statement_, ++bound_);
+    }
+  }
 
-Result<std::unique_ptr<Connection>> Connection::open(const std::filesystem::path& path, Access access) {
+  [[nodiscard]] Result<bool> step() override {
+    if (status_ != SQLITE_OK) {
+      return fail(connection_.error(status_));
+    }
+    const int status = sqlite3_step(statement_);
+    if (status == SQLITE_ROW) {
+      return true;
+    }
+    if (status == SQLITE_DONE) {
+      return false;
+    }
+    return fail(connection_.error(status));
+  }
+
+  [[nodiscard]] std::int64_t integer(int column) const override { return sqlite3_column_int64(statement_, column); }
+  [[nodiscard]] double real(int column) const override { return sqlite3_column_double(statement_, column); }
+  [[nodiscard]] std::string text(int column) const override {
+    const unsigned char* bytes = sqlite3_column_text(statement_, column);
+    const int size = sqlite3_column_bytes(statement_, column);
+    return bytes == nullptr ? std::string()
+                            : std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
+  }
+  [[nodiscard]] bool is_null(int column) const override {
+    return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+  }
+
+ private:
+  const SqliteConnection& connection_;
+  sqlite3_stmt* statement_;
+  int status_;
+  int bound_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SqliteConnection>> SqliteConnection::open(const std::filesystem::path& path, Access access) {
   const int mode = access == Access::ReadOnly ? SQLITE_OPEN_READONLY : (SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   sqlite3* handle = nullptr;
   const int status =
       sqlite3_open_v2(path.c_str(), &handle, mode | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
-  std::unique_ptr<Connection> connection(new Connection(handle, path));
+  std::unique_ptr<SqliteConnection> connection(new SqliteConnection(handle, path));
   if (status != SQLITE_OK) {
     return fail(connection->error(status));
   }
@@ -99,7 +93,7 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::filesystem::path
   return connection;
 }
 
-Status Connection::configure(Access access) {
+Status SqliteConnection::configure(Access access) {
   (void)sqlite3_busy_timeout(handle_, 5000);
   (void)sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   (void)sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -121,18 +115,18 @@ Status Connection::configure(Access access) {
   return execute("PRAGMA synchronous=FULL;");
 }
 
-Connection::~Connection() {
+SqliteConnection::~SqliteConnection() {
   for (const auto& [sql, statement] : statements_) {
     (void)sqlite3_finalize(statement);
   }
   (void)sqlite3_close(handle_);
 }
 
-Statement Connection::prepare(std::string_view sql) {
+std::unique_ptr<EngineStatement> SqliteConnection::make_statement(std::string_view sql) {
   std::string text(sql);
   const auto kept = statements_.find(text);
   if (kept != statements_.end()) {
-    return {*this, kept->second, SQLITE_OK};
+    return std::make_unique<SqliteStatement>(*this, kept->second, SQLITE_OK);
   }
   sqlite3_stmt* statement = nullptr;
   const int status = sqlite3_prepare_v3(handle_, text.data(), static_cast<int>(text.size()), SQLITE_PREPARE_PERSISTENT,
@@ -140,33 +134,15 @@ Statement Connection::prepare(std::string_view sql) {
   if (status == SQLITE_OK) {
     statements_.emplace(std::move(text), statement);
   }
-  return {*this, statement, status};
+  return std::make_unique<SqliteStatement>(*this, statement, status);
 }
 
-Status Connection::execute(const std::string& sql) {
+Status SqliteConnection::execute(const std::string& sql) {
   const int status = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
   return status == SQLITE_OK ? Status{} : fail(error(status));
 }
 
-Result<std::optional<std::int64_t>> Connection::query_integer(std::string_view sql) {
-  Statement statement = prepare(sql);
-  const Result<bool> row = statement.step();
-  if (!row) {
-    return fail(row.error());
-  }
-  return *row ? std::optional(statement.integer(0)) : std::nullopt;
-}
-
-Result<std::optional<std::string>> Connection::query_text(std::string_view sql) {
-  Statement statement = prepare(sql);
-  const Result<bool> row = statement.step();
-  if (!row) {
-    return fail(row.error());
-  }
-  return *row ? std::optional(statement.text(0)) : std::nullopt;
-}
-
-Error Connection::error(int status) const {
+Error SqliteConnection::error(int status) const {
   const int primary = status & 0xFF;
   const std::string reason = handle_ == nullptr ? sqlite3_errstr(status) : sqlite3_errmsg(handle_);
   const std::vector<ErrorField> fields = {{"path", path_.string()}};

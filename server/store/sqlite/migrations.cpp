@@ -1,9 +1,6 @@
 #include "server/store/sqlite/migrations.hpp"
 
-#include "server/store/digest.hpp"
 #include "server/store/files.hpp"
-
-#include <algorithm>
 
 namespace driftlab::server {
 namespace {
@@ -18,17 +15,8 @@ CREATE TABLE IF NOT EXISTS schema_migrations (
 constexpr std::string_view kHasHistory =
     "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = 'schema_migrations'";
 constexpr std::string_view kTableCount = "SELECT count(*) FROM sqlite_schema";
-constexpr std::string_view kHistory = "SELECT number, name, sha256 FROM schema_migrations ORDER BY number";
-constexpr std::string_view kRemember =
-    "INSERT INTO schema_migrations (number, name, sha256, applied_at) VALUES (?, ?, ?, ?)";
-
-tl::unexpected<Error> refused(std::string message, int database_schema, int binary_schema) {
-  return fail(ErrorCode::Conflict, std::move(message),
-              {{"database_schema", std::to_string(database_schema)}, {"binary_schema", std::to_string(binary_schema)}});
-}
-
 /// A file of ours, or an empty one.
-Status require_own_file(Connection& connection) {
+Status require_own_file(SqliteConnection& connection) {
   const auto application = connection.query_integer("PRAGMA application_id");
   if (!application) {
     return fail(application.error());
@@ -43,68 +31,37 @@ Status require_own_file(Connection& connection) {
   return {};
 }
 
-/// Compares the history in the database with the binary's texts; gives the schema number.
-Result<int> verify_history(Connection& connection, const std::vector<Migration>& migrations) {
+/// The number of the database's schema; 0 for a new one.
+Result<int> schema_of(SqliteConnection& connection, const std::vector<Migration>& migrations) {
   const auto present = connection.query_integer(kHasHistory);
   if (!present) {
     return fail(present.error());
   }
-  if (present->value_or(0) == 0) {
-    return 0;
-  }
-  const int newest = static_cast<int>(migrations.size());
-  int schema = 0;
-  Statement history = connection.prepare(kHistory);
-  while (true) {
-    const Result<bool> row = history.step();
-    if (!row) {
-      return fail(row.error());
-    }
-    if (!*row) {
-      return schema;
-    }
-    const int number = static_cast<int>(history.integer(0));
-    if (number > newest) {
-      return refused("The database has schema " + std::to_string(number) + ", but this driftlab knows only " +
-                         std::to_string(newest) + "; use the newer driftlab that wrote it.",
-                     number, newest);
-    }
-    const Migration& known = migrations[static_cast<std::size_t>(number - 1)];
-    if (number != schema + 1 || history.text(2) != sha256_hex(known.sql)) {
-      auto error = refused("Migration " + std::to_string(number) + " (" + history.text(1) +
-                               ") in the database is not the one that this driftlab knows.",
-                           number, newest);
-      error.value().fields.push_back({"migration", std::to_string(number)});
-      return error;
-    }
-    schema = number;
-  }
+  return present->value_or(0) == 0 ? Result<int>(0) : verify_history(connection, migrations);
 }
 
 /// user_version repeats the newest migration, so that other tools see it without our table.
-Status require_user_version(Connection& connection, int schema, int newest) {
+Status require_user_version(SqliteConnection& connection, int schema, int newest) {
   const auto version = connection.query_integer("PRAGMA user_version");
   if (!version) {
     return fail(version.error());
   }
   if (version->value_or(0) != schema) {
-    return refused("The database says schema " + std::to_string(version->value_or(0)) + ", but its history ends at " +
-                       std::to_string(schema) + ".",
-                   static_cast<int>(version->value_or(0)), newest);
+    return refuse_schema("The database says schema " + std::to_string(version->value_or(0)) +
+                             ", but its history ends at " + std::to_string(schema) + ".",
+                         static_cast<int>(version->value_or(0)), newest);
   }
   return {};
 }
 
-Status apply_steps(Connection& connection, const Migration& migration, const Clock& clock) {
+Status apply_steps(SqliteConnection& connection, const Migration& migration, const Clock& clock) {
   if (Status history = connection.execute(std::string(kHistoryTable)); !history) {
     return history;
   }
   if (Status applied = connection.execute(migration.sql); !applied) {
     return applied;
   }
-  Status remembered = connection.prepare(kRemember)
-                          .bind(migration.number, migration.name, sha256_hex(migration.sql), clock.now())
-                          .run();
+  Status remembered = remember_migration(connection, migration, clock.now());
   if (!remembered) {
     return remembered;
   }
@@ -120,7 +77,7 @@ Status apply_steps(Connection& connection, const Migration& migration, const Clo
                             "; PRAGMA application_id=" + std::to_string(kApplicationId));
 }
 
-Status apply(Connection& connection, const Migration& migration, const Clock& clock) {
+Status apply(SqliteConnection& connection, const Migration& migration, const Clock& clock) {
   Status status = connection.execute("BEGIN IMMEDIATE");
   if (status) {
     status = apply_steps(connection, migration, clock);
@@ -142,7 +99,7 @@ Status apply(Connection& connection, const Migration& migration, const Clock& cl
 
 }  // namespace
 
-Status copy_database(Connection& connection, const std::filesystem::path& target) {
+Status copy_database(SqliteConnection& connection, const std::filesystem::path& target) {
   std::filesystem::path temporary = target;
   temporary += ".part";
   if (Status removed = remove_file(temporary); !removed) {
@@ -161,7 +118,7 @@ Status copy_database(Connection& connection, const std::filesystem::path& target
   return copied;
 }
 
-Status check_integrity(Connection& connection) {
+Status check_integrity(SqliteConnection& connection) {
   const auto finding = connection.query_text("PRAGMA quick_check(1)");
   if (!finding) {
     return fail(finding.error());
@@ -172,13 +129,13 @@ Status check_integrity(Connection& connection) {
   return {};
 }
 
-Result<MigrationOutcome> migrate(Connection& connection, const std::vector<Migration>& migrations,
+Result<MigrationOutcome> migrate(SqliteConnection& connection, const std::vector<Migration>& migrations,
                                  const std::filesystem::path& backup_directory, const Clock& clock) {
   if (Status own = require_own_file(connection); !own) {
     return fail(own.error());
   }
   const int newest = static_cast<int>(migrations.size());
-  const Result<int> schema = verify_history(connection, migrations);
+  const Result<int> schema = schema_of(connection, migrations);
   if (!schema) {
     return fail(schema.error());
   }

@@ -5,6 +5,7 @@
 /// binary's texts, or that has migrations the binary does not know, is refused before anything in it is changed.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
+#include "server/store/sql/migration.hpp"
 #include "server/store/sqlite/connection.hpp"
 
 #include <filesystem>
@@ -14,13 +15,7 @@
 
 namespace driftlab::server {
 
-struct Migration {
-  int number = 0;  ///< from 1, without holes
-  std::string name;
-  std::string sql;
-};
-
-/// migrations/sqlite/NNNN_name.sql in order (made by embed_migrations.cmake).
+/// migrations/sqlite/NNNN_name.sql in order (made by sql/embed_migrations.cmake).
 [[nodiscard]] const std::vector<Migration>& embedded_migrations();
 
 /// "drft": marks a file as driftlab's, in the header of the database file.
@@ -36,14 +31,14 @@ struct MigrationOutcome {
 /// `backup_directory` where there is something to lose. To be called with the directory's lock held.
 /// Errors: Conflict (fields "migration", "database_schema", "binary_schema": changed text, newer schema, foreign file);
 /// DiskFull; Io; Internal (a migration that fails, and then leaves the database as it was).
-[[nodiscard]] Result<MigrationOutcome> migrate(Connection& connection, const std::vector<Migration>& migrations,
+[[nodiscard]] Result<MigrationOutcome> migrate(SqliteConnection& connection, const std::vector<Migration>& migrations,
                                                const std::filesystem::path& backup_directory, const Clock& clock);
 
 /// `VACUUM INTO` a temporary file, flush, rename to `target`. Reads through `connection`, changes nothing. Errors:
 /// DiskFull, Io.
-[[nodiscard]] Status copy_database(Connection& connection, const std::filesystem::path& target);
+[[nodiscard]] Status copy_database(SqliteConnection& connection, const std::filesystem::path& target);
 
 /// `PRAGMA quick_check`. Errors: Io, with the first line of its findings.
-[[nodiscard]] Status check_integrity(Connection& connection);
+[[nodiscard]] Status check_integrity(SqliteConnection& connection);
 
 }  // namespace driftlab::server

@@ -5,7 +5,7 @@ namespace driftlab::server {
 Result<std::unique_ptr<ReaderPool>> ReaderPool::open(const std::filesystem::path& path, int readers) {
   auto pool = std::make_unique<ReaderPool>();
   for (int i = 0; i < readers; ++i) {
-    Result<std::unique_ptr<Connection>> connection = Connection::open(path, Access::ReadOnly);
+    Result<std::unique_ptr<SqliteConnection>> connection = SqliteConnection::open(path, Access::ReadOnly);
     if (!connection) {
       return fail(connection.error());
     }
@@ -14,15 +14,15 @@ Result<std::unique_ptr<ReaderPool>> ReaderPool::open(const std::filesystem::path
   return pool;
 }
 
-std::unique_ptr<Connection> ReaderPool::take() {
+std::unique_ptr<SqliteConnection> ReaderPool::take() {
   std::unique_lock<std::mutex> guard(mutex_);
   returned_.wait(guard, [this] { return !idle_.empty(); });
-  std::unique_ptr<Connection> connection = std::move(idle_.back());
+  std::unique_ptr<SqliteConnection> connection = std::move(idle_.back());
   idle_.pop_back();
   return connection;
 }
 
-void ReaderPool::give_back(std::unique_ptr<Connection> connection) {
+void ReaderPool::give_back(std::unique_ptr<SqliteConnection> connection) {
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     idle_.push_back(std::move(connection));

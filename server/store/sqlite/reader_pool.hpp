@@ -21,7 +21,7 @@ class ReaderPool {
   /// free. Thread safe; not to be called from within `work`.
   template <class Work>
   [[nodiscard]] auto read(Work work) {
-    using Outcome = std::invoke_result_t<Work, Connection&>;
+    using Outcome = std::invoke_result_t<Work, SqliteConnection&>;
     const Loan loan(*this);
     if (Status begun = loan->prepare("BEGIN").run(); !begun) {
       return Outcome(fail(std::move(begun.error())));
@@ -48,20 +48,20 @@ class ReaderPool {
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     ~Loan() { pool_.give_back(std::move(connection_)); }
-    [[nodiscard]] Connection* operator->() const { return connection_.get(); }
-    [[nodiscard]] Connection& operator*() const { return *connection_; }
+    [[nodiscard]] SqliteConnection* operator->() const { return connection_.get(); }
+    [[nodiscard]] SqliteConnection& operator*() const { return *connection_; }
 
    private:
     ReaderPool& pool_;
-    std::unique_ptr<Connection> connection_;
+    std::unique_ptr<SqliteConnection> connection_;
   };
 
-  [[nodiscard]] std::unique_ptr<Connection> take();
-  void give_back(std::unique_ptr<Connection> connection);
+  [[nodiscard]] std::unique_ptr<SqliteConnection> take();
+  void give_back(std::unique_ptr<SqliteConnection> connection);
 
   std::mutex mutex_;
   std::condition_variable returned_;
-  std::vector<std::unique_ptr<Connection>> idle_;
+  std::vector<std::unique_ptr<SqliteConnection>> idle_;
 };
 
 }  // namespace driftlab::server

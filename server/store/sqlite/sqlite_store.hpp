@@ -8,20 +8,20 @@
 /// SQLite 3.7.0 to 3.51.2 can damage a database when two connections write or checkpoint at the same moment. Here
 /// exactly one connection can: the writer's. Readers are opened read-only, and the lock keeps a second daemon out.
 #include "core/signal/result.hpp"
-#include "server/store/access_store.hpp"
 #include "server/store/clock.hpp"
+#include "server/store/sql/sql_store.hpp"
 #include "server/store/sqlite/migrations.hpp"
-#include "server/store/store.hpp"
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace driftlab::server {
+
+class SqliteDatabase;
 
 struct SqliteOptions {
   int readers = 4;
@@ -32,7 +32,7 @@ struct SqliteOptions {
   /// Other migrations than the embedded ones, for tests.
   std::optional<std::vector<Migration>> migrations;
   /// Told of every row of the audit log once it is durable. May be empty.
-  std::function<void(const AuditRow&)> audited;
+  AuditListener audited;
 };
 
 /// What opening found, for the log.
@@ -45,13 +45,16 @@ struct SqliteFacts {
   std::filesystem::path database;
 };
 
-class SqliteStore : public Store {
+class SqliteStore final : public SqlStore {
  public:
-  [[nodiscard]] virtual const SqliteFacts& facts() const = 0;
-  /// Tokens, sessions and the audit log. Lives as long as the store.
-  [[nodiscard]] virtual AccessStore& access() = 0;
+  SqliteStore(std::unique_ptr<SqliteDatabase> database, SqliteFacts facts, std::uint64_t jitter_seed,
+              AuditListener audited);
+  [[nodiscard]] const SqliteFacts& facts() const { return facts_; }
   /// A consistent copy of the database while it is in use (VACUUM INTO from a reader). Errors: DiskFull, Io.
-  [[nodiscard]] virtual Status copy_to(const std::filesystem::path& target) = 0;
+  [[nodiscard]] Status copy_to(const std::filesystem::path& target);
+
+ private:
+  SqliteFacts facts_;
 };
 
 /// Opens the store in `directory`, made if absent: takes the lock, refuses network file systems, checks the database's

@@ -12,7 +12,7 @@ constexpr std::size_t kBatchSize = 64;
 constexpr std::chrono::milliseconds kBatchTime{5};
 
 /// No exception may end the writer's thread.
-Status guarded(const std::function<Status(Connection&)>& work, Connection& connection) {
+Status guarded(const std::function<Status(SqliteConnection&)>& work, SqliteConnection& connection) {
   try {
     return work(connection);
   } catch (const std::exception& exception) {
@@ -22,7 +22,7 @@ Status guarded(const std::function<Status(Connection&)>& work, Connection& conne
 
 }  // namespace
 
-Writer::Writer(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {
+Writer::Writer(std::unique_ptr<SqliteConnection> connection) : connection_(std::move(connection)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -35,7 +35,7 @@ Writer::~Writer() {
   thread_.join();
 }
 
-Status Writer::submit(std::function<Status(Connection&)> work) {
+Status Writer::submit(std::function<Status(SqliteConnection&)> work) {
   Task task{std::move(work), {}, false};
   std::unique_lock<std::mutex> guard(mutex_);
   room_.wait(guard, [this] { return queue_.size() < kQueueSize; });
@@ -71,7 +71,12 @@ void Writer::announce(const std::vector<Task*>& tasks) {
 
 void Writer::run() {
   while (Task* first = next(true)) {
-    announce(run_batch(first));
+    const std::int64_t before = connection_->total_changes();
+    const std::vector<Task*> batch = run_batch(first);
+    if (connection_->total_changes() != before) {
+      changes_.fetch_add(1, std::memory_order_acq_rel);
+    }
+    announce(batch);
   }
 }
 

@@ -9,7 +9,9 @@
 #include "core/signal/result.hpp"
 #include "server/store/sqlite/connection.hpp"
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -22,7 +24,7 @@ namespace driftlab::server {
 
 class Writer {
  public:
-  explicit Writer(std::unique_ptr<Connection> connection);
+  explicit Writer(std::unique_ptr<SqliteConnection> connection);
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   /// Finishes what is queued, then closes the connection.
@@ -32,9 +34,9 @@ class Writer {
   /// Blocks while the queue is full. Thread safe; not to be called from within `work`.
   template <class Work>
   [[nodiscard]] auto write(Work work) {
-    using Outcome = std::invoke_result_t<Work, Connection&>;
+    using Outcome = std::invoke_result_t<Work, SqliteConnection&>;
     Outcome outcome = fail(ErrorCode::Internal, "The write did not run.");
-    Status committed = submit([&](Connection& connection) -> Status {
+    Status committed = submit([&](SqliteConnection& connection) -> Status {
       outcome = work(connection);
       if (!outcome) {
         return fail(outcome.error());
@@ -47,14 +49,17 @@ class Writer {
     return outcome;
   }
 
+  /// Grows with every transaction that changed a row, before the outcome of its work is told.
+  [[nodiscard]] std::uint64_t changes() const { return changes_.load(std::memory_order_acquire); }
+
  private:
   struct Task {
-    std::function<Status(Connection&)> work;
+    std::function<Status(SqliteConnection&)> work;
     Status outcome;
     bool done = false;
   };
 
-  [[nodiscard]] Status submit(std::function<Status(Connection&)> work);
+  [[nodiscard]] Status submit(std::function<Status(SqliteConnection&)> work);
   void run();
   [[nodiscard]] Task* next(bool wait);
   [[nodiscard]] std::vector<Task*> run_batch(Task* first);
@@ -62,13 +67,14 @@ class Writer {
   void run_alone(Task& task);
   void announce(const std::vector<Task*>& tasks);
 
-  std::unique_ptr<Connection> connection_;
+  std::unique_ptr<SqliteConnection> connection_;
   std::mutex mutex_;
   std::condition_variable work_queued_;
   std::condition_variable work_done_;
   std::condition_variable room_;
   std::deque<Task*> queue_;
   bool closing_ = false;
+  std::atomic<std::uint64_t> changes_{1};
   std::thread thread_;
 };
 

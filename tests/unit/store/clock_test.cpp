@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string>
+#include <utility>
 
 namespace driftlab::server {
 namespace {
@@ -29,6 +31,22 @@ TEST(Ids, SortByTimeAndDiffer) {
     ids.insert(make_id("rec", 5));
   }
   EXPECT_EQ(ids.size(), 1000U);
+}
+
+TEST(Ids, SortInTheOrderTheyWereMadeInWithinAMillisecondToo) {
+  // Two devices posted within one millisecond were listed in the order of their random bits.
+  std::string last = make_id("dev", 77'000);
+  for (int i = 0; i < 10'000; ++i) {
+    std::string next = make_id("dev", 77'000 + i % 1000);
+    ASSERT_LT(last, next);
+    last = std::move(next);
+  }
+  // Steps are random, so that an id does not tell the next one: over 1,000 of them every last character occurs.
+  std::set<char> ends;
+  for (int i = 0; i < 1000; ++i) {
+    ends.insert(make_id("dev", 78'000).back());
+  }
+  EXPECT_EQ(ends.size(), 32U);
 }
 
 TEST(Ids, HoldTheMillisecondsInTheirFirstTenCharacters) {

@@ -127,6 +127,17 @@ TEST(Migrations, FromEachReleasedSchemaWithRowsNothingIsLost) {
   expect_filled(**next, device);
 }
 
+/// Statements that make a blob, its recording and a channel's result in a store of before pooling.
+std::string recording_with_result(const std::string& name) {
+  const std::string hash = hash_of(name);
+  const std::string recording = "'rec_" + name + "', ";
+  return "INSERT INTO blobs VALUES ('" + hash + "', 1, 'csv', 'none', 1, '[]', '[]', 0);" +
+         "INSERT INTO recordings VALUES (" + recording + "'dev_1', '" + hash + "', 1, '{}', 'static', '{}', 0, 0);" +
+         "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
+         "axis, condition, document_json, settings_json, created_at) VALUES ('chr_" +
+         name + "', 'job_1', 'dev_1', " + recording + "1, 'gz', 'angular_rate', 'z', 'static', '{}', '{}', 0)";
+}
+
 TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   // Until schema 4 a characterise job pooled what it saw of its neighbours, so that figures depended on who ended
   // first.
@@ -134,20 +145,14 @@ TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 4);
   ASSERT_TRUE(open_with(directory.path(), then));
   {
-    const auto old = Connection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
     ASSERT_TRUE((*old)->execute(
         "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
         "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
         "finished_at) VALUES ('job_1', 'characterise', 'succeeded', 5, 5, 'key', '{}', 0, 0, 0);"
         "INSERT INTO job_results VALUES ('job_1', '{}', 0)"));
     for (const char* const n : {"1", "2"}) {
-      const std::string rec = std::string("'rec_") + n + "', ";
-      ASSERT_TRUE((*old)->execute(
-          "INSERT INTO blobs VALUES ('" + hash_of(n) + "', 1, 'csv', 'none', 1, '[]', '[]', 0);" +
-          "INSERT INTO recordings VALUES (" + rec + "'dev_1', '" + hash_of(n) + "', 1, '{}', 'static', '{}', 0, 0);" +
-          "INSERT INTO channel_results (id, job_id, device_id, recording_id, recording_revision, channel, quantity, "
-          "axis, condition, document_json, settings_json, created_at) VALUES ('chr_" +
-          n + "', 'job_1', 'dev_1', " + rec + "1, 'gz', 'angular_rate', 'z', 'static', '{}', '{}', 0)"));
+      ASSERT_TRUE((*old)->execute(recording_with_result(n)));
     }
     ASSERT_TRUE((*old)->execute(
         "INSERT INTO pooled_results VALUES ('dev_1', 'angular_rate', 'z', 'job_1', '{\"of\":\"one of two\"}', 0)"));
@@ -210,7 +215,7 @@ TEST(Migrations, AChangedTextOfAnAppliedMigrationIsRefused) {
 TEST(Migrations, ATamperedHistoryIsRefused) {
   const TemporaryDirectory directory;
   const auto tamper = [&](const char* sql) {
-    const auto connection = Connection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    const auto connection = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
     ASSERT_TRUE((*connection)->execute(sql));
   };
   ASSERT_TRUE(open_with(directory.path(), embedded_migrations()));
@@ -225,7 +230,7 @@ TEST(Migrations, ATamperedHistoryIsRefused) {
 TEST(Migrations, AForeignDatabaseIsRefused) {
   const TemporaryDirectory directory;
   {
-    const auto connection = Connection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    const auto connection = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
     ASSERT_TRUE((*connection)->execute("CREATE TABLE theirs (a); INSERT INTO theirs VALUES (1)"));
   }
   const auto refused = open_with(directory.path(), embedded_migrations());
@@ -290,7 +295,7 @@ TEST(JobsTable, RefusesRowsThatTheDiagramDoesNotHave) {
   const auto store = open_with(directory.path(), embedded_migrations());
   ASSERT_TRUE(store);
   add_job(**store, "key");
-  const auto connection = Connection::open((*store)->facts().database, Access::ReadWrite);
+  const auto connection = SqliteConnection::open((*store)->facts().database, Access::ReadWrite);
   for (const char* change :
        {"state = 'paused'", "state = 'succeeded'", "finished_at = 1", "state = 'running'", "lease_expires_at = 1",
         "progress = 1.5", "progress = -0.1", "priority = 10", "cancel_requested = 1", "failures = 6", "kind = ''",
@@ -304,7 +309,7 @@ TEST(JobsTable, HoldsOneLiveJobForEachKey) {
   const TemporaryDirectory directory;
   const auto store = open_with(directory.path(), embedded_migrations());
   add_job(**store, "key");
-  const auto connection = Connection::open((*store)->facts().database, Access::ReadWrite);
+  const auto connection = SqliteConnection::open((*store)->facts().database, Access::ReadWrite);
   const std::string copy =
       "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
       "finished_at) SELECT 'copy', kind, ";

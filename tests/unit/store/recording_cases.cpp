@@ -183,5 +183,54 @@ TEST_P(RecordingStore, ABlobRowGoesOnlyWhenNobodyNamesIt) {
   EXPECT_FALSE(store().blob(hash_of("a"))->has_value());
 }
 
+TEST_P(RecordingStore, TagsChangeWithoutARevision) {
+  const Device device = add_device(store());
+  const Recording first = add_recording(store(), device, "one");
+  const Recording other = add_recording(store(), device, "two");
+  Recording tagged = first;
+  tagged.tags_json = R"({"labels":{"board":"b","firmware":"1.5.0"}})";
+  const auto changed = store().revise_recording(tagged, first.revision);
+  ASSERT_TRUE(changed);
+  EXPECT_EQ(changed->revision, first.revision) << "results name the revision, and stay";
+  EXPECT_EQ(changed->tags_revision, 1);
+  EXPECT_EQ(store().revise_recording(tagged, first.revision).error().code, ErrorCode::Conflict) << "as it was read";
+  const auto having = [&](std::vector<std::string> labels) {
+    RecordingFilter filter;
+    filter.labels = std::move(labels);
+    std::vector<std::string> ids;
+    const auto found = store().recordings(filter, {});
+    for (const Recording& recording : found ? *found : std::vector<Recording>{}) {
+      ids.push_back(recording.id);
+    }
+    return ids;
+  };
+  EXPECT_EQ(having({"firmware=1.5.0"}), std::vector{first.id});
+  EXPECT_EQ(having({"firmware=1.5.0", "board=b"}), std::vector{first.id});
+  EXPECT_EQ(having({"firmware=1.5"}), std::vector<std::string>{});
+  EXPECT_EQ(having({"firmware=1.5.0", "board=c"}), std::vector<std::string>{});
+  Recording both = *changed;
+  both.tags_json = "{}";
+  both.metadata_json = R"({"trim":{}})";
+  const auto revised = store().revise_recording(both, changed->revision);
+  ASSERT_TRUE(revised);
+  EXPECT_EQ(revised->revision, first.revision + 1);
+  EXPECT_EQ(revised->tags_revision, 2);
+  EXPECT_EQ(having({}).size(), 2U);
+}
+
+TEST_P(RecordingStore, AnchorsAreAHistoryAndGoWithTheirDevice) {
+  const Device device = add_device(store());
+  for (const char* const label : {"firmware=1.0", "firmware=1.1"}) {
+    clock_.advance(kSecond);
+    ASSERT_TRUE(store().add_anchor({"", device.id, label, "why", 0}));
+  }
+  const auto all = store().anchors(device.id, {});
+  ASSERT_EQ(all->size(), 2U);
+  EXPECT_TRUE(all->front().id.starts_with("anc_"));
+  EXPECT_EQ(store().anchors(device.id, {.after = "", .limit = 1, .newest_first = true})->front().label, "firmware=1.1");
+  ASSERT_TRUE(store().remove_device(device.id, device.revision));
+  EXPECT_TRUE(store().anchors(std::nullopt, {})->empty());
+}
+
 }  // namespace
 }  // namespace driftlab::server

@@ -19,7 +19,7 @@ Result<std::unique_ptr<SqliteStore>> open_in(const std::filesystem::path& direct
   return open_sqlite_store(directory, clock, std::move(options));
 }
 
-std::int64_t pragma(Connection& connection, const std::string& name) {
+std::int64_t pragma(SqliteConnection& connection, const std::string& name) {
   return connection.query_integer("PRAGMA " + name)->value_or(-1);
 }
 
@@ -60,15 +60,15 @@ TEST(SqliteStore, ConnectionsHaveTheSettingsOfTheHouse) {
   const TemporaryDirectory directory;
   const FakeClock clock;
   const auto store = open_in(directory.path(), clock);
-  const auto writer = Connection::open((*store)->facts().database, Access::ReadWrite);
+  const auto writer = SqliteConnection::open((*store)->facts().database, Access::ReadWrite);
   ASSERT_TRUE(writer);
   EXPECT_EQ(*(*writer)->query_text("PRAGMA journal_mode"), "wal");
   EXPECT_EQ(pragma(**writer, "synchronous"), 2);
   EXPECT_EQ(pragma(**writer, "application_id"), kApplicationId);
   EXPECT_EQ(pragma(**writer, "user_version"), (*store)->facts().schema);
-  const auto reader = Connection::open((*store)->facts().database, Access::ReadOnly);
+  const auto reader = SqliteConnection::open((*store)->facts().database, Access::ReadOnly);
   ASSERT_TRUE(reader);
-  for (Connection* connection : {writer->get(), reader->get()}) {
+  for (SqliteConnection* connection : {writer->get(), reader->get()}) {
     EXPECT_EQ(pragma(*connection, "foreign_keys"), 1);
     EXPECT_EQ(pragma(*connection, "busy_timeout"), 5000);
     EXPECT_EQ(pragma(*connection, "trusted_schema"), 0);
@@ -84,7 +84,7 @@ TEST(SqliteStore, ReadersCanNeitherWriteNorCheckpoint) {
   const FakeClock clock;
   const auto store = open_in(directory.path(), clock);
   add_device(**store);
-  const auto reader = Connection::open((*store)->facts().database, Access::ReadOnly);
+  const auto reader = SqliteConnection::open((*store)->facts().database, Access::ReadOnly);
   ASSERT_TRUE(reader);
   EXPECT_EQ(*(*reader)->query_integer("SELECT count(*) FROM devices"), 1);
   for (const char* sql : {"DELETE FROM devices", "CREATE TABLE t (a)", "PRAGMA user_version=9"}) {
@@ -248,28 +248,28 @@ TEST(SqliteStore, AKillInsideTheFinishLeavesTheJobUnfinishedAndItsResultUnwritte
 
 TEST(SqliteWriter, AThrowingWriteIsAnErrorAndTheWriterGoesOn) {
   const TemporaryDirectory directory;
-  auto connection = Connection::open(directory.path() / "t.db", Access::ReadWrite);
+  auto connection = SqliteConnection::open(directory.path() / "t.db", Access::ReadWrite);
   ASSERT_TRUE((*connection)->execute("CREATE TABLE t (a)"));
   Writer writer(std::move(*connection));
-  const auto thrown = writer.write([](Connection& c) -> Result<int> {
+  const auto thrown = writer.write([](SqliteConnection& c) -> Result<int> {
     (void)c.execute("INSERT INTO t VALUES (1)");
     throw std::runtime_error("boom");
   });
   ASSERT_FALSE(thrown);
   EXPECT_EQ(thrown.error().code, ErrorCode::Internal);
-  const auto rows = writer.write([](Connection& c) { return c.query_integer("SELECT count(*) FROM t"); });
+  const auto rows = writer.write([](SqliteConnection& c) { return c.query_integer("SELECT count(*) FROM t"); });
   EXPECT_EQ(rows->value_or(-1), 0);
 }
 
 TEST(SqliteWriter, AWriteThatEndsItsTransactionIsRefused) {
   const TemporaryDirectory directory;
-  auto connection = Connection::open(directory.path() / "t.db", Access::ReadWrite);
+  auto connection = SqliteConnection::open(directory.path() / "t.db", Access::ReadWrite);
   ASSERT_TRUE((*connection)->execute("CREATE TABLE t (a)"));
   Writer writer(std::move(*connection));
   const auto ended =
-      writer.write([](Connection& c) -> Status { return c.execute("INSERT INTO t VALUES (1); ROLLBACK"); });
+      writer.write([](SqliteConnection& c) -> Status { return c.execute("INSERT INTO t VALUES (1); ROLLBACK"); });
   EXPECT_FALSE(ended);
-  EXPECT_TRUE(writer.write([](Connection& c) -> Status { return c.execute("INSERT INTO t VALUES (2)"); }));
+  EXPECT_TRUE(writer.write([](SqliteConnection& c) -> Status { return c.execute("INSERT INTO t VALUES (2)"); }));
 }
 
 }  // namespace

@@ -41,6 +41,24 @@ TEST_P(StudyStore, StudiesAreListedByDevice) {
   EXPECT_EQ(store().studies(two.id, {})->size(), 1U);
 }
 
+TEST_P(StudyStore, DrivesAreKeptOnceAndListedByDevice) {
+  const Device one = add_device(store(), "one");
+  const Device two = add_device(store(), "two");
+  const auto add = [&](const Device& device, const std::string& key) {
+    return store().add_drive({"", device.id, key, R"({"id":"town"})", 0});
+  };
+  const auto first = add(one, "a");
+  ASSERT_TRUE(first && first->created);
+  EXPECT_TRUE(first->drive.id.starts_with("drv_"));
+  EXPECT_EQ(first->drive.created_at, clock_.now());
+  EXPECT_FALSE(add(one, "a")->created);
+  ASSERT_TRUE(add(two, "b")->created);
+  EXPECT_EQ(store().drive(first->drive.id)->document_json, R"({"id":"town"})");
+  EXPECT_EQ(store().drive("drv_nobody").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(store().drives(std::nullopt, {})->size(), 2U);
+  EXPECT_EQ(store().drives(one.id, {})->size(), 1U);
+}
+
 TEST_P(StudyStore, CalibrationsAreKeptOnceAndListedByDevice) {
   const Device one = add_device(store(), "one");
   const Device two = add_device(store(), "two");

@@ -1,0 +1,29 @@
+#pragma once
+/// Opens the store that the settings name: the SQLite file in --data, or a PostgreSQL database (--store).
+#include "core/signal/result.hpp"
+#include "schema/json/json.hpp"
+#include "server/settings.hpp"
+#include "server/store/clock.hpp"
+#include "server/store/files.hpp"
+#include "server/store/sql/sql_store.hpp"
+
+#include <memory>
+
+namespace driftlab::server {
+
+struct OpenedStore {
+  FileHandle lock;  ///< of the directory, where the store itself does not hold it
+  std::unique_ptr<SqlStore> store;
+  Json facts;  ///< what opening found, for the log
+};
+
+/// Locks the directory and opens the store. Rows and recordings belong together: a directory whose recordings belong to
+/// another store is refused, for the sweeper would take them for rubbish.
+/// Errors: those of open_sqlite_store or open_postgres_store; Conflict (directory and store do not belong together);
+/// InvalidArgument (a driftlab that was built without PostgreSQL).
+[[nodiscard]] Result<OpenedStore> open_store(const Settings& settings, const Clock& clock, AuditListener audited = {});
+
+/// The store, if it was made before: a command makes no new one by a typing error. Error also: NotFound.
+[[nodiscard]] Result<OpenedStore> open_existing_store(const Settings& settings, const Clock& clock);
+
+}  // namespace driftlab::server

@@ -1,0 +1,65 @@
+#pragma once
+/// Transactions of a database engine: where the store hands its work.
+#include "core/signal/result.hpp"
+#include "server/store/clock.hpp"
+#include "server/store/sql/connection.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <type_traits>
+#include <utility>
+
+namespace driftlab::server {
+
+/// What a write needs of its transaction beside being whole and durable.
+enum class WriteKind {
+  Serial,   ///< reads what it decides by: as if no other write ran meanwhile
+  Audited,  ///< the same, and adds to the audit log: such writes come one after the other
+  Fenced,   ///< each statement decides by the row that it changes
+};
+
+class Database {
+ public:
+  Database() = default;
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  virtual ~Database() = default;
+
+  /// Runs `work(connection)`, which returns a `Result`, in a transaction and returns its outcome once that is durable.
+  /// The work may run several times; what it did before is undone then. Thread safe; not to be called from within
+  /// `work`.
+  template <class Work>
+  [[nodiscard]] auto write(WriteKind kind, Work work) {
+    return run<Work>([&](const std::function<Status(Connection&)>& told) { return run_write(kind, told); }, work);
+  }
+
+  /// Runs `work(connection)`, which returns a `Result`, over one snapshot of the database. Thread safe; not to be
+  /// called from within `work`.
+  template <class Work>
+  [[nodiscard]] auto read(Work work) {
+    return run<Work>([&](const std::function<Status(Connection&)>& told) { return run_read(told); }, work);
+  }
+
+  /// The time of the transaction that the connection is in.
+  [[nodiscard]] virtual UtcMicros now(const Connection& connection) const = 0;
+  /// Store::changes.
+  [[nodiscard]] virtual std::uint64_t changes() const = 0;
+
+ protected:
+  [[nodiscard]] virtual Status run_write(WriteKind kind, const std::function<Status(Connection&)>& work) = 0;
+  [[nodiscard]] virtual Status run_read(const std::function<Status(Connection&)>& work) = 0;
+
+ private:
+  template <class Work, class Runner>
+  [[nodiscard]] static auto run(const Runner& runner, Work& work) {
+    using Outcome = std::invoke_result_t<Work&, Connection&>;
+    Outcome outcome = fail(ErrorCode::Internal, "The transaction did not run.");
+    Status ended = runner([&](Connection& connection) -> Status {
+      outcome = work(connection);
+      return outcome ? Status{} : fail(outcome.error());
+    });
+    return ended ? outcome : Outcome(fail(std::move(ended.error())));
+  }
+};
+
+}  // namespace driftlab::server

@@ -1,0 +1,35 @@
+# Writes OUTPUT, a C++ file that holds every FOLDER/NNNN_name.sql as text: what FUNCTION, declared in HEADER, returns. Run by the
+# build when a migration changes.
+file(GLOB migrations ${FOLDER}/*.sql)
+list(SORT migrations)
+set(entries "")
+set(expected 1)
+foreach(path ${migrations})
+  get_filename_component(file ${path} NAME_WE)
+  if(NOT file MATCHES "^([0-9][0-9][0-9][0-9])_([a-z0-9_]+)$")
+    message(FATAL_ERROR "${path}: a migration is called NNNN_name.sql")
+  endif()
+  set(digits ${CMAKE_MATCH_1})
+  set(name ${CMAKE_MATCH_2})
+  string(REGEX REPLACE "^0+" "" number ${digits})
+  if(NOT number EQUAL expected)
+    message(FATAL_ERROR "${path}: migration ${expected} is missing")
+  endif()
+  math(EXPR expected "${expected} + 1")
+  file(READ ${path} text)
+  # Square brackets and semicolons mean something to CMake lists, so the text is appended and never listed.
+  string(APPEND entries "    {${number}, \"${name}\", R\"driftlab_sql(${text})driftlab_sql\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "// Made by server/store/sql/embed_migrations.cmake.
+#include \"${HEADER}\"
+
+namespace driftlab::server {
+
+const std::vector<Migration>& ${FUNCTION}() {
+  static const std::vector<Migration> kMigrations = {
+${entries}  };
+  return kMigrations;
+}
+
+}  // namespace driftlab::server
+")

@@ -1,0 +1,185 @@
+#include "server/store/retry_policy.hpp"
+#include "server/store/sql/job_rows.hpp"
+#include "server/store/sql/webhook_tables.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <functional>
+
+namespace driftlab::server::tables {
+namespace {
+
+constexpr std::string_view kForgetEnded =
+    "DELETE FROM jobs WHERE state IN ('failed', 'cancelled', 'dead') AND finished_at < ?";
+
+constexpr std::string_view kSelect = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs";
+constexpr std::string_view kById = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE id = ?";
+constexpr std::string_view kEqualJob =
+    "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
+constexpr std::string_view kInsert =
+    "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
+    "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7)";
+/// ?1 texts of the request as a list, ?2 the job. Whatever of them is the id of something that a device has names that
+/// device.
+constexpr std::string_view kNoteDevices =
+    "WITH named (id) AS (SELECT value FROM json_each(?1)) "
+    "INSERT INTO job_devices (job_id, device_id) SELECT ?2, device_id FROM ("
+    "SELECT devices.id AS device_id FROM named JOIN devices ON devices.id = named.id "
+    "UNION SELECT recordings.device_id FROM named JOIN recordings ON recordings.id = named.id "
+    "UNION SELECT studies.device_id FROM named JOIN studies ON studies.id = named.id "
+    "UNION SELECT drives.device_id FROM named JOIN drives ON drives.id = named.id "
+    "UNION SELECT calibrations.device_id FROM named JOIN calibrations ON calibrations.id = named.id "
+    "UNION SELECT models.device_id FROM named JOIN models ON models.id = named.id WHERE models.device_id IS NOT NULL "
+    "UNION SELECT fits.device_id FROM named JOIN fits ON fits.id = named.id "
+    "UNION SELECT channel_results.device_id FROM named JOIN channel_results ON channel_results.id = named.id) AS found";
+constexpr std::string_view kAttempts = "SELECT problem_json FROM job_attempts WHERE job_id = ? ORDER BY attempt";
+constexpr std::string_view kEvents =
+    "SELECT sequence, type, state, stage, progress, attempt, at FROM job_events WHERE job_id = ? AND sequence > ? "
+    "ORDER BY sequence LIMIT ?";
+constexpr std::string_view kAddEvent =
+    "INSERT INTO job_events (job_id, type, state, stage, progress, attempt, at) "
+    "SELECT id, ?2, state, stage, progress, attempt, ?3 FROM jobs WHERE id = ?1";
+
+/// Every text in a document that has the letters of an id, as a JSON list.
+std::string possible_ids(const std::string& request_json) {
+  nlohmann::json ids = nlohmann::json::array();
+  const std::function<void(const nlohmann::json&)> collect = [&](const nlohmann::json& node) {
+    if (node.is_structured()) {
+      std::for_each(node.begin(), node.end(), collect);
+    } else if (node.is_string()) {
+      const auto& text = node.get_ref<const std::string&>();
+      const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char letter) {
+        return letter == '_' || (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
+               (letter >= 'a' && letter <= 'z');
+      });
+      if (plain && !text.empty()) {
+        ids.push_back(text);
+      }
+    }
+  };
+  collect(nlohmann::json::parse(request_json, nullptr, false));
+  return ids.dump();
+}
+
+std::string read_text(const Statement& row) { return row.text(0); }
+
+JobEvent read_event(const Statement& row) {
+  JobEvent event;
+  event.sequence = row.integer(0);
+  event.type = row.text(1);
+  event.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  event.stage = row.text(3);
+  event.progress = row.real(4);
+  event.attempt = row.integer(5);
+  event.at = row.integer(6);
+  return event;
+}
+
+}  // namespace
+
+Job read_job(const Statement& row) {
+  Job job;
+  job.id = row.text(0);
+  job.kind = row.text(1);
+  job.state = parse_job_state(row.text(2)).value_or(JobState::Queued);
+  job.stage = row.text(3);
+  job.progress = row.real(4);
+  job.priority = static_cast<int>(row.integer(5));
+  job.attempt = row.integer(6);
+  job.failures = static_cast<int>(row.integer(7));
+  job.max_failures = static_cast<int>(row.integer(8));
+  job.unique_key = row.text(9);
+  job.request_json = row.text(10);
+  job.cancel_requested = row.integer(11) != 0;
+  job.run_at = row.integer(12);
+  job.lease_expires_at = row.optional_integer(13);
+  job.created_at = row.integer(14);
+  job.started_at = row.optional_integer(15);
+  job.finished_at = row.optional_integer(16);
+  job.problem_json = row.text(17);
+  return job;
+}
+
+Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now) {
+  if (job.priority < 0 || job.priority > 9) {
+    return fail(ErrorCode::InvalidArgument, "A priority is a number from 0 to 9.", {{"parameter", "priority"}});
+  }
+  if (job.kind.empty() || job.unique_key.empty()) {
+    return fail(ErrorCode::InvalidArgument, "A job needs a kind and a unique key.", {{"parameter", "unique_key"}});
+  }
+  Statement equal = connection.prepare(kEqualJob);
+  equal.bind(job.unique_key);
+  Result<std::vector<Job>> existing = all_rows(equal, read_job);  // one at most
+  if (!existing) {
+    return fail(existing.error());
+  }
+  if (!existing->empty()) {
+    return EnqueuedJob{std::move(existing->front()), false};
+  }
+  const std::string id = make_id("job", now);
+  Status inserted = connection.prepare(kInsert)
+                        .bind(id, job.kind, job.priority, kMaxFailures, job.unique_key, job.request_json, now)
+                        .run();
+  if (inserted) {
+    inserted = connection.prepare(kNoteDevices).bind(possible_ids(job.request_json), id).run();
+  }
+  if (inserted) {
+    inserted = add_event(connection, id, "state", now);
+  }
+  if (!inserted) {
+    return fail(inserted.error());
+  }
+  return tables::job(connection, id).map([](Job made) { return EnqueuedJob{std::move(made), true}; });
+}
+
+Result<Job> job(Connection& connection, std::string_view id) {
+  Statement statement = connection.prepare(kById);
+  statement.bind(id);
+  Result<Job> found =
+      one_row(statement, read_job,
+              {ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}}});
+  if (!found) {
+    return found;
+  }
+  Statement attempts = connection.prepare(kAttempts);
+  attempts.bind(id);
+  Result<std::vector<std::string>> problems = all_rows(attempts, read_text);
+  if (!problems) {
+    return fail(problems.error());
+  }
+  found->attempt_problems_json = std::move(*problems);
+  return found;
+}
+
+Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page) {
+  FilteredQuery query(kSelect);
+  query.where("kind = ?", filter.kind);
+  query.where("state = ?", filter.state ? std::optional<std::string>(name_of(*filter.state)) : std::nullopt);
+  query.where("json_extract(request_json, '$.inputs.device') = ?", filter.input_device);
+  query.where("json_extract(request_json, '$.inputs.candidate.label') = ?", filter.candidate);
+  return query.visible_jobs(page).read_page(connection, page, read_job);
+}
+
+Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id, std::int64_t sequence,
+                                           int limit) {
+  Statement statement = connection.prepare(kEvents);
+  statement.bind(job_id, sequence, limit);
+  return all_rows(statement, read_event);
+}
+
+Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now) {
+  if (Status added = connection.prepare(kAddEvent).bind(job_id, type, now).run(); !added || type != "state") {
+    return added;
+  }
+  return fill_outbox(connection, job_id, now);
+}
+
+Result<int> forget_ended_jobs(Connection& connection, UtcMicros before) {
+  if (Status forgotten = connection.prepare(kForgetEnded).bind(before).run(); !forgotten) {
+    return fail(forgotten.error());
+  }
+  return connection.changes();
+}
+
+}  // namespace driftlab::server::tables

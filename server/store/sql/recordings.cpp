@@ -1,0 +1,281 @@
+#include "server/store/sql/tables.hpp"
+
+namespace driftlab::server::tables {
+namespace {
+
+constexpr std::string_view kSelectBlob =
+    "SELECT sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at FROM blobs "
+    "WHERE sha256 = ?";
+constexpr std::string_view kInsertBlob =
+    "INSERT INTO blobs (sha256, bytes, format, compression, row_count, columns_json, notes_json, created_at) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (sha256) DO NOTHING";
+constexpr std::string_view kBlobHashes = "SELECT sha256 FROM blobs ORDER BY sha256";
+constexpr std::string_view kRemoveUnusedBlob =
+    "DELETE FROM blobs WHERE sha256 = ?1 AND NOT EXISTS (SELECT 1 FROM recordings WHERE blob_sha256 = ?1)";
+
+constexpr std::string_view kSelect =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
+    "tags_json, tags_revision FROM recordings";
+constexpr std::string_view kById =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
+    "tags_json, tags_revision FROM recordings WHERE id = ?";
+constexpr std::string_view kByDeviceAndBlob =
+    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
+    "tags_json, tags_revision FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
+constexpr std::string_view kVisibleDevicesAndRecordings =
+    "SELECT (SELECT count(*) FROM devices WHERE name IN (SELECT value FROM json_each(?))), (SELECT count(*) FROM "
+    "recordings JOIN devices ON devices.id = device_id WHERE name IN (SELECT value FROM json_each(?)))";
+constexpr std::string_view kCounts =
+    "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
+    "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
+constexpr std::string_view kUsageOf =
+    "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
+    "FROM recordings "
+    "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE recordings.device_id = ?1";
+constexpr std::string_view kConditionsOf =
+    "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
+constexpr std::string_view kInsert =
+    "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
+    "updated_at, tags_json) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr std::string_view kUpdate =
+    "UPDATE recordings SET metadata_json = ?2, condition = ?3, quality_json = ?4, revision = ?5, updated_at = ?6, "
+    "tags_json = ?7, tags_revision = ?8 WHERE id = ?1";
+constexpr std::string_view kRemove = "DELETE FROM recordings WHERE id = ?";
+constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
+/// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
+constexpr std::string_view kLiveJob =
+    "SELECT id FROM jobs WHERE state IN ('queued', 'running') AND instr(request_json, ?) > 0 LIMIT 1";
+/// Of jobs that made results of the recording, that name it, or that pooled its results.
+constexpr std::string_view kRemoveDocuments =
+    "DELETE FROM job_results WHERE job_id IN (SELECT job_id FROM channel_results WHERE recording_id = ?1"
+    " UNION SELECT id FROM jobs WHERE instr(request_json, ?1) > 0"
+    " UNION SELECT pool.id FROM jobs AS pool JOIN channel_results AS member ON instr(pool.request_json, member.id) > 0"
+    " WHERE pool.kind = 'pool' AND member.recording_id = ?1)";
+
+Blob read_blob(const Statement& row) {
+  Blob blob;
+  blob.sha256 = row.text(0);
+  blob.bytes = row.integer(1);
+  blob.format = row.text(2);
+  blob.compression = row.text(3);
+  blob.rows = row.integer(4);
+  blob.columns_json = row.text(5);
+  blob.notes_json = row.text(6);
+  blob.created_at = row.integer(7);
+  return blob;
+}
+
+Recording read_recording(const Statement& row) {
+  Recording recording;
+  recording.id = row.text(0);
+  recording.device_id = row.text(1);
+  recording.blob_sha256 = row.text(2);
+  recording.revision = row.integer(3);
+  recording.metadata_json = row.text(4);
+  recording.condition = row.text(5);
+  recording.quality_json = row.text(6);
+  recording.created_at = row.integer(7);
+  recording.updated_at = row.integer(8);
+  recording.tags_json = row.text(9);
+  recording.tags_revision = row.integer(10);
+  return recording;
+}
+
+std::string read_text(const Statement& row) { return row.text(0); }
+
+Status insert_blob(Connection& connection, const Blob& blob, UtcMicros now) {
+  return connection.prepare(kInsertBlob)
+      .bind(blob.sha256, blob.bytes, blob.format, blob.compression, blob.rows, blob.columns_json, blob.notes_json, now)
+      .run();
+}
+
+Status require_device(Connection& connection, const std::string& device_id) {
+  Statement statement = connection.prepare(kDeviceExists);
+  const Result<bool> exists = statement.bind(device_id).step();
+  if (!exists) {
+    return fail(exists.error());
+  }
+  if (!*exists) {
+    return fail(ErrorCode::NotFound, "There is no device \"" + device_id + "\".", {{"device", device_id}});
+  }
+  return {};
+}
+
+tl::unexpected<Error> stale(const Recording& found) {
+  return fail(ErrorCode::Conflict, "The recording was changed by somebody else in the meantime.",
+              {{"revision", std::to_string(found.revision)}});
+}
+
+}  // namespace
+
+Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256) {
+  Statement statement = connection.prepare(kSelectBlob);
+  statement.bind(sha256);
+  return first_row(statement, read_blob);
+}
+
+Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob, const Recording& recording,
+                                       UtcMicros now) {
+  if (Status known = require_device(connection, recording.device_id); !known) {
+    return fail(known.error());
+  }
+  Statement statement = connection.prepare(kByDeviceAndBlob);
+  statement.bind(recording.device_id, blob.sha256);
+  Result<std::vector<Recording>> existing = all_rows(statement, read_recording);  // one at most
+  if (!existing) {
+    return fail(existing.error());
+  }
+  if (!existing->empty()) {
+    Recording& same = existing->front();
+    const bool other_tags = recording.tags_json != "{}" && same.tags_json != recording.tags_json;
+    if (same.metadata_json != recording.metadata_json || same.condition != recording.condition || other_tags) {
+      return fail(ErrorCode::Conflict,
+                  "The device has these bytes already, as recording " + same.id +
+                      " with other metadata; change that one instead.",
+                  {{"recording_id", same.id}});
+    }
+    return RecordingOutcome{std::move(same), false};
+  }
+  if (Status inserted = insert_blob(connection, blob, now); !inserted) {
+    return fail(inserted.error());
+  }
+  Recording made = recording;
+  if (made.id.empty()) {
+    made.id = make_id("rec", now);
+  }
+  made.blob_sha256 = blob.sha256;
+  made.revision = 1;
+  made.created_at = now;
+  made.updated_at = now;
+  Status inserted = connection.prepare(kInsert)
+                        .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json,
+                              made.condition, made.quality_json, made.created_at, made.updated_at, made.tags_json)
+                        .run();
+  if (!inserted) {
+    return fail(inserted.error());
+  }
+  return RecordingOutcome{std::move(made), true};
+}
+
+Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256) {
+  Statement statement = connection.prepare(kUsageOf);
+  statement.bind(device_id, sha256);
+  return one_row(
+      statement, +[](const Statement& row) { return DeviceUsage{row.integer(0), row.integer(1), row.integer(2) != 0}; },
+      Error{ErrorCode::Internal, "The store counts nothing.", {}});
+}
+
+Result<Recording> recording(Connection& connection, std::string_view id) {
+  Statement statement = connection.prepare(kById);
+  statement.bind(id);
+  return one_row(
+      statement, read_recording,
+      {ErrorCode::NotFound, "There is no recording \"" + std::string(id) + "\".", {{"recording", std::string(id)}}});
+}
+
+Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter, const Page& page) {
+  FilteredQuery query(kSelect);
+  query.where("device_id = ?", filter.device_id);
+  query.where("condition = ?", filter.condition);
+  for (const std::string& label : filter.labels) {
+    query.where("EXISTS (SELECT 1 FROM json_each(tags_json, '$.labels') WHERE key || '=' || value = ?)", label);
+  }
+  return query.visible(page, "device_id").read_page(connection, page, read_recording);
+}
+
+Result<Recording> revise_recording(Connection& connection, const Recording& changed, std::int64_t expected_revision,
+                                   UtcMicros now) {
+  Result<Recording> found = recording(connection, changed.id);
+  if (!found) {
+    return found;
+  }
+  if (found->revision != expected_revision || found->tags_revision != changed.tags_revision) {
+    return stale(*found);
+  }
+  Recording revised = std::move(*found);
+  const bool other_meaning = revised.metadata_json != changed.metadata_json || revised.tags_json == changed.tags_json;
+  revised.tags_revision += revised.tags_json == changed.tags_json ? 0 : 1;
+  revised.tags_json = changed.tags_json;
+  revised.metadata_json = changed.metadata_json;
+  revised.condition = changed.condition;
+  revised.quality_json = changed.quality_json;
+  revised.revision += other_meaning ? 1 : 0;
+  revised.updated_at = now;
+  Status updated = connection.prepare(kUpdate)
+                       .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json,
+                             revised.revision, revised.updated_at, revised.tags_json, revised.tags_revision)
+                       .run();
+  if (updated && other_meaning) {
+    const auto axes = axes_of_recording(connection, revised.id);
+    updated = axes ? refresh_pools(connection, *axes, now).map([](int) {}) : fail(axes.error());
+  }
+  if (!updated) {
+    return fail(updated.error());
+  }
+  return revised;
+}
+
+Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision, UtcMicros now) {
+  const Result<Recording> found = recording(connection, id);
+  if (!found) {
+    return fail(found.error());
+  }
+  if (found->revision != expected_revision) {
+    return stale(*found);
+  }
+  Statement statement = connection.prepare(kLiveJob);
+  statement.bind(id);
+  const Result<std::vector<std::string>> users = all_rows(statement, read_text);
+  if (!users) {
+    return fail(users.error());
+  }
+  if (!users->empty()) {
+    return fail(ErrorCode::Conflict, "Job " + users->front() + " is using the recording; wait for it or cancel it.",
+                {{"job", users->front()}});
+  }
+  if (Status removed = connection.prepare(kRemoveDocuments).bind(id).run(); !removed) {
+    return removed;
+  }
+  const auto axes = axes_of_recording(connection, id);
+  if (!axes) {
+    return fail(axes.error());
+  }
+  if (Status removed = connection.prepare(kRemove).bind(id).run(); !removed) {
+    return removed;
+  }
+  return refresh_pools(connection, *axes, now).map([](int) {});
+}
+
+Result<std::vector<std::string>> blob_hashes(Connection& connection) {
+  Statement statement = connection.prepare(kBlobHashes);
+  return all_rows(statement, read_text);
+}
+
+Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256) {
+  if (Status removed = connection.prepare(kRemoveUnusedBlob).bind(sha256).run(); !removed) {
+    return fail(removed.error());
+  }
+  return connection.changes() > 0;
+}
+
+Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible) {
+  const std::string jobs = "(SELECT count(*) FROM jobs WHERE state = ? AND " + std::string(kVisibleJob) + ")";
+  Statement statement = connection.prepare(
+      visible ? std::string(kVisibleDevicesAndRecordings) + ", " + jobs + ", " + jobs : std::string(kCounts));
+  if (visible) {
+    statement.bind(visible->devices_json, visible->devices_json, "queued", visible->token, visible->devices_json,
+                   "running", visible->token, visible->devices_json);
+  }
+  return one_row(
+      statement,
+      +[](const Statement& row) { return Counts{row.integer(0), row.integer(1), row.integer(2), row.integer(3)}; },
+      Error{ErrorCode::Internal, "The store counts nothing.", {}});
+}
+
+Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id) {
+  Statement statement = connection.prepare(kConditionsOf);
+  statement.bind(device_id);
+  return all_rows(statement, +[](const Statement& row) { return ConditionCount{row.text(0), row.integer(1)}; });
+}
+
+}  // namespace driftlab::server::tables

@@ -1,0 +1,376 @@
+#include "server/store/sql/sql_store.hpp"
+
+#include "server/store/sql/tables.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace driftlab::server {
+namespace {
+
+std::optional<tables::AuditEntry> changed(const char* action, const std::string& id) {
+  return tables::AuditEntry{action, id, ""};
+}
+
+/// Objects that are made once: a row of the audit log only where this was the time.
+std::optional<tables::AuditEntry> made(const char* action, bool created, const std::string& id) {
+  return created ? changed(action, id) : std::nullopt;
+}
+
+/// A caller limited to devices may ask for no job that names another one; who asks is remembered.
+Status note_caller(Connection& connection, const Job& job, const Caller* caller) {
+  if (caller == nullptr) {
+    return {};
+  }
+  if (const auto& devices = caller->principal.devices) {
+    const auto within = tables::is_job_within(connection, job.id, nlohmann::json(*devices).dump());
+    if (!within) {
+      return fail(within.error());
+    }
+    if (!*within) {
+      return tl::unexpected(forbidden("The token is limited to devices that are not those of this job."));
+    }
+  }
+  return tables::add_owner(connection, job.id, *caller);
+}
+
+}  // namespace
+
+SqlStore::SqlStore(std::unique_ptr<Database> database, std::uint64_t jitter_seed, AuditListener audited)
+    : database_(std::move(database)),
+      jitter_(jitter_seed),
+      audited_(*database_, std::move(audited)),
+      access_(*database_, audited_),
+      webhooks_(*database_, audited_) {}
+
+template <class Work>
+Status SqlStore::remove(const char* action, std::string_view id, const Work& work) {
+  const auto removed = audited_.write(
+      [&](Connection& c) {
+        Status status = work(c);
+        return status ? Result<std::string>(std::string(id)) : fail(status.error());
+      },
+      [action](const std::string& gone) { return changed(action, gone); });
+  return removed ? Status{} : fail(removed.error());
+}
+
+Status SqlStore::ping() {
+  return database_->read([](Connection& c) -> Status {
+    const auto one = c.query_integer("SELECT 1 FROM schema_migrations LIMIT 1");
+    return one ? Status{} : fail(one.error());
+  });
+}
+
+std::uint64_t SqlStore::changes() const { return database_->changes(); }
+
+Result<Store::DeviceOutcome> SqlStore::ensure_device(const Device& device) {
+  return audited_.write([&](Connection& c) { return tables::ensure_device(c, device, now(c)); },
+                        [](const DeviceOutcome& o) { return made("device.create", o.created, o.device.id); });
+}
+
+Result<Device> SqlStore::device(std::string_view id_or_name) {
+  return database_->read([&](Connection& c) { return tables::device(c, id_or_name); });
+}
+
+Result<std::vector<Device>> SqlStore::devices(const Page& page) {
+  return database_->read([&](Connection& c) { return tables::devices(c, page); });
+}
+
+Result<Device> SqlStore::update_device(std::string_view id, const DeviceChange& change,
+                                       std::int64_t expected_revision) {
+  return audited_.write([&](Connection& c) { return tables::update_device(c, id, change, expected_revision, now(c)); },
+                        [](const Device& device) { return changed("device.change", device.id); });
+}
+
+Result<std::optional<Blob>> SqlStore::blob(std::string_view sha256) {
+  return database_->read([&](Connection& c) { return tables::blob(c, sha256); });
+}
+
+Result<RecordingOutcome> SqlStore::add_recording(const Blob& blob, const Recording& recording) {
+  return audited_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now(c)); },
+                        [](const RecordingOutcome& o) { return made("recording.add", o.created, o.recording.id); });
+}
+
+Status SqlStore::write_probe() {
+  // The value stays; the page goes through log and disk like any other.
+  return database_->write(WriteKind::Fenced, [](Connection& c) -> Status {
+    return c.prepare("UPDATE schema_migrations SET applied_at = applied_at WHERE number = 1").run();
+  });
+}
+
+Result<DeviceUsage> SqlStore::usage_of(std::string_view device_id, std::string_view sha256) {
+  return database_->read([&](Connection& c) { return tables::usage_of(c, device_id, sha256); });
+}
+
+Result<int> SqlStore::forget_ended_jobs(UtcMicros before) {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::forget_ended_jobs(c, before); });
+}
+
+Result<Recording> SqlStore::recording(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::recording(c, id); });
+}
+
+Result<std::vector<Recording>> SqlStore::recordings(const RecordingFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::recordings(c, filter, page); });
+}
+
+Result<Counts> SqlStore::counts(const std::optional<Visibility>& visible) {
+  return database_->read([&](Connection& c) { return tables::counts(c, visible); });
+}
+
+Result<bool> SqlStore::sees_job(std::string_view job, const Visibility& visible) {
+  return database_->read([&](Connection& c) { return tables::sees_job(c, job, visible); });
+}
+
+Result<bool> SqlStore::is_owner(std::string_view object, std::string_view token) {
+  return database_->read([&](Connection& c) { return tables::is_owner(c, object, token); });
+}
+
+Result<std::vector<ConditionCount>> SqlStore::conditions_of(std::string_view device_id) {
+  return database_->read([&](Connection& c) { return tables::conditions_of(c, device_id); });
+}
+
+Result<Recording> SqlStore::revise_recording(const Recording& recording, std::int64_t expected_revision) {
+  return audited_.write(
+      [&](Connection& c) { return tables::revise_recording(c, recording, expected_revision, now(c)); },
+      [](const Recording& revised) { return changed("recording.change", revised.id); });
+}
+
+Status SqlStore::remove_recording(std::string_view id, std::int64_t expected_revision) {
+  return remove("recording.delete", id,
+                [&](Connection& c) { return tables::remove_recording(c, id, expected_revision, now(c)); });
+}
+
+Status SqlStore::remove_device(std::string_view id, std::int64_t expected_revision) {
+  return remove("device.delete", id, [&](Connection& c) { return tables::remove_device(c, id, expected_revision); });
+}
+
+Status SqlStore::remove_study(std::string_view id) {
+  return remove("study.delete", id, [&](Connection& c) { return tables::remove_study(c, id); });
+}
+
+Status SqlStore::remove_calibration(std::string_view id) {
+  return remove("calibration.delete", id, [&](Connection& c) { return tables::remove_calibration(c, id); });
+}
+
+Status SqlStore::remove_model(std::string_view id) {
+  return remove("model.delete", id, [&](Connection& c) { return tables::remove_model(c, id); });
+}
+
+Status SqlStore::remove_investigation(std::string_view id) {
+  return remove("investigation.delete", id, [&](Connection& c) { return tables::remove_investigation(c, id); });
+}
+
+Result<std::vector<std::string>> SqlStore::blob_hashes() {
+  return database_->read([](Connection& c) { return tables::blob_hashes(c); });
+}
+
+Result<bool> SqlStore::remove_unused_blob(std::string_view sha256) {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::remove_unused_blob(c, sha256); });
+}
+
+Result<EnqueuedJob> SqlStore::enqueue(const NewJob& job) {
+  const Caller* const caller = caller_of_thread();
+  return audited_.write(
+      [&](Connection& c) -> Result<EnqueuedJob> {
+        auto queued = tables::enqueue(c, job, now(c));
+        if (queued) {
+          if (Status noted = note_caller(c, queued->job, caller); !noted) {
+            return fail(noted.error());
+          }
+        }
+        return queued;
+      },
+      [](const EnqueuedJob& queued) { return made("job.create", queued.created, queued.job.id); });
+}
+
+Result<Job> SqlStore::job(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::job(c, id); });
+}
+
+Result<std::vector<Job>> SqlStore::jobs(const JobFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
+}
+
+Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros) {
+  return database_->write(WriteKind::Fenced, [&](Connection& c) { return tables::claim(c, lease_micros, now(c)); });
+}
+
+Result<LeaseStatus> SqlStore::renew(const Lease& lease, std::int64_t lease_micros) {
+  return database_->write(WriteKind::Fenced,
+                          [&](Connection& c) { return tables::renew(c, lease, lease_micros, now(c)); });
+}
+
+Result<LeaseStatus> SqlStore::report_progress(const Lease& lease, std::string_view stage, double progress) {
+  return database_->write(WriteKind::Fenced,
+                          [&](Connection& c) { return tables::report_progress(c, lease, stage, progress, now(c)); });
+}
+
+Result<LeaseStatus> SqlStore::succeed(const Lease& lease, const JobResults& results) {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::succeed(c, lease, results, now(c)); });
+}
+
+Result<LeaseStatus> SqlStore::fail_attempt(const Lease& lease, const AttemptFailure& failure) {
+  std::uint64_t seed = 0;
+  {
+    const std::lock_guard<std::mutex> guard(jitter_mutex_);
+    seed = jitter_();
+  }
+  return database_->write(WriteKind::Serial, [&](Connection& c) {
+    std::mt19937_64 jitter(seed);
+    return tables::fail_attempt(c, lease, failure, jitter, now(c));
+  });
+}
+
+Result<LeaseStatus> SqlStore::acknowledge_cancel(const Lease& lease) {
+  return database_->write(WriteKind::Serial,
+                          [&](Connection& c) { return tables::acknowledge_cancel(c, lease, now(c)); });
+}
+
+Result<LeaseStatus> SqlStore::release(const Lease& lease) {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::release(c, lease, now(c)); });
+}
+
+Result<Job> SqlStore::request_cancel(std::string_view id) {
+  return audited_.write([&](Connection& c) { return tables::request_cancel(c, id, now(c)); },
+                        [](const Job& job) { return changed("job.cancel", job.id); });
+}
+
+Result<int> SqlStore::rescue_expired() {
+  return database_->write(WriteKind::Serial, [&](Connection& c) {
+    const UtcMicros time = now(c);
+    return tables::end_leases(c, time, time);
+  });
+}
+
+Result<int> SqlStore::end_all_leases() {
+  return database_->write(WriteKind::Serial,
+                          [&](Connection& c) { return tables::end_leases(c, std::nullopt, now(c)); });
+}
+
+Result<std::vector<JobEvent>> SqlStore::events_after(std::string_view job_id, std::int64_t sequence, int limit) {
+  return database_->read([&](Connection& c) { return tables::events_after(c, job_id, sequence, limit); });
+}
+
+Result<std::string> SqlStore::result_document(std::string_view job_id) {
+  return database_->read([&](Connection& c) { return tables::result_document(c, job_id); });
+}
+
+Result<Fit> SqlStore::fit(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::fit(c, id); });
+}
+
+Result<std::vector<Fit>> SqlStore::fits(const FitFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::fits(c, filter, page); });
+}
+
+Result<std::vector<ChannelResult>> SqlStore::latest_channel_results(std::string_view device_id,
+                                                                    std::string_view quantity, std::string_view axis) {
+  return database_->read([&](Connection& c) { return tables::latest_channel_results(c, device_id, quantity, axis); });
+}
+
+Result<AxisResults> SqlStore::axis_results(const SensorAxis& axis) {
+  return database_->read([&](Connection& c) { return tables::axis_results(c, axis); });
+}
+
+Result<int> SqlStore::queue_missing_pools() {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::queue_missing_pools(c, now(c)); });
+}
+
+Result<Store::StudyOutcome> SqlStore::add_study(const Study& study) {
+  return audited_.write([&](Connection& c) { return tables::add_study(c, study, now(c)); },
+                        [](const StudyOutcome& o) { return made("study.create", o.created, o.study.id); });
+}
+
+Result<Study> SqlStore::study(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::study(c, id); });
+}
+
+Result<std::vector<Study>> SqlStore::studies(const std::optional<std::string>& device_id, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::studies(c, device_id, page); });
+}
+
+Result<Store::DriveOutcome> SqlStore::add_drive(const StoredDrive& drive) {
+  return audited_.write([&](Connection& c) { return tables::add_drive(c, drive, now(c)); },
+                        [](const DriveOutcome& o) { return made("drive.create", o.created, o.drive.id); });
+}
+
+Result<StoredDrive> SqlStore::drive(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::drive(c, id); });
+}
+
+Result<std::vector<StoredDrive>> SqlStore::drives(const std::optional<std::string>& device_id, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::drives(c, device_id, page); });
+}
+
+Result<Store::CalibrationOutcome> SqlStore::add_calibration(const StoredCalibration& calibration) {
+  return audited_.write(
+      [&](Connection& c) { return tables::add_calibration(c, calibration, now(c)); },
+      [](const CalibrationOutcome& o) { return made("calibration.create", o.created, o.calibration.id); });
+}
+
+Result<StoredCalibration> SqlStore::calibration(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::calibration(c, id); });
+}
+
+Result<std::vector<StoredCalibration>> SqlStore::calibrations(const std::optional<std::string>& device_id,
+                                                              const Page& page) {
+  return database_->read([&](Connection& c) { return tables::calibrations(c, device_id, page); });
+}
+
+Result<Store::ModelOutcome> SqlStore::add_model(const Model& model) {
+  const Caller* const caller = caller_of_thread();
+  return audited_.write(
+      [&](Connection& c) -> Result<ModelOutcome> {
+        auto added = tables::add_model(c, model, now(c));
+        if (added && caller != nullptr) {
+          if (Status noted = tables::add_owner(c, added->model.id, *caller); !noted) {
+            return fail(noted.error());
+          }
+        }
+        return added;
+      },
+      [](const ModelOutcome& o) { return made("model.create", o.created, o.model.id); });
+}
+
+Result<Model> SqlStore::model(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::model(c, id); });
+}
+
+Result<std::vector<Model>> SqlStore::models(const ModelFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::models(c, filter, page); });
+}
+
+Result<Investigation> SqlStore::investigation(std::string_view id) {
+  return database_->read([&](Connection& c) { return tables::investigation(c, id); });
+}
+
+Result<std::vector<Investigation>> SqlStore::investigations(const InvestigationFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::investigations(c, filter, page); });
+}
+
+Result<Anchor> SqlStore::add_anchor(const Anchor& anchor) {
+  return audited_.write([&](Connection& c) { return tables::add_anchor(c, anchor, now(c)); },
+                        [](const Anchor& made) { return changed("anchor.move", made.device_id); });
+}
+
+Result<std::vector<Anchor>> SqlStore::anchors(const std::optional<std::string>& device_id, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::anchors(c, device_id, page); });
+}
+
+Result<std::string> SqlStore::artefact(std::string_view job_id, std::string_view name) {
+  return database_->read([&](Connection& c) { return tables::artefact(c, job_id, name); });
+}
+
+Result<std::optional<IdempotentReply>> SqlStore::idempotent_reply(std::string_view key) {
+  return database_->read([&](Connection& c) { return tables::idempotent_reply(c, key, now(c)); });
+}
+
+Status SqlStore::remember_reply(const IdempotentReply& reply) {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::remember_reply(c, reply, now(c)); });
+}
+
+Result<int> SqlStore::forget_old_replies() {
+  return database_->write(WriteKind::Serial, [&](Connection& c) { return tables::forget_old_replies(c, now(c)); });
+}
+
+}  // namespace driftlab::server

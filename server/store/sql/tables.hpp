@@ -1,0 +1,271 @@
+#pragma once
+/// What each method of the store does inside a transaction: one source file per resource, with its SQL texts on top.
+///
+/// Functions take the connection of a running transaction; those that write take the time as `now`. Contracts are those
+/// of the methods of the same name in server/store/store.hpp.
+#include "core/signal/result.hpp"
+#include "server/store/sql/connection.hpp"
+#include "server/store/store.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::server::tables {
+
+// ---- helpers for the row readers of each file
+
+/// The first row of a query, read by `read`; nothing without rows.
+template <class Row>
+[[nodiscard]] Result<std::optional<Row>> first_row(Statement& statement, Row (*read)(const Statement&)) {
+  const Result<bool> row = statement.step();
+  if (!row) {
+    return fail(row.error());
+  }
+  return *row ? std::optional<Row>(read(statement)) : std::nullopt;
+}
+
+/// The first row of a query; `absent` where there is none.
+template <class Row>
+[[nodiscard]] Result<Row> one_row(Statement& statement, Row (*read)(const Statement&), Error absent) {
+  const Result<bool> row = statement.step();
+  if (!row) {
+    return fail(row.error());
+  }
+  if (!*row) {
+    return fail(std::move(absent));
+  }
+  return read(statement);
+}
+
+/// Every row of a query.
+template <class Row>
+[[nodiscard]] Result<std::vector<Row>> all_rows(Statement& statement, Row (*read)(const Statement&)) {
+  std::vector<Row> rows;
+  while (true) {
+    const Result<bool> row = statement.step();
+    if (!row) {
+      return fail(row.error());
+    }
+    if (!*row) {
+      return rows;
+    }
+    rows.push_back(read(statement));
+  }
+}
+
+/// Which jobs somebody limited to devices sees: those asked for by the token (first value), and those that name devices
+/// and none but these (second value, a JSON list of names).
+constexpr std::string_view kVisibleJob =
+    "(EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id = ?) OR (EXISTS (SELECT 1 FROM job_devices "
+    "WHERE job_id = jobs.id) AND NOT EXISTS (SELECT 1 FROM job_devices JOIN devices ON devices.id = "
+    "job_devices.device_id WHERE job_id = jobs.id AND devices.name NOT IN (SELECT value FROM json_each(?)))))";
+
+/// A SELECT with those conditions that a filter asks for. Texts are constants of our own; values are bound.
+class FilteredQuery {
+ public:
+  explicit FilteredQuery(std::string_view select) : sql_(select) {}
+  /// Adds `condition`, for example "device_id = ?", if there is a value.
+  void where(std::string_view condition, const std::optional<std::string>& value) {
+    if (value) {
+      where(condition);
+      values_.push_back(*value);
+    }
+  }
+  void where(std::string_view condition) {
+    sql_.append(first_ ? " WHERE " : " AND ").append(condition);
+    first_ = false;
+  }
+  /// Leaves rows to somebody limited to devices (Page::visible) that belong to one of them. `column` holds the device's
+  /// id. A page for such a caller is read only once this, or what stands for it, was said.
+  FilteredQuery& visible(const Page& page, std::string_view column) {
+    if (page.visible) {
+      where(std::string(column) + " IN (SELECT id FROM devices WHERE name IN (SELECT value FROM json_each(?)))",
+            page.visible->devices_json);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// The same for objects that may belong to no device: who asked for one sees it too.
+  FilteredQuery& visible_or_own(const Page& page, std::string_view column, std::string_view id) {
+    if (page.visible) {
+      where("(" + std::string(column) +
+                " IN (SELECT id FROM devices WHERE name IN (SELECT value FROM json_each(?))) OR EXISTS (SELECT 1 FROM "
+                "owners WHERE object_id = " +
+                std::string(id) + " AND token_id = ?))",
+            page.visible->devices_json);
+      values_.push_back(page.visible->token);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// The same for jobs, which name any number of devices.
+  FilteredQuery& visible_jobs(const Page& page) {
+    if (page.visible) {
+      where(kVisibleJob, page.visible->token);
+      values_.push_back(page.visible->devices_json);
+    }
+    guarded_ = true;
+    return *this;
+  }
+  /// Ends the query as a keyset page over `id` and reads it. Errors: Internal where the page is for a caller limited to
+  /// devices and the query does not say what such a caller sees.
+  template <class Row>
+  [[nodiscard]] Result<std::vector<Row>> read_page(Connection& connection, const Page& page,
+                                                   Row (*read)(const Statement&)) {
+    if (page.visible && !guarded_) {
+      return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
+    }
+    if (page.newest_first) {
+      where("id < ?", page.after.empty() ? std::nullopt : std::optional(page.after));
+    } else {
+      where("id > ?", page.after);
+    }
+    sql_.append(page.newest_first ? " ORDER BY id DESC LIMIT ?" : " ORDER BY id LIMIT ?");
+    Statement statement = connection.prepare(sql_);
+    for (const std::string& value : values_) {
+      statement.bind(value);
+    }
+    statement.bind(page.limit);
+    return all_rows(statement, read);
+  }
+
+ private:
+  std::string sql_;
+  std::vector<std::string> values_;
+  bool first_ = true;
+  bool guarded_ = false;
+};
+
+// ---- devices
+[[nodiscard]] Result<Store::DeviceOutcome> ensure_device(Connection& connection, const Device& device, UtcMicros now);
+[[nodiscard]] Result<Device> device(Connection& connection, std::string_view id_or_name);
+[[nodiscard]] Result<std::vector<Device>> devices(Connection& connection, const Page& page);
+[[nodiscard]] Result<Device> update_device(Connection& connection, std::string_view id, const DeviceChange& change,
+                                           std::int64_t expected_revision, UtcMicros now);
+
+// ---- blobs and recordings
+[[nodiscard]] Result<std::optional<Blob>> blob(Connection& connection, std::string_view sha256);
+[[nodiscard]] Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
+                                                     const Recording& recording, UtcMicros now);
+[[nodiscard]] Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256);
+[[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
+                                                        const Page& page);
+[[nodiscard]] Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible);
+[[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id);
+[[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
+                                                 std::int64_t expected_revision, UtcMicros now);
+[[nodiscard]] Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision,
+                                      UtcMicros now);
+[[nodiscard]] Result<std::vector<std::string>> blob_hashes(Connection& connection);
+[[nodiscard]] Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256);
+
+// ---- jobs: asking and looking
+[[nodiscard]] Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now);
+[[nodiscard]] Result<Job> job(Connection& connection, std::string_view id);
+[[nodiscard]] Result<int> forget_ended_jobs(Connection& connection, UtcMicros before);
+[[nodiscard]] Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, const Page& page);
+[[nodiscard]] Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id,
+                                                         std::int64_t sequence, int limit);
+/// Writes the job's present state into its history. `type`: "state" or "progress". A state that ends the job also
+/// queues what webhooks are told of it (webhook_tables.hpp).
+[[nodiscard]] Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now);
+
+// ---- jobs: working
+[[nodiscard]] Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> renew(Connection& connection, const Lease& lease, std::int64_t lease_micros,
+                                        UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> report_progress(Connection& connection, const Lease& lease, std::string_view stage,
+                                                  double progress, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> succeed(Connection& connection, const Lease& lease, const JobResults& results,
+                                          UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease,
+                                               const AttemptFailure& failure, std::mt19937_64& jitter, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> acknowledge_cancel(Connection& connection, const Lease& lease, UtcMicros now);
+[[nodiscard]] Result<LeaseStatus> release(Connection& connection, const Lease& lease, UtcMicros now);
+[[nodiscard]] Result<Job> request_cancel(Connection& connection, std::string_view id, UtcMicros now);
+/// Puts back every running job whose lease ends at `now` or before; with nothing for `deadline`: every running job.
+[[nodiscard]] Result<int> end_leases(Connection& connection, std::optional<UtcMicros> deadline, UtcMicros now);
+
+// ---- results
+[[nodiscard]] Status insert_results(Connection& connection, std::string_view job_id, const JobResults& results,
+                                    UtcMicros now);
+[[nodiscard]] Result<std::string> result_document(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<Fit> fit(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Fit>> fits(Connection& connection, const FitFilter& filter, const Page& page);
+[[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(Connection& connection,
+                                                                        std::string_view device_id,
+                                                                        std::string_view quantity,
+                                                                        std::string_view axis);
+/// Their ids alone.
+[[nodiscard]] Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis);
+
+// ---- pooling of the results of an axis
+/// Makes the row of each axis name its latest results: what pooled others is cancelled, a job for these queued. How
+/// many were queued.
+[[nodiscard]] Result<int> refresh_pools(Connection& connection, const std::vector<SensorAxis>& axes, UtcMicros now);
+[[nodiscard]] Result<int> queue_missing_pools(Connection& connection, UtcMicros now);
+/// Named axes that have results of one job, of one recording.
+[[nodiscard]] Result<std::vector<SensorAxis>> axes_of_job(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<std::vector<SensorAxis>> axes_of_recording(Connection& connection, std::string_view recording_id);
+/// Whether the results that the job was to pool are still the latest of their axis.
+[[nodiscard]] Result<bool> pools_latest(Connection& connection, std::string_view job_id);
+[[nodiscard]] Result<AxisResults> axis_results(Connection& connection, const SensorAxis& axis);
+
+// ---- studies
+[[nodiscard]] Result<Store::StudyOutcome> add_study(Connection& connection, const Study& study, UtcMicros now);
+[[nodiscard]] Result<Study> study(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Study>> studies(Connection& connection, const std::optional<std::string>& device_id,
+                                                 const Page& page);
+
+// ---- drives
+[[nodiscard]] Result<Store::DriveOutcome> add_drive(Connection& connection, const StoredDrive& drive, UtcMicros now);
+[[nodiscard]] Result<StoredDrive> drive(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<StoredDrive>> drives(Connection& connection,
+                                                      const std::optional<std::string>& device_id, const Page& page);
+
+// ---- calibrations
+[[nodiscard]] Result<Store::CalibrationOutcome> add_calibration(Connection& connection,
+                                                                const StoredCalibration& calibration, UtcMicros now);
+[[nodiscard]] Result<StoredCalibration> calibration(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<StoredCalibration>> calibrations(Connection& connection,
+                                                                  const std::optional<std::string>& device_id,
+                                                                  const Page& page);
+
+// ---- models and investigations
+[[nodiscard]] Result<Store::ModelOutcome> add_model(Connection& connection, const Model& model, UtcMicros now);
+[[nodiscard]] Result<Model> model(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Model>> models(Connection& connection, const ModelFilter& filter, const Page& page);
+[[nodiscard]] Result<Investigation> investigation(Connection& connection, std::string_view id);
+[[nodiscard]] Result<std::vector<Investigation>> investigations(Connection& connection,
+                                                                const InvestigationFilter& filter, const Page& page);
+/// After the job's result document.
+[[nodiscard]] Status insert_investigations(Connection& connection, std::string_view job_id, const JobResults& results,
+                                           UtcMicros now);
+
+// ---- regression runs
+[[nodiscard]] Result<Anchor> add_anchor(Connection& connection, const Anchor& anchor, UtcMicros now);
+[[nodiscard]] Result<std::vector<Anchor>> anchors(Connection& connection, const std::optional<std::string>& device_id,
+                                                  const Page& page);
+/// After the job's result document.
+[[nodiscard]] Status insert_artefacts(Connection& connection, std::string_view job_id, const JobResults& results);
+[[nodiscard]] Result<std::string> artefact(Connection& connection, std::string_view job_id, std::string_view name);
+
+// ---- removing what others may depend on
+[[nodiscard]] Status remove_device(Connection& connection, std::string_view id, std::int64_t expected_revision);
+[[nodiscard]] Status remove_study(Connection& connection, std::string_view id);
+[[nodiscard]] Status remove_calibration(Connection& connection, std::string_view id);
+[[nodiscard]] Status remove_model(Connection& connection, std::string_view id);
+[[nodiscard]] Status remove_investigation(Connection& connection, std::string_view id);
+
+// ---- idempotency
+[[nodiscard]] Result<std::optional<IdempotentReply>> idempotent_reply(Connection& connection, std::string_view key,
+                                                                      UtcMicros now);
+[[nodiscard]] Status remember_reply(Connection& connection, const IdempotentReply& reply, UtcMicros now);
+[[nodiscard]] Result<int> forget_old_replies(Connection& connection, UtcMicros now);
+
+}  // namespace driftlab::server::tables

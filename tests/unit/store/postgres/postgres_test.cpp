@@ -1,0 +1,380 @@
+/// What is true of the PostgreSQL store alone: several daemons on one database, connections that break, a server that
+/// is gone, read-only or of another version, any bytes as text.
+#include "server/store/postgres/connection.hpp"
+#include "server/store/postgres/migrations.hpp"
+#include "server/store/postgres/postgres_store.hpp"
+#include "server/store/postgres/text_codec.hpp"
+#include "tests/unit/store/postgres/cluster.hpp"
+#include "tests/unit/store/postgres/open.hpp"
+#include "tests/unit/store/world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace driftlab::server {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+
+class PostgresStoreTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (PostgresCluster::programs().empty()) {
+      GTEST_SKIP() << "POSTGRESQL NOT TESTED: there is no PostgreSQL 15 in /usr/lib/postgresql.";
+    }
+    schema_ = schema_for(directory_.path());
+    uri_ = cluster().schema(schema_);
+  }
+  [[nodiscard]] static PostgresCluster& cluster() { return PostgresCluster::of_this_process(); }
+  [[nodiscard]] std::unique_ptr<PostgresStore> open(PostgresOptions options = {}) const {
+    options.jitter_seed = 1;
+    auto opened = open_postgres_store(uri_, std::move(options));
+    EXPECT_TRUE(opened) << opened.error().message;
+    return opened ? std::move(*opened) : nullptr;
+  }
+  /// Why the store cannot be opened; the sentence must be one.
+  [[nodiscard]] static Error refusal(const std::string& uri) {
+    const auto opened = open_postgres_store(uri);
+    EXPECT_FALSE(opened);
+    const Error error = opened ? Error{} : opened.error();
+    EXPECT_THAT(error.message, AllOf(EndsWith("."), Not(HasSubstr("\n")), Not(HasSubstr("secret"))));
+    return error;
+  }
+  static bool cut_connections() {
+    return cluster().run("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
+  }
+
+  TemporaryDirectory directory_;
+  std::string schema_;
+  std::string uri_;
+};
+
+TEST_F(PostgresStoreTest, TellsWhatItFound) {
+  {
+    const auto store = open();
+    EXPECT_THAT(store->facts().version, testing::StartsWith("1"));
+    EXPECT_THAT(store->facts().database, HasSubstr("\"postgres\" on "));
+    EXPECT_EQ(store->facts().schema_before, 0);
+    EXPECT_EQ(store->facts().schema, static_cast<int>(embedded_postgres_migrations().size()));
+    EXPECT_EQ(store->facts().identity.size(), 36U);
+  }
+  const auto again = open();
+  EXPECT_EQ(again->facts().schema_before, again->facts().schema);
+}
+
+TEST_F(PostgresStoreTest, DaemonsThatStartTogetherMakeTheTablesOnce) {
+  std::vector<std::thread> threads;
+  std::atomic<int> made{0};
+  threads.reserve(4);
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      const auto store = open();
+      ASSERT_NE(store, nullptr);
+      made += store->facts().schema_before == 0 ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(made, 1);
+}
+
+TEST_F(PostgresStoreTest, TheClockIsThatOfTheDatabase) {
+  const auto store = open();
+  const UtcMicros before = SystemClock().now();
+  const Device device = add_device(*store);
+  EXPECT_GE(device.created_at, before - kSecond);
+  EXPECT_LE(device.created_at, SystemClock().now() + kSecond);
+  EXPECT_THAT(device.id, HasSubstr(make_id("dev", device.created_at).substr(0, 12)));
+}
+
+TEST_F(PostgresStoreTest, TwoDaemonsClaimEachJobOnceAndFenceEachOtherOff) {
+  const FakeClock clock;
+  PostgresOptions options;
+  options.clock = &clock;
+  const auto one = open(options);
+  const auto two = open(options);
+  constexpr int kJobs = 60;
+  for (int i = 0; i < kJobs; ++i) {
+    add_job(*one, "key " + std::to_string(i));
+  }
+  std::mutex mutex;
+  std::multiset<std::string> claimed;
+  std::vector<std::thread> threads;
+  threads.reserve(8);
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      Store& store = i % 2 == 0 ? *one : *two;
+      while (true) {
+        const auto job = store.claim(kLease);
+        ASSERT_TRUE(job) << job.error().message;
+        if (!*job) {
+          return;
+        }
+        ASSERT_TRUE(store.succeed(lease_of(**job), {"{}", {}, {}})->held);
+        const std::lock_guard<std::mutex> guard(mutex);
+        claimed.insert((*job)->id);
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(claimed.size(), std::size_t{kJobs});
+  EXPECT_EQ(std::set<std::string>(claimed.begin(), claimed.end()).size(), std::size_t{kJobs});
+
+  add_job(*one, "contested");
+  const Job lost = claim_one(*one);
+  ASSERT_EQ(*two->end_all_leases(), 1);
+  const Job held = claim_one(*two);
+  EXPECT_FALSE(one->succeed(lease_of(lost), {"{}", {}, {}})->held);
+  EXPECT_TRUE(two->succeed(lease_of(held), {"{}", {}, {}})->held);
+}
+
+TEST_F(PostgresStoreTest, ResultsOfOneAxisThatEndAtOnceArePooledTogether) {
+  // Neither of two transactions that each add the second result of an axis sees the other's: unless one of them is run
+  // again, nobody queues the pooling.
+  const auto one = open();
+  const auto two = open();
+  for (int round = 0; round < 10; ++round) {
+    const Device device = add_device(*one, "phone " + std::to_string(round));
+    const Recording first = add_recording(*one, device, "first " + std::to_string(round));
+    const Recording second = add_recording(*one, device, "second " + std::to_string(round));
+    add_job(*one, "a " + std::to_string(round), 0);
+    add_job(*one, "b " + std::to_string(round), 0);
+    const Job a = claim_one(*one);
+    const Job b = claim_one(*two);
+    std::thread other([&] { EXPECT_TRUE(two->succeed(lease_of(b), results_for(b, second))->held); });
+    EXPECT_TRUE(one->succeed(lease_of(a), results_for(a, first))->held);
+    other.join();
+    const auto pooled = one->axis_results({device.id, "angular_rate", "z"});
+    ASSERT_TRUE(pooled && pooled->pool) << "round " << round;
+    ASSERT_TRUE(one->request_cancel(pooled->pool->id));
+  }
+}
+
+TEST_F(PostgresStoreTest, AuditedWritesOfSeveralDaemonsAreOneChain) {
+  const auto one = open();
+  const auto two = open();
+  std::vector<std::thread> threads;
+  threads.reserve(6);
+  for (int i = 0; i < 6; ++i) {
+    threads.emplace_back([&, i] {
+      const Caller caller{Principal{"", "tester", Scope::Admin, {}, false}, "req", "127.0.0.1"};
+      const ActingFor acting(caller);
+      for (int n = 0; n < 10; ++n) {
+        add_device(i % 2 == 0 ? *one : *two, std::to_string(i) + "/" + std::to_string(n));
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  const auto verdict = one->access().verify_audit();
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->fault, "");
+  EXPECT_EQ(verdict->rows, 60);
+  EXPECT_FALSE(cluster().run("DELETE FROM " + schema_ + ".audit"));
+}
+
+TEST_F(PostgresStoreTest, ADaemonThatWantsTheDatabaseAloneKeepsOthersOut) {
+  PostgresOptions alone;
+  alone.exclusive = true;
+  {
+    const auto first = open(alone);
+    const auto second = open_postgres_store(uri_, alone);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, ErrorCode::Conflict);
+    EXPECT_THAT(second.error().message, HasSubstr("Another daemon works with the database"));
+    ASSERT_TRUE(cut_connections());
+    EXPECT_TRUE(first->ping()) << "the lock is taken again";
+    EXPECT_FALSE(open_postgres_store(uri_, alone));
+  }
+  EXPECT_TRUE(open_postgres_store(uri_, alone)) << "the lock goes with its holder";
+}
+
+TEST_F(PostgresStoreTest, BrokenConnectionsAreReplacedUnnoticed) {
+  const auto store = open();
+  const Device device = add_device(*store);
+  ASSERT_TRUE(cut_connections());
+  EXPECT_TRUE(store->device(device.id)) << "a read";
+  ASSERT_TRUE(cut_connections());
+  add_device(*store, "another");
+  ASSERT_TRUE(cut_connections());
+  EXPECT_TRUE(store->ping());
+}
+
+TEST_F(PostgresStoreTest, AServerThatIsGoneIsSaidInOneSentenceAndComesBack) {
+  const auto store = open();
+  const Device device = add_device(*store);
+  cluster().stop(SIGQUIT);
+  for (int i = 0; i < 3; ++i) {
+    const auto read = store->device(device.id);
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, ErrorCode::Io);
+    EXPECT_THAT(read.error().message, AllOf(HasSubstr("The database \"postgres\" on "), EndsWith(".")));
+    const auto written = store->write_probe();
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::Io);
+  }
+  EXPECT_EQ(refusal(uri_).code, ErrorCode::Io);
+  cluster().start();
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);  // far beyond the longest pause
+  while (!store->ping() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const auto read = store->device(device.id);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(store->write_probe());
+}
+
+TEST_F(PostgresStoreTest, AReadOnlyDatabaseIsSaidAndStillRead) {
+  const auto store = open();
+  const Device device = add_device(*store);
+  ASSERT_TRUE(cluster().run("ALTER DATABASE postgres SET default_transaction_read_only = on"));
+  ASSERT_TRUE(cut_connections());
+  EXPECT_TRUE(store->device(device.id));
+  const auto written = store->write_probe();
+  EXPECT_THAT(refusal(uri_).message, HasSubstr("is read-only"));
+  ASSERT_TRUE(cluster().run("ALTER DATABASE postgres RESET default_transaction_read_only"));
+  ASSERT_TRUE(cut_connections());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::Io);
+  EXPECT_THAT(written.error().message, HasSubstr("is read-only"));
+  EXPECT_TRUE(store->write_probe());
+}
+
+TEST_F(PostgresStoreTest, ConnectionsHaveTheSettingsOfTheHouse) {
+  ASSERT_TRUE(cluster().run("ALTER DATABASE postgres SET synchronous_commit = off"));
+  const auto opened = PostgresConnection::open(uri_, "driftlabd");
+  ASSERT_TRUE(cluster().run("ALTER DATABASE postgres RESET synchronous_commit"));
+  ASSERT_TRUE(opened) << opened.error().message;
+  for (const auto& [setting, value] :
+       {std::pair{"synchronous_commit", "on"}, std::pair{"statement_timeout", "30s"}, std::pair{"lock_timeout", "10s"},
+        std::pair{"idle_in_transaction_session_timeout", "1min"}, std::pair{"client_encoding", "UTF8"},
+        std::pair{"application_name", "driftlabd"}}) {
+    const auto found = (*opened)->query_text(std::string("SELECT current_setting('") + setting + "')");
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->value_or(""), value) << setting;
+  }
+}
+
+TEST_F(PostgresStoreTest, AnotherSchemaIsRefusedAtStartAndWhileItRuns) {
+  const auto store = open();
+  ASSERT_TRUE(store->ping());
+  ASSERT_TRUE(cluster().run("INSERT INTO " + schema_ + ".schema_migrations VALUES (999, 'later', 'x', 0)"));
+  const auto told = store->ping();
+  ASSERT_FALSE(told);
+  EXPECT_THAT(told.error().message, HasSubstr("has schema 999 by now"));
+  const Error newer = refusal(uri_);
+  EXPECT_EQ(newer.code, ErrorCode::Conflict);
+  EXPECT_THAT(newer.message, HasSubstr("999"));
+  ASSERT_TRUE(cluster().run("DELETE FROM " + schema_ + ".schema_migrations WHERE number = 999; UPDATE " + schema_ +
+                            ".schema_migrations SET sha256 = 'x' WHERE number = 3"));
+  EXPECT_THAT(refusal(uri_).message, HasSubstr("Migration 3"));
+}
+
+TEST_F(PostgresStoreTest, AMigrationThatFailsLeavesTheDatabaseAsItWas) {
+  PostgresOptions options;
+  options.migrations = embedded_postgres_migrations();
+  options.migrations->push_back({10, "broken", "CREATE TABLE half (a BIGINT); SELECT * FROM nowhere"});
+  const auto broken = open_postgres_store(uri_, options);
+  ASSERT_FALSE(broken);
+  EXPECT_THAT(broken.error().message, HasSubstr("Migration 10 (broken) failed."));
+  EXPECT_EQ(open()->facts().schema_before, 0);
+  options.migrations->back().sql = "CREATE TABLE whole (a BIGINT)";
+  const auto mended = open_postgres_store(uri_, options);
+  ASSERT_TRUE(mended) << mended.error().message;
+  EXPECT_EQ((*mended)->facts().schema_before, 9);
+  EXPECT_EQ((*mended)->facts().schema, 10);
+}
+
+TEST_F(PostgresStoreTest, WhatCannotBeOpenedIsRefused) {
+  EXPECT_EQ(refusal("postgresql://x/?password=secret&nosuch=1").code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(refusal("postgresql://127.0.0.1:1/driftlab").code, ErrorCode::Io);
+  EXPECT_THAT(refusal(cluster().uri(schema_, "nobody")).message, HasSubstr("nobody"));
+  EXPECT_THAT(refusal(cluster().uri("nowhere")).message, HasSubstr("no schema to make tables in"));
+  ASSERT_TRUE(cluster().run("CREATE TABLE " + schema_ + ".theirs (a INT)"));
+  EXPECT_THAT(refusal(uri_).message, HasSubstr("holds tables that driftlab did not make"));
+}
+
+TEST_F(PostgresStoreTest, AUserWithoutRightsIsToldSo) {
+  ASSERT_TRUE(cluster().run("CREATE ROLE guest LOGIN; GRANT USAGE ON SCHEMA " + schema_ + " TO guest"));
+  const Error refused = refusal(cluster().uri(schema_, "guest"));
+  EXPECT_EQ(refused.code, ErrorCode::Io);
+  EXPECT_THAT(refused.message, HasSubstr("does not let its user do that"));
+  ASSERT_TRUE(cluster().run("REVOKE ALL ON SCHEMA " + schema_ + " FROM guest; DROP ROLE guest"));
+}
+
+TEST_F(PostgresStoreTest, LabelsOfDocumentsThatAreNoneAreNone) {
+  const auto store = open();
+  const Device device = add_device(*store);
+  Recording recording = add_recording(*store, device);
+  recording.tags_json = R"({"labels":{"board":"b\u0000"}})";
+  ASSERT_TRUE(store->revise_recording(recording, 1));
+  RecordingFilter filter;
+  filter.labels = {"board=b"};
+  const auto found = store->recordings(filter, {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(found->empty());
+  ASSERT_TRUE(store->enqueue({"x", "key", R"({"inputs":{"device":"d\u0000"}})"}));
+  JobFilter jobs;
+  jobs.input_device = device.id;
+  EXPECT_TRUE(store->jobs(jobs, {})->empty());
+}
+
+TEST(PostgresText, EveryTextComesBackAndPlainOnesStayAsTheyAre) {
+  for (const char* const plain : {"", "static", "Z\xC3\xBCrich \xF0\x9F\x93\xB1", "tab\tand\nline", "\x7F"}) {
+    EXPECT_EQ(encode_text(plain), plain);
+  }
+  std::string text;
+  for (int first = 0; first < 256; ++first) {
+    for (int second = 0; second < 256; ++second) {
+      text = {static_cast<char>(first), static_cast<char>(second), 'x'};
+      const std::string code = encode_text(text);
+      ASSERT_EQ(decode_text(code), text);
+      ASSERT_EQ(code.find('\0'), std::string::npos);
+      ASSERT_EQ(encode_text(code) == code, code.find('\x01') == std::string::npos);
+    }
+  }
+  for (const char* const faulty : {"\xED\xA0\x80", "\xF4\x90\x80\x80", "\xC0\xAF", "\xE2\x82", "\xF0\x80\x80\x80"}) {
+    EXPECT_NE(encode_text(faulty), faulty);
+    EXPECT_EQ(decode_text(encode_text(faulty)), faulty);
+  }
+}
+
+TEST(PostgresText, ParametersAreNumbered) {
+  EXPECT_EQ(numbered_parameters("a = ? AND b = ?"), "a = $1 AND b = $2");
+  EXPECT_EQ(numbered_parameters("a = ?2 AND b = ?1 + ?2"), "a = $2 AND b = $1 + $2");
+  EXPECT_EQ(numbered_parameters("a = '?' || ?"), "a = '?' || $1");
+}
+
+TEST(PostgresMigrations, HaveTheNumbersAndNamesOfThoseOfSqlite) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the environment is read before anything starts
+  const char* const root = std::getenv("DRIFTLAB_SOURCE");
+  ASSERT_NE(root, nullptr);
+  const std::filesystem::path folder = std::filesystem::path(root) / "migrations";
+  const auto names = [&](const char* engine) {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / engine)) {
+      found.insert(entry.path().filename().string());
+    }
+    return found;
+  };
+  EXPECT_EQ(names("postgres"), names("sqlite"));
+}
+
+}  // namespace
+}  // namespace driftlab::server
