@@ -397,9 +397,11 @@ Status CsvDecoder::finish() {
   return {};
 }
 
-/// True if a format of one kind of text takes it: the table of numbers is for what nobody else knows.
+/// True if a format of one kind of text takes it, or UBX, of which a short log looks like text: the table of numbers is
+/// for what nobody else knows.
 bool is_special(std::string_view head) {
-  constexpr std::array kOfText{&kCxd5602, &kVmu931, &kGeneactiv, &kEuroc, &kRostopic, &kKfGins, &kRtklibPos};
+  constexpr std::array kOfText{&kCxd5602, &kVmu931,    &kGeneactiv, &kEuroc, &kRostopic,
+                               &kKfGins,  &kRtklibPos, &kNmea,      &kUbx};
   return std::any_of(kOfText.begin(), kOfText.end(), [head](const Format* format) { return format->sniff(head) > 0; });
 }
 

@@ -155,7 +155,7 @@ Status CwaDecoder::take(std::string_view bytes) {
     return {};
   }
   if (!blocks_) {
-    if (auto status = begin(*block); !status) {
+    if (auto status = begin(*block); !status || !blocks_) {
       return status;
     }
   } else if (block->sequence > last_.sequence) {

@@ -249,7 +249,11 @@ void DataflashDecoder::declare(std::string_view body) {
 }
 
 Status DataflashDecoder::take(unsigned char number, std::string_view message) {
-  Layout& layout = *layouts_[number];
+  std::optional<Layout>& declared = layouts_[number];
+  if (!declared) {
+    return {};
+  }
+  Layout& layout = *declared;
   const unsigned char instance = layout.instance ? static_cast<unsigned char>(message[*layout.instance]) : 0;
   auto stream = layout.streams.find(instance);
   if (stream == layout.streams.end()) {

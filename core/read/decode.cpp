@@ -1,10 +1,10 @@
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
 #include "core/read/phone_export.hpp"
+#include "core/read/recognised_stream.hpp"
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <utility>
 
 namespace driftlab {
@@ -21,12 +21,8 @@ class WatchingSink final : public ColumnSink {
         control_(control) {}
 
   Status begin(const ColumnLayout& layout) override {
-    std::set<std::string_view> seen;
-    for (const std::string& name : layout.names) {
-      if (!seen.insert(name).second) {
-        return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + name + "'; give each its own name.",
-                    {{"column", name}});
-      }
+    if (auto distinct = check_distinct_names(layout); !distinct) {
+      return distinct;
     }
     decoded_.names = layout.names;
     decoded_.has_header = layout.has_header;
@@ -88,21 +84,6 @@ class WatchingSink final : public ColumnSink {
   Decoded decoded_;
 };
 
-/// The surest format; nullptr if none is, or none is certain and the bytes are those of a foreign format.
-const Format* recognise(std::string_view head) {
-  const Format* best = nullptr;
-  constexpr int kCertain = 100;
-  int score = recognise_foreign(head) ? kCertain - 1 : 0;
-  for (const Format* const format : all_formats()) {
-    const int sure = format->sniff(head);
-    if (sure > score) {
-      best = format;
-      score = sure;
-    }
-  }
-  return best;
-}
-
 /// The column file as a sink.
 class FileSink final : public ColumnSink {
  public:
@@ -145,41 +126,17 @@ Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_p
 
 Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& sink, const DecodeLimits& limits,
                               const RunControl& control) {
-  ByteSource source(std::move(reader));
-  auto head = source.view(8);
-  if (!head) {
-    return fail(head.error());
+  auto stream = recognise_stream(std::move(reader), limits);
+  if (!stream) {
+    return fail(stream.error());
   }
-  if (head->empty()) {
-    return fail(ErrorCode::EmptyInput, "The file is empty.");
-  }
-  const Compression compression = sniff_compression(*head);
-  if (compression != Compression::None) {
-    auto plain = make_decompressor(compression, std::move(source), limits);
-    if (!plain) {
-      return fail(plain.error());
-    }
-    source = ByteSource(std::move(*plain));
-  }
-  head = source.view(kSniffBytes);
-  if (!head) {
-    return fail(head.error());
-  }
-  if (head->empty()) {
-    return fail(ErrorCode::EmptyInput, "The " + std::string(name_of(compression)) + " file holds no bytes.");
-  }
-  const std::string_view seen = head->substr(0, kSniffBytes);
-  const Format* const format = recognise(seen);
-  if (format == nullptr) {
-    const std::string looks = describe_unknown(seen);
-    return fail(ErrorCode::UnsupportedFormat, "This looks like " + looks + ".", {{"looks_like", looks}});
-  }
+  ByteSource& source = stream->source;
   WatchingSink watching(sink, source, limits, control);
-  if (auto status = format->decode(source, limits, watching, control); !status) {
+  if (auto status = stream->format->decode(source, limits, watching, control); !status) {
     return fail(status.error());
   }
-  watching.decoded().format = format->name;
-  watching.decoded().compression = compression;
+  watching.decoded().format = stream->format->name;
+  watching.decoded().compression = stream->compression;
   control.report("decode", 1.0);
   return watching.finished();
 }

@@ -22,7 +22,9 @@
   FORMAT(kEuroc)    /* euroc.cpp */ \
   FORMAT(kRostopic) /* rostopic.cpp */ \
   FORMAT(kKfGins)   /* kf_gins.cpp */ \
-  FORMAT(kRtklibPos) /* rtklib_pos.cpp */
+  FORMAT(kRtklibPos) /* rtklib_pos.cpp */ \
+  FORMAT(kNmea)     /* nmea.cpp */ \
+  FORMAT(kUbx)      /* ubx.cpp */
 // clang-format on
 
 namespace driftlab::formats {

@@ -135,10 +135,15 @@ Status GeneactivDecoder::take_samples(std::string_view digits, std::uint64_t num
   if (!start_s_ || !rate_hz_) {
     return bad_line(number, "has samples without a time and a rate before them", ErrorCode::ShapeMismatch);
   }
-  for (const Axis& axis : axes_) {
-    if (!axis.gain || !axis.offset) {
+  std::array<double, 3> gain{};
+  std::array<double, 3> offset{};
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    const Axis& stated = axes_[axis];
+    if (!stated.gain || !stated.offset) {
       return bad_line(number, "has samples, but the header states no calibration", ErrorCode::ShapeMismatch);
     }
+    gain[axis] = *stated.gain;
+    offset[axis] = *stated.offset;
   }
   torn_ = torn_ || digits.size() % kDigits != 0;
   values_.clear();
@@ -148,7 +153,7 @@ Status GeneactivDecoder::take_samples(std::string_view digits, std::uint64_t num
       if (!raw) {
         return bad_line(number, "has samples that are no hexadecimal digits");
       }
-      values_.push_back((*raw * 100.0 - *axes_[axis].offset) / *axes_[axis].gain);
+      values_.push_back((*raw * 100.0 - offset[axis]) / gain[axis]);
     }
     values_.push_back(temperature_degc_);
   }

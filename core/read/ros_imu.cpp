@@ -85,7 +85,7 @@ Result<std::size_t> RosTopics::add(std::string_view name, std::string_view type,
 
 Status RosTopics::take(std::size_t index, std::string_view message, std::uint64_t log_ns) {
   Topic& topic = topics_[index];
-  const auto imu = read_ros_imu(message, *topic.encoding);
+  const auto imu = topic.encoding ? read_ros_imu(message, *topic.encoding) : std::nullopt;
   if (!imu || (!imu->measures_gyro && !imu->measures_accel)) {
     ++unreadable_;
     return {};

@@ -134,14 +134,15 @@ Result<bool> BagDecoder::walk(ByteSource& records, Level level) {
     if (next->empty()) {
       return true;
     }
-    auto header = take_header(records);
-    if (!header) {
-      return fail(header.error());
+    auto taken = take_header(records);
+    if (!taken) {
+      return fail(taken.error());
     }
-    if (!*header) {
+    const auto& header = *taken;
+    if (!header) {
       return false;
     }
-    auto whole = take_data(records, **header, level);
+    auto whole = take_data(records, *header, level);
     if (!whole || !*whole) {
       return whole;
     }

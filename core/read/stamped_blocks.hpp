@@ -53,8 +53,9 @@ class StampedBlocks {
     const double measured_s = (next_s - start_s_) / count();
     const double step_s = std::abs(measured_s / step_s_ - 1.0) <= 0.1 ? measured_s : step_s_;
     rows_.clear();
-    for (std::size_t at = 0; at < waiting_.size(); at += width_) {
-      rows_.push_back(start_s_ - zero_s_ + static_cast<double>(at / width_) * step_s);
+    for (std::size_t row = 0; row * width_ < waiting_.size(); ++row) {
+      const std::size_t at = row * width_;
+      rows_.push_back(start_s_ - zero_s_ + static_cast<double>(row) * step_s);
       rows_.insert(rows_.end(), waiting_.begin() + static_cast<std::ptrdiff_t>(at),
                    waiting_.begin() + static_cast<std::ptrdiff_t>(at + width_));
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 
 namespace driftlab::text {
@@ -151,14 +152,6 @@ int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   return value;
 }
 
-/// Days from 1970-01-01 to a date of the Gregorian calendar: years begin in March, so that the leap day ends one.
-std::int64_t days_to(int year, int month, int day) {
-  const std::int64_t y = year - (month <= 2 ? 1 : 0);
-  const std::int64_t month_from_march = (month + 9) % 12;
-  const std::int64_t day_of_year = (153 * month_from_march + 2) / 5 + day - 1;
-  return 365 * y + y / 4 - y / 100 + y / 400 + day_of_year - 719468;
-}
-
 /// Seconds east of Greenwich of `Z`, `+hh:mm`, `-hhmm` or nothing.
 std::optional<int> zone_of(std::string_view text) {
   if (text.empty() || text == "Z") {
@@ -183,9 +176,11 @@ std::optional<double> seconds_of_date(std::string_view text) {
   const int hour = digits_at(text, 11, 2);
   const int minute = digits_at(text, 14, 2);
   const int second = digits_at(text, 17, 2);
-  if (year < 1900 || month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 23 || minute < 0 ||
-      minute > 59 || second < 0 || second > 60 || text[4] != '-' || text[7] != '-' ||
-      (text[10] != ' ' && text[10] != 'T') || text[13] != ':' || text[16] != ':') {
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (year < 1900 || month < 0 || day < 0 || !date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 ||
+      second < 0 || second > 60 || text[4] != '-' || text[7] != '-' || (text[10] != ' ' && text[10] != 'T') ||
+      text[13] != ':' || text[16] != ':') {
     return std::nullopt;
   }
   double fraction = 0.0;
@@ -201,7 +196,8 @@ std::optional<double> seconds_of_date(std::string_view text) {
     return std::nullopt;
   }
   const int within_day = 3600 * hour + 60 * minute + second;
-  return static_cast<double>(86400 * days_to(year, month, day) + within_day - *zone) + fraction;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  return static_cast<double>(86400 * days + within_day - *zone) + fraction;
 }
 
 std::string excerpt(std::string_view cell) {

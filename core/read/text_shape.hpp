@@ -33,8 +33,8 @@ enum class Shape {
 [[nodiscard]] std::string excerpt(std::string_view cell);
 
 /// Seconds since 1970-01-01 UTC of a date and time as ISO 8601 writes it: `2025-06-14 21:17:02+00:00`,
-/// `2025-06-14T21:17:02.5Z`; without a zone it is UTC. Nothing for any other text. Source of the day count: the
-/// Gregorian rule, from March on.
+/// `2025-06-14T21:17:02.5Z`; without a zone it is UTC. Nothing for any other text, nor for a day that the
+/// calendar does not have.
 [[nodiscard]] std::optional<double> seconds_of_date(std::string_view text);
 
 /// `text` as UTF-8: unchanged if it is, else every byte read as ISO 8859-1.

@@ -77,8 +77,9 @@ class UlogDecoder {
   Status subscribe(std::string_view body);
   Status take_data(std::string_view body);
   Result<bool> resynchronise();
-  std::optional<Subscription> layout_of(const InertialTopic& topic) const;
-  std::optional<Triad> find_triad(const InertialTopic& topic, std::string_view field, std::string_view interval) const;
+  [[nodiscard]] std::optional<Subscription> layout_of(const InertialTopic& topic) const;
+  [[nodiscard]] std::optional<Triad> find_triad(const InertialTopic& topic, std::string_view field,
+                                                std::string_view interval) const;
   void note_quality();
 
   ByteSource& source_;
@@ -315,10 +316,14 @@ Status UlogDecoder::subscribe(std::string_view body) {
 
 Status UlogDecoder::take_data(std::string_view body) {
   const std::size_t id = body.size() < 2 ? subscriptions_.size() : load_at<std::uint16_t>(body, 0);
-  if (id >= subscriptions_.size() || !subscriptions_[id]) {
+  if (id >= subscriptions_.size()) {
     return {};
   }
-  const Subscription& layout = *subscriptions_[id];
+  const std::optional<Subscription>& subscribed = subscriptions_[id];
+  if (!subscribed) {
+    return {};
+  }
+  const Subscription& layout = *subscribed;
   const std::string_view data = body.substr(2);
   if (data.size() < layout.bytes) {
     ++short_messages_;

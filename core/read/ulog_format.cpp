@@ -73,7 +73,10 @@ std::size_t size_of(const Definitions& definitions, std::string_view type, int d
   std::size_t bytes = 0;
   while (!rest.empty()) {
     const auto field = take_field(rest);
-    const std::size_t one = field ? size_of(definitions, field->type, depth + 1, room - bytes) : 0;
+    if (!field) {
+      return 0;
+    }
+    const std::size_t one = size_of(definitions, field->type, depth + 1, room - bytes);
     if (one == 0 || one * field->count > room - bytes) {
       return 0;
     }

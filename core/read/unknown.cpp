@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// Bytes at a place that give a format away, and what to call it.
+/// Bytes at a place that give a format away, and what to call it: its name, and behind a semicolon the next step.
 struct Signature {
   std::size_t offset;
   std::string_view magic;
@@ -21,28 +21,28 @@ struct Signature {
 
 constexpr std::array kSignatures{
     Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save it with -v7, or the samples as CSV or .npy"},
-    Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
-    Signature{0, "\xb5\x62"sv, "a u-blox UBX log, which holds a receiver's messages and no recording of an IMU"},
-    Signature{0, "$GP"sv, "an NMEA log, which holds a receiver's messages and no recording of an IMU"},
-    Signature{0, "$GN"sv, "an NMEA log, which holds a receiver's messages and no recording of an IMU"},
+    Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file; write its samples as CSV or .npy (h5py, numpy.save)"},
+    Signature{0, "\xb5\x62"sv, "a u-blox UBX log, which holds a receiver's messages; send the recording of the IMU"},
+    Signature{0, "$GP"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},
+    Signature{0, "$GN"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},
     Signature{0, "FMT, 128, 89"sv, "an ArduPilot log turned into text; send the .bin"},
-    Signature{0, "%PDF"sv, "a PDF document"},
-    Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image"},
-    Signature{0, "\xff\xd8\xff"sv, "a JPEG image"},
-    Signature{0, "GIF8"sv, "a GIF image"},
+    Signature{0, "%PDF"sv, "a PDF document; send the samples as CSV or .npy"},
+    Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image; send the samples as CSV or .npy"},
+    Signature{0, "\xff\xd8\xff"sv, "a JPEG image; send the samples as CSV or .npy"},
+    Signature{0, "GIF8"sv, "a GIF image; send the samples as CSV or .npy"},
     Signature{0, "BZh"sv, "a bzip2 file; use gzip, xz or zstd"},
-    Signature{0, "7z\xbc\xaf\x27\x1c"sv, "a 7-Zip archive"},
-    Signature{0, "Rar!\x1a\x07"sv, "a RAR archive"},
+    Signature{0, "7z\xbc\xaf\x27\x1c"sv, "a 7-Zip archive; unpack it and send its files one by one"},
+    Signature{0, "Rar!\x1a\x07"sv, "a RAR archive; unpack it and send its files one by one"},
     Signature{0, "\x04\x22\x4d\x18"sv, "an LZ4 file; use gzip, xz or zstd"},
     Signature{257, "ustar"sv, "a tar archive; send its files one by one"},
-    Signature{0, "PAR1"sv, "a Parquet file"},
-    Signature{0, "ARROW1"sv, "an Arrow (Feather) file"},
+    Signature{0, "PAR1"sv, "a Parquet file; write it as CSV (pandas.read_parquet, to_csv)"},
+    Signature{0, "ARROW1"sv, "an Arrow (Feather) file; write it as CSV (pandas.read_feather, to_csv)"},
     Signature{0, "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"sv, "an old Microsoft Office file; save the sheet as CSV"},
     Signature{0,
               "\x7f"
               "ELF"sv,
-              "a program"},
-    Signature{0, "RIFF"sv, "a RIFF file (WAV or AVI)"},
+              "a program; send the recording that it made"},
+    Signature{0, "RIFF"sv, "a RIFF file (WAV or AVI); send the samples as CSV or .npy"},
     Signature{0, "\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
     Signature{0, "\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
 };
@@ -52,8 +52,10 @@ std::string describe_zip(std::string_view head) {
   if (entry.find("[Content_Types].xml") != std::string_view::npos) {
     return "a Microsoft Office file; save the sheet as CSV";
   }
-  return "a ZIP archive without CSV files or .npy arrays";
+  return "a ZIP archive without CSV files or .npy arrays; put the samples into it as one of these";
 }
+
+std::string binary_data() { return "binary data; send the samples as CSV or .npy"; }
 
 std::string describe_text(std::string_view head) {
   const std::string_view start = text::trim(head.substr(std::min(head.find_first_not_of(" \t\r\n"), head.size())));
@@ -68,15 +70,15 @@ std::string describe_text(std::string_view head) {
   }
   switch (text::shape_of(head)) {
     case text::Shape::Semicolons:
-      return "semicolon-separated text that is not a table of numbers";
+      return "semicolon-separated text that is not a table of numbers; send rows of numbers under a line of names";
     case text::Shape::Tabs:
-      return "tab-separated text that is not a table of numbers";
+      return "tab-separated text that is not a table of numbers; send rows of numbers under a line of names";
     case text::Shape::Spaces:
-      return "text in columns that are not numbers";
+      return "text in columns that are not numbers; send rows of numbers under a line of names";
     case text::Shape::NotText:
-      return "binary data";
+      return binary_data();
     default:
-      return "text that is not a table of numbers";
+      return "text that is not a table of numbers; send rows of numbers under a line of names";
   }
 }
 
@@ -102,7 +104,7 @@ std::string describe_unknown(std::string_view head) {
     return std::move(*foreign);
   }
   const bool binary = head.substr(0, 512).find('\0') != std::string_view::npos;
-  return binary ? "binary data" : describe_text(head);
+  return binary ? binary_data() : describe_text(head);
 }
 
 }  // namespace driftlab

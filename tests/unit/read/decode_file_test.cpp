@@ -114,7 +114,7 @@ TEST(Unknown, IsNamedByWhatItLooksLike) {
     const auto outcome = decode_bytes(bytes);
     EXPECT_EQ(outcome.error, ErrorCode::UnsupportedFormat) << name;
     EXPECT_THAT(outcome.message, HasSubstr(name));
-    EXPECT_FALSE(outcome.field("looks_like").empty());
+    EXPECT_THAT(outcome.field("looks_like"), ::testing::AnyOf(HasSubstr("; "), HasSubstr("?"))) << "the next step";
   }
 }
 

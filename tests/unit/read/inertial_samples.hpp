@@ -230,6 +230,72 @@ inline std::string kf_gins(const std::vector<InertialRow>& rows) {
   return text;
 }
 
+/// A sentence with its checksum.
+inline std::string nmea_sentence(const std::string& body) {
+  unsigned sum = 0;
+  for (const char c : body) {
+    sum ^= static_cast<unsigned char>(c);
+  }
+  std::array<char, 8> tail{};
+  std::snprintf(tail.data(), tail.size(), "*%02X\r\n", sum);
+  return "$" + body + tail.data();
+}
+
+/// Two seconds about midnight; the second position lies west and south.
+inline std::string nmea() {
+  return nmea_sentence("GPGGA,235959.00,4830.0000,N,00915.0000,E,4,12,0.9,250.5,M,49.5,M,,") +
+         nmea_sentence("GPRMC,235959.00,A,4830.0000,N,00915.0000,E,10.0,90.5,311222,,,A") +
+         nmea_sentence("GPGST,235959.00,,,,,0.011,0.012,0.021") + nmea_sentence("GPGSV,1,1,00") +
+         nmea_sentence("GNGGA,000000.00,4830.0000,S,00915.0000,W,1,11,1.0,251.5,M,49.5,M,,");
+}
+
+/// A frame of a u-blox receiver with its checksum.
+inline std::string ubx_frame(char of_class, char number, const std::string& payload) {
+  std::string inner{of_class, number, static_cast<char>(payload.size() & 255U),
+                    static_cast<char>(payload.size() >> 8U)};
+  inner += payload;
+  unsigned a = 0;
+  unsigned b = 0;
+  for (const char c : inner) {
+    a = (a + static_cast<unsigned char>(c)) & 255U;
+    b = (b + a) & 255U;
+  }
+  return "\xB5\x62" + inner + std::string{static_cast<char>(a), static_cast<char>(b)};
+}
+
+/// NAV-PVT of 2025-07-08 19:34:00 UTC (GPS week 2374), a second apart, between words of another protocol.
+inline std::string ubx_pvt(int count) {
+  std::string log = "$GPTXT,01,01,02,u-blox*00\r\n";
+  for (int i = 0; i < count; ++i) {
+    std::string p(92, '\0');
+    const auto put = [&](std::size_t at, std::int64_t value, std::size_t bytes) {
+      for (std::size_t k = 0; k < bytes; ++k) {
+        p[at + k] = static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * k) & 255U);
+      }
+    };
+    put(0, 243258000 + 1000 * i, 4);  // 18 leap seconds ahead of UTC
+    put(4, 2025, 2);
+    put(6, 7, 1);
+    put(7, 8, 1);
+    put(8, 19, 1);
+    put(9, 34, 1);
+    put(10, i, 1);
+    put(11, 7, 1);
+    put(20, 3, 1);
+    put(23, 14, 1);
+    put(24, 92500000, 4);
+    put(28, -485000000, 4);
+    put(32, 300125, 4);
+    put(36, 250125, 4);
+    put(40, 1500, 4);
+    put(48, -1250, 4);
+    put(64, 9000000, 4);
+    put(68, 250, 4);
+    log += ubx_frame(1, 7, p) + ubx_frame(1, 3, std::string(16, '\x05'));
+  }
+  return log;
+}
+
 /// Three positions 0.25 s apart.
 inline std::string rtklib_pos() {
   return "% program   : made by hand\n"

@@ -228,6 +228,8 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"rostopic", {rostopic(inertial_rows(3))}},
       {"kf_gins", {kf_gins(inertial_rows(10))}},
       {"rtklib_pos", {rtklib_pos()}},
+      {"nmea", {nmea()}},
+      {"ubx", {ubx_pvt(3)}},
       {"geneactiv", {geneactiv()}},
       {"rosbag2", {rosbag2(inertial_rows(2))}},
       {"mcap", {mcap(inertial_rows(2)), mcap(inertial_rows(2), "zstd", "ros1"), mcap(inertial_rows(2), "lz4")}},

@@ -1,0 +1,94 @@
+// Logs of receivers alone: NMEA sentences and u-blox frames, each an epoch a row.
+#include "core/signal/missing.hpp"
+#include "tests/unit/read/samples.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace driftlab {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using namespace driftlab::testing;
+
+double cell(const Outcome& outcome, std::size_t column, std::size_t row) {
+  return std::bit_cast<double>(outcome.bits[column][row]);
+}
+
+TEST(Nmea, PutsTheSentencesOfAMomentIntoOneRowAndGoesOnOverMidnight) {
+  const Outcome outcome = decode_bytes(nmea());
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.format, "nmea");
+  ASSERT_EQ(outcome.decoded.rows, 2U);
+  const double midnight = 1672531200.0;  // 2023-01-01
+  EXPECT_DOUBLE_EQ(cell(outcome, 0, 0), midnight - 1.0);
+  EXPECT_DOUBLE_EQ(cell(outcome, 0, 1), midnight);
+  EXPECT_DOUBLE_EQ(cell(outcome, 1, 0), 48.5);
+  EXPECT_DOUBLE_EQ(cell(outcome, 1, 1), -48.5);
+  EXPECT_DOUBLE_EQ(cell(outcome, 2, 1), -9.25);
+  EXPECT_DOUBLE_EQ(cell(outcome, 3, 0), 300.0) << "above the ellipsoid";
+  EXPECT_DOUBLE_EQ(cell(outcome, 8, 0), 10.0 * 1852.0 / 3600.0);
+  EXPECT_DOUBLE_EQ(cell(outcome, 10, 0), 0.011);
+  EXPECT_TRUE(std::isnan(cell(outcome, 8, 1))) << "no sentence says its speed";
+}
+
+TEST(Nmea, CountsDamagedLinesAndSaysThatThereIsNoDate) {
+  const std::string good = nmea_sentence("GPGGA,120000.00,4830.0000,N,00915.0000,E,4,12,0.9,250.5,M,49.5,M,,");
+  std::string damaged = good;
+  damaged[20] = '9';
+  std::string text = damaged;
+  for (int i = 0; i < 8; ++i) {
+    text += nmea_sentence("GPGGA,12000" + std::to_string(i) + ".00,4830.0000,N,00915.0000,E,4,12,0.9,250.5,M,49.5,M,,");
+  }
+  const Outcome outcome = decode_bytes(text);
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.rows, 8U);
+  EXPECT_DOUBLE_EQ(cell(outcome, 0, 0), 43200.0);
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("seconds of the day")));
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 lines are no sentences")));
+  EXPECT_EQ(decode_bytes(nmea_sentence("GPGSV,1,1,00")).error, ErrorCode::NoSamples);
+}
+
+TEST(Nmea, DatesRowsThatCameBeforeTheDate) {
+  const Outcome outcome =
+      decode_bytes(nmea_sentence("GPGGA,235958.00,4830.0000,N,00915.0000,E,4,12,0.9,250.5,M,49.5,M,,") + nmea());
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  ASSERT_EQ(outcome.decoded.rows, 3U);
+  EXPECT_DOUBLE_EQ(cell(outcome, 0, 0), 1672531198.0);
+}
+
+TEST(Ubx, ReadsNavPvtOnGpsTime) {
+  const Outcome outcome = decode_bytes(ubx_pvt(3));
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.format, "ubx");
+  ASSERT_EQ(outcome.decoded.rows, 3U);
+  EXPECT_NEAR(cell(outcome, 0, 0), 1752003240.0 + 18.0, 1e-6);
+  EXPECT_NEAR(cell(outcome, 0, 2) - cell(outcome, 0, 0), 2.0, 1e-6);
+  EXPECT_EQ(cell(outcome, 1, 0), 3.0);
+  EXPECT_DOUBLE_EQ(cell(outcome, 3, 0), -48.5);
+  EXPECT_DOUBLE_EQ(cell(outcome, 4, 0), 9.25);
+  EXPECT_DOUBLE_EQ(cell(outcome, 5, 0), 300.125);
+  EXPECT_DOUBLE_EQ(cell(outcome, 9, 0), -1.25);
+  EXPECT_DOUBLE_EQ(cell(outcome, 13, 0), 90.0);
+}
+
+TEST(Ubx, SkipsDamagedFramesAndSaysWhatIsMissing) {
+  std::string log = ubx_pvt(4);
+  log[80] = static_cast<char>(log[80] ^ 1);  // in the first NAV-PVT
+  const Outcome outcome = decode_bytes(log);
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.rows, 3U);
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("wrong checksum")));
+  const Outcome torn = decode_bytes(ubx_pvt(4).substr(0, 300));
+  ASSERT_FALSE(torn.error) << torn.message;
+  EXPECT_EQ(torn.decoded.rows, 2U);
+  const std::string others = ubx_frame(1, 3, std::string(16, '\x05'));
+  const Outcome none = decode_bytes(others + others);
+  EXPECT_EQ(none.error, ErrorCode::NoSamples);
+  EXPECT_THAT(none.message, HasSubstr("NAV-PVT"));
+}
+
+}  // namespace
+}  // namespace driftlab
