@@ -55,7 +55,7 @@ Result<std::optional<PositionCalibration>> calibrate_positions(const char* senso
     error.message = std::string("The ") + sensor + ": " + error.message;
     return fail(std::move(error));
   }
-  return std::optional(PositionCalibration{std::move(*found), positions.size()});
+  return std::optional(PositionCalibration{*found, positions.size()});
 }
 
 /// What one recording adds: rests at once, or its position for the end.
@@ -105,8 +105,8 @@ Result<CalibrationReport> calibrate(RecordingSource& recordings, const Calibrate
   if (!gyroscope) {
     return fail(gyroscope.error());
   }
-  report.accelerometer = std::move(*accelerometer);
-  report.gyroscope = std::move(*gyroscope);
+  report.accelerometer = *accelerometer;
+  report.gyroscope = *gyroscope;
   report.notes = std::move(positions.notes);
   if (!report.rests && !report.accelerometer && !report.gyroscope) {
     return fail(ErrorCode::TooFewSamples,

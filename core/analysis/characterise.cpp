@@ -1,5 +1,7 @@
 #include "core/analysis/characterise.hpp"
 
+#include "core/analysis/unit_notes.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -52,6 +54,7 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
     if (!view) {
       return fail(view.error());
     }
+    add_unit_notes(*view, recording->columns, recording->spec, recording->hardware);
     auto calibration = recordings.calibration(i);
     if (!calibration) {
       return fail(calibration.error());

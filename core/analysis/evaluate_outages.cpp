@@ -1,5 +1,7 @@
 #include "core/analysis/evaluate_outages.hpp"
 
+#include "core/analysis/outage_verdict.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,9 +14,10 @@ Result<OutageReport> report_outages(const OutageScenario& scenario, const Outage
   if (!evaluation) {
     return fail(evaluation.error());
   }
-  OutageReport report{scenario, std::move(*evaluation), std::nullopt, {}};
+  OutageReport report{scenario, std::move(*evaluation), std::nullopt, {}, {}};
   report.attribution = attribute(report.evaluation);
   report.claims = judge_claims(report.evaluation);
+  report.summary = verdict_of(report.evaluation, report.attribution, report.claims);
   return report;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The use case "evaluate outages": a scenario in, its filters compared through GNSS outages out, with what the
 /// comparison says about the published claims.
+#include "core/campaign/verdict.hpp"
 #include "core/navigate/outage_claims.hpp"
 #include "core/navigate/outage_evaluation.hpp"
 #include "core/navigate/paper_scenario.hpp"
@@ -16,6 +17,7 @@ struct OutageReport {
   std::optional<Attribution>
       attribution;  ///< nothing where the six filters of the paper's comparison are not all there
   std::vector<Claim> claims;
+  Verdict summary;  ///< what it says (core/analysis/outage_verdict.hpp)
 };
 
 /// Errors: those of evaluate_outages. Results do not depend on the threads of `control`.

@@ -22,7 +22,8 @@ ImpliedCurves implied_curves(const Model& model, double dt_s, std::span<const do
     }
     for (std::size_t i = 0; i < f_hz.size(); ++i) {
       const std::optional<double> part = process.spectral_density(f_hz[i], dt_s);
-      curves.density[i] = part && curves.density[i] ? std::optional(*curves.density[i] + *part) : std::nullopt;
+      std::optional<double>& sum = curves.density[i];
+      sum = part && sum ? std::optional(*sum + *part) : std::nullopt;
       component.density.push_back(part);
     }
     curves.components.push_back(std::move(component));

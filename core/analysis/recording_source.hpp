@@ -20,6 +20,8 @@ struct SourceRecording {
   RecordingSpec spec;  ///< `id` is the name by which the result calls the recording
   ColumnFile columns;
   std::vector<std::string> notes;  ///< what its decoding had to say; empty where that was said elsewhere
+  /// Texts that describe the device, in which its sensor may be named, most telling first.
+  std::vector<std::string> hardware = {};
 };
 
 class RecordingSource {

@@ -44,9 +44,15 @@ class Planner {
     for (const ChannelGroup& group : groups_) {
       std::deque<std::vector<double>> memory;
       for (const ProposedRecordings& recordings : proposed_recordings(group, memory)) {
-        control_.report("plan " + group.column, static_cast<double>(done++) / (5.0 * static_cast<double>(groups_.size())));
-        Proposal proposal{recordings.title,   group.column,       recordings.conditions, recordings.duration_s,
-                          recordings.rate_hz, recordings.columns, {}};
+        control_.report("plan " + group.column,
+                        static_cast<double>(done++) / (5.0 * static_cast<double>(groups_.size())));
+        Proposal proposal{recordings.title,
+                          group.column,
+                          recordings.conditions,
+                          recordings.duration_s,
+                          recordings.rate_hz,
+                          recordings.columns,
+                          {}};
         for (std::size_t q = 0; q < plan.open.size(); ++q) {
           if (control_.stop.stop_requested()) {
             return fail(ErrorCode::Cancelled, "The planning was stopped.");

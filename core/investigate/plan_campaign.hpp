@@ -8,9 +8,9 @@
 ///
 /// Simulated are the recordings that exist, under the extended model, and the proposed ones beside them. An ambiguous
 /// finding is simulated as it was estimated, and where it and a rival are both effects on the mean, in every second run
-/// as that rival, of the size that fits the finding best. A cause that was not examined is simulated at the size that an
-/// oracle who knows base and template would see at twelve standard deviations in the proposed recordings: the plan says
-/// from what size on a recording would show it, not how likely it is.
+/// as that rival, of the size that fits the finding best. A cause that was not examined is simulated at the size that
+/// an oracle who knows base and template would see at twelve standard deviations in the proposed recordings: the plan
+/// says from what size on a recording would show it, not how likely it is.
 ///
 /// Cost: an investigation of one channel per run, question and proposal. Deterministic in the seed.
 #include "core/investigate/report/report.hpp"

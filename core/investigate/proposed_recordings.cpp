@@ -104,7 +104,8 @@ std::vector<ProposedRecordings> proposed_recordings(const ChannelGroup& group,
   const double usual = std::clamp(longest_s(group), kShortest, kLongest);
   const Condition rest = of_kind(ConditionKind::Static);
   maker.add({.title = "one recording at rest, four times as long"}, {rest}, std::min(4.0 * usual, 4.0 * kLongest), {});
-  maker.add({.title = "four recordings at rest, switched off and on between them"}, {rest, rest, rest, rest}, usual, {});
+  maker.add({.title = "four recordings at rest, switched off and on between them"}, {rest, rest, rest, rest}, usual,
+            {});
   const double period = usual;
   maker.add({.title = "a recording at rest through rising and falling temperature", .columns = {"temperature"}}, {rest},
             2.0 * usual, {.temperature = [period](double t) {

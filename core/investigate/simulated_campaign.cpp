@@ -46,8 +46,7 @@ std::vector<FoundParameter> sizes_of(const Cause& cause, const GivenEffect& effe
   const MeanEffect* const mean = cause.as<MeanEffect>();
   const bool by_shape = mean != nullptr && !mean->shape_of_parameter.empty();
   for (std::size_t k = 0; k < std::min(effect.values.size(), by_shape ? 1 : cause.parameters.size()); ++k) {
-    const CauseParameter& parameter =
-        by_shape ? amplitude_of(cause, effect.values.back()) : cause.parameters[k];
+    const CauseParameter& parameter = by_shape ? amplitude_of(cause, effect.values.back()) : cause.parameters[k];
     const double value = effect.values[k];
     sizes.push_back({std::string(parameter.name), {value, {value, value}}, parameter.unit(unit)});
   }
@@ -154,9 +153,9 @@ std::vector<Answer> SimulatedCampaign::as_estimated(const OpenQuestion& question
 std::vector<Answer> SimulatedCampaign::as_seen_by_an_oracle(const OpenQuestion& question) const {
   const Cause& cause = *find_cause(question.cause);
   const ChannelGroup group = group_channels(frame_).front();
-  const StudyRecording& longest = *std::max_element(
-      frame_.recordings.begin(), frame_.recordings.end(),
-      [](const StudyRecording& a, const StudyRecording& b) { return a.count() < b.count(); });
+  const StudyRecording& longest =
+      *std::max_element(frame_.recordings.begin(), frame_.recordings.end(),
+                        [](const StudyRecording& a, const StudyRecording& b) { return a.count() < b.count(); });
   const Stage stage{frame_,
                     kOracle,
                     !frame_.baseline.automatic,
@@ -207,8 +206,9 @@ SimulatedStudy SimulatedCampaign::simulate(const Answer& answer, std::uint64_t s
     const bool turns = role_.quantity == Quantity::AngularRate && !recording.rate[axis].empty();
     std::vector<double> rows(channel.measured.size());
     // Digits far below the noise, as a file has them.
-    const double finest = std::pow(10.0, std::floor(std::log10(
-                              1e-3 * std::sqrt(channel_->beside.noise.white / recording.dt_s) / channel.unit.factor)));
+    const double finest = std::pow(
+        10.0,
+        std::floor(std::log10(1e-3 * std::sqrt(channel_->beside.noise.white / recording.dt_s) / channel.unit.factor)));
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double truth = channel.error.empty() ? 0.0 : channel.measured[i] - channel.error[i];
       const double error = made.reading[i] - (turns ? recording.rate[axis][i] : 0.0);

@@ -35,8 +35,8 @@ class SimulatedCampaign {
   [[nodiscard]] std::vector<Answer> as_estimated(const OpenQuestion& question) const;
   [[nodiscard]] std::vector<Answer> as_seen_by_an_oracle(const OpenQuestion& question) const;
 
-  Study frame_;      ///< the recordings, this channel alone
-  Baseline model_;   ///< that simulates, without what is in question
+  Study frame_;     ///< the recordings, this channel alone
+  Baseline model_;  ///< that simulates, without what is in question
   const Report& report_;
   const ChannelModel* channel_ = nullptr;
   std::string column_;

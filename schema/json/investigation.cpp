@@ -76,8 +76,8 @@ Json ratios_json(const std::vector<investigate::InnovationRatio>& ratios) {
 }
 
 Json allan_json(const investigate::ChannelFigures& figures, double level) {
-  Json list{{"tau_s", Json::array()}, {"measured", Json::array()}, {"baseline", Json::array()},
-            {"extended", Json::array()}};
+  Json list{
+      {"tau_s", Json::array()}, {"measured", Json::array()}, {"baseline", Json::array()}, {"extended", Json::array()}};
   for (const investigate::AllanChange& change : allan_changes(figures)) {
     list["tau_s"].push_back(number(change.tau_s));
     list["measured"].push_back(number(change.measured * level));

@@ -61,6 +61,17 @@ Result<Response> get_investigation(ApiContext& context, const Request& request) 
   return response;
 }
 
+Result<Response> delete_investigation(ApiContext& context, const Request& request) {
+  const auto shown = get_investigation(context, request);
+  if (!shown) {
+    return fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(context.store.remove_investigation(request.parameters[0]));
+}
+
 }  // namespace
 
 void add_investigation_routes(Router& router, ApiContext& context) {
@@ -69,8 +80,11 @@ void add_investigation_routes(Router& router, ApiContext& context) {
               "listInvestigations",
               {"limit", "cursor", "sort", "device", "study", "job"},
               Handler([&](const Request& request) { return list_investigations(context, request); })});
-  router.add({"GET", "/v1/investigations/{id}", "getInvestigation", {}, Handler([&](const Request& request) {
-                return get_investigation(context, request);
+  router.add(from_rows({"GET", "/v1/investigations/{id}", "getInvestigation", {}, Handler([&](const Request& request) {
+                          return get_investigation(context, request);
+                        })}));
+  router.add({"DELETE", "/v1/investigations/{id}", "deleteInvestigation", {}, Handler([&](const Request& request) {
+                return delete_investigation(context, request);
               })});
 }
 

@@ -245,8 +245,7 @@ Noise noise_of(const Baseline& model, const StudyRecording& recording, const Cha
     } else if (effect.cause == "turn_on_bias") {
       noise.states.add_scalar(1.0, 0.0, p * p);
     } else if (effect.cause == "rate_dependent_noise" || effect.cause == "acceleration_dependent_noise") {
-      const auto& driver =
-          effect.cause == "rate_dependent_noise" ? recording.rate[axis] : recording.acceleration[axis];
+      const auto& driver = effect.cause == "rate_dependent_noise" ? recording.rate[axis] : recording.acceleration[axis];
       for (std::size_t i = 0; i < recording.length; ++i) {
         noise.white_factor[i] *= 1.0 + p * std::fabs(at(driver, i));
       }
@@ -331,7 +330,8 @@ double log_normal(double e, double variance) { return -0.5 * (std::log(2.0 * kPi
 /// Student-t of variance `variance` with nu > 2 degrees of freedom.
 double log_student(double e, double variance, double nu) {
   const double scale2 = variance * (nu - 2.0) / nu;
-  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * kPi * scale2) -
+  int sign = 0;  // of the Gamma function: lgamma_r keeps it apart for each thread
+  return lgamma_r(0.5 * (nu + 1.0), &sign) - lgamma_r(0.5 * nu, &sign) - 0.5 * std::log(nu * kPi * scale2) -
          0.5 * (nu + 1.0) * std::log1p(e * e / (nu * scale2));
 }
 

@@ -58,7 +58,8 @@ TEST_P(HiddenCause, IsNamedWhereItIsStrong) {
 INSTANTIATE_TEST_SUITE_P(Registry, HiddenCause, testing::ValuesIn(cause_names()),
                          [](const auto& instance) { return instance.param; });
 
-/// Beside a right finding its rivals "still disagreed": what a later look no longer saw kept the score of an earlier one.
+/// Beside a right finding its rivals "still disagreed": what a later look no longer saw kept the score of an earlier
+/// one.
 TEST(RightFindings, LeaveNoRivalUnexplained) {
   for (const char* const cause : {"white_noise_level", "once_per_revolution", "acceleration_dependent_noise"}) {
     const Case hidden = make_case(cause, 30.0, 1030);

@@ -1,9 +1,8 @@
 /// A plan once could only repeat what a cause needs; here the recording that it proposes is made, and decides as often
 /// as the plan says.
-#include "core/investigate/plan_campaign.hpp"
-
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/investigate.hpp"
+#include "core/investigate/plan_campaign.hpp"
 #include "core/investigate/proposed_recordings.hpp"
 #include "core/investigate/simulated_campaign.hpp"
 #include "tests/hidden/simulated_study.hpp"

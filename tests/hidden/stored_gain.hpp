@@ -9,11 +9,11 @@
 namespace driftlab::hidden {
 
 struct StoredGain {
-  bool named = false;         ///< the effect is among the findings
-  double claimed = 0.0;       ///< held-out gain of the findings that are no facts of the file [nat]
-  double stored = 0.0;        ///< of the stored extension over the stored baseline, on fresh data [nat]
-  double attainable = 0.0;    ///< of the truth over the stored baseline, on the same data [nat]
-  std::string said;           ///< the findings
+  bool named = false;       ///< the effect is among the findings
+  double claimed = 0.0;     ///< held-out gain of the findings that are no facts of the file [nat]
+  double stored = 0.0;      ///< of the stored extension over the stored baseline, on fresh data [nat]
+  double attainable = 0.0;  ///< of the truth over the stored baseline, on the same data [nat]
+  std::string said;         ///< the findings
 };
 
 /// `given`: the baseline of the study is the true base; else it is fitted. The log likelihoods are those of

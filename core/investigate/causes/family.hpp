@@ -127,15 +127,6 @@ struct FileFact {
   bool gives_lattice_step = false;
 };
 
-/// Noise that jumps between levels: not Gaussian, though its spectrum is that of a slow process. It is sought in what
-/// the search for slow effects leaves, taken off the error, and then that search is made once more, for a process of
-/// the baseline may have been fitted to it. `examine` holds it out itself.
-struct SwitchingNoise {
-  std::vector<Evidence> (*examine)(const FullRate& data);
-  /// Its expected course over the analysed part of member r, to be subtracted.
-  std::vector<double> (*values)(const FullRate& data, std::size_t r, const Evidence& found);
-};
-
 /// One thing that is wrong with some recordings, and how it is put right.
 struct FaultyRecordings {
   std::vector<std::string> channels;  ///< recording/column
@@ -154,6 +145,6 @@ struct RecordingFault {
 };
 
 using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, NoiseTails, SpectralLine,
-                            CommonNoise, SwitchingNoise, FileFact, RecordingFault>;
+                            CommonNoise, FileFact, RecordingFault>;
 
 }  // namespace driftlab::investigate

@@ -1,5 +1,7 @@
 #include "core/investigate/causes/narrow_band.hpp"
 
+#include "core/process/distributions.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -61,7 +63,7 @@ double log_tail(double x, double k) {
     term *= j / (0.5 * x);
     sum += term;
   }
-  return -0.5 * x + (k - 1.0) * std::log(0.5 * x) - std::lgamma(k) + std::log(sum);
+  return -0.5 * x + (k - 1.0) * std::log(0.5 * x) - log_gamma(k) + std::log(sum);
 }
 
 PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep>& sweeps) {

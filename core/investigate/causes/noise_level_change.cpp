@@ -148,15 +148,16 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 }  // namespace
 
 Cause noise_level_change() {
-  return {.name = "noise_level_change",
-          .title = "noise that changes its level within a recording",
-          .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true, .scales_slow = true},
-          .rivals = {"white_noise_level", "outliers"},
-          .needs = "any recording",
-          .separates = "more recordings of the same condition",
-          .parameters = {{"ratio", units::one}, {"t0_s", units::seconds}},
-          .inject = inject_effect,
-          .showing = {.acting = Acting::SecondAlone, .values = shown_values}};
+  return {
+      .name = "noise_level_change",
+      .title = "noise that changes its level within a recording",
+      .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true, .scales_slow = true},
+      .rivals = {"white_noise_level", "outliers"},
+      .needs = "any recording",
+      .separates = "more recordings of the same condition",
+      .parameters = {{"ratio", units::one}, {"t0_s", units::seconds}},
+      .inject = inject_effect,
+      .showing = {.acting = Acting::SecondAlone, .values = shown_values}};
 }
 
 }  // namespace driftlab::investigate

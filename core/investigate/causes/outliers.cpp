@@ -76,15 +76,16 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 }  // namespace
 
 Cause outliers() {
-  return {.name = "outliers",
-          .title = "gross errors in single samples",
-          .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail, .added_variance = added_variance},
-          .rivals = {"heavy_tailed_noise"},
-          .needs = "any recording",
-          .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
-          .parameters = {{"fraction", units::one}, {"magnitude", units::level}},
-          .inject = inject_effect,
-          .showing = {.values = shown_values, .oracle = false}};
+  return {
+      .name = "outliers",
+      .title = "gross errors in single samples",
+      .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail, .added_variance = added_variance},
+      .rivals = {"heavy_tailed_noise"},
+      .needs = "any recording",
+      .separates = "a longer recording: outliers keep their magnitude, tails go on growing",
+      .parameters = {{"fraction", units::one}, {"magnitude", units::level}},
+      .inject = inject_effect,
+      .showing = {.values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

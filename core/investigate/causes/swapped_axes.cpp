@@ -76,10 +76,11 @@ void inject_effect(Draft& draft, std::span<const double> /*values*/, Random& /*r
   if (partner == recording.channels.end() || recording.rate[main].empty()) {
     return;
   }
-  const std::size_t second = *axis_index(partner->role.axis);
-  if (own != main && own != second) {
+  const std::optional<std::size_t> other = axis_index(partner->role.axis);
+  if (!other || (own != main && own != *other)) {
     return;
   }
+  const std::size_t second = *other;
   const std::vector<double>& seen = recording.rate[own == main ? second : main];
   for (std::size_t i = 0; i < draft.mean.size(); ++i) {
     draft.mean[i] += (seen.empty() ? 0.0 : seen[i]) - (recording.rate[own].empty() ? 0.0 : recording.rate[own][i]);

@@ -91,6 +91,7 @@ const std::vector<double>& drive_of(const StudyRecording& recording, Quantity qu
   return none;
 }
 
+/// Of a channel that has an axis.
 Seen look_at(const Study& study, std::size_t r, std::size_t c) {
   const StudyRecording& recording = study.recordings[r];
   const Channel& channel = recording.channels[c];
@@ -98,7 +99,7 @@ Seen look_at(const Study& study, std::size_t r, std::size_t c) {
   seen.recording = r;
   seen.channel = c;
   seen.quantity = channel.role.quantity;
-  seen.axis = *axis_index(channel.role.axis);
+  seen.axis = axis_index(channel.role.axis).value_or(0);
   seen.noise = noise_density(recording, channel);
   const double limit = clipped_at(channel) * std::fabs(channel.unit.factor);
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.dt_s)));

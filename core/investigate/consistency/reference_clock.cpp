@@ -301,20 +301,20 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   if (raw.empty() || times.size() < 20) {
     return std::nullopt;
   }
-  constexpr std::array kinds{ClockBreak::Jump, ClockBreak::RateChange};
+  constexpr std::array kKinds{ClockBreak::Jump, ClockBreak::RateChange};
   // What the better break leaves is the noise; by its autoregression everything is whitened.
-  std::array<Best, 2> plain{best_of(raw, kinds[0], times), best_of(raw, kinds[1], times)};
+  std::array<Best, 2> plain{best_of(raw, kKinds[0], times), best_of(raw, kKinds[1], times)};
   const std::size_t first = plain[0].statistic > plain[1].statistic ? 0 : 1;
   std::vector<Blocks> white;
   std::vector<Eigen::VectorXd> filters;
   for (const Blocks& blocks : raw) {
     Eigen::MatrixXd x(blocks.time.size(), kCommon + 1);
-    x << blocks.common, broken(blocks, kinds.at(first), times[plain.at(first).at]);
+    x << blocks.common, broken(blocks, kKinds.at(first), times[plain.at(first).at]);
     const Eigen::VectorXd left = blocks.error - x * x.colPivHouseholderQr().solve(blocks.error);
     filters.push_back(autoregression(left));
     white.push_back(whitened(blocks, filters.back()));
   }
-  const std::array<Best, 2> best{best_of(white, kinds[0], times), best_of(white, kinds[1], times)};
+  const std::array<Best, 2> best{best_of(white, kKinds[0], times), best_of(white, kKinds[1], times)};
   const std::size_t k = best[0].statistic > best[1].statistic ? 0 : 1;
   if (best.at(k).statistic < kClockBreaks) {
     return std::nullopt;
@@ -324,13 +324,13 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   const std::vector<double> fine = grid_of(recording, step, near - 20.0, near + 20.0);
   // An offset and a drift that are not there would only blur the size of the break.
   constexpr double kThere = 12.0;
-  const bool whole = gain_of_whole_clock(white, kinds.at(k), near) > kThere;
+  const bool whole = gain_of_whole_clock(white, kKinds.at(k), near) > kThere;
   if (!whole) {
     without_whole_clock(white);
   }
-  const Best found = best_of(white, kinds.at(k), fine);
+  const Best found = best_of(white, kKinds.at(k), fine);
   ClockFault fault;
-  fault.kind = kinds.at(k);
+  fault.kind = kKinds.at(k);
   fault.recording = index;
   fault.statistic = best.at(k).statistic;
   const double t0 = fine[found.at];

@@ -38,7 +38,7 @@ struct FullRate {
   /// 1 elsewhere.
   double repeatability = 1.0;
   std::vector<double> further;  ///< coefficients of the autoregression that whitens once more; empty: none
-  double corner_hz = 0.0;  ///< of a band limit that has been found; 0: none
+  double corner_hz = 0.0;       ///< of a band limit that has been found; 0: none
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
   /// True if a band limit has been found, which explains the lower density at the top of the band.

@@ -81,7 +81,8 @@ std::vector<Check> before_and_after(const ChannelGroup& group, const GroupOutcom
     general_checks(group, outcome.after, later);
   }
   for (Check& check : checks) {
-    const auto same = std::find_if(later.begin(), later.end(), [&](const Check& other) { return other.id == check.id; });
+    const auto same =
+        std::find_if(later.begin(), later.end(), [&](const Check& other) { return other.id == check.id; });
     const Check& after = same != later.end() ? *same : check;
     check.observed_after = after.observed;
     check.p_after = after.p;
@@ -143,8 +144,7 @@ void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<Grou
   }
   report.misfit_after = samples > 0.0 ? misfit / samples : 0.0;
   for (const Evidence& evidence : examined) {
-    checks.push_back(
-        cause_check(evidence, groups[evidence.group], outcomes[evidence.group], examined.size()));
+    checks.push_back(cause_check(evidence, groups[evidence.group], outcomes[evidence.group], examined.size()));
     twice.push_back(outcomes[evidence.group].found.empty() ? 0 : 1);
   }
   std::vector<Tested> tested;
@@ -181,11 +181,11 @@ std::vector<std::string> checks_behind(const Evidence& evidence, const std::vect
   all.insert(all.end(), evidence.also_groups.begin(), evidence.also_groups.end());
   for (const std::size_t g : all) {
     for (const Check& check : report.checks) {
-      const bool general = check.failed && check.channel == groups[g].column && check.id != own &&
-                           std::any_of(evidence.members.begin(), evidence.members.end(), [&](std::size_t r) {
-                             return r < groups[g].members.size() &&
-                                    check.id.rfind(groups[g].members[r].name() + ".", 0) == 0;
-                           });
+      const bool general =
+          check.failed && check.channel == groups[g].column && check.id != own &&
+          std::any_of(evidence.members.begin(), evidence.members.end(), [&](std::size_t r) {
+            return r < groups[g].members.size() && check.id.rfind(groups[g].members[r].name() + ".", 0) == 0;
+          });
       if (general) {
         ids.push_back(check.id);
       }
@@ -199,10 +199,10 @@ void settle_ends(Report& report) {
     const bool behind = std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
       return std::find(finding.because.begin(), finding.because.end(), check.id) != finding.because.end();
     });
-    check.end = check.failed_after           ? CheckEnd::Unexplained
-                : check.failed && behind     ? CheckEnd::Finding
-                : check.failed               ? CheckEnd::Mended
-                                             : CheckEnd::None;
+    check.end = check.failed_after       ? CheckEnd::Unexplained
+                : check.failed && behind ? CheckEnd::Finding
+                : check.failed           ? CheckEnd::Mended
+                                         : CheckEnd::None;
   }
 }
 

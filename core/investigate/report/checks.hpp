@@ -7,8 +7,8 @@
 ///
 /// There is one check per cause and channel that was examined: its likelihood ratio, at first sight and once more when
 /// the search ended. Each score includes a penalty for the places that the search tried, and the threshold is set so
-/// that at most 5 % of studies without any effect reach it with any cause (search/thresholds.hpp). Among `c` such checks
-/// of a study the probability of one is therefore taken to be
+/// that at most 5 % of studies without any effect reach it with any cause (search/thresholds.hpp). Among `c` such
+/// checks of a study the probability of one is therefore taken to be
 ///   p = 0.05 exp(-(score - threshold)/2) / c.
 /// Facts that the file itself shows (a lattice, runs of one value, absent samples) are certain and have p = 0.
 ///

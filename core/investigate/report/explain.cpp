@@ -87,11 +87,12 @@ std::string allan_in_words(const ChannelFigures& figures) {
   }
   std::vector<std::string> parts;
   for (const double wanted : {1.0, 10.0, 100.0, 1000.0}) {
-    const auto nearest = std::min_element(changes.begin(), changes.end(), [&](const AllanChange& a, const AllanChange& b) {
-      return std::fabs(std::log(a.tau_s / wanted)) < std::fabs(std::log(b.tau_s / wanted));
-    });
-    if (nearest == changes.end() || std::fabs(std::log(nearest->tau_s / wanted)) > 0.5 ||
-        !(nearest->baseline > 0.0) || std::fabs(nearest->extended / nearest->baseline - 1.0) < 0.05) {
+    const auto nearest =
+        std::min_element(changes.begin(), changes.end(), [&](const AllanChange& a, const AllanChange& b) {
+          return std::fabs(std::log(a.tau_s / wanted)) < std::fabs(std::log(b.tau_s / wanted));
+        });
+    if (nearest == changes.end() || std::fabs(std::log(nearest->tau_s / wanted)) > 0.5 || !(nearest->baseline > 0.0) ||
+        std::fabs(nearest->extended / nearest->baseline - 1.0) < 0.05) {
       continue;
     }
     parts.push_back("at " + significant(nearest->tau_s) + " s " + significant(nearest->measured * unit.per_si) +

@@ -23,8 +23,8 @@ namespace driftlab::investigate {
 /// "0.0123 deg/s (0.0110 to 0.0136)".
 [[nodiscard]] std::string in_words(const FoundParameter& parameter);
 
-/// How the findings change the Allan deviation of a channel at about 1, 10, 100 and 1000 s; empty where the baseline and
-/// the extended model agree within 5 % at all of them.
+/// How the findings change the Allan deviation of a channel at about 1, 10, 100 and 1000 s; empty where the baseline
+/// and the extended model agree within 5 % at all of them.
 [[nodiscard]] std::string allan_in_words(const ChannelFigures& figures);
 
 }  // namespace driftlab::investigate

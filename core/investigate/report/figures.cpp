@@ -133,10 +133,10 @@ void add_spectrum(const GroupOutcome& outcome, ChannelFigures& figures) {
     }
     const auto m = static_cast<double>(to - from);
     const double f = 0.5 * static_cast<double>(from + to - 1) / static_cast<double>(length) / dt_s;
-    const double base = outcome.before.model.white +
-                        slow_density(outcome.before.model, outcome.before.samples, 0, f, dt_s,
-                                     static_cast<double>(length)) +
-                        outcome.before.quantization * quantization_shape(f, dt_s);
+    const double base =
+        outcome.before.model.white +
+        slow_density(outcome.before.model, outcome.before.samples, 0, f, dt_s, static_cast<double>(length)) +
+        outcome.before.quantization * quantization_shape(f, dt_s);
     const double dof = 2.0 * m * before.stretches;
     figures.f_hz.push_back(f);
     figures.density_before.push_back(sum[0] / m);
@@ -181,8 +181,8 @@ ChannelFigures figures_of(const ChannelGroup& group, const GroupOutcome& outcome
   figures.unit = group.unit;
   for (const Check& check : checks) {
     if (check.channel == group.column && check.scale_s > 0.0) {
-      figures.ratios.push_back({check.recording, check.scale_s, check.observed, check.observed_after, check.q025,
-                                check.q975});
+      figures.ratios.push_back(
+          {check.recording, check.scale_s, check.observed, check.observed_after, check.q025, check.q975});
     }
   }
   add_scales(outcome, figures);

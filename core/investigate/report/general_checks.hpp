@@ -2,10 +2,10 @@
 /// The checks that suspect no cause: statistics of the innovations as a right model would show them.
 ///
 /// Per recording: variance over sixteen segments; correlation of one-second means (Ljung and Box 1978); spectrum in
-/// sixteen bands; wavelet variance per scale; kurtosis. Per channel: the level that its recordings keep. Under the model
-/// they are chi-square or normal, with as many degrees of freedom as segments, lags, bands, coefficients or recordings
-/// were used. The kurtosis is not that of a Gaussian where the model itself holds uniform noise: rounding to a lattice
-/// and quantization noise make it negative, by an amount that follows from their shares.
+/// sixteen bands; wavelet variance per scale; kurtosis. Per channel: the level that its recordings keep. Under the
+/// model they are chi-square or normal, with as many degrees of freedom as segments, lags, bands, coefficients or
+/// recordings were used. The kurtosis is not that of a Gaussian where the model itself holds uniform noise: rounding to
+/// a lattice and quantization noise make it negative, by an amount that follows from their shares.
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/report/report.hpp"
 

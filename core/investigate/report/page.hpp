@@ -1,6 +1,6 @@
 #pragma once
-/// The report as a Markdown page for people: one verdict, the findings in the order of acting on them, what they change,
-/// what remains, and the evidence behind it all.
+/// The report as a Markdown page for people: one verdict, the findings in the order of acting on them, what they
+/// change, what remains, and the evidence behind it all.
 #include "core/investigate/report/report.hpp"
 
 #include <string>

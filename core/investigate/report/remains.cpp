@@ -89,7 +89,7 @@ class Tiles {
   }
 
   /// The most surprising tile.
-  Remainder strongest(const std::string& name) const {
+  [[nodiscard]] Remainder strongest(const std::string& name) const {
     Remainder best;
     if (frames_ < 16) {
       return best;

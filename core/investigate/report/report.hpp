@@ -28,9 +28,9 @@ struct Check {
   double observed = 0.0;
   double q025 = 0.0, median = 0.0, q975 = 0.0;  ///< under the model
   double p = 1.0;
-  double p_adjusted = 1.0;  ///< over all checks of the study together, before and after (Holm 1979)
-  bool failed = false;      ///< p_adjusted is below 0.05
-  double excess = 0.0;      ///< log likelihood that the misfit it shows is worth [nat], 0 for checks of causes
+  double p_adjusted = 1.0;      ///< over all checks of the study together, before and after (Holm 1979)
+  bool failed = false;          ///< p_adjusted is below 0.05
+  double excess = 0.0;          ///< log likelihood that the misfit it shows is worth [nat], 0 for checks of causes
   double scale_s = 0.0;         ///< of a wavelet variance; 0 for others
   double observed_after = 0.0;  ///< the same under the extended model
   double p_after = 1.0;
@@ -130,8 +130,8 @@ struct Report {
   std::size_t failed_after = 0;
   double misfit_before = 0.0;
   double misfit_after = 0.0;
-  double explained = 0.0;         ///< share of the misfit that the findings explain, 0 to 1
-  std::vector<Finding> findings;  ///< in the order in which a laboratory would act on them (report/order.hpp)
+  double explained = 0.0;               ///< share of the misfit that the findings explain, 0 to 1
+  std::vector<Finding> findings;        ///< in the order in which a laboratory would act on them (report/order.hpp)
   std::vector<ChannelFigures> figures;  ///< one per examined channel
   std::optional<OutageGain>
       outages;  ///< nothing where no gyroscope or accelerometer axis was examined, or not asked for

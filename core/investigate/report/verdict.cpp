@@ -74,14 +74,16 @@ Verdict verdict_of(const Report& report) {
   } else if (report.findings.empty() && report.failed_before == 0) {
     verdict.sentence = "The recordings look like the simulation: none of " + all + " fails.";
   } else if (report.findings.empty()) {
-    verdict.sentence = "The recordings do not look like the simulation, and no cause of the list says why: " +
-                       what_remains(report) + ", of " + all + ".";
+    verdict.sentence =
+        "The recordings do not look like the simulation, and no cause of the list says why: " + what_remains(report) +
+        ", of " + all + ".";
   } else {
     const bool format_alone = std::all_of(report.findings.begin(), report.findings.end(), [](const Finding& finding) {
       return concern_of(*finding.evidence.cause) == Concern::Format;
     });
-    verdict.sentence = (format_alone ? "The simulation fits but for the format of the file: " : "The simulation lacks ") +
-                       named(groups_of(report.findings)) + "; " + what_remains(report) + ".";
+    verdict.sentence =
+        (format_alone ? "The simulation fits but for the format of the file: " : "The simulation lacks ") +
+        named(groups_of(report.findings)) + "; " + what_remains(report) + ".";
   }
   const bool gains = std::any_of(report.findings.begin(), report.findings.end(),
                                  [](const Finding& finding) { return finding.gain.explained > 0.0; });

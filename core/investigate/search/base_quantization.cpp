@@ -57,8 +57,7 @@ bool describes(const FullRate& data, std::size_t r, const Shown& shown) {
   double ratio = 0.0;
   double weight = 0.0;
   for (std::size_t j = 0; j < s.power.size(); ++j) {
-    const double model =
-        shown.white + shown.level * quantization_shape(s.f_hz[j], data.dt_s) + data.slow[r][j];
+    const double model = shown.white + shown.level * quantization_shape(s.f_hz[j], data.dt_s) + data.slow[r][j];
     ratio += s.weight[j] * s.power[j] / model;
     weight += s.weight[j];
     if (weight > all / 40.0 || j + 1 == s.power.size()) {
@@ -97,9 +96,8 @@ double quantization_of_base(const FullRate& data) {
     information += 1.0 / (shown->sd * shown->sd);
   }
   level /= information;
-  const bool agree = std::all_of(each.begin(), each.end(), [&](const Shown& shown) {
-    return std::fabs(shown.level - level) < kAgree * shown.sd;
-  });
+  const bool agree = std::all_of(
+      each.begin(), each.end(), [&](const Shown& shown) { return std::fabs(shown.level - level) < kAgree * shown.sd; });
   return agree && gain > kShownTogether ? level : 0.0;
 }
 

@@ -8,8 +8,8 @@
 
 namespace driftlab::investigate {
 
-/// Q^2 [SI^2 s^2] by Whittle's likelihood of the spectra of the recordings at rest (of all where none is); 0 unless each
-/// of them shows it by itself, all agree, and the spectra are described with it.
+/// Q^2 [SI^2 s^2] by Whittle's likelihood of the spectra of the recordings at rest (of all where none is); 0 unless
+/// each of them shows it by itself, all agree, and the spectra are described with it.
 [[nodiscard]] double quantization_of_base(const FullRate& data);
 
 }  // namespace driftlab::investigate

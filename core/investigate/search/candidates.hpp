@@ -16,8 +16,8 @@ namespace driftlab::investigate {
 /// Keeps in `examined` the best evidence of every cause.
 void keep_best(std::vector<Evidence>& examined, const std::vector<Evidence>& fresh);
 
-/// Keeps in `remaining` the best evidence of every cause as the last look saw it. `looked_for`: the causes of this look;
-/// one of them of which it saw nothing has gone.
+/// Keeps in `remaining` the best evidence of every cause as the last look saw it. `looked_for`: the causes of this
+/// look; one of them of which it saw nothing has gone.
 void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fresh,
                const std::function<bool(const Cause&)>& looked_for);
 

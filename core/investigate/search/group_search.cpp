@@ -234,9 +234,6 @@ class GroupSearch {
     if (stopped()) {
       return;
     }
-    if (take_switching(full_rate(search, error_, false))) {
-      return search_slow();
-    }
     control_.report("intervals of " + group_.column, 0.7);
     // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
     for (std::size_t i = slow_found.size(); i-- > 0;) {
@@ -322,51 +319,6 @@ class GroupSearch {
                       [](const Evidence& evidence) { return evidence.cause->as<SlowNoise>() != nullptr; }));
     noise.components.resize(noise.components.size() - std::min(extras, noise.components.size()));
     return noise;
-  }
-
-  /// About a change of level, and where it is not known which of the two it is, what is left is no noise of the sensor.
-  void leave_out_changes(const std::vector<double>& course, std::size_t r) {
-    constexpr double kSure = 0.9;
-    const StudyRecording& recording = *group_.members[r].recording;
-    const auto about = static_cast<std::size_t>(0.5 / recording.dt_s) + 1;
-    double top = 0.0;
-    for (const double v : course) {
-      top = std::max(top, std::fabs(v));
-    }
-    for (std::size_t i = 1; i < course.size(); ++i) {
-      const bool changes = course[i] * course[i - 1] < 0.0;
-      const bool unsure = std::fabs(course[i]) < kSure * top;
-      const std::size_t reach = changes ? about : unsure ? 1 : 0;
-      for (std::size_t k = i > reach ? i - reach : 0; reach > 0 && k < std::min(course.size(), i + reach); ++k) {
-        mask_[r][recording.begin + k] = 1;
-      }
-    }
-  }
-
-  /// Takes noise that jumps between levels off the error, once; true if there was some.
-  bool take_switching(const FullRate& data) {
-    for (const Cause& cause : cause_registry()) {
-      const SwitchingNoise* const noise = cause.as<SwitchingNoise>();
-      if (noise == nullptr || switching_sought_) {
-        continue;
-      }
-      switching_sought_ = true;
-      for (Evidence& evidence : noise->examine(data)) {
-        evidence.cause = &cause;
-        for (const std::size_t r : evidence.members) {
-          const std::vector<double> course = noise->values(data, r, evidence);
-          const std::size_t begin = group_.members[r].recording->begin;
-          for (std::size_t i = 0; i < course.size(); ++i) {
-            error_[r][begin + i] -= course[i];
-          }
-          leave_out_changes(course, r);
-        }
-        keep_best(outcome_.examined, {evidence});
-        outcome_.found.push_back(std::move(evidence));
-        return true;
-      }
-    }
-    return false;
   }
 
   /// Sinusoids in the innovations, each with its cause.
@@ -519,7 +471,6 @@ class GroupSearch {
   std::optional<SlowModel> given_;
   std::vector<std::vector<double>> error_;
   std::vector<std::vector<unsigned char>> mask_;
-  bool switching_sought_ = false;
   double lattice_step_ = 0.0;
   double given_white_ = 0.0;
   double quantization_ = 0.0;

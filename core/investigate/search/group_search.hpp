@@ -12,8 +12,8 @@
 namespace driftlab::investigate {
 
 struct GroupOutcome {
-  std::vector<Evidence> found;     ///< accepted, each with its rivals
-  std::vector<Evidence> examined;  ///< the best of every cause that was examined, at first sight
+  std::vector<Evidence> found;      ///< accepted, each with its rivals
+  std::vector<Evidence> examined;   ///< the best of every cause that was examined, at first sight
   std::vector<Evidence> remaining;  ///< of every cause that was looked for again, as the last look saw it
   ChannelModel model;
   FullRate before;  ///< under the base alone, no effect taken out

@@ -126,8 +126,7 @@ double white_by_spectra(const FullRate& data, const PerSample& factors, const st
       power.push_back(s.power[j]);
       weight.push_back(s.weight[j]);
       fixed.push_back(data.slow[r][j] + differenced * quantization_shape(s.f_hz[j], data.dt_s) + added);
-      shape.push_back(factor *
-                      (data.band_limited() ? butterworth_gain(s.f_hz[j], data.corner_hz, data.dt_s) : 1.0));
+      shape.push_back(factor * (data.band_limited() ? butterworth_gain(s.f_hz[j], data.corner_hz, data.dt_s) : 1.0));
     }
   }
   if (power.empty()) {
@@ -156,7 +155,7 @@ void renew_levels(const FullRate& data, std::vector<Evidence>& found) {
         rest.innovation[r][i] /= others[i];
       }
     }
-    for (const Evidence& fresh : examine_of(*evidence.cause)(rest)) {
+    for (const Evidence& fresh : examine_of (*evidence.cause)(rest)) {
       if (fresh.members == evidence.members && !fresh.parameters.empty()) {
         evidence.shape = fresh.shape;
         evidence.parameters = fresh.parameters;
@@ -176,8 +175,8 @@ bool shares_in_noise(const std::vector<Evidence>& found) {
   });
 }
 
-SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsigned char>>& mask,
-                        double quantization, std::vector<Evidence>& found, std::stop_token stop) {
+SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsigned char>>& mask, double quantization,
+                        std::vector<Evidence>& found, const std::stop_token& stop) {
   PerSample residual = data.residual;
   std::vector<double> sd;
   for (const Evidence& evidence : found) {

@@ -28,6 +28,6 @@ namespace driftlab::investigate {
 /// r; `quantization`: Q^2 of the base [SI^2 s^2]. O(iterations samples states).
 [[nodiscard]] SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsigned char>>& mask,
                                       double quantization, std::vector<Evidence>& found,
-                                      std::stop_token stop = {});
+                                      const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

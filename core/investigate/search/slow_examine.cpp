@@ -62,7 +62,7 @@ SlowFit SlowSearch::fit_extra_freely(const ProcessKind& kind, const std::vector<
   }
   SlowModel level = base;
   level.white_scale.clear();
-  SlowFit without = fit_extra(kind, scope, level, columns);
+  const SlowFit without = fit_extra(kind, scope, level, columns);
   // Levels were chosen one by one at full rate: each must be worth its freedom.
   const auto levels = static_cast<double>(base.white_scale.size());
   return without.log_likelihood + kLevelCost * levels > fit.log_likelihood ? without : fit;
@@ -135,8 +135,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
     // What needs no nuisance of levels is measured against the better null, with it or without it; and once it is far
     // better than that, against the model that was given.
     const bool exact = fit.model.white_scale.empty();
-    evidence.gain =
-        2.0 * fit.log_likelihood - cost(base) - (exact ? std::max(null_score_, exact_score_) : null_score_);
+    evidence.gain = 2.0 * fit.log_likelihood - cost(base) - (exact ? std::max(null_score_, exact_score_) : null_score_);
     if (given_ && exact && evidence.gain > kThreshold) {
       evidence.gain += std::max(0.0, null_score_ - exact_score_);
     }

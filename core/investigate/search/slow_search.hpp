@@ -149,7 +149,7 @@ class SlowSearch {
   SlowFit null_;
   std::vector<SlowFit> orders_;
   double null_score_ = 0.0;
-  double exact_score_ = 0.0;  ///< the same without the nuisance of levels
+  double exact_score_ = 0.0;    ///< the same without the nuisance of levels
   std::size_t base_count_ = 0;  ///< components of null_ that belong to the base, before the extras
 };
 

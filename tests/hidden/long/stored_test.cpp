@@ -26,12 +26,16 @@ TEST(StoredModels, AreWorthOnFreshDataWhatTheTruthIsWorth) {
   const std::uint64_t seeds = text == nullptr ? 3 : std::strtoull(text, nullptr, 10);
   accuracy::Section section("hidden/stored");
   section.print(
-      "## What a stored model is worth\n\nStored extension, stored baseline and truth scored on fresh data from the truth "
+      "## What a stored model is worth\n\nStored extension, stored baseline and truth scored on fresh data from the "
+      "truth "
       "by a likelihood of the test's own (tests/hidden/fresh_likelihood.hpp), z = 30, %d studies per cell. `held`: the "
       "extension gains what the truth gains over the stored baseline, within 20 %% (12 nat where that is little). "
-      "`worth`: all its gains over all those of the truth. `claimed`: studies whose held-out claim is within a factor of "
-      "1.5 of what the extension gains, of those in which it gains 20 nat. An automatic baseline is refitted without the "
-      "effect; what it can imitate is no gain.\n\n| cause | baseline | named | held | worth | claimed |\n|---|---|---|---|---|---|\n",
+      "`worth`: all its gains over all those of the truth. `claimed`: studies whose held-out claim is within a factor "
+      "of "
+      "1.5 of what the extension gains, of those in which it gains 20 nat. An automatic baseline is refitted without "
+      "the "
+      "effect; what it can imitate is no gain.\n\n| cause | baseline | named | held | worth | claimed "
+      "|\n|---|---|---|---|---|---|\n",
       static_cast<int>(seeds));
   Cell all;
   for (const investigate::Cause& cause : investigate::cause_registry()) {
@@ -64,7 +68,8 @@ TEST(StoredModels, AreWorthOnFreshDataWhatTheTruthIsWorth) {
     }
   }
   section.print("\nHeld in %d of %d (%.0f %%); worth %.2f of the truth; %d of %d claims within a factor of 1.5.\n",
-                all.held, all.studies, 100.0 * all.held / all.studies, all.stored / all.attainable, all.fair, all.claims);
+                all.held, all.studies, 100.0 * all.held / all.studies, all.stored / all.attainable, all.fair,
+                all.claims);
   EXPECT_GE(all.held, static_cast<int>(0.9 * all.studies));
 }
 

@@ -19,6 +19,8 @@ class FileSource final : public RecordingSource {
     std::string pattern = (std::filesystem::temp_directory_path() / "driftlab-test-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
   ~FileSource() override { std::filesystem::remove_all(folder_); }
 
   /// A file of these bytes under what its user says about it.

@@ -133,8 +133,8 @@ TEST(Checks, HolmRunsOverAllChecksOfTheStudyTogether) {
       std::count_if(report.checks.begin(), report.checks.end(), [](const Check& c) { return c.recording.empty(); }), 6);
 }
 
-/// A page said "No check fails with the extended model" beside `checks_failed_after: 1`: what failed at 5 % was counted,
-/// and what failed at 1 % was told.
+/// A page said "No check fails with the extended model" beside `checks_failed_after: 1`: what failed at 5 % was
+/// counted, and what failed at 1 % was told.
 TEST(Checks, EachThatFailsComesToRestSomewhere) {
   World world(3, 4000);
   auto& e = world.outcomes[0].before.innovation[1];

@@ -82,11 +82,10 @@ Finding of(const char* cause, double score, std::vector<std::string> channels) {
 
 /// A report began with a line of noise that was strong, and said on its third page that samples were missing.
 TEST(Order, ALaboratoryReadsFirstWhatItWouldActOnFirst) {
-  std::vector<Finding> findings{
-      of("output_resolution", 900.0, {"a/gx"}),  of("random_walk", 500.0, {"a/gz"}),
-      of("scale_factor_error", 20.0, {"a/gx"}),  of("temperature_bias", 30.0, {"a/gy"}),
-      of("scale_factor_error", 300.0, {"a/gz"}), of("reference_time_offset", 15.0, {"a/gz"}),
-      of("missing_samples", 40.0, {"a/gz"})};
+  std::vector<Finding> findings{of("output_resolution", 900.0, {"a/gx"}),  of("random_walk", 500.0, {"a/gz"}),
+                                of("scale_factor_error", 20.0, {"a/gx"}),  of("temperature_bias", 30.0, {"a/gy"}),
+                                of("scale_factor_error", 300.0, {"a/gz"}), of("reference_time_offset", 15.0, {"a/gz"}),
+                                of("missing_samples", 40.0, {"a/gz"})};
   findings.push_back(of("g_sensitivity", 700.0, {"a/gx"}));
   findings.back().evidence.ambiguous = true;
   put_in_order(findings);
@@ -95,8 +94,7 @@ TEST(Order, ALaboratoryReadsFirstWhatItWouldActOnFirst) {
     said.emplace_back(group.cause->name);
   }
   EXPECT_EQ(said, (std::vector<std::string>{"missing_samples", "reference_time_offset", "scale_factor_error",
-                                            "temperature_bias", "random_walk", "g_sensitivity",
-                                            "output_resolution"}));
+                                            "temperature_bias", "random_walk", "g_sensitivity", "output_resolution"}));
   EXPECT_EQ(findings[2].channels.front(), "a/gz") << "the stronger of two findings of one cause first";
   EXPECT_EQ(groups_of(findings)[2].columns, (std::vector<std::string>{"gz", "gx"}));
 }

@@ -113,7 +113,8 @@ TEST(TimeGrid, SamplesThatArriveInBurstsAreEvenlySpaced) {
 TEST(TimeGrid, SessionsWithGapsBetweenThemAreNoBursts) {
   std::vector<double> stamps;
   for (int i = 0; i < 8000; ++i) {
-    stamps.push_back(0.01 * i + 300.0 * (i / 400));
+    const int session = i / 400;
+    stamps.push_back(0.01 * i + 300.0 * session);
   }
   const auto grid = fit_time_grid(stamps, 100.0);
   ASSERT_TRUE(grid);

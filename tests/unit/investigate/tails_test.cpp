@@ -46,7 +46,7 @@ double log_normal_density(double e, double variance) {
 
 double log_student_density(double e, double nu) {
   const double s2 = nu - 2.0;
-  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(std::numbers::pi * s2) -
+  return log_gamma(0.5 * (nu + 1.0)) - log_gamma(0.5 * nu) - 0.5 * std::log(std::numbers::pi * s2) -
          0.5 * (nu + 1.0) * std::log1p(e * e / s2);
 }
 

@@ -1,0 +1,150 @@
+#include "schema/json/investigation_figures.hpp"
+
+#include "schema/json/figure_values.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace driftlab {
+namespace {
+
+using figure::Figure;
+using figure::Mark;
+using figure::Plot;
+using figure::ScaleKind;
+using figure::Series;
+
+constexpr double kHalfHeight = 130.0;  ///< of a figure of two plots [px]
+
+Series curve(std::string name, std::vector<double> x, Values y) {
+  Series one{.name = std::move(name), .x = std::move(x), .y = std::move(y)};
+  one.line = true;
+  one.width = 1.0;
+  return one;
+}
+
+Figure figure_of(const std::string& title, std::string sentence, std::vector<Plot> plots) {
+  Figure figure{.title = title, .sentence = std::move(sentence), .source = "driftlab " DRIFTLAB_VERSION};
+  for (std::size_t i = 0; i + 1 < plots.size(); ++i) {
+    plots[i].hide_x = true;
+  }
+  figure.plots = std::move(plots);
+  return figure;
+}
+
+Figure allan(const Json& series, const std::string& title, const std::string& unit) {
+  const Json& deviation = series.at("allan");
+  const std::vector<double> tau = numbers_of(deviation.at("tau_s"));
+  Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .y = {ScaleKind::Log, "Allan deviation, " + unit}};
+  Series measured{.name = "measured", .x = tau, .y = values_of(deviation.at("measured")), .mark = Mark::Dot};
+  Series baseline = curve("baseline", tau, values_of(deviation.at("baseline")));
+  baseline.colour = figure::palette::kInk3;
+  baseline.dash = {6.0, 4.0};
+  Series extended = curve("extended", tau, values_of(deviation.at("extended")));
+  extended.colour = figure::palette::kModel;
+  extended.width = 2.0;
+  plot.series = {std::move(measured), std::move(extended), std::move(baseline)};
+  plot.height = 2.0 * kHalfHeight;
+  return figure_of(title + ": Allan deviation",
+                   "Allan deviation as measured, as the baseline has it, and with what was found.", {std::move(plot)});
+}
+
+Figure spectrum(const Json& series, const std::string& title) {
+  const Json& density = series.at("spectrum");
+  const std::vector<double> frequency = numbers_of(density.at("f_hz"));
+  const Values base = values_of(density.at("baseline").at("median"));
+  std::vector<Plot> plots;
+  for (const auto& [mean, highest, name] :
+       {std::tuple{"measured", "highest", "before: measured ÷ baseline"},
+        std::tuple{"remaining", "highest_remaining", "after: remaining ÷ baseline"}}) {
+    Series density_curve = curve("mean", frequency, over(values_of(density.at(mean)), base));
+    density_curve.low = over(values_of(density.at("baseline").at("q025")), base);
+    density_curve.high = over(values_of(density.at("baseline").at("q975")), base);
+    density_curve.band = figure::palette::kModelBand;
+    Series peaks = curve("highest of each bin", frequency, over(values_of(density.at(highest)), base));
+    peaks.colour = figure::palette::kRobust;
+    Series chance = curve("chance, 1 in 20", frequency, over(values_of(density.at("chance")), base));
+    chance.colour = figure::palette::kInk3;
+    chance.dash = {4.0, 3.0};
+    Plot plot{.x = {ScaleKind::Linear, "frequency, Hz"}, .y = {ScaleKind::Log, name}};
+    plot.series = {std::move(density_curve), std::move(peaks), std::move(chance)};
+    for (Series& one : plot.series) {
+      one.key = plots.empty();
+    }
+    plot.height = kHalfHeight;
+    plot.rules = {1.0};
+    plots.push_back(std::move(plot));
+  }
+  return figure_of(title + ": spectrum",
+                   "Two-sided density over the baseline, mean and highest of each bin, before and after the findings.",
+                   std::move(plots));
+}
+
+Figure wavelets(const Json& series, const std::string& title) {
+  const Json& wavelet = series.at("wavelet");
+  std::vector<Plot> plots;
+  for (const auto& [member, of, name] : {std::tuple{"measured", "baseline", "before: deviation ÷ simulated"},
+                                         std::tuple{"remaining", "extended", "after: remaining ÷ simulated"}}) {
+    const Json& band = wavelet.at(of);
+    const Values median = values_of(band.at("median"));
+    Series simulated = curve("simulated, 95 %", numbers_of(wavelet.at("scale_s")), over(median, median));
+    simulated.low = over(values_of(band.at("q025")), median);
+    simulated.high = over(values_of(band.at("q975")), median);
+    simulated.band = figure::palette::kModelBand;
+    simulated.colour = figure::palette::kModel;
+    Series measured{
+        .name = "measured", .x = simulated.x, .y = over(values_of(wavelet.at(member)), median), .mark = Mark::Dot};
+    Plot plot{.x = {ScaleKind::Log, "scale, s"}, .y = {ScaleKind::Log, name}};
+    plot.series = {std::move(simulated), std::move(measured)};
+    double far = 2.0;
+    for (const auto& value : plot.series.back().y) {
+      far = value && *value > 0.0 ? std::max({far, *value * 1.1, 1.1 / *value}) : far;
+    }
+    plot.y.domain = {1.0 / far, far};
+    for (Series& one : plot.series) {
+      one.key = plots.empty();
+    }
+    plot.height = kHalfHeight;
+    plot.rules = {1.0};
+    plots.push_back(std::move(plot));
+  }
+  return figure_of(
+      title + ": wavelet deviation",
+      "Haar wavelet deviation over the simulated median with the simulated 95 % band, before and after the findings.",
+      std::move(plots));
+}
+
+Figure course(const Json& series, const std::string& title, const std::string& unit) {
+  const Json& means = series.at("course");
+  const std::vector<double> time = numbers_of(means.at("time_s"));
+  Series error{.name = "error", .x = time, .y = values_of(means.at("error")), .mark = Mark::Dot};
+  Series effect = curve("found effect", time, values_of(means.at("effect")));
+  effect.colour = figure::palette::kModel;
+  effect.width = 2.0;
+  Plot plot{.x = {ScaleKind::Linear, "time, s"}, .y = {ScaleKind::Linear, "error, " + unit}};
+  plot.series = {std::move(effect), std::move(error)};
+  plot.height = 2.0 * kHalfHeight;
+  return figure_of(title + ": time course of " + series.at("recording").get<std::string>(),
+                   "Means of the error over time in one recording, and the effect that was found.", {std::move(plot)});
+}
+
+}  // namespace
+
+std::vector<NamedFigure> figures_of_investigation(const Json& document, const std::string& channel) {
+  std::vector<NamedFigure> figures;
+  for (const Json& series : document.value("figures", Json::array())) {
+    const auto name = series.at("channel").get<std::string>();
+    if (!channel.empty() && name != channel) {
+      continue;
+    }
+    const std::string unit = printed_unit(series.value("unit", ""));
+    figures.push_back({word(name + "-allan"), allan(series, name, unit)});
+    figures.push_back({word(name + "-spectrum"), spectrum(series, name)});
+    figures.push_back({word(name + "-wavelet"), wavelets(series, name)});
+    figures.push_back({word(name + "-course"), course(series, name, unit)});
+  }
+  return figures;
+}
+
+}  // namespace driftlab
