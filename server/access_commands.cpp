@@ -2,7 +2,7 @@
 
 #include "server/api/audit_row.hpp"
 #include "server/auth/gate.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
+#include "server/open_store.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -17,16 +17,6 @@ constexpr int kBroken = 3;
 int complain(const Error& error) {
   std::fprintf(stderr, "driftlabd: %s\n", error.message.c_str());
   return error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull || error.code == ErrorCode::Internal ? 1 : 2;
-}
-
-/// The store of a directory that exists: a command makes no new one by a typing error.
-Result<std::unique_ptr<SqliteStore>> open_existing(const Settings& settings, const Clock& clock) {
-  std::error_code error;
-  if (!std::filesystem::exists(settings.data / "driftlab.db", error)) {
-    return fail(ErrorCode::NotFound,
-                "There is no database in " + settings.data.string() + "; name the daemon's directory with --data.");
-  }
-  return open_sqlite_store(settings.data, clock);
 }
 
 std::string moment(const std::optional<UtcMicros>& time) { return time ? rfc3339(*time) : "-"; }
@@ -168,14 +158,14 @@ int AccessCommands::run(const Settings& settings) const {
     return verify_file(file_, head_);
   }
   const SystemClock clock;
-  auto store = open_existing(settings, clock);
-  if (!store && create_->parsed() && store.error().code == ErrorCode::NotFound) {
-    store = open_sqlite_store(settings.data, clock);  // a token may be made before the daemon first starts
+  auto opened = open_existing_store(settings, clock);
+  if (!opened && create_->parsed() && opened.error().code == ErrorCode::NotFound) {
+    opened = open_store(settings, clock);  // a token may be made before the daemon first starts
   }
-  if (!store) {
-    return complain(store.error());
+  if (!opened) {
+    return complain(opened.error());
   }
-  AccessStore& access = (*store)->access();
+  AccessStore& access = opened->store->access();
   if (verify_->parsed()) {
     const auto verdict = access.verify_audit();
     return verdict ? print_verdict(*verdict, head_) : complain(verdict.error());

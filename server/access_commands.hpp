@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
 class App;
 }
 
@@ -21,6 +21,7 @@ class AccessCommands {
   explicit AccessCommands(CLI::App& app);
   AccessCommands(const AccessCommands&) = delete;
   AccessCommands& operator=(const AccessCommands&) = delete;
+  ~AccessCommands() = default;
 
   [[nodiscard]] bool parsed() const;
   /// Runs the one that was given. The exit code: 0, 1 for what failed, 2 for what was asked wrongly; 3 for an audit log

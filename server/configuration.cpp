@@ -90,6 +90,21 @@ Setting data_setting() {
           [](const Settings& settings) { return Json(settings.data.string()); }};
 }
 
+/// A database's password is never shown.
+Setting store_setting() {
+  return {"store", SettingKind::Text,
+          "PostgreSQL database of the rows, postgresql://USER@HOST/DATABASE; none: an SQLite file in --data",
+          [](Settings& settings, const std::vector<std::string>& values) -> Status {
+            const std::string& uri = values.back();
+            if (!uri.empty() && !uri.starts_with("postgresql://") && !uri.starts_with("postgres://")) {
+              return refuse("store", "must be postgresql://USER@HOST:PORT/DATABASE, or nothing for SQLite in --data.");
+            }
+            settings.store = uri;
+            return {};
+          },
+          [](const Settings& settings) { return Json(without_password(settings.store)); }};
+}
+
 Setting path_setting(std::string_view name, std::filesystem::path Settings::* member, std::string_view meaning) {
   return {name, SettingKind::Text, meaning,
           [member](Settings& settings, const std::vector<std::string>& values) -> Status {
@@ -272,8 +287,8 @@ Status take_from_environment(const Environment& environment, GivenValues& into) 
       continue;
     }
     const auto& all = all_settings();
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Setting& one) { return variable_of(one.name) == variable; });
+    const auto found = std::find_if(
+        all.begin(), all.end(), [&sought = variable](const Setting& one) { return variable_of(one.name) == sought; });
     // Other programs have variables of this prefix too (tests, the command line): only a setting's own counts.
     if (found != all.end() && !value.empty()) {
       const bool list = found->kind == SettingKind::List;
@@ -306,9 +321,12 @@ Status take_from_flags(const GivenFlags& flags, GivenValues& into) {
 const std::vector<Setting>& all_settings() {
   static const std::vector<Setting> all{
       data_setting(),
+      store_setting(),
       text_setting("listen", &Settings::listen, "IP:PORT to listen on; port 0 takes any free one"),
       list_setting("allow_host", &Settings::allow_host, "Another name to answer for in the Host header"),
       list_setting("proxies", &Settings::proxies, "Address of a proxy, which connects for many people"),
+      list_setting("webhook_allow", &Settings::webhook_allow,
+                   "Host, address or network that webhooks may lead to beside the Internet, also by plain http"),
       whole_setting("workers", &Settings::workers, 0, 256, "Jobs that run at once; 0 is as many as threads"),
       whole_setting("threads", &Settings::threads, 0, 256,
                     "Threads that all jobs share; 0 is one per core, or per worker if more"),

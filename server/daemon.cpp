@@ -9,12 +9,13 @@
 #include "server/jobs/worker_pool.hpp"
 #include "server/observe/log.hpp"
 #include "server/observe/metrics.hpp"
+#include "server/open_store.hpp"
 #include "server/pages/pages.hpp"
 #include "server/process.hpp"
 #include "server/scrubber.hpp"
 #include "server/store/disk_reserve.hpp"
 #include "server/store/files.hpp"
-#include "server/store/sqlite/sqlite_store.hpp"
+#include "server/webhooks/deliverer.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -33,6 +34,7 @@ constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
 /// Of the time to stop, the part that running jobs get before they are handed back.
 constexpr double kGraceShare = 0.7;
 constexpr std::chrono::seconds kProbeInterval{2};
+constexpr std::int64_t kMicrosPerDay = 24LL * 3600 * 1'000'000;
 
 /// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
 void settle_threads(const Settings& settings, WorkerOptions& options) {
@@ -107,23 +109,26 @@ Status open_gate(Gate& gate, const Settings& settings) {
 
 /// Members in the order of construction; destruction is the reverse.
 struct Daemon::Parts {
-  Parts(std::unique_ptr<BlobStore> blobs_in, std::unique_ptr<SqliteStore> store_in,
-        std::unique_ptr<SystemClock> clock_in, std::unique_ptr<Gate> gate_in, WorkerOptions worker_options,
+  Parts(std::unique_ptr<BlobStore> blobs_in, OpenedStore store_in, std::unique_ptr<SystemClock> clock_in,
+        std::unique_ptr<Gate> gate_in, WorkerOptions worker_options, const DestinationGuard& webhook_guard,
         const Settings& settings)
       : budgets(settings.budgets),
         reserve(settings.data / "reserve", settings.budgets.reserve_bytes),
         clock(std::move(clock_in)),
         blobs(std::move(blobs_in)),
-        store(std::move(store_in)),
+        directory_lock(std::move(store_in.lock)),
+        store(std::move(store_in.store)),
         visible(make_visible_store(*store)),
         gate(std::move(gate_in)),
         scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second),
+        deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
         workers({*store, *blobs, *clock, budgets,
                  [this](const std::string& blob) { return scrubber.verify_columns(blob); }},
                 maintained(std::move(worker_options)),
                 [this](const std::string& id) {
                   bell.ring(id);
                   announce_job(api, id);
+                  deliverer.wake();
                 }),
         api{*visible,
             *blobs,
@@ -140,7 +145,12 @@ struct Daemon::Parts {
             [this] { return is_nearly_full(); },
             [this] { return metrics.text(gauges(), DRIFTLAB_VERSION); },
             [this] { return scrubber.findings().damaged; },
-            stop_uploads.get_token()},
+            [this](const std::string& blob) { return scrubber.verify_columns(blob); },
+            [this](const std::string& blob) { return scrubber.expect_sound_columns(blob); },
+            stop_uploads.get_token(),
+            &store->webhooks(),
+            webhook_guard,
+            [this] { deliverer.wake(); }},
         dispatcher(api) {
     add_all_routes(router, api);
   }
@@ -152,6 +162,24 @@ struct Daemon::Parts {
     options.maintenance.budgets = budgets;
     options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
     options.maintenance.each_turn = [this] { look_after_reserve(); };
+    options.maintenance.each_tidy = [this] {
+      (void)store->webhooks().forget_deliveries(clock->now() - budgets.keep_deliveries_days * kMicrosPerDay);
+    };
+    return options;
+  }
+
+  DelivererOptions delivery_options(const DestinationGuard& guard) {
+    DelivererOptions options{budgets, guard, {}, {}};
+    options.attempted = [this](const DueDelivery& what, std::string_view outcome, const std::string& error) {
+      metrics.count_delivery(outcome);
+      log_info("webhook attempted", Json{{"webhook", what.webhook.id},
+                                         {"delivery", what.delivery.id},
+                                         {"type", what.delivery.event},
+                                         {"attempt", what.delivery.attempts + 1},
+                                         {"outcome", outcome},
+                                         {"detail", error}});
+    };
+    options.disabled = [](const std::string& id) { log_warning("webhook disabled", Json{{"webhook", id}}); };
     return options;
   }
 
@@ -159,8 +187,8 @@ struct Daemon::Parts {
     if (stopping) {
       return "The daemon is stopping.";
     }
-    if (!store->ping()) {
-      return "The store does not answer.";
+    if (const Status answered = store->ping(); !answered) {
+      return "The store does not answer: " + answered.error().message;
     }
     if (is_nearly_full()) {
       return "The disk is nearly full.";
@@ -205,7 +233,7 @@ struct Daemon::Parts {
       found.uploads = static_cast<double>(load.uploads);
       found.turned_away = static_cast<double>(load.turned_away);
     }
-    if (const auto counts = store->counts()) {
+    if (const auto counts = store->counts(std::nullopt)) {
       found.devices = static_cast<double>(counts->devices);
       found.recordings = static_cast<double>(counts->recordings);
       found.jobs_queued = static_cast<double>(counts->queued);
@@ -219,6 +247,10 @@ struct Daemon::Parts {
     if (const auto space = blobs->space()) {
       found.free_bytes = static_cast<double>(space->free_bytes);
       found.free_fraction = space->free_fraction;
+    }
+    if (const auto hooks = store->webhooks().webhook_counts()) {
+      found.deliveries_waiting = static_cast<double>(hooks->waiting);
+      found.webhooks_disabled = static_cast<double>(hooks->disabled);
     }
     const Scrubber::Findings stored = scrubber.findings();
     found.blobs_damaged = static_cast<double>(stored.damaged);
@@ -250,12 +282,14 @@ struct Daemon::Parts {
   mutable std::string write_fault;
   std::unique_ptr<SystemClock> clock;
   std::unique_ptr<BlobStore> blobs;
-  std::unique_ptr<SqliteStore> store;
+  FileHandle directory_lock;
+  std::unique_ptr<SqlStore> store;
   std::unique_ptr<Store> visible;
   std::unique_ptr<Gate> gate;
   Scrubber scrubber;
   Bell bell;
   EventLog events{bell, make_id("run", clock->now()).substr(14)};
+  Deliverer deliverer;
   WorkerPool workers;
   ApiContext api;
   Dispatcher dispatcher;
@@ -276,9 +310,14 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   // Before anything is made: whether there are tokens is known only from the store, which may not exist yet.
   std::error_code absent;
-  const bool may_have_tokens = std::filesystem::exists(settings.data / "driftlab.db", absent);
+  const bool may_have_tokens =
+      !settings.store.empty() || std::filesystem::exists(settings.data / "driftlab.db", absent);
   if (auto safe = require_safe_address(settings, *address, may_have_tokens); !safe) {
     return fail(safe.error());
+  }
+  auto webhook_guard = DestinationGuard::with(settings.webhook_allow);
+  if (!webhook_guard) {
+    return fail(webhook_guard.error());
   }
   std::shared_ptr<boost::asio::ssl::context> tls;
   if (!settings.tls_certificate.empty()) {
@@ -289,38 +328,32 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     tls = std::move(*loaded);
   }
   auto clock = std::make_unique<SystemClock>();
-  SqliteOptions store_options;
-  store_options.audited = [](const AuditRow& row) { log_info("audit", to_json(row)); };
-  auto store = open_sqlite_store(settings.data, *clock, std::move(store_options));
-  if (!store) {
-    return fail(store.error());
+  auto opened = open_store(settings, *clock, [](const AuditRow& row) { log_info("audit", to_json(row)); });
+  if (!opened) {
+    return fail(opened.error());
   }
-  const SqliteFacts& facts = (*store)->facts();
-  log_info("store opened",
-           Json{{"sqlite", facts.version},
-                {"schema_before", facts.schema_before},
-                {"schema", facts.schema},
-                {"wal_reset_bug", facts.wal_reset_bug_possible ? "present, harmless: one writer" : "absent"}});
+  log_info("store opened", opened->facts);
+  SqlStore& store = *opened->store;
   auto blobs = open_blob_directory(settings.data);
   if (!blobs) {
     return fail(blobs.error());
   }
-  if (auto charged = charge_faults(**store, settings.data / "faults"); !charged) {
+  if (auto charged = charge_faults(store, settings.data / "faults"); !charged) {
     return fail(charged.error());
   }
-  if (auto ended = (*store)->end_all_leases(); !ended) {
+  if (auto ended = store.end_all_leases(); !ended) {
     return fail(ended.error());
   } else if (*ended > 0) {
     log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
   }
-  if (auto queued = (*store)->queue_missing_pools(); !queued) {
+  if (auto queued = store.queue_missing_pools(); !queued) {
     return fail(queued.error());
   } else if (*queued > 0) {
     log_info("results of an earlier release are pooled again", Json{{"jobs", *queued}});
   }
-  auto gate = std::make_unique<Gate>((*store)->access(), *clock, GateOptions{settings.require_tokens, tls != nullptr});
-  if (auto opened = open_gate(*gate, settings); !opened) {
-    return fail(opened.error());
+  auto gate = std::make_unique<Gate>(store.access(), *clock, GateOptions{settings.require_tokens, tls != nullptr});
+  if (auto guarded = open_gate(*gate, settings); !guarded) {
+    return fail(guarded.error());
   }
   if (auto safe = require_safe_address(settings, *address, gate->is_on()); !safe) {
     return fail(safe.error());
@@ -330,8 +363,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   worker_options.grace_micros =
       static_cast<std::int64_t>(kGraceShare * 1e6 * static_cast<double>(settings.budgets.stop_seconds));
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
-  auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*store), std::move(clock), std::move(gate),
-                                       std::move(worker_options), settings);
+  auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*opened), std::move(clock), std::move(gate),
+                                       std::move(worker_options), std::move(*webhook_guard), settings);
 
   HttpOptions options;
   options.address = address->address;
@@ -355,6 +388,9 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     }
     return response;
   };
+  hooks.known = [shared](const Route& route, const Request& request) {
+    return shared->dispatcher.known(route, request);
+  };
   hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
   hooks.complete = complete_problem;
   hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
@@ -362,8 +398,10 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
   parts->workers.start();
   parts->scrubber.start();
+  parts->deliverer.start();
   if (auto started = parts->http->start(); !started) {
     parts->workers.stop();
+    parts->deliverer.stop();
     return fail(started.error());
   }
   log_info("listening", Json{{"address", settings.listen},
@@ -403,6 +441,7 @@ void Daemon::stop() {
   std::thread jobs([this] {
     parts_->workers.stop();
     parts_->scrubber.stop();
+    parts_->deliverer.stop();
   });
   const std::chrono::milliseconds grace(
       static_cast<std::int64_t>(kGraceShare * 1e3 * static_cast<double>(parts_->budgets.stop_seconds)));

@@ -2,6 +2,7 @@
 #include "server/access_commands.hpp"
 #include "server/configuration.hpp"
 #include "server/daemon.hpp"
+#include "server/manual_commands.hpp"
 #include "server/observe/log.hpp"
 #include "server/process.hpp"
 #include "server/store/clock.hpp"
@@ -68,6 +69,13 @@ int show(const Configuration& configuration, bool json) {
   return 0;
 }
 
+int list_crash_points() {
+  for (const std::string_view name : driftlab::server::crash_point_names()) {
+    std::printf("%.*s\n", static_cast<int>(name.size()), name.data());
+  }
+  return 0;
+}
+
 /// A flag for every setting; texts go to `given` as they are and are read with those of the other sources.
 void add_settings(CLI::App& app, driftlab::server::GivenFlags& given) {
   for (const auto& setting : driftlab::server::all_settings()) {
@@ -117,6 +125,7 @@ int main(int argc, char** argv) {
   driftlab::server::GivenFlags given;
   add_settings(app, given);
   const driftlab::server::AccessCommands access(app);
+  const driftlab::server::ManualCommands manual(app);
   const CLI::App* const crash_points =
       app.add_subcommand("crash-points", "List the points where tests may kill the daemon");
   CLI::App* const config = app.add_subcommand("config", "Print every setting and budget with its origin");
@@ -138,10 +147,10 @@ int main(int argc, char** argv) {
     return wanted ? 0 : 2;
   }
   if (crash_points->parsed()) {
-    for (const std::string_view name : driftlab::server::crash_point_names()) {
-      std::printf("%.*s\n", static_cast<int>(name.size()), name.data());
-    }
-    return 0;
+    return list_crash_points();
+  }
+  if (manual.parsed()) {
+    return manual.run();
   }
   const auto configuration = driftlab::server::configure(given, driftlab::server::own_environment());
   if (!configuration) {
@@ -151,6 +160,13 @@ int main(int argc, char** argv) {
   const Settings& settings = configuration->settings;
   if (access.parsed()) {
     return access.run(settings);
+  }
+  if (!settings.store.empty() && (check->parsed() || backup->parsed() || restored->parsed())) {
+    std::fprintf(
+        stderr,
+        "driftlabd: check, backup and restore are for an SQLite store; back up a PostgreSQL database by pg_dump, "
+        "and --data as it is.\n");
+    return 2;
   }
   if (check->parsed()) {
     return tell("checked", driftlab::server::check_data(settings.data));

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <filesystem>
 #include <vector>
 
 namespace driftlab::server {
@@ -16,6 +17,12 @@ bool rest(const std::stop_token& stop, std::chrono::duration<double> time) {
   std::unique_lock<std::mutex> lock(mutex);
   waiting.wait_for(lock, stop, time, [] { return false; });
   return !stop.stop_requested();
+}
+
+Error damaged_columns(const std::string& sha256) {
+  return {ErrorCode::Io,
+          "The stored samples are damaged and cannot be made anew from the uploaded bytes; upload the same file again.",
+          {{"blob", sha256}}};
 }
 
 }  // namespace
@@ -60,12 +67,19 @@ Status Scrubber::verify_columns(const std::string& sha256) {
     note(sha256, *state);
   }
   if (*state == BlobState::DamagedColumns) {
-    return fail(ErrorCode::Io,
-                "The stored samples are damaged and cannot be made anew from the uploaded bytes; upload the same file "
-                "again.",
-                {{"blob", sha256}});
+    return fail(damaged_columns(sha256));
   }
   return {};
+}
+
+Status Scrubber::expect_sound_columns(const std::string& sha256) {
+  constexpr std::uintmax_t kReadAtOnce = 64ULL << 20U;
+  std::error_code unknown;
+  if (std::filesystem::file_size(blobs_.columns_path(sha256), unknown) <= kReadAtOnce && !unknown) {
+    return verify_columns(sha256);
+  }
+  const std::lock_guard<std::mutex> guard(mutex_);
+  return damaged_.contains(sha256) ? fail(damaged_columns(sha256)) : Status{};
 }
 
 Scrubber::Findings Scrubber::findings() const {
@@ -93,6 +107,9 @@ void Scrubber::run(const std::stop_token& stop) {
       const auto row = store_.blob(sha256);
       if (state && row && *row) {  // one that was removed meanwhile is no loss
         note(sha256, *state);
+        if (*state == BlobState::Sound || *state == BlobState::Healed) {
+          (void)mend_pyramid(blobs_, sha256, pace);  // traces are slower without it, and right
+        }
       }
     }
     {

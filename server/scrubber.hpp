@@ -29,6 +29,10 @@ class Scrubber {
   /// For jobs (server/jobs/job_kind.hpp): the columns before they are used. Error: Io, naming the blob.
   [[nodiscard]] Status verify_columns(const std::string& sha256);
 
+  /// The same for what is only looked at and must come at once: columns of more than 64 MiB are refused where damage
+  /// was found by a job or in the background, and count as sound before.
+  [[nodiscard]] Status expect_sound_columns(const std::string& sha256);
+
   struct Findings {
     std::uint64_t bytes_read = 0;
     std::uint64_t healed = 0;

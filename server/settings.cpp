@@ -49,6 +49,26 @@ Status require_safe_address(const Settings& settings, const ListenAddress& addre
       {{"parameter", "listen"}});
 }
 
+std::string without_password(const std::string& uri) {
+  std::string shown = uri;
+  const std::size_t scheme = shown.find("://");
+  const std::size_t begin = scheme == std::string::npos ? 0 : scheme + 3;
+  // Of the user's part, which ends at the last @ before the parameters, the password follows the first colon.
+  const std::size_t at = shown.rfind('@', shown.find('?', begin));
+  const std::size_t colon = shown.find(':', begin);
+  if (at != std::string::npos && at > begin && colon < at) {
+    shown.replace(colon + 1, at - colon - 1, "***");
+  }
+  constexpr std::string_view kParameter = "password=";
+  for (std::size_t found = shown.find(kParameter); found != std::string::npos;
+       found = shown.find(kParameter, found + 1)) {
+    const std::size_t value = found + kParameter.size();
+    const std::size_t stop = std::min(shown.find('&', value), shown.size());
+    shown.replace(value, stop - value, "***");
+  }
+  return shown;
+}
+
 std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address) {
   std::vector<std::string> hosts{"localhost", "127.0.0.1", "[::1]"};
   hosts.push_back(address.address.find(':') == std::string::npos ? address.address : "[" + address.address + "]");

@@ -12,11 +12,13 @@ namespace driftlab::server {
 
 struct Settings {
   std::filesystem::path data = "driftlab-data";
+  std::string store;  ///< postgresql://... of the database that keeps the rows; empty: an SQLite file in `data`
   std::string listen = "127.0.0.1:8477";
-  std::vector<std::string> allow_host;  ///< Host names answered for, beside the address and localhost
-  std::vector<std::string> proxies;     ///< addresses whose many connections are those of many people
-  int workers = 0;                      ///< jobs at a time; 0: as many as threads
-  int threads = 0;                      ///< that compute for all jobs together; 0: one per core, or per worker if more
+  std::vector<std::string> allow_host;     ///< Host names answered for, beside the address and localhost
+  std::vector<std::string> proxies;        ///< addresses whose many connections are those of many people
+  std::vector<std::string> webhook_allow;  ///< where webhooks may lead beside the Internet (server/webhooks)
+  int workers = 0;                         ///< jobs at a time; 0: as many as threads
+  int threads = 0;  ///< that compute for all jobs together; 0: one per core, or per worker if more
   int io_threads = 2;
   bool require_tokens = false;            ///< refuse requests without a token even before there is one
   std::filesystem::path tls_certificate;  ///< PEM, with its chain; empty: plain HTTP
@@ -38,6 +40,9 @@ struct ListenAddress {
 /// Whether the daemon may listen there: beyond loopback only with TLS and tokens, unless `insecure`. `has_tokens` may
 /// be false while that is not known yet but tokens are required. Errors: InvalidArgument, with the way out.
 [[nodiscard]] Status require_safe_address(const Settings& settings, const ListenAddress& address, bool has_tokens);
+
+/// A connection string without its password, for people and logs.
+[[nodiscard]] std::string without_password(const std::string& uri);
 
 /// Names the daemon answers for, lower case, without port.
 [[nodiscard]] std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address);

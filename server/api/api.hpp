@@ -1,5 +1,6 @@
 #pragma once
 /// The HTTP resources. One file per resource declares its routes and handlers; routes.cpp lists them.
+#include "server/api/answer_cache.hpp"
 #include "server/api/event_log.hpp"
 #include "server/api/keys_in_flight.hpp"
 #include "server/auth/gate.hpp"
@@ -8,6 +9,8 @@
 #include "server/jobs/job_kind.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
+#include "server/store/webhook_store.hpp"
+#include "server/webhooks/destination.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -34,7 +37,14 @@ struct ApiContext {
   std::function<bool()> is_nearly_full = {};        ///< the disk: what is removed must be gone at once
   std::function<std::string()> metrics = {};        ///< the text that /metrics gives
   std::function<std::size_t()> damaged_blobs = {};  ///< how many stored files are known to be damaged
+  /// Makes sure that the columns of a blob are what was written, before they are used, as JobContext::verify_columns.
+  std::function<Status(const std::string& sha256)> verify_columns = {};
+  /// The same for what is looked at, which must come at once: large columns count as sound until damage was found.
+  std::function<Status(const std::string& sha256)> expect_sound_columns = {};
   std::stop_token stopping = {};  ///< requested when the daemon stops: uploads that decode then give up
+  WebhookStore* webhooks = nullptr;
+  DestinationGuard webhook_guard = {};         ///< where webhooks may lead
+  std::function<void()> wake_deliveries = {};  ///< there is something to deliver
   KeysInFlight keys_in_flight = {};
 };
 
@@ -45,16 +55,23 @@ void announce_job(ApiContext& context, const std::string& job_id);
 void add_all_routes(Router& router, ApiContext& context);
 
 /// Makes the answer of a plain route final: replays or remembers idempotent POSTs, maps errors to problems, adds an
-/// ETag and answers If-None-Match. Thread safe.
+/// ETag, answers If-None-Match and keeps what depends on rows alone. Thread safe.
 class Dispatcher {
  public:
-  explicit Dispatcher(ApiContext& context) : context_(context) {}
+  explicit Dispatcher(ApiContext& context);
   [[nodiscard]] Response run(const Route& route, const Request& request);
+  /// The final answer, where it is known without asking the handler. Never blocks on store or disk.
+  [[nodiscard]] std::optional<Response> known(const Route& route, const Request& request);
 
  private:
+  [[nodiscard]] Response run_checked(const Route& route, const Request& request);
+  [[nodiscard]] Response read_rows(const Handler& handler, const Request& request);
+  [[nodiscard]] Response give_kept(const std::string& key, std::uint64_t changes, const Request& request,
+                                   const Response& kept);
   [[nodiscard]] Response run_idempotent(const Handler& handler, const Request& request, const std::string& key);
 
   ApiContext& context_;
+  AnswerCache answers_;
 };
 
 /// Says who asks, in `request.caller`, or why it is refused: 401 without a token that is valid, 403 where its scope is

@@ -90,7 +90,7 @@ Result<Wanted> read_wanted(const Request& request) {
 class ListedRecordings final : public StoredRecordings {
  public:
   ListedRecordings(ApiContext& context, std::vector<StoredRecordingRequest> wanted, const Device& device)
-      : StoredRecordings(context.store, context.blobs, std::move(wanted)), device_(device) {}
+      : StoredRecordings(context.store, context.blobs, std::move(wanted), context.verify_columns), device_(device) {}
 
   [[nodiscard]] Error located(std::size_t index, Error error) const override {
     const std::string sentence = error.message;
@@ -186,6 +186,17 @@ Result<Response> get_calibration(ApiContext& context, const Request& request) {
   return json_response(200, to_json(*calibration));
 }
 
+Result<Response> delete_calibration(ApiContext& context, const Request& request) {
+  const auto shown = get_calibration(context, request);
+  if (!shown) {
+    return fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(context.store.remove_calibration(request.parameters[0]));
+}
+
 }  // namespace
 
 void add_calibration_routes(Router& router, ApiContext& context) {
@@ -199,6 +210,9 @@ void add_calibration_routes(Router& router, ApiContext& context) {
               })});
   router.add({"GET", "/v1/calibrations/{id}", "getCalibration", {}, Handler([&](const Request& request) {
                 return get_calibration(context, request);
+              })});
+  router.add({"DELETE", "/v1/calibrations/{id}", "deleteCalibration", {}, Handler([&](const Request& request) {
+                return delete_calibration(context, request);
               })});
 }
 

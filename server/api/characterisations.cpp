@@ -71,7 +71,7 @@ Result<Json> channel_document(const Json& channel, const std::vector<Fit>& fits)
   }
   std::vector<std::string> ids(channel.at("fits").size());
   for (const Fit& fit : fits) {
-    if (fit.channel == channel.at("channel") && static_cast<std::size_t>(fit.rank) < ids.size()) {
+    if (fit.channel == channel.at("channel").get<std::string>() && static_cast<std::size_t>(fit.rank) < ids.size()) {
       ids[static_cast<std::size_t>(fit.rank)] = fit.id;
     }
   }
@@ -108,9 +108,10 @@ Result<Response> get_characterisation(ApiContext& context, const Request& reques
     channels.push_back(std::move(*document));
   }
   if (channels.empty()) {
-    return fail(ErrorCode::NotFound,
-                "The recording " + recording->id + " has no channel '" + std::string(*wanted) + "' in its result.",
-                {{"parameter", "channel"}});
+    return fail(
+        ErrorCode::NotFound,
+        "The recording " + recording->id + " has no channel '" + std::string(wanted.value_or("")) + "' in its result.",
+        {{"parameter", "channel"}});
   }
   const Json asked = stored(found->job.request_json);
   const std::int64_t revision = fits->front().recording_revision;
@@ -153,11 +154,11 @@ Result<Response> get_implied(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_characterisation_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/recordings/{id}/characterisation",
-              "getCharacterisation",
-              {"channel"},
-              Handler([&](const Request& request) { return get_characterisation(context, request); })});
+  router.add(from_rows({"GET",
+                        "/v1/recordings/{id}/characterisation",
+                        "getCharacterisation",
+                        {"channel"},
+                        Handler([&](const Request& request) { return get_characterisation(context, request); })}));
   router.add({"GET", "/v1/fits/{id}/implied", "getImpliedCurves", {}, Handler([&](const Request& request) {
                 return get_implied(context, request);
               })});

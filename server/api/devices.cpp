@@ -123,18 +123,12 @@ Result<Response> patch_device(ApiContext& context, const Request& request) {
   if (!revision) {
     return revision.error();
   }
-  auto body = parse_json(request.body);
-  if (!body) {
-    return fail(body.error());
+  const auto change = read_body(
+      request, [&](ObjectReader& reader, Faults& faults) { return read_change(reader, *request.budgets, faults); });
+  if (!change) {
+    return fail(change.error());
   }
-  Faults faults;
-  ObjectReader reader(*body, "", faults);
-  const DeviceChange change = read_change(reader, *request.budgets, faults);
-  reader.reject_unknown();
-  if (!faults.none()) {
-    return fail(faults.error());
-  }
-  auto changed = context.store.update_device(device->id, change, *revision);
+  auto changed = context.store.update_device(device->id, *change, *revision);
   if (!changed) {
     return fail(changed.error());
   }
@@ -142,22 +136,41 @@ Result<Response> patch_device(ApiContext& context, const Request& request) {
   return device_response(200, *changed);
 }
 
+Result<Response> delete_device(ApiContext& context, const Request& request) {
+  auto device = context.store.device(request.parameters[0]);
+  if (!device) {
+    return fail(device.error());
+  }
+  const auto revision = expected_revision(request, device->id, device->revision);
+  if (!revision) {
+    return revision.error();
+  }
+  const Status removed = context.store.remove_device(device->id, *revision);
+  if (removed) {
+    context.events.add("devices", "device.deleted", Json{{"device", device->id}, {"name", device->name}});
+  }
+  return removed_response(removed);
+}
+
 }  // namespace
 
 void add_device_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/devices",
-              "listDevices",
-              {"limit", "cursor", "sort", "include"},
-              Handler([&](const Request& request) { return list_devices(context, request); })});
+  router.add(from_rows({"GET",
+                        "/v1/devices",
+                        "listDevices",
+                        {"limit", "cursor", "sort", "include"},
+                        Handler([&](const Request& request) { return list_devices(context, request); })}));
   router.add({"POST", "/v1/devices", "createDevice", {}, Handler([&](const Request& request) {
                 return create_device(context, request);
               })});
-  router.add({"GET", "/v1/devices/{id}", "getDevice", {}, Handler([&](const Request& request) {
-                return get_device(context, request);
-              })});
+  router.add(from_rows({"GET", "/v1/devices/{id}", "getDevice", {}, Handler([&](const Request& request) {
+                          return get_device(context, request);
+                        })}));
   router.add({"PATCH", "/v1/devices/{id}", "changeDevice", {}, Handler([&](const Request& request) {
                 return patch_device(context, request);
+              })});
+  router.add({"DELETE", "/v1/devices/{id}", "deleteDevice", {}, Handler([&](const Request& request) {
+                return delete_device(context, request);
               })});
 }
 

@@ -8,12 +8,26 @@
 
 #include <boost/beast/core/string.hpp>
 
+#include <algorithm>
+#include <utility>
+
 namespace driftlab::server {
 namespace {
 
+/// Text for a terminal ends with its line, so that the prompt stands on one of its own.
+void end_line(Response& response) {
+  const std::string_view type = response.content_type;
+  const bool text = type.starts_with("text/") || type.find("json") != std::string_view::npos;
+  if (text && !response.body.empty() && response.body.back() != '\n' && !response.has_header("Content-Encoding")) {
+    response.body += '\n';
+  }
+}
+
 Response run_handler(const Handler& handler, const Request& request) {
   auto answer = handler(request);
-  return answer ? std::move(*answer) : problem_response(answer.error());
+  Response response = answer ? std::move(*answer) : problem_response(answer.error());
+  end_line(response);
+  return response;
 }
 
 /// application/json, application/merge-patch+json and their like; parameters such as charset do not matter.
@@ -23,33 +37,50 @@ bool is_json(std::string_view content_type) {
   return suffixed || boost::beast::iequals(type, "application/json");
 }
 
-void add_etag(const Request& request, Response& response) {
-  const bool readable = (request.method == "GET" || request.method == "HEAD") && response.status == 200;
-  if (!readable || request.path == "/metrics") {  // metrics count this very request: they are never what they were
-    return;
-  }
-  std::string etag;
+bool is_reading(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
+
+/// The tag of an answer, by its content where the handler gave none.
+const std::string& tag(Response& response) {
   for (const auto& [name, value] : response.headers) {
     if (name == "ETag") {
-      etag = value;
+      return value;
     }
   }
-  if (etag.empty()) {
-    etag = '"';
-    etag.append(sha256_hex(response.body + response.content_type), 0, 32);
-    etag += '"';
-    response.headers.emplace_back("ETag", etag);
-  }
+  return response.headers.emplace_back("ETag", content_etag(response)).second;
+}
+
+/// Whether the client has that representation already.
+bool has_it(const Request& request, const std::string& etag) {
   const auto known = request.header("if-none-match");
-  if (known && (*known == "*" || plain_tag(*known).find(etag) != std::string::npos)) {
+  return known && (*known == "*" || plain_tag(*known).find(etag) != std::string::npos);
+}
+
+/// The answer as it is sent: with its tag, without a body where the client has it, else compressed.
+void finish(const Request& request, Response& response) {
+  if (is_reading(request) && response.status == 200 && !response.volatile_body && has_it(request, tag(response))) {
     response.status = 304;
     response.body.clear();
+    response.file.reset();
   }
+  compress(request, response);
 }
 
 }  // namespace
 
+Dispatcher::Dispatcher(ApiContext& context)
+    : context_(context), answers_(static_cast<std::size_t>(context.budgets.answer_cache_bytes)) {}
+
 Response Dispatcher::run(const Route& route, const Request& request) {
+  try {
+    return run_checked(route, request);
+  } catch (const std::bad_alloc&) {
+    return problem_response(HttpFault::Busy, "There is not enough memory for this request now.");
+  } catch (const std::exception& unforeseen) {
+    return problem_response(Error{ErrorCode::Internal, std::string("Unforeseen: ") + unforeseen.what() + ".", {}});
+  }
+}
+
+Response Dispatcher::run_checked(const Route& route, const Request& request) {
   // A page of another origin may send a body without a type, or with one of a form, and no browser asks before.
   const std::string_view type = request.header("content-type").value_or("");
   if (!request.body.empty() && !is_json(type)) {
@@ -58,22 +89,67 @@ Response Dispatcher::run(const Route& route, const Request& request) {
                                 (type.empty() ? "; name it in Content-Type." : ", not '" + std::string(type) + "'."));
   }
   const auto& handler = std::get<Handler>(route.handler);
-  try {
-    const auto key = request.method == "POST" ? request.header("idempotency-key") : std::nullopt;
-    if (key && route.secret) {
-      return problem_response(Error{ErrorCode::InvalidArgument,
-                                    "The answer holds a secret and is kept nowhere; send no Idempotency-Key.",
-                                    {{"parameter", "Idempotency-Key"}}});
-    }
-    Response response = key ? run_idempotent(handler, request, std::string(*key)) : run_handler(handler, request);
-    add_etag(request, response);
-    compress(request, response);
-    return response;
-  } catch (const std::bad_alloc&) {
-    return problem_response(HttpFault::Busy, "There is not enough memory for this request now.");
-  } catch (const std::exception& unforeseen) {
-    return problem_response(Error{ErrorCode::Internal, std::string("Unforeseen: ") + unforeseen.what() + ".", {}});
+  if (route.from_rows && is_reading(request)) {
+    return read_rows(handler, request);
   }
+  const auto key = request.method == "POST" ? request.header("idempotency-key") : std::nullopt;
+  if (key && route.secret) {
+    return problem_response(Error{ErrorCode::InvalidArgument,
+                                  "The answer holds a secret and is kept nowhere; send no Idempotency-Key.",
+                                  {{"parameter", "Idempotency-Key"}}});
+  }
+  Response response = key ? run_idempotent(handler, request, std::string(*key)) : run_handler(handler, request);
+  finish(request, response);
+  return response;
+}
+
+Response Dispatcher::read_rows(const Handler& handler, const Request& request) {
+  const std::uint64_t changes = context_.store.changes();  // before the first row is read
+  const std::string key = answer_key(request);
+  if (const auto kept = answers_.find(key, changes)) {
+    return give_kept(key, changes, request, *kept);
+  }
+  Response response = run_handler(handler, request);
+  if (response.status != 200 || !response.pending_job.empty()) {
+    finish(request, response);
+    return response;
+  }
+  (void)tag(response);
+  answers_.keep(key, changes, response);
+  return give_kept(key, changes, request, response);
+}
+
+Response Dispatcher::give_kept(const std::string& key, std::uint64_t changes, const Request& request,
+                               const Response& kept) {
+  const auto etag =
+      std::find_if(kept.headers.begin(), kept.headers.end(), [](const auto& header) { return header.first == "ETag"; });
+  const bool whole = etag == kept.headers.end() || !has_it(request, etag->second);
+  if (!whole || !takes_gzip(request)) {
+    Response response = kept;
+    finish(request, response);
+    return response;
+  }
+  const std::string packed_key = key + "\ngzip";
+  if (const auto packed = answers_.find(packed_key, changes)) {
+    return *packed;
+  }
+  Response response = kept;
+  finish(request, response);
+  answers_.keep(packed_key, changes, response);
+  return response;
+}
+
+std::optional<Response> Dispatcher::known(const Route& route, const Request& request) {
+  if (!route.from_rows || !is_reading(request)) {
+    return std::nullopt;
+  }
+  const std::uint64_t changes = context_.store.changes();
+  const std::string key = answer_key(request);
+  const auto kept = answers_.find(key, changes);
+  if (!kept) {
+    return std::nullopt;
+  }
+  return give_kept(key, changes, request, *kept);
 }
 
 Response Dispatcher::run_idempotent(const Handler& handler, const Request& request, const std::string& key) {
@@ -114,7 +190,7 @@ void complete_problem(const Request& request, Response& response) {
   }
   document["instance"] = request.target.substr(0, request.target.find('?'));
   document["request_id"] = request.request_id;
-  response.body = to_text(document);
+  response.body = to_text(document) + "\n";
 }
 
 }  // namespace driftlab::server

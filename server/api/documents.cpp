@@ -5,6 +5,7 @@
 #include "server/http/compression.hpp"
 #include "server/http/problem.hpp"
 #include "server/jobs/stored_table.hpp"
+#include "server/store/digest.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -19,6 +20,15 @@ Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc
 Json stored(const std::string& text) {
   auto document = parse_json(text);
   return document ? std::move(*document) : Json(nullptr);
+}
+
+Json described(const Recording& recording) {
+  Json metadata = stored(recording.metadata_json);
+  const Json tags = stored(recording.tags_json);
+  for (const auto& [name, value] : tags.items()) {
+    metadata[name] = value;
+  }
+  return metadata;
 }
 
 Json to_json(const Device& device) {
@@ -37,7 +47,7 @@ Json to_json(const Recording& recording, const Blob* blob) {
   Json document{{"id", recording.id},
                 {"device", recording.device_id},
                 {"revision", recording.revision},
-                {"metadata", stored(recording.metadata_json)},
+                {"metadata", described(recording)},
                 {"quality", stored(recording.quality_json)}};
   if (blob != nullptr) {
     document["file"] =
@@ -164,19 +174,55 @@ std::string etag_of(std::string_view id, std::int64_t revision) {
   return "\"" + std::string(id) + "-r" + std::to_string(revision) + "\"";
 }
 
-tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
-                                                       std::int64_t current) {
+std::string content_etag(const Response& response) {
+  return '"' + sha256_hex(response.body + response.content_type).substr(0, 32) + '"';
+}
+
+std::optional<Response> refuse_other_content(const Request& request, const Response& response) {
+  const auto match = request.header("if-match");
+  if (!match || *match == "*" || plain_tag(*match) == content_etag(response)) {
+    return std::nullopt;
+  }
+  return problem_response(HttpFault::PreconditionFailed,
+                          "The object is not what If-Match names; its ETag is " + content_etag(response) + ".");
+}
+
+std::string etag_of(const Recording& recording) {
+  std::string etag = etag_of(recording.id, recording.revision);
+  if (recording.tags_revision > 0) {
+    etag.insert(etag.size() - 1, "." + std::to_string(recording.tags_revision));
+  }
+  return etag;
+}
+
+std::optional<Response> refuse_stale(const Request& request, const std::string& etag) {
   const auto match = request.header("if-match");
   if (!match) {
-    return tl::unexpected(problem_response(
+    return problem_response(
         HttpFault::PreconditionRequired,
-        "Send If-Match with the ETag of the object as you read it: " + etag_of(id, current) + " is the current one."));
+        "Send If-Match with the ETag of the object as you read it: " + etag + " is the current one.");
   }
-  if (*match == "*" || plain_tag(*match) == etag_of(id, current)) {
-    return current;
+  if (*match == "*" || plain_tag(*match) == etag) {
+    return std::nullopt;
   }
-  return tl::unexpected(problem_response(HttpFault::PreconditionFailed,
-                                         "The object has changed; its ETag is now " + etag_of(id, current) + "."));
+  return problem_response(HttpFault::PreconditionFailed, "The object has changed; its ETag is now " + etag + ".");
+}
+
+tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
+                                                       std::int64_t current) {
+  if (auto refusal = refuse_stale(request, etag_of(id, current))) {
+    return tl::unexpected(std::move(*refusal));
+  }
+  return current;
+}
+
+Result<Response> removed_response(const Status& removed) {
+  if (!removed) {
+    return fail(removed.error());
+  }
+  Response response;
+  response.status = 204;
+  return response;
 }
 
 Result<std::optional<std::string>> device_filter(Store& store, const Request& request) {
@@ -265,7 +311,7 @@ int ListPage::rows_to_fetch() const {
 }
 
 bool ListPage::add(const Json& item, const std::string& id) {
-  std::string text = to_text(item);
+  const std::string text = to_text(item);
   if (items_ == most_items_ || (items_ > 0 && text_.size() + text.size() > most_bytes_)) {
     return false;
   }

@@ -6,9 +6,12 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 
 namespace driftlab::server {
 
+/// The metadata of a recording with its labels, session and time.
+[[nodiscard]] Json described(const Recording& recording);
 [[nodiscard]] Json to_json(const Device& device);
 /// `blob` may be nullptr: then the members about the file are left out.
 [[nodiscard]] Json to_json(const Recording& recording, const Blob* blob);
@@ -34,6 +37,25 @@ namespace driftlab::server {
 /// The answer where too many jobs wait already; nothing where there is room for one more.
 [[nodiscard]] std::optional<Response> refuse_full_queue(Store& store, const Budgets& budgets);
 
+/// What `read(ObjectReader&, Faults&)` makes of the JSON body of a request. A member that it does not ask for is a
+/// fault; the error holds every fault at once.
+template <class Read>
+[[nodiscard]] auto read_body(const Request& request, const Read& read)
+    -> Result<std::invoke_result_t<Read, ObjectReader&, Faults&>> {
+  const auto body = parse_json(request.body);
+  if (!body) {
+    return fail(body.error());
+  }
+  Faults faults;
+  ObjectReader reader(*body, "", faults);
+  auto value = read(reader, faults);
+  reader.reject_unknown();
+  if (!faults.none()) {
+    return fail(faults.error());
+  }
+  return value;
+}
+
 [[nodiscard]] Response json_response(int status, const Json& document);
 
 /// A stored JSON text inside a document; null where it does not parse.
@@ -41,11 +63,26 @@ namespace driftlab::server {
 
 /// The ETag of a mutable object.
 [[nodiscard]] std::string etag_of(std::string_view id, std::int64_t revision);
+/// Labels count apart from the revision, which results name.
+[[nodiscard]] std::string etag_of(const Recording& recording);
+
+/// The refusal where If-Match is missing (428) or names another state of an object than `etag` (412); `*` is any.
+[[nodiscard]] std::optional<Response> refuse_stale(const Request& request, const std::string& etag);
+
+/// The ETag of an answer whose object has no revision: its content.
+[[nodiscard]] std::string content_etag(const Response& response);
+
+/// The refusal where If-Match names another state of an object that never changes than `response`, its GET, shows;
+/// nothing where it is right or was not sent.
+[[nodiscard]] std::optional<Response> refuse_other_content(const Request& request, const Response& response);
 
 /// The revision that If-Match names. Errors for answers: precondition-required without the header, precondition-failed
 /// when it names another object. `*` is the current revision.
 [[nodiscard]] tl::expected<std::int64_t, Response> expected_revision(const Request& request, std::string_view id,
                                                                      std::int64_t current);
+
+/// 204, the answer to a DELETE that was done, or its error.
+[[nodiscard]] Result<Response> removed_response(const Status& removed);
 
 /// A fault at `pointer` where a text is longer than the budget of that name allows.
 void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,

@@ -17,6 +17,9 @@ std::string address_of(ApiContext& context, const Job& job) {
   if (job.kind == "outage_evaluation") {
     return "/v1/outage-evaluations/" + job.id;
   }
+  if (job.kind == "drive_evaluation") {
+    return "/v1/drive-evaluations/" + job.id;
+  }
   if (job.kind == "regress") {
     return "/v1/regressions/" + job.id;
   }
@@ -71,7 +74,7 @@ class AllEvents final : public EventSource {
   [[nodiscard]] const std::string& subject() const override { return subject_; }
 
   [[nodiscard]] Result<Batch> next() override {
-    EventLog::Since since = log_.since(after_, kMostAtOnce);
+    const EventLog::Since since = log_.since(after_, kMostAtOnce);
     Batch batch;
     if (reset_ || !since.complete) {
       after_ = log_.latest();

@@ -43,14 +43,14 @@ Result<Response> get_fit(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_fit_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/fits",
-              "listFits",
-              {"limit", "cursor", "sort", "device", "recording", "job", "quantity", "axis", "model", "best"},
-              Handler([&](const Request& request) { return list_fits(context, request); })});
-  router.add({"GET", "/v1/fits/{id}", "getFit", {}, Handler([&](const Request& request) {
-                return get_fit(context, request);
-              })});
+  router.add(from_rows({"GET",
+                        "/v1/fits",
+                        "listFits",
+                        {"limit", "cursor", "sort", "device", "recording", "job", "quantity", "axis", "model", "best"},
+                        Handler([&](const Request& request) { return list_fits(context, request); })}));
+  router.add(from_rows({"GET", "/v1/fits/{id}", "getFit", {}, Handler([&](const Request& request) {
+                          return get_fit(context, request);
+                        })}));
 }
 
 }  // namespace driftlab::server

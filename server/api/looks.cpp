@@ -33,7 +33,8 @@ Result<ChannelLook> look_of(ApiContext& context, const Request& request) {
   if (!channel) {
     return fail(ErrorCode::InvalidArgument, "Name a column of the recording: ?channel=…", {{"parameter", "channel"}});
   }
-  StoredRecordings source(context.store, context.blobs, {{request.parameters[0], std::nullopt, ""}});
+  StoredRecordings source(context.store, context.blobs, {{request.parameters[0], std::nullopt, ""}},
+                          context.expect_sound_columns);
   return ChannelLook::open(source, *channel);
 }
 
@@ -65,7 +66,8 @@ Result<Response> get_histogram(ApiContext& context, const Request& request) {
 }
 
 /// The model that the parameter `fit` names, of a fit of that very channel.
-Result<std::optional<driftlab::Model>> model_asked(ApiContext& context, const Request& request, const ChannelLook& look) {
+Result<std::optional<driftlab::Model>> model_asked(ApiContext& context, const Request& request,
+                                                   const ChannelLook& look) {
   const auto id = request.parameter("fit");
   if (!id) {
     return std::optional<driftlab::Model>();
@@ -96,11 +98,12 @@ Result<Response> get_spectrogram(ApiContext& context, const Request& request) {
   if (!look) {
     return fail(look.error());
   }
-  const auto model = model_asked(context, request, *look);
-  if (!model) {
-    return fail(model.error());
+  const auto asked = model_asked(context, request, *look);
+  if (!asked) {
+    return fail(asked.error());
   }
-  const auto ratio = look->ratio(*model ? &**model : nullptr, *times, *bands);
+  const auto& model = *asked;
+  const auto ratio = look->ratio(model ? &*model : nullptr, *times, *bands);
   return ratio ? Result<Response>(json_response(200, spectrogram_to_json(*look, *ratio))) : fail(ratio.error());
 }
 

@@ -96,19 +96,33 @@ Result<Response> create_model(ApiContext& context, const Request& request) {
   return response;
 }
 
+Result<Response> delete_model(ApiContext& context, const Request& request) {
+  const auto shown = get_model(context, request);
+  if (!shown) {
+    return fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(context.store.remove_model(request.parameters[0]));
+}
+
 }  // namespace
 
 void add_model_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/models",
-              "listModels",
-              {"limit", "cursor", "sort", "device", "parent"},
-              Handler([&](const Request& request) { return list_models(context, request); })});
+  router.add(from_rows({"GET",
+                        "/v1/models",
+                        "listModels",
+                        {"limit", "cursor", "sort", "device", "parent"},
+                        Handler([&](const Request& request) { return list_models(context, request); })}));
   router.add({"POST", "/v1/models", "createModel", {}, Handler([&](const Request& request) {
                 return create_model(context, request);
               })});
-  router.add({"GET", "/v1/models/{id}", "getModel", {}, Handler([&](const Request& request) {
-                return get_model(context, request);
+  router.add(from_rows({"GET", "/v1/models/{id}", "getModel", {}, Handler([&](const Request& request) {
+                          return get_model(context, request);
+                        })}));
+  router.add({"DELETE", "/v1/models/{id}", "deleteModel", {}, Handler([&](const Request& request) {
+                return delete_model(context, request);
               })});
 }
 

@@ -19,8 +19,12 @@ Json condition_json(const std::string& text) {
   return condition ? driftlab::to_json(*condition) : Json(nullptr);
 }
 
-/// The white noise of a fit's document; null where it has none.
-Json white_noise_of(const Json& fit) {
+/// The density N of rate at low frequencies, whatever the model; of a fit that was stored before fits kept it, the
+/// model's white noise. Null where there is none.
+Json density_of(const Json& fit) {
+  if (fit.contains("density")) {
+    return fit.at("density");
+  }
   for (const Json& process : fit.value("processes", Json::array())) {
     if (process.value("process", "") == "white_noise") {
       return process.value("params", Json::object()).value("N", Json(nullptr));
@@ -41,7 +45,7 @@ Json axis_summary(const Fit& fit) {
               {"recording", fit.recording_id},
               {"condition", condition ? driftlab::to_json(*condition) : Json(nullptr)},
               {"model", fit.model},
-              {"N", white_noise_of(document)},
+              {"N", density_of(document)},
               {"fits", p.is_number() ? Json(fits) : Json(nullptr)},
               {"level", fits ? "fine" : "look"},
               {"reason", fits ? Json(nullptr)
@@ -128,10 +132,11 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
 }
 
 void add_overview_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/v1/counts", "getCounts", {}, Handler([&](const Request& r) { return get_counts(context, r); })});
-  router.add({"GET", "/v1/devices/{id}/summary", "getDeviceSummary", {}, Handler([&](const Request& r) {
-                return get_summary(context, r);
-              })});
+  router.add(from_rows(
+      {"GET", "/v1/counts", "getCounts", {}, Handler([&](const Request& r) { return get_counts(context, r); })}));
+  router.add(from_rows({"GET", "/v1/devices/{id}/summary", "getDeviceSummary", {}, Handler([&](const Request& r) {
+                          return get_summary(context, r);
+                        })}));
 }
 
 }  // namespace driftlab::server

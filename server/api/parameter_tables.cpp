@@ -118,16 +118,16 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
 }  // namespace
 
 void add_parameter_table_routes(Router& router, ApiContext& context) {
-  router.add({"GET",
-              "/v1/parameter-tables",
-              "getParameterTable",
-              {"device", "sensor", "axis", "method", "model"},
-              Handler([&](const Request& request) { return get_table(context, request); })});
-  router.add({"GET",
-              "/v1/trends",
-              "getTrends",
-              {"device", "sensor", "axis", "method", "model"},
-              Handler([&](const Request& request) { return get_trends(context, request); })});
+  router.add(from_rows({"GET",
+                        "/v1/parameter-tables",
+                        "getParameterTable",
+                        {"device", "sensor", "axis", "method", "model"},
+                        Handler([&](const Request& request) { return get_table(context, request); })}));
+  router.add(from_rows({"GET",
+                        "/v1/trends",
+                        "getTrends",
+                        {"device", "sensor", "axis", "method", "model"},
+                        Handler([&](const Request& request) { return get_trends(context, request); })}));
 }
 
 }  // namespace driftlab::server

@@ -1,13 +1,18 @@
 #include "server/api/record_blob.hpp"
 
+#include "core/analysis/unit_notes.hpp"
 #include "core/read/format.hpp"
 #include "core/read/open_recording.hpp"
+#include "core/read/trace_pyramid.hpp"
+#include "core/signal/recording_columns.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/stored_blob.hpp"
 #include "server/jobs/recording_calibration.hpp"
+#include "server/jobs/stored_recordings.hpp"
 #include "server/store/crash_point.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -72,6 +77,9 @@ Result<DecodedBlob> decode(ApiContext& context, const IncomingBlob& incoming) {
   if (!decoded) {
     return fail(decoded.error());
   }
+  if (auto drawn = add_pyramid(incoming.columns_path()); !drawn) {
+    return fail(drawn.error());
+  }
   Blob row;
   row.sha256 = incoming.sha256();
   row.bytes = static_cast<std::int64_t>(incoming.size());
@@ -116,20 +124,47 @@ Error naming_patch(Error error) {
   return error;
 }
 
-/// Metadata and samples must fit together before anything is kept. The recording's quality as JSON text.
-Result<std::string> check_against_columns(ApiContext& context, const UploadMetadata& metadata,
-                                          const std::filesystem::path& columns) {
-  const bool calibrated = !metadata.spec.calibration.empty();
-  auto opened = open_recording(columns, metadata.spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
+/// Whether nothing in the file is said to be a sensor: fixes or a reference of a drive, which are not characterised.
+bool holds_only_fixes(const RecordingSpec& spec) {
+  return spec.condition.kind == ConditionKind::Drive && !spec.columns.empty() &&
+         std::none_of(spec.columns.begin(), spec.columns.end(),
+                      [](const auto& column) { return is_sensor(column.second.quantity); });
+}
+
+/// The quality of such a recording: its columns are those of the file.
+Result<std::string> quality_of_fixes(const RecordingSpec& spec, const std::filesystem::path& columns) {
+  const auto file = ColumnFile::open(columns);
+  if (!file) {
+    return fail(file.error());
+  }
+  const auto read = RecordingColumns::read(spec, file->names(), [&](std::size_t i) { return file->column(i); });
+  if (!read) {
+    return fail(read.error());
+  }
+  Quality quality;
+  quality.samples = file->rows();
+  quality.notes.emplace_back("No column is a sensor: the recording is for drives, and nothing in it is characterised.");
+  return to_text(driftlab::to_json(quality));
+}
+
+}  // namespace
+
+Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem::path& columns,
+                                     const RecordingSpec& spec, const Device& device) {
+  const bool calibrated = !spec.calibration.empty();
+  if (!calibrated && holds_only_fixes(spec)) {
+    return quality_of_fixes(spec, columns);
+  }
+  auto opened = open_recording(columns, spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
   if (!opened) {
     return fail(opened.error());
   }
+  add_unit_notes(opened->view, opened->columns, spec, hardware_of(device));
   std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
   if (!calibrated) {
     return quality;
   }
-  const auto device = context.store.device(metadata.device.name);
-  auto calibration = calibration_of(context.store, metadata.spec, device ? device->id : "");
+  auto calibration = calibration_of(context.store, spec, device.id);
   if (!calibration) {
     return fail(calibration.error());
   }
@@ -138,8 +173,6 @@ Result<std::string> check_against_columns(ApiContext& context, const UploadMetad
   }
   return quality;
 }
-
-}  // namespace
 
 Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata) {
   if (auto allowed = require_quota(context, blob, metadata.device.name); !allowed) {
@@ -150,7 +183,9 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
     return fail(decoded.error());
   }
   crash_point("upload.decoded");
-  auto quality = check_against_columns(context, metadata, decoded->columns);
+  const auto known_device = context.store.device(metadata.device.name);
+  auto quality =
+      surveyed_quality(context, decoded->columns, metadata.spec, known_device ? *known_device : metadata.device);
   if (!quality) {
     return fail(quality.error());
   }
@@ -167,6 +202,7 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
   recording.metadata_json = canonical_text(driftlab::to_json(metadata.spec));
   recording.condition = driftlab::to_text(metadata.spec.condition);
   recording.quality_json = *quality;
+  recording.tags_json = canonical_text(driftlab::to_json(metadata.tags));
   auto outcome = context.store.add_recording(decoded->row, recording);
   if (!outcome) {
     return fail(naming_patch(outcome.error()));
@@ -179,7 +215,7 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
   }
   Response response = json_response(outcome->created ? 201 : 200, to_json(recorded, &decoded->row));
   response.headers.emplace_back("Location", "/v1/recordings/" + recorded.id);
-  response.headers.emplace_back("ETag", etag_of(recorded.id, recorded.revision));
+  response.headers.emplace_back("ETag", etag_of(recorded));
   return response;
 }
 
@@ -193,8 +229,8 @@ Status require_space(const ApiContext& context) {
 }
 
 std::vector<std::string_view> metadata_parameters() {
-  return {"device",    "id",      "condition", "axis",         "value",      "unit",
-          "direction", "rate_hz", "columns",   "trim_start_s", "trim_end_s", "calibration"};
+  return {"device",  "id",           "condition",  "axis",        "value",  "unit",    "direction",  "rate_hz",
+          "columns", "trim_start_s", "trim_end_s", "calibration", "labels", "session", "recorded_at"};
 }
 
 }  // namespace driftlab::server

@@ -10,6 +10,12 @@ namespace driftlab::server {
 /// `blob` is sealed and not empty. 201 with the recording, or 200 with the one that exists already.
 [[nodiscard]] Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata);
 
+/// Metadata and samples must fit together before anything is kept. What the survey finds as JSON text; of a drive's
+/// recording none of whose columns is said to be a sensor, that there is nothing to characterise. A device that is not
+/// stored yet has no id.
+[[nodiscard]] Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem::path& columns,
+                                                   const RecordingSpec& spec, const Device& device);
+
 /// Refuses while less is free than the budget least_free_bytes, so that the database can still write. Error: DiskFull.
 [[nodiscard]] Status require_space(const ApiContext& context);
 

@@ -1,11 +1,10 @@
-#include "core/read/open_recording.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/record_blob.hpp"
 #include "server/api/upload.hpp"
+#include "server/api/upload_metadata.hpp"
 #include "server/http/problem.hpp"
-#include "server/jobs/recording_calibration.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -17,7 +16,7 @@ Result<Response> recording_response(ApiContext& context, int status, const Recor
   }
   const std::optional<Blob>& kept = *blob;
   Response response = json_response(status, to_json(recording, kept ? &*kept : nullptr));
-  response.headers.emplace_back("ETag", etag_of(recording.id, recording.revision));
+  response.headers.emplace_back("ETag", etag_of(recording));
   return response;
 }
 
@@ -35,6 +34,13 @@ Result<Response> list_recordings(ApiContext& context, const Request& request) {
     }
     filter.condition = driftlab::to_text(*condition);
   }
+  if (const auto text = request.parameter("labels")) {
+    auto labels = parse_labels(*text);
+    if (!labels) {
+      return fail(labels.error());
+    }
+    filter.labels = label_words(*labels);
+  }
   return list_rows(
       request, [&](const Page& page) { return context.store.recordings(filter, page); },
       [](const Recording& recording) { return to_json(recording, nullptr); });
@@ -48,35 +54,13 @@ Result<Response> get_recording(ApiContext& context, const Request& request) {
   return recording_response(context, 200, *recording);
 }
 
-/// Checks changed metadata against the samples they describe. The quality as JSON text.
-Result<std::string> check_metadata(ApiContext& context, const Recording& recording, const RecordingSpec& spec) {
-  auto opened = open_recording(context.blobs.columns_path(recording.blob_sha256), spec,
-                               spec.calibration.empty() ? ViewUse::Survey : ViewUse::Analysis);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
-  if (spec.calibration.empty()) {
-    return quality;
-  }
-  auto calibration = calibration_of(context.store, spec, recording.device_id);
-  if (!calibration) {
-    return fail(calibration.error());
-  }
-  if (auto applied = apply_calibration(*calibration, opened->view); !applied) {
-    return fail(applied.error());
-  }
-  return quality;
-}
-
 Result<Response> patch_recording(ApiContext& context, const Request& request) {
   auto recording = context.store.recording(request.parameters[0]);
   if (!recording) {
     return fail(recording.error());
   }
-  const auto revision = expected_revision(request, recording->id, recording->revision);
-  if (!revision) {
-    return revision.error();
+  if (auto refusal = refuse_stale(request, etag_of(*recording))) {
+    return std::move(*refusal);
   }
   auto body = parse_json(request.body);
   if (!body) {
@@ -86,7 +70,7 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
     return fail(ErrorCode::ParseError, "The body must be an object with the members of the metadata to change.");
   }
   // JSON merge patch (RFC 7396) on the first level: a member given replaces the one there, null removes it.
-  Json metadata = stored(recording->metadata_json);
+  Json metadata = described(*recording);
   for (const auto& [name, value] : body->items()) {
     if (value.is_null()) {
       metadata.erase(name);
@@ -96,10 +80,17 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   }
   Faults faults;
   const RecordingSpec spec = recording_spec_from_json(metadata, "", faults);
+  Faults found_already;
+  const RecordingTags tags = recording_tags_from_json(metadata, "", found_already);
+  limit_tags(tags, *request.budgets, "", faults);
   if (!faults.none()) {
     return fail(faults.error());
   }
-  auto quality = check_metadata(context, *recording, spec);
+  const auto device = context.store.device(recording->device_id);
+  if (!device) {
+    return fail(device.error());
+  }
+  auto quality = surveyed_quality(context, context.blobs.columns_path(recording->blob_sha256), spec, *device);
   if (!quality) {
     return fail(quality.error());
   }
@@ -107,10 +98,11 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   changed.metadata_json = canonical_text(driftlab::to_json(spec));
   changed.condition = driftlab::to_text(spec.condition);
   changed.quality_json = *quality;
-  if (changed.metadata_json == recording->metadata_json) {
+  changed.tags_json = canonical_text(driftlab::to_json(tags));
+  if (changed.metadata_json == recording->metadata_json && changed.tags_json == recording->tags_json) {
     return recording_response(context, 200, *recording);
   }
-  auto revised = context.store.revise_recording(changed, *revision);
+  auto revised = context.store.revise_recording(changed, recording->revision);
   if (!revised) {
     return fail(revised.error());
   }
@@ -125,13 +117,12 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
   if (!recording) {
     return fail(recording.error());
   }
-  const auto revision = expected_revision(request, recording->id, recording->revision);
-  if (!revision) {
-    return revision.error();
+  if (auto refusal = refuse_stale(request, etag_of(*recording))) {
+    return std::move(*refusal);
   }
-  Status removed = context.store.remove_recording(recording->id, *revision);
+  Status removed = context.store.remove_recording(recording->id, recording->revision);
   if (!removed && removed.error().code == ErrorCode::DiskFull && context.make_room && context.make_room()) {
-    removed = context.store.remove_recording(recording->id, *revision);
+    removed = context.store.remove_recording(recording->id, recording->revision);
   }
   if (!removed) {
     return fail(removed.error());
@@ -164,13 +155,13 @@ void add_recording_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/recordings",
               "listRecordings",
-              {"limit", "cursor", "sort", "device", "condition"},
+              {"limit", "cursor", "sort", "device", "condition", "labels"},
               Handler([&](const Request& request) { return list_recordings(context, request); })});
   router.add({"POST", "/v1/recordings", "uploadRecording", metadata_parameters(),
               UploadHandler([&](const Request& request) { return begin_upload(context, request); })});
-  router.add({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
-                return get_recording(context, request);
-              })});
+  router.add(from_rows({"GET", "/v1/recordings/{id}", "getRecording", {}, Handler([&](const Request& request) {
+                          return get_recording(context, request);
+                        })}));
   router.add({"PATCH", "/v1/recordings/{id}", "changeRecording", {}, Handler([&](const Request& request) {
                 return patch_recording(context, request);
               })});

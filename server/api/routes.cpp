@@ -10,7 +10,9 @@
 #define DRIFTLAB_RESOURCES(RESOURCE)    \
   RESOURCE(add_service_routes)          \
   RESOURCE(add_device_routes)           \
+  RESOURCE(add_recording_preview_routes) \
   RESOURCE(add_recording_routes)        \
+  RESOURCE(add_recording_content_routes) \
   RESOURCE(add_upload_routes)           \
   RESOURCE(add_live_recording_routes)   \
   RESOURCE(add_characterisation_routes) \
@@ -25,13 +27,18 @@
   RESOURCE(add_parameter_table_routes)  \
   RESOURCE(add_study_routes)            \
   RESOURCE(add_outage_evaluation_routes) \
+  RESOURCE(add_drive_routes)            \
+  RESOURCE(add_drive_evaluation_routes) \
   RESOURCE(add_calibration_routes)      \
   RESOURCE(add_investigation_routes)    \
   RESOURCE(add_model_routes)            \
   RESOURCE(add_regression_routes)       \
   RESOURCE(add_export_routes)           \
+  RESOURCE(add_data_sheet_routes)       \
+  RESOURCE(add_population_routes)       \
   RESOURCE(add_session_routes)          \
   RESOURCE(add_token_routes)            \
+  RESOURCE(add_webhook_routes)          \
   RESOURCE(add_audit_routes)
 // clang-format on
 

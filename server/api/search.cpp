@@ -57,9 +57,9 @@ Result<std::vector<Json>> devices_like(Store& store, const std::string& wanted, 
     for (const Device& device : *devices) {
       const std::size_t place = in_lower_case(device.name).find(wanted);
       if (place != std::string::npos && found[place == 0 ? 0 : 1].size() < most) {
-        found[place == 0 ? 0 : 1].push_back(
-            hit("device", device.id, device.name, device.model.empty() ? "device" : "device, " + device.model,
-                "/v1/devices/" + device.id));
+        found[place == 0 ? 0 : 1].push_back(hit("device", device.id, device.name,
+                                                device.model.empty() ? "device" : "device, " + device.model,
+                                                "/v1/devices/" + device.id));
       }
     }
     if (devices->size() < static_cast<std::size_t>(kRowsAtOnce) || found[0].size() >= most) {

@@ -100,8 +100,10 @@ void add_service_routes(Router& router, ApiContext& context) {
   router.add(std::move(health));
   router.add({"GET", "/readyz", "readiness", {}, Handler([&](const Request&) { return ready(context); })});
   router.add({"GET", "/metrics", "metrics", {}, Handler([&](const Request&) -> Result<Response> {
-                return text_response("text/plain; version=0.0.4; charset=utf-8",
-                                     context.metrics ? context.metrics() : std::string());
+                Response response = text_response("text/plain; version=0.0.4; charset=utf-8",
+                                                  context.metrics ? context.metrics() : std::string());
+                response.volatile_body = true;
+                return response;
               })});
   router.add({"GET", "/openapi.json", "contract", {}, Handler([](const Request&) -> Result<Response> {
                 return text_response("application/json", contract_file("openapi.json"));

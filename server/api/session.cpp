@@ -28,21 +28,14 @@ Response kept_nowhere(Response response) {
 }
 
 Result<Response> open_session(ApiContext& context, const Request& request) {
-  auto body = parse_json(request.body);
-  if (!body) {
-    return fail(body.error());
-  }
-  Faults faults;
-  ObjectReader reader(*body, "", faults);
-  const std::string secret = reader.required_text("token");
-  reader.reject_unknown();
-  if (!faults.none()) {
-    return fail(faults.error());
+  const auto secret = read_body(request, [](ObjectReader& reader, Faults&) { return reader.required_text("token"); });
+  if (!secret) {
+    return fail(secret.error());
   }
   if (!context.gate.is_on()) {
     return fail(ErrorCode::Conflict, "This daemon asks for no token, so there is nothing to sign in to.");
   }
-  const auto opened = context.gate.open_session(secret);
+  const auto opened = context.gate.open_session(*secret);
   if (!opened) {
     if (!is_forbidden(opened.error())) {
       return fail(opened.error());

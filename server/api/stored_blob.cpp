@@ -1,10 +1,12 @@
 #include "server/api/stored_blob.hpp"
 
 #include "core/read/format.hpp"
+#include "core/read/trace_pyramid.hpp"
 
 #include <array>
 #include <fstream>
 #include <span>
+#include <system_error>
 
 namespace driftlab::server {
 namespace {
@@ -34,10 +36,41 @@ Result<bool> decode_again(BlobStore& blobs, const std::string& sha256, const Dec
     const bool storage = decoded.error().code == ErrorCode::Io || decoded.error().code == ErrorCode::DiskFull;
     return storage ? Result<bool>(fail(decoded.error())) : Result<bool>(false);
   }
+  if (auto drawn = add_pyramid((*incoming)->columns_path()); !drawn) {
+    return fail(drawn.error());
+  }
   return (*incoming)->keep().map([] { return true; });
 }
 
 }  // namespace
+
+Status add_pyramid(const std::filesystem::path& columns) {
+  const auto file = ColumnFile::open(columns);
+  if (!file) {
+    return fail(file.error());
+  }
+  return file->rows() < kPyramidRows ? Status{} : write_trace_pyramid(*file, pyramid_path(columns));
+}
+
+Status mend_pyramid(const BlobStore& blobs, const std::string& sha256, const ReadingPace& pace) {
+  const std::filesystem::path columns = blobs.columns_path(sha256);
+  const auto state = check_columns(pyramid_path(columns), pace);
+  if (!state) {
+    return fail(state.error());
+  }
+  if (*state == FileState::Sound) {
+    return {};
+  }
+  if (auto made = add_pyramid(columns); !made) {
+    return made;
+  }
+  std::error_code none;
+  if (!std::filesystem::exists(columns, none)) {  // removed meanwhile
+    std::filesystem::remove(pyramid_path(columns), none);
+  }
+  const bool drawn = std::filesystem::exists(pyramid_path(columns), none);
+  return drawn ? write_columns_checksum(pyramid_path(columns)) : Status{};
+}
 
 DecodeLimits decode_limits(const Budgets& budgets) {
   DecodeLimits limits;
@@ -80,7 +113,7 @@ Result<BlobState> verify_columns(BlobStore& blobs, const std::string& sha256, co
 
 Result<BlobState> verify_blob(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits,
                               const ReadingPace& pace) {
-  const auto columns = verify_columns(blobs, sha256, limits, pace);
+  auto columns = verify_columns(blobs, sha256, limits, pace);
   if (!columns || *columns != BlobState::Sound) {
     return columns;
   }

@@ -24,6 +24,13 @@ enum class BlobState {
 /// `sound`, `healed`, `damaged bytes`, `damaged columns`.
 [[nodiscard]] std::string_view name_of(BlobState state);
 
+/// Writes the pyramid of long columns beside them; nothing for short ones. Errors: those of write_trace_pyramid.
+[[nodiscard]] Status add_pyramid(const std::filesystem::path& columns);
+
+/// Makes the pyramid of a blob anew where it is damaged, or missing for long columns. For one thread at a time. Errors:
+/// Io, DiskFull, Cancelled.
+[[nodiscard]] Status mend_pyramid(const BlobStore& blobs, const std::string& sha256, const ReadingPace& pace = {});
+
 /// Reads the columns of a blob back and compares; heals them from the bytes where they are not what was written. A blob
 /// of an earlier release gets its checksum here. Errors: Io, DiskFull, Cancelled.
 [[nodiscard]] Result<BlobState> verify_columns(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits,

@@ -132,6 +132,17 @@ Result<Response> get_study(ApiContext& context, const Request& request) {
   return json_response(200, to_json(*study));
 }
 
+Result<Response> delete_study(ApiContext& context, const Request& request) {
+  const auto shown = get_study(context, request);
+  if (!shown) {
+    return fail(shown.error());
+  }
+  if (auto refusal = refuse_other_content(request, *shown)) {
+    return std::move(*refusal);
+  }
+  return removed_response(context.store.remove_study(request.parameters[0]));
+}
+
 }  // namespace
 
 void add_study_routes(Router& router, ApiContext& context) {
@@ -144,6 +155,9 @@ void add_study_routes(Router& router, ApiContext& context) {
               })});
   router.add({"GET", "/v1/studies/{id}", "getStudy", {}, Handler([&](const Request& request) {
                 return get_study(context, request);
+              })});
+  router.add({"DELETE", "/v1/studies/{id}", "deleteStudy", {}, Handler([&](const Request& request) {
+                return delete_study(context, request);
               })});
 }
 

@@ -66,8 +66,8 @@ Result<Response> create_token(ApiContext& context, const Request& request) {
   wanted.devices = read_token_devices(reader, reader.member("devices"), faults);
   const auto life = reader.integer("expires_in_s");
   reader.reject_unknown();
-  const auto known = parse_scope(scope);
-  if (!scope.empty() && (!known || *known == Scope::Public)) {
+  wanted.scope = parse_scope(scope).value_or(Scope::Public);
+  if (!scope.empty() && wanted.scope == Scope::Public) {
     faults.add("/scope", ErrorCode::InvalidArgument, "The scope of a token is read, write, run or admin.");
   }
   if (life && (*life < 1 || *life > kLongestLife)) {
@@ -76,7 +76,6 @@ Result<Response> create_token(ApiContext& context, const Request& request) {
   if (!faults.none()) {
     return fail(faults.error());
   }
-  wanted.scope = *known;
   if (life) {
     wanted.expires_at = context.clock.now() + *life * 1'000'000;
   }

@@ -1,5 +1,6 @@
 // A recording's samples as a screen can show them.
 #include "core/read/column_file.hpp"
+#include "core/read/trace_pyramid.hpp"
 #include "core/signal/decimated_trace.hpp"
 #include "core/signal/number.hpp"
 #include "schema/json/recording_spec.hpp"
@@ -64,21 +65,80 @@ Stretch stretch_of(double t0, double t1, double rate_hz, std::size_t rows) {
   return {first, std::max<std::size_t>(1, row_at(t1) - std::min(row_at(t1), first))};
 }
 
-Json trace_document(std::span<const double> samples, const Stretch& stretch, std::size_t points, double rate_hz) {
-  const auto buckets =
-      decimated_trace(samples.subspan(stretch.first, std::min(stretch.count, samples.size() - stretch.first)), points);
+struct Trace {
+  std::vector<TraceBucket> buckets;  ///< `first` counts from the first of the file
+  std::size_t samples_per_bucket = 1;
+};
+
+/// From the pyramid where there is one and it spares time, else from the samples.
+Trace trace_of(const std::filesystem::path& path, const ColumnFile& columns, std::size_t column, const Stretch& stretch,
+               std::size_t points) {
+  const std::size_t count = std::min(stretch.count, columns.rows() - stretch.first);
+  if (const std::size_t length = pyramid_stretch(count, points); length > 0) {
+    if (const auto pyramid = TracePyramid::open(pyramid_path(path), columns)) {
+      return {pyramid->trace(columns, column, stretch.first, count, points), length};
+    }
+  }
+  Trace trace{decimated_trace(columns.column(column).subspan(stretch.first, count), points),
+              std::max<std::size_t>(1, (count + points - 1) / points)};
+  for (TraceBucket& bucket : trace.buckets) {
+    bucket.first += stretch.first;
+  }
+  return trace;
+}
+
+/// Where samples are missing, to the stretch that they are missing from: [[from, to], ...] in seconds.
+Json missing_in(const Trace& trace, std::size_t end, double rate_hz) {
+  Json missing = Json::array();
+  bool open = false;
+  for (std::size_t i = 0; i < trace.buckets.size(); ++i) {
+    const TraceBucket& bucket = trace.buckets[i];
+    const std::size_t next = i + 1 < trace.buckets.size() ? trace.buckets[i + 1].first : end;
+    const bool lacks = bucket.present < next - bucket.first;
+    if (lacks && !open) {
+      missing.push_back(Json::array({number(static_cast<double>(bucket.first) / rate_hz), nullptr}));
+    }
+    if (lacks) {
+      missing.back()[1] = number(static_cast<double>(next) / rate_hz);
+    }
+    open = lacks;
+  }
+  return missing;
+}
+
+/// What is not analysed: trimmed ends, and a stretch in which the sensor gives one value only.
+Json flags_of(const Recording& recording, const RecordingSpec& spec, const std::string& channel, double duration_s,
+              double rate_hz) {
+  Json flags = Json::array();
+  const auto add = [&](const char* kind, double t0, double t1) {
+    if (t1 > t0) {
+      flags.push_back(Json{{"kind", kind}, {"t0", number(t0)}, {"t1", number(t1)}});
+    }
+  };
+  add("trim", 0.0, std::min(spec.trim.start_s, duration_s));
+  add("trim", std::max(0.0, duration_s - spec.trim.end_s), duration_s);
+  const Json quality = stored(recording.quality_json);
+  for (const Json& one : quality.value("channels", Json::array())) {
+    if (one.value("column", "") == channel && one.value("frozen", 0) > 0 && one["frozen_from"].is_number()) {
+      const double first = (one["frozen_from"].get<double>() - 1.0) / rate_hz;
+      add("frozen", first, first + one["frozen"].get<double>() / rate_hz);
+    }
+  }
+  return flags;
+}
+
+Json trace_document(const Trace& trace, double rate_hz) {
   Json time = Json::array();
   Json low = Json::array();
   Json high = Json::array();
   Json mean = Json::array();
-  for (const TraceBucket& bucket : buckets) {
-    time.push_back(number(static_cast<double>(stretch.first + bucket.first) / rate_hz));
+  for (const TraceBucket& bucket : trace.buckets) {
+    time.push_back(number(static_cast<double>(bucket.first) / rate_hz));
     low.push_back(bucket.present > 0 ? number(bucket.low) : Json(nullptr));
     high.push_back(bucket.present > 0 ? number(bucket.high) : Json(nullptr));
     mean.push_back(bucket.present > 0 ? number(bucket.mean) : Json(nullptr));
   }
-  const std::size_t length = std::max<std::size_t>(1, (stretch.count + points - 1) / points);
-  return Json{{"samples_per_bucket", length},
+  return Json{{"samples_per_bucket", trace.samples_per_bucket},
               {"time_s", std::move(time)},
               {"min", std::move(low)},
               {"max", std::move(high)},
@@ -94,6 +154,10 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
   const RecordingSpec spec = recording_spec_from_json(stored(recording->metadata_json), "", faults);
   if (!faults.none()) {
     return fail(faults.error());
+  }
+  if (auto sound = context.expect_sound_columns ? context.expect_sound_columns(recording->blob_sha256) : Status{};
+      !sound) {
+    return fail(sound.error());
   }
   auto columns = ColumnFile::open(context.blobs.columns_path(recording->blob_sha256));
   if (!columns) {
@@ -120,11 +184,16 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
   if (!(*t1 > *t0) || columns->rows() == 0) {
     return fail(ErrorCode::InvalidArgument, "The end t1 lies after the beginning t0.", {{"parameter", "t1"}});
   }
-  Json document =
-      trace_document(columns->column(column), stretch_of(*t0, *t1, rate_hz, columns->rows()), *points, rate_hz);
+  const std::size_t rows = columns->rows();
+  const double duration_s = static_cast<double>(rows) / rate_hz;
+  const Stretch stretch = stretch_of(*t0, *t1, rate_hz, rows);
+  const Trace trace = trace_of(context.blobs.columns_path(recording->blob_sha256), *columns, column, stretch, *points);
+  Json document = trace_document(trace, rate_hz);
+  document["missing"] = missing_in(trace, std::min(stretch.first + stretch.count, rows), rate_hz);
+  document["flags"] = flags_of(*recording, spec, channel, duration_s, rate_hz);
   const std::optional<ColumnRole>& role = (*roles)[column];
   document["unit"] = role && role->unit ? Json(role->unit->symbol) : Json(nullptr);
-  document["duration_s"] = number(static_cast<double>(columns->rows()) / rate_hz);
+  document["duration_s"] = number(duration_s);
   document["rate_hz"] = number(rate_hz);
   return json_response(200, document);
 }

@@ -11,6 +11,7 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 
 namespace driftlab::server {
@@ -79,16 +80,28 @@ class RecordingUpload final : public UploadSession {
 
  private:
   Status begin_part(const std::string& name) {
-    if (name != "metadata" && name != "file") {
+    const auto fields = metadata_parameters();
+    const bool is_field = std::find(fields.begin(), fields.end(), name) != fields.end();
+    if (name != "metadata" && name != "file" && !is_field) {
       return fail(ErrorCode::InvalidArgument,
-                  "The parts of an upload are metadata and file; '" + name + "' is neither.", {{"part", name}});
+                  "The parts of an upload are file and metadata, or file and the parameters of the query; '" + name +
+                      "' is none of them.",
+                  {{"part", name}});
     }
-    bool& seen = name == "file" ? file_seen_ : metadata_seen_;
-    if (seen) {
-      return fail(ErrorCode::InvalidArgument, "The part '" + name + "' comes twice.", {{"part", name}});
+    const bool again = name == "file"       ? file_seen_
+                       : name == "metadata" ? metadata_seen_
+                                            : request_.parameter(name) != std::nullopt;
+    if (again) {
+      return fail(ErrorCode::InvalidArgument, "The part '" + name + "' comes twice, or stands in the query too.",
+                  {{"part", name}});
     }
-    seen = true;
+    file_seen_ = file_seen_ || name == "file";
+    metadata_seen_ = metadata_seen_ || name == "metadata";
     in_file_ = name == "file";
+    in_field_ = is_field;
+    if (is_field) {
+      request_.query.emplace_back(name, "");
+    }
     return {};
   }
 
@@ -96,11 +109,17 @@ class RecordingUpload final : public UploadSession {
     if (in_file_) {
       return blob_->append(bytes);
     }
-    metadata_text_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (metadata_text_.size() > static_cast<std::size_t>(context_.budgets.document_bytes)) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (in_field_) {
+      request_.query.back().second += text;
+    } else {
+      metadata_text_ += text;
+    }
+    described_bytes_ += bytes.size();
+    if (described_bytes_ > static_cast<std::size_t>(context_.budgets.document_bytes)) {
       return fail(ErrorCode::LimitExceeded,
                   "The metadata are too long " + naming_budget("document_bytes", context_.budgets.document_bytes) + ".",
-                  {{"part", "metadata"}});
+                  {{"part", in_field_ ? request_.query.back().first : "metadata"}});
     }
     return {};
   }
@@ -112,12 +131,17 @@ class RecordingUpload final : public UploadSession {
     if (auto closed = multipart_->finish(); !closed) {
       return closed;
     }
-    for (const auto& [seen, name] : {std::pair{file_seen_, "file"}, std::pair{metadata_seen_, "metadata"}}) {
-      if (!seen) {
-        return fail(ErrorCode::InvalidArgument, std::string("The part '") + name + "' is missing.", {{"part", name}});
+    if (!file_seen_) {
+      return fail(ErrorCode::InvalidArgument, "The part 'file' is missing.", {{"part", "file"}});
+    }
+    for (const auto& [name, value] : request_.query) {
+      if (metadata_seen_ && name != "device") {
+        return fail(ErrorCode::InvalidArgument,
+                    "Beside a metadata part the query names the device at most; write '" + name + "' into the part.",
+                    {{"parameter", name}});
       }
     }
-    auto metadata = metadata_from_json(metadata_text_, request_);
+    auto metadata = metadata_seen_ ? metadata_from_json(metadata_text_, request_) : metadata_from_query(request_);
     if (!metadata) {
       return fail(metadata.error());
     }
@@ -136,7 +160,7 @@ class RecordingUpload final : public UploadSession {
       return fail(known.error());
     }
     // Metadata sent as a part are as much of the body as the file is.
-    const std::string digest = sha256_hex(blob_->sha256() + metadata_text_);
+    const std::string digest = sha256_hex(blob_->sha256() + metadata_text_ + fields_text());
     if (const std::optional<IdempotentReply>& reply = *known) {
       return replay(*reply, request_, digest);
     }
@@ -151,6 +175,15 @@ class RecordingUpload final : public UploadSession {
     return response;
   }
 
+  /// The form's fields, which became part of the query; empty without any, as in a request whose query says it all.
+  [[nodiscard]] std::string fields_text() const {
+    std::string text;
+    for (std::size_t i = stated_in_query_; i < request_.query.size(); ++i) {
+      text += '\n' + request_.query[i].first + '=' + request_.query[i].second;
+    }
+    return text;
+  }
+
   Result<Response> record() { return record_blob(context_, *blob_, metadata_); }
 
   ApiContext& context_;
@@ -159,7 +192,10 @@ class RecordingUpload final : public UploadSession {
   std::optional<MultipartReader> multipart_;
   UploadMetadata metadata_;
   std::string metadata_text_;
+  std::size_t stated_in_query_ = request_.query.size();
+  std::size_t described_bytes_ = 0;
   bool in_file_ = false;
+  bool in_field_ = false;
   bool file_seen_ = false;
   bool metadata_seen_ = false;
 };

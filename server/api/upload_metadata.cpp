@@ -2,7 +2,9 @@
 
 #include "core/signal/number.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/regression.hpp"
 #include "server/api/device_name.hpp"
+#include "server/api/documents.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -86,7 +88,40 @@ void read_device(const Json& document, Device& device, Faults& faults) {
   reader.reject_unknown();
 }
 
+/// Labels, session and time.
+Status tags_from_query(const Request& request, RecordingTags& tags) {
+  if (const auto text = request.parameter("labels"); text && !text->empty()) {
+    auto labels = parse_labels(*text);
+    if (!labels) {
+      return fail(labels.error());
+    }
+    tags.labels = std::move(*labels);
+  }
+  tags.session = request.parameter("session").value_or("");
+  tags.recorded_at = request.parameter("recorded_at").value_or("");
+  if (!tags.recorded_at.empty()) {
+    if (const auto time = seconds_of(tags.recorded_at); !time) {
+      return fail(time.error());
+    }
+  }
+  Faults faults;
+  limit_tags(tags, *request.budgets, "", faults);
+  return faults.none() ? Status{} : fail(faults.error());
+}
+
 }  // namespace
+
+void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults) {
+  if (tags.labels.size() > static_cast<std::size_t>(budgets.labels)) {
+    faults.add(pointer + "/labels", ErrorCode::LimitExceeded,
+               "These are too many labels " + naming_budget("labels", budgets.labels) + ".");
+  }
+  for (const auto& [name, value] : tags.labels) {
+    limit_text(name, "label_bytes", budgets.label_bytes, pointer + "/labels", faults);
+    limit_text(value, "label_bytes", budgets.label_bytes, pointer + "/labels", faults);
+  }
+  limit_text(tags.session, "name_bytes", budgets.name_bytes, pointer + "/session", faults);
+}
 
 Result<UploadMetadata> metadata_from_query(const Request& request) {
   UploadMetadata metadata;
@@ -118,6 +153,9 @@ Result<UploadMetadata> metadata_from_query(const Request& request) {
     }
     metadata.spec.columns = std::move(*roles);
   }
+  if (auto tagged = tags_from_query(request, metadata.tags); !tagged) {
+    return fail(tagged.error());
+  }
   return metadata;
 }
 
@@ -134,6 +172,9 @@ Result<UploadMetadata> metadata_from_json(std::string_view text, const Request& 
     recording.erase("device");
   }
   metadata.spec = recording_spec_from_json(recording, "", faults);
+  Faults found_already;
+  metadata.tags = recording_tags_from_json(recording, "", found_already);
+  limit_tags(metadata.tags, *request.budgets, "", faults);
   if (!faults.none()) {
     return fail(Error(faults.error()).with("part", "metadata"));
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// What an upload says about its file, from the query string or from the `metadata` part.
 #include "core/signal/recording.hpp"
+#include "schema/json/recording_tags.hpp"
 #include "server/http/message.hpp"
 #include "server/store/rows.hpp"
 
@@ -9,9 +10,14 @@ namespace driftlab::server {
 struct UploadMetadata {
   Device device;  ///< only the user's members are set
   RecordingSpec spec;
+  RecordingTags tags;
 };
 
-/// `?device=…&condition=…&rate_hz=…&columns=…&id=…&trim_start_s=…&trim_end_s=…`; the condition in its compact form
+/// A fault for each label, session and time beyond the budgets, which `pointer` leads to.
+void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults);
+
+/// `?device=…&condition=…&rate_hz=…&columns=…&id=…&trim_start_s=…&trim_end_s=…`
+/// and `&labels=firmware=1.5.0&session=…&recorded_at=…`; the condition in its compact form
 /// (`constant_rate:z:9:deg/s`) or its parts as `condition`, `axis`, `value`, `unit`, `direction`.
 /// Errors: those of core/signal, with field "parameter".
 [[nodiscard]] Result<UploadMetadata> metadata_from_query(const Request& request);

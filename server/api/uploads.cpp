@@ -57,8 +57,8 @@ std::optional<std::string> decode_base64(std::string_view text) {
     return std::nullopt;
   }
   bytes.resize(static_cast<std::size_t>(count) -
-               static_cast<std::size_t>(std::count(text.end() - std::min<std::ptrdiff_t>(2, std::ssize(text)),
-                                                   text.end(), '=')));
+               static_cast<std::size_t>(
+                   std::count(text.end() - std::min<std::ptrdiff_t>(2, std::ssize(text)), text.end(), '=')));
   return bytes;
 }
 
@@ -66,7 +66,8 @@ std::optional<std::string> decode_base64(std::string_view text) {
 std::string file_name_in(std::string_view metadata) {
   while (!metadata.empty()) {
     const std::string_view pair = trimmed(metadata.substr(0, metadata.find(',')));
-    if (const std::size_t space = pair.find(' '); space != std::string_view::npos && pair.substr(0, space) == "filename") {
+    if (const std::size_t space = pair.find(' ');
+        space != std::string_view::npos && pair.substr(0, space) == "filename") {
       std::string name = decode_base64(pair.substr(space + 1)).value_or("");
       std::erase_if(name, [](char c) { return static_cast<unsigned char>(c) < 32; });
       return name.substr(0, 255);
@@ -175,14 +176,19 @@ class Checksum {
 class PieceUpload final : public UploadSession {
  public:
   PieceUpload(ResumableUploads& uploads, std::string id, std::unique_ptr<ResumableUploads::Piece> piece,
-              std::unique_ptr<Checksum> checksum)
-      : uploads_(uploads), id_(std::move(id)), piece_(std::move(piece)), checksum_(std::move(checksum)) {
+              std::unique_ptr<Checksum> checksum, std::uint64_t room)
+      : uploads_(uploads), id_(std::move(id)), piece_(std::move(piece)), checksum_(std::move(checksum)), room_(room) {
     if (checksum_) {
       piece_->whole();
     }
   }
 
   [[nodiscard]] Status append(std::span<const std::byte> bytes) override {
+    if (bytes.size() > room_) {
+      return fail(ErrorCode::InvalidArgument, "This piece goes beyond the length that the upload was said to have.",
+                  {{"parameter", "Upload-Length"}});
+    }
+    room_ -= bytes.size();
     if (checksum_) {
       checksum_->update(bytes);
     }
@@ -215,6 +221,7 @@ class PieceUpload final : public UploadSession {
   std::string id_;
   std::unique_ptr<ResumableUploads::Piece> piece_;
   std::unique_ptr<Checksum> checksum_;
+  std::uint64_t room_;  ///< a chunked piece does not say beforehand how long it is
 };
 
 /// Adds bytes to an upload. What is wrong with a piece is said before its first byte is read.
@@ -222,7 +229,8 @@ Result<std::unique_ptr<UploadSession>> begin_piece(ApiContext& context, Resumabl
                                                    const Request& request) {
   const auto offset = whole_number(request.header("upload-offset"));
   if (!offset) {
-    return fail(ErrorCode::InvalidArgument, "Say where the bytes go in Upload-Offset.", {{"parameter", "Upload-Offset"}});
+    return fail(ErrorCode::InvalidArgument, "Say where the bytes go in Upload-Offset.",
+                {{"parameter", "Upload-Offset"}});
   }
   const auto upload = uploads.find(request.parameters[0]);
   if (!upload) {
@@ -249,7 +257,8 @@ Result<std::unique_ptr<UploadSession>> begin_piece(ApiContext& context, Resumabl
   if (!piece) {
     return fail(piece.error());
   }
-  return std::make_unique<PieceUpload>(uploads, upload->id, std::move(*piece), std::move(checksum));
+  return std::make_unique<PieceUpload>(uploads, upload->id, std::move(*piece), std::move(checksum),
+                                       upload->length - *offset);
 }
 
 /// Refused as it is: nothing is read, the sentence is answered.
@@ -268,8 +277,8 @@ Result<std::unique_ptr<UploadSession>> patch(ApiContext& context, ResumableUploa
     return std::make_unique<RefusedPiece>(std::move(*refusal));
   }
   if (trimmed(request.header("content-type").value_or("")) != "application/offset+octet-stream") {
-    return std::make_unique<RefusedPiece>(problem_response(
-        HttpFault::UnsupportedMediaType, "The type of a piece is application/offset+octet-stream."));
+    return std::make_unique<RefusedPiece>(
+        problem_response(HttpFault::UnsupportedMediaType, "The type of a piece is application/offset+octet-stream."));
   }
   return begin_piece(context, uploads, request);
 }
@@ -333,9 +342,10 @@ void add_upload_routes(Router& router, ApiContext& context) {
   router.add({"GET", "/v1/uploads/{id}", "getUpload", {}, Handler([uploads](const Request& request) {
                 return get(*uploads, request);
               })});
-  router.add({"PATCH", "/v1/uploads/{id}", "appendToUpload", {}, UploadHandler([&context, uploads](const Request& request) {
-                return patch(context, *uploads, request);
-              })});
+  router.add(
+      {"PATCH", "/v1/uploads/{id}", "appendToUpload", {}, UploadHandler([&context, uploads](const Request& request) {
+         return patch(context, *uploads, request);
+       })});
   router.add({"DELETE", "/v1/uploads/{id}", "deleteUpload", {}, Handler([uploads](const Request& request) {
                 return terminate(*uploads, request);
               })});

@@ -10,7 +10,7 @@ namespace driftlab::server {
 namespace {
 
 constexpr UtcMicros kMinute = 60'000'000;
-constexpr UtcMicros kSessionLifetime = 12 * 60 * kMinute;
+constexpr UtcMicros kSessionLifetime = UtcMicros{12} * 60 * kMinute;
 constexpr std::size_t kLongestName = 100;
 constexpr std::size_t kMostDevices = 100;
 constexpr std::size_t kMostTokens = 1000;

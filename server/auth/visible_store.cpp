@@ -30,6 +30,7 @@ class VisibleStore final : public Store {
 
   Status ping() override { return whole_.ping(); }
   Status write_probe() override { return whole_.write_probe(); }
+  [[nodiscard]] std::uint64_t changes() const override { return whole_.changes(); }
   Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) override {
     return whole_.usage_of(device_id, sha256);
   }
@@ -64,6 +65,10 @@ class VisibleStore final : public Store {
     return whole_.update_device(id, change, expected_revision);
   }
 
+  Status remove_device(std::string_view id, std::int64_t expected_revision) override {
+    return if_seen(device(id), [&] { return whole_.remove_device(id, expected_revision); });
+  }
+
   Result<std::optional<Blob>> blob(std::string_view sha256) override { return whole_.blob(sha256); }
   Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) override {
     if (auto seen = see_device(recording.device_id, "device", recording.device_id); !seen) {
@@ -90,10 +95,7 @@ class VisibleStore final : public Store {
     return whole_.revise_recording(changed, expected_revision);
   }
   Status remove_recording(std::string_view id, std::int64_t expected_revision) override {
-    if (auto found = recording(id); !found) {
-      return fail(found.error());
-    }
-    return whole_.remove_recording(id, expected_revision);
+    return if_seen(recording(id), [&] { return whole_.remove_recording(id, expected_revision); });
   }
   Result<std::vector<std::string>> blob_hashes() override { return whole_.blob_hashes(); }
   Result<bool> remove_unused_blob(std::string_view sha256) override { return whole_.remove_unused_blob(sha256); }
@@ -174,6 +176,21 @@ class VisibleStore final : public Store {
     return whole_.studies(device_id, limited(page));
   }
 
+  Status remove_study(std::string_view id) override {
+    return if_seen(study(id), [&] { return whole_.remove_study(id); });
+  }
+
+  Result<DriveOutcome> add_drive(const StoredDrive& drive) override {
+    if (auto seen = see_device(drive.device_id, "device", drive.device_id); !seen) {
+      return fail(seen.error());
+    }
+    return whole_.add_drive(drive);
+  }
+  Result<StoredDrive> drive(std::string_view id) override { return owned_by_device(whole_.drive(id), "drive", id); }
+  Result<std::vector<StoredDrive>> drives(const std::optional<std::string>& device_id, const Page& page) override {
+    return whole_.drives(device_id, limited(page));
+  }
+
   Result<CalibrationOutcome> add_calibration(const StoredCalibration& calibration) override {
     if (auto seen = see_device(calibration.device_id, "device", calibration.device_id); !seen) {
       return fail(seen.error());
@@ -186,6 +203,10 @@ class VisibleStore final : public Store {
   Result<std::vector<StoredCalibration>> calibrations(const std::optional<std::string>& device_id,
                                                       const Page& page) override {
     return whole_.calibrations(device_id, limited(page));
+  }
+
+  Status remove_calibration(std::string_view id) override {
+    return if_seen(calibration(id), [&] { return whole_.remove_calibration(id); });
   }
 
   Result<ModelOutcome> add_model(const Model& model) override {
@@ -220,6 +241,29 @@ class VisibleStore final : public Store {
     return whole_.investigations(filter, limited(page));
   }
 
+  Status remove_model(std::string_view id) override {
+    return if_seen(model(id), [&] { return whole_.remove_model(id); });
+  }
+  Status remove_investigation(std::string_view id) override {
+    return if_seen(investigation(id), [&] { return whole_.remove_investigation(id); });
+  }
+
+  Result<Anchor> add_anchor(const Anchor& anchor) override {
+    if (auto seen = see_device(anchor.device_id, "device", anchor.device_id); !seen) {
+      return fail(seen.error());
+    }
+    return whole_.add_anchor(anchor);
+  }
+  Result<std::vector<Anchor>> anchors(const std::optional<std::string>& device_id, const Page& page) override {
+    return whole_.anchors(device_id, limited(page));
+  }
+  Result<std::string> artefact(std::string_view job_id, std::string_view name) override {
+    if (auto seen = see_job(job_id); !seen) {
+      return fail(seen.error());
+    }
+    return whole_.artefact(job_id, name);
+  }
+
   Result<std::optional<IdempotentReply>> idempotent_reply(std::string_view key) override {
     return whole_.idempotent_reply(key);
   }
@@ -227,6 +271,12 @@ class VisibleStore final : public Store {
   Result<int> forget_old_replies() override { return whole_.forget_old_replies(); }
 
  private:
+  /// Does the work where the object was found for this caller.
+  template <class Row, class Work>
+  static Status if_seen(const Result<Row>& found, const Work& work) {
+    return found ? work() : fail(found.error());
+  }
+
   /// Whether the caller may know of the device; an error as for the object named where not.
   Status see_device(std::string_view device_id, const char* kind, std::string_view id) {
     if (devices_of_caller() == nullptr) {

@@ -1,6 +1,7 @@
 #pragma once
-/// Wakes the connections that wait for a subject, a job by its id or the log of events: SSE streams and `Prefer: wait=`. A ring is a hint; waiters look at the
-/// store and have a deadline of their own, so a lost ring costs time and never correctness.
+/// Wakes the connections that wait for a subject, a job by its id or the log of events: SSE streams and `Prefer:
+/// wait=`. A ring is a hint; waiters look at the store and have a deadline of their own, so a lost ring costs time and
+/// never correctness.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 

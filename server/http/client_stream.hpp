@@ -26,6 +26,7 @@ class ClientStream {
   }
   ClientStream(const ClientStream&) = delete;
   ClientStream& operator=(const ClientStream&) = delete;
+  ~ClientStream() = default;
 
   [[nodiscard]] executor_type get_executor() { return tcp_.get_executor(); }
   [[nodiscard]] boost::asio::ip::tcp::socket& socket() { return tcp_.socket(); }
@@ -37,7 +38,7 @@ class ClientStream {
   /// Reads what `decrypted` says, without waiting.
   template <class Buffers>
   std::size_t read_decrypted(const Buffers& buffers, boost::system::error_code& error) {
-    return tls_->read_some(buffers, error);
+    return tls_ ? tls_->read_some(buffers, error) : 0;
   }
 
   void expires_after(std::chrono::nanoseconds time) { tcp_.expires_after(time); }

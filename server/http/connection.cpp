@@ -17,7 +17,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::size_t kPiece = 256UL * 1024;
 /// For the first bytes of a request; what its header needs beyond comes when it is there. A silent connection holds no
 /// more.
 constexpr std::size_t kFirstBytes = 1024;
@@ -55,7 +54,7 @@ std::chrono::seconds patience_for(const Request& request, const Response& respon
 HttpConnection::HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<asio::ssl::context> tls,
                                ConnectionShared& shared)
     : stream_(std::move(socket), std::move(tls)),
-      buffer_(static_cast<std::size_t>(shared.options.budgets.header_bytes) + kPiece),
+      buffer_(static_cast<std::size_t>(shared.options.budgets.header_bytes) + kBodyPiece),
       shared_(shared) {
   boost::system::error_code error;
   const auto peer = stream_.socket().remote_endpoint(error);
@@ -121,9 +120,35 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   route_.clear();
   bytes_in_ = 0;
   broken_ = false;
+  folded_ = false;
+  chunked_.reset();
+  framing_fault_.clear();
   stream_.expires_after(std::chrono::seconds(budgets().header_seconds));
-  co_await http::async_read_header(stream_, buffer_, parser, into(error));
+  for (std::size_t looked_at = 0; !error && !folded_;) {
+    const std::string_view arrived(static_cast<const char*>(buffer_.data().data()), buffer_.size());
+    const HeadArrival head = look_at_head(arrived, looked_at);
+    folded_ = head.folded;
+    looked_at = arrived.size();
+    const auto most = static_cast<std::size_t>(budgets().header_bytes);
+    if (head.whole || head.folded || looked_at >= most) {
+      break;  // the parser says the rest
+    }
+    const std::size_t count =
+        co_await stream_.async_read_some(buffer_.prepare(std::min(most - looked_at, 4 * kFirstBytes)), into(error));
+    buffer_.commit(error ? 0 : count);
+  }
+  if (!error && !folded_) {
+    co_await http::async_read_header(stream_, buffer_, parser, into(error));
+  }
   idle_since_ = 0;
+  if (folded_) {
+    Request request;
+    request.request_id = shared_.hooks.make_request_id();
+    co_await refuse(request, problem_response(HttpFault::BadRequest,
+                                              "A line of the header goes on in the next one; such folded lines are "
+                                              "obsolete and read differently by different programs."));
+    co_return false;
+  }
   if (!error) {
     co_return true;
   }
@@ -157,7 +182,8 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   request.caller.request_id = request.request_id;
   request.caller.address = address_;
   wants_continue_ = verdict.expects_continue;
-  body_unread_ = verdict.content_length > 0 || verdict.refusal.has_value();
+  const bool has_body = verdict.content_length > 0 || verdict.chunked;
+  body_unread_ = has_body || verdict.refusal.has_value();
 
   std::optional<Response> refusal = verdict.refusal;
   auto target = parse_target(request.target);
@@ -168,7 +194,7 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   if (!refusal) {
     request.path = std::move(target->path);
     request.query = std::move(target->query);
-    if (shared_.hooks.page && verdict.content_length == 0 && !admit(nullptr, request)) {
+    if (shared_.hooks.page && !has_body && !admit(nullptr, request)) {
       if (auto page = shared_.hooks.page(request)) {
         route_ = "page";
         co_return co_await send(request, std::move(*page), true);
@@ -190,10 +216,14 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
       if (!refusal) {
         refusal = refuse_unknown_query(*match.route, request);
       }
+      if (!refusal && verdict.chunked && !std::holds_alternative<UploadHandler>(match.route->handler)) {
+        refusal =
+            problem_response(HttpFault::LengthRequired, "This resource takes no chunked body; send Content-Length.");
+      }
     }
   }
   if (refusal) {
-    const bool intact = verdict.content_length == 0 && !verdict.refusal;
+    const bool intact = !has_body && !verdict.refusal;
     const bool again = co_await send(request, std::move(*refusal), intact);
     if (!intact) {
       co_await linger();
@@ -202,6 +232,9 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   }
 
   route_ = match.route->pattern;
+  if (verdict.chunked) {
+    chunked_.emplace();
+  }
   if (const auto* const upload = std::get_if<UploadHandler>(&match.route->handler)) {
     co_return co_await answer_upload(parser, *upload, request);
   }
@@ -213,48 +246,6 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
 
 std::optional<Response> HttpConnection::admit(const Route* route, Request& request) const {
   return shared_.hooks.admit ? shared_.hooks.admit(route, request) : std::nullopt;
-}
-
-asio::awaitable<std::optional<std::size_t>> HttpConnection::read_piece(Parser& parser) {
-  if (wants_continue_) {
-    wants_continue_ = false;
-    (void)co_await write_text("HTTP/1.1 100 Continue\r\n\r\n");
-  }
-  if (chunk_.empty() && !parser.is_done()) {
-    chunk_.resize(kPiece);
-  }
-  const auto stall = std::chrono::seconds(budgets().body_stall_seconds);
-  if (bytes_in_ == 0) {
-    body_started_ = std::chrono::steady_clock::now();
-  }
-  while (!parser.is_done()) {
-    if (broken_) {
-      co_return std::nullopt;
-    }
-    auto& body = parser.get().body();
-    body.data = chunk_.data();
-    body.size = chunk_.size();
-    boost::system::error_code error;
-    stream_.expires_after(stall);
-    co_await http::async_read(stream_, buffer_, parser, into(error));
-    const std::size_t count = chunk_.size() - body.size;
-    bytes_in_ += count;
-    if (error && error != http::error::need_buffer) {
-      broken_ = true;
-      co_return count > 0 ? std::optional(count) : std::nullopt;
-    }
-    const auto elapsed = std::chrono::steady_clock::now() - body_started_;
-    const double seconds = std::chrono::duration<double>(elapsed).count();
-    if (elapsed > stall &&
-        static_cast<double>(bytes_in_) < static_cast<double>(budgets().body_bytes_per_second) * seconds) {
-      co_return std::nullopt;
-    }
-    if (count > 0) {
-      co_return count;
-    }
-  }
-  body_unread_ = false;
-  co_return 0;
 }
 
 asio::awaitable<bool> HttpConnection::write_text(std::string_view text) {
@@ -280,8 +271,7 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
   while (true) {
     const auto count = co_await read_piece(parser);
     if (!count) {
-      Response incomplete = problem_response(HttpFault::IncompleteBody, "The body ended before Content-Length.");
-      co_await send(request, std::move(incomplete), false);
+      co_await send(request, incomplete_body(), false);
       co_return false;
     }
     if (*count == 0) {
@@ -294,9 +284,12 @@ asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& 
     return shared_.hooks.dispatch(route, request);
   };
   std::optional<Response> outcome;
-  if (route.instant) {
+  if (shared_.hooks.known) {
+    outcome = shared_.hooks.known(route, request);
+  }
+  if (!outcome && route.instant) {
     outcome = work();
-  } else {
+  } else if (!outcome) {
     outcome = co_await shared_.handlers.run(work);
   }
   Response response =
@@ -414,7 +407,7 @@ asio::awaitable<bool> HttpConnection::send(const Request& request, Response resp
   for (const auto& [name, value] : response.headers) {
     message.set(name, value);
   }
-  const std::size_t length = response.body.size();
+  const std::size_t length = response.file ? static_cast<std::size_t>(response.file->length) : response.body.size();
   if (request.method != "HEAD") {
     message.body() = std::move(response.body);
   }
@@ -422,11 +415,16 @@ asio::awaitable<bool> HttpConnection::send(const Request& request, Response resp
     message.content_length(length);
   }
   http::response_serializer<http::string_body> serializer(message);
-  serializer.split(request.method == "HEAD");
+  const bool header_alone = request.method == "HEAD" || response.file.has_value();
+  serializer.split(header_alone);
   boost::system::error_code error;
-  while (!error && !(request.method == "HEAD" ? serializer.is_header_done() : serializer.is_done())) {
+  while (!error && !(header_alone ? serializer.is_header_done() : serializer.is_done())) {
     stream_.expires_after(std::chrono::seconds(budgets().write_stall_seconds));
     co_await http::async_write_some(stream_, serializer, into(error));
+  }
+  if (!error && response.file && request.method != "HEAD") {
+    const bool sent = co_await send_file(*response.file);
+    co_return sent&& message.keep_alive();
   }
   co_return !error && message.keep_alive();
 }
@@ -449,8 +447,9 @@ void HttpConnection::log(const Request& request, const Response& response) {
     return;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-  shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_, response.body.size(), seconds,
-                     request.request_id, address_, request.caller.principal.token});
+  shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_,
+                     response.file ? response.file->length : response.body.size(), seconds, request.request_id,
+                     address_, request.caller.principal.token});
 }
 
 }  // namespace driftlab::server

@@ -1,9 +1,11 @@
 #pragma once
 /// One client connection as a coroutine: header, guard, route, body, answer; again until it closes.
+#include "server/http/chunked.hpp"
 #include "server/http/client_stream.hpp"
 #include "server/http/offload.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
+#include "server/http/upload_places.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -14,13 +16,15 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 namespace driftlab::server {
+
+/// Bytes of a body that are handed on at once.
+inline constexpr std::size_t kBodyPiece = 256UL * 1024;
 
 /// What work gave, or the answer where it failed or found no place in its queue.
 ///
@@ -33,24 +37,6 @@ template <class Value>
   }
   return std::move(*outcome).map_error([](const Error& error) { return problem_response(error); });
 }
-
-/// The places that uploads take, in all and for each address.
-class UploadPlaces {
- public:
-  UploadPlaces(const Budgets& budgets, std::function<bool(const std::string&)> exempt)
-      : budgets_(budgets), exempt_(std::move(exempt)) {}
-  /// The name of the budget that is used up; empty text where a place was taken, which `leave` gives back.
-  [[nodiscard]] std::string_view take(const std::string& address);
-  void leave(const std::string& address);
-  [[nodiscard]] std::size_t taken() const;
-
- private:
-  const Budgets& budgets_;
-  std::function<bool(const std::string&)> exempt_;
-  mutable std::mutex mutex_;
-  std::map<std::string, std::int64_t> of_address_;
-  std::int64_t taken_ = 0;
-};
 
 /// What connections share. Outlives them all.
 struct ConnectionShared {
@@ -91,15 +77,28 @@ class HttpConnection {
   boost::asio::awaitable<bool> read_header(Parser& parser);
   /// Answers the request whose header was read. False: the connection must close.
   boost::asio::awaitable<bool> answer(Parser& parser);
+  /// Waits until the upload of that number has its place. The answer where it never gets one.
+  boost::asio::awaitable<std::optional<Response>> wait_for_place(UploadPlaces::Number number);
   [[nodiscard]] std::optional<Response> admit(const Route* route, Request& request) const;
   [[nodiscard]] bool still_admitted(const Request& request) const;
   boost::asio::awaitable<bool> answer_plain(Parser& parser, const Route& route, Request& request);
   boost::asio::awaitable<bool> answer_upload(Parser& parser, const UploadHandler& handler, Request& request);
+  /// The answer to an upload; unexpected where its body was not read to the end.
+  boost::asio::awaitable<tl::expected<Response, Response>> take_upload(Parser& parser, const UploadHandler& handler,
+                                                                       Request& request);
+  /// Reads the body into the session. The answer where that fails.
+  boost::asio::awaitable<std::optional<Response>> receive(Parser& parser, UploadSession& session);
   boost::asio::awaitable<bool> answer_events(const EventHandler& handler, const Request& request);
   /// `Prefer: wait=n`: asks again whenever the job moves, until the answer is final or n seconds are over.
   boost::asio::awaitable<Response> wait_for_job(const Route& route, const Request& request, Response response);
   /// Next piece of the body into `chunk_`. Its size; 0 at the end; nothing if the client is gone or too slow.
   boost::asio::awaitable<std::optional<std::size_t>> read_piece(Parser& parser);
+  /// The same of a chunked body; what is wrong with its framing stands in `framing_fault_` then.
+  boost::asio::awaitable<std::optional<std::size_t>> read_chunk();
+  /// The body comes more slowly than it may.
+  [[nodiscard]] bool trickles() const;
+  /// The answer where `read_piece` gave nothing.
+  [[nodiscard]] Response incomplete_body() const;
   /// Bytes that are no further request came after a body: the client sent more than its Content-Length declares.
   [[nodiscard]] bool surplus_follows();
   /// False: the connection must close, for the answer said so or could not be sent.
@@ -108,6 +107,9 @@ class HttpConnection {
   boost::asio::awaitable<bool> refuse(const Request& request, Response response);
   /// Why an upload may not even begin; nothing if it may.
   [[nodiscard]] std::optional<Response> refuse_before_upload(const Parser& parser) const;
+  [[nodiscard]] Response too_large() const;
+  /// Writes all bytes of a stretch. False: the client is gone, or the file has fewer.
+  boost::asio::awaitable<bool> send_file(const FileStretch& stretch);
   /// Writes all of `text`. The deadline is for progress: a slow reader is no fault, one that takes nothing is.
   boost::asio::awaitable<bool> write_text(std::string_view text);
   [[nodiscard]] const Budgets& budgets() const { return shared_.options.budgets; }
@@ -126,7 +128,10 @@ class HttpConnection {
   std::chrono::steady_clock::time_point body_started_;
   bool keep_alive_ = true;  ///< the client and the limit of requests allow another one
   bool wants_continue_ = false;
+  std::optional<ChunkedBody> chunked_;  ///< of a chunked body
+  std::string framing_fault_;
   bool broken_ = false;                      ///< the body ended early; what came before was handed on
+  bool folded_ = false;                      ///< a line of the header goes on in the next one
   bool body_unread_ = false;                 ///< bytes of a body may follow, which must not be read as the next request
   std::atomic<std::int64_t> idle_since_{0};  ///< of the steady clock; 0: at work
   std::atomic<bool> leaving_{false};

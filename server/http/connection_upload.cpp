@@ -2,6 +2,9 @@
 #include "server/http/connection.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
 
 namespace driftlab::server {
 
@@ -19,68 +22,87 @@ Result<Response> finish_upload(UploadSession& session) {
   }
 }
 
-/// Gives an upload's place back when it ends.
+/// Gives an upload's place back when it ends, and wakes those who wait for one.
 struct UploadPlace {
   UploadPlaces& places;
-  const std::string& address;
-  UploadPlace(UploadPlaces& given, const std::string& of) : places(given), address(of) {}
+  Bell& bell;
+  UploadPlaces::Number number;
+  UploadPlace(UploadPlaces& given, Bell& to_ring, UploadPlaces::Number own)
+      : places(given), bell(to_ring), number(own) {}
   UploadPlace(const UploadPlace&) = delete;
   UploadPlace& operator=(const UploadPlace&) = delete;
-  ~UploadPlace() { places.leave(address); }
+  ~UploadPlace() {
+    places.leave(number);
+    bell.ring(std::string(UploadPlaces::kSubject));
+  }
 };
 
 }  // namespace
 
-std::string_view UploadPlaces::take(const std::string& address) {
-  const std::lock_guard lock(mutex_);
-  if (taken_ >= budgets_.uploads) {
-    return "uploads";
+asio::awaitable<std::optional<Response>> HttpConnection::wait_for_place(UploadPlaces::Number number) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(budgets().upload_wait_seconds);
+  const auto executor = co_await asio::this_coro::executor;
+  const auto listener = shared_.bell.listen(std::string(UploadPlaces::kSubject), executor);
+  while (!shared_.upload_places.has_place(number)) {
+    if (shared_.stopping) {
+      co_return problem_response(HttpFault::Busy, "The daemon stops; the upload had not begun.");
+    }
+    const auto left = deadline - std::chrono::steady_clock::now();
+    if (left <= std::chrono::seconds(0)) {
+      co_return problem_response(HttpFault::Busy,
+                                 "Other uploads had every place for as long as one may wait " +
+                                     naming_budget("upload_wait_seconds", budgets().upload_wait_seconds) + ".");
+    }
+    co_await listener->wait(std::min<std::chrono::steady_clock::duration>(left, std::chrono::seconds(1)));
   }
-  if (!exempt_(address) && of_address_[address] >= budgets_.uploads_per_address) {
-    return "uploads_per_address";
-  }
-  ++taken_;
-  ++of_address_[address];
-  return "";
-}
-
-void UploadPlaces::leave(const std::string& address) {
-  const std::lock_guard lock(mutex_);
-  --taken_;
-  if (--of_address_[address] == 0) {
-    of_address_.erase(address);
-  }
-}
-
-std::size_t UploadPlaces::taken() const {
-  const std::lock_guard lock(mutex_);
-  return static_cast<std::size_t>(taken_);
+  co_return std::nullopt;
 }
 
 std::optional<Response> HttpConnection::refuse_before_upload(const Parser& parser) const {
   const auto declared = parser.content_length();
-  if (!declared) {
-    return problem_response(HttpFault::LengthRequired, "An upload needs Content-Length.");
+  if (!declared && !chunked_) {
+    return problem_response(HttpFault::LengthRequired, "An upload needs Content-Length, or comes chunked.");
   }
-  if (*declared > static_cast<std::uint64_t>(budgets().upload_bytes)) {
-    return problem_response(HttpFault::BodyTooLarge, "An upload may not be that large " +
-                                                         naming_budget("upload_bytes", budgets().upload_bytes) + ".");
+  if (declared && *declared > static_cast<std::uint64_t>(budgets().upload_bytes)) {
+    return too_large();
   }
   return std::nullopt;
 }
 
+Response HttpConnection::too_large() const {
+  return problem_response(HttpFault::BodyTooLarge, "An upload may not be that large " +
+                                                       naming_budget("upload_bytes", budgets().upload_bytes) + ".");
+}
+
 asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const UploadHandler& handler, Request& request) {
+  // The upload's place and session are given back before the answer is sent.
+  tl::expected<Response, Response> taken = co_await take_upload(parser, handler, request);
+  if (!taken) {
+    co_return co_await refuse(request, std::move(taken.error()));
+  }
+  co_return co_await send(request, std::move(*taken), true);
+}
+
+asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Parser& parser,
+                                                                              const UploadHandler& handler,
+                                                                              Request& request) {
   std::optional<Response> refusal = refuse_before_upload(parser);
   if (refusal) {
-    co_return co_await refuse(request, std::move(*refusal));
+    co_return tl::unexpected(std::move(*refusal));
   }
-  if (const std::string_view full = shared_.upload_places.take(address_); !full.empty()) {
-    const std::int64_t most = full == "uploads" ? budgets().uploads : budgets().uploads_per_address;
-    Response busy =
-        problem_response(HttpFault::Busy, "Too many uploads are running " + naming_budget(full, most) + ".");
-    co_return co_await refuse(request, std::move(busy));
+  const auto declared = parser.content_length();
+  const auto number = shared_.upload_places.join({request.caller.principal.token, address_, declared.value_or(0)},
+                                                 std::chrono::steady_clock::now());
+  if (!number) {
+    co_return tl::unexpected(problem_response(
+        HttpFault::Busy,
+        "Too many uploads are waiting " + naming_budget("uploads_waiting", budgets().uploads_waiting) + "."));
   }
-  const UploadPlace place(shared_.upload_places, address_);
+  const UploadPlace place(shared_.upload_places, shared_.bell, *number);
+  refusal = co_await wait_for_place(*number);
+  if (refusal) {
+    co_return tl::unexpected(std::move(*refusal));
+  }
   auto begin = [&handler, &request] {
     const ActingFor acting(request.caller);
     return handler(request);
@@ -88,46 +110,48 @@ asio::awaitable<bool> HttpConnection::answer_upload(Parser& parser, const Upload
   auto begun = co_await shared_.uploads.run(begin);
   auto settled = settle(std::move(begun));
   if (!settled) {
-    co_return co_await refuse(request, std::move(settled.error()));
+    co_return tl::unexpected(std::move(settled.error()));
   }
-  std::unique_ptr<UploadSession> session = std::move(*settled);
-  while (true) {
-    const auto count = co_await read_piece(parser);
-    if (!count) {
-      session.reset();
-      Response incomplete =
-          problem_response(HttpFault::IncompleteBody,
-                           "The upload ended, or stalled, before Content-Length bytes had arrived; nothing was kept.");
-      co_await send(request, std::move(incomplete), false);
-      co_return false;
-    }
-    if (*count == 0) {
-      break;
-    }
-    auto append = [this, &session, size = *count] { return session->append({chunk_.data(), size}); };
-    auto appended = co_await shared_.uploads.run(append);
-    auto taken = settle(std::move(appended));
-    if (!taken) {
-      session.reset();
-      co_return co_await refuse(request, std::move(taken.error()));
-    }
-  }
-  if (surplus_follows()) {
-    session.reset();
-    Response surplus = problem_response(HttpFault::BadRequest, "More bytes follow than the Content-Length of " +
-                                                                   std::to_string(*parser.content_length()) +
-                                                                   " declares; nothing was kept.");
-    co_return co_await refuse(request, std::move(surplus));
+  const std::unique_ptr<UploadSession> session = std::move(*settled);
+  refusal = co_await receive(parser, *session);
+  if (refusal) {
+    co_return tl::unexpected(std::move(*refusal));
   }
   auto finish = [&session, &request] {
     const ActingFor acting(request.caller);
     return finish_upload(*session);
   };
   auto finished = co_await shared_.decodings.run(finish);
-  session.reset();
   auto answered = settle(std::move(finished));
-  Response response = answered ? std::move(*answered) : std::move(answered.error());
-  co_return co_await send(request, std::move(response), true);
+  Response answer = answered ? std::move(*answered) : std::move(answered.error());
+  co_return answer;
+}
+
+asio::awaitable<std::optional<Response>> HttpConnection::receive(Parser& parser, UploadSession& session) {
+  while (true) {
+    const auto count = co_await read_piece(parser);
+    if (!count) {
+      co_return incomplete_body();
+    }
+    if (bytes_in_ > static_cast<std::uint64_t>(budgets().upload_bytes)) {
+      co_return too_large();
+    }
+    if (*count == 0) {
+      break;
+    }
+    auto append = [this, &session, size = *count] { return session.append({chunk_.data(), size}); };
+    auto appended = co_await shared_.uploads.run(append);
+    auto taken = settle(std::move(appended));
+    if (!taken) {
+      co_return std::move(taken.error());
+    }
+  }
+  if (!chunked_ && surplus_follows()) {
+    co_return problem_response(HttpFault::BadRequest, "More bytes follow than the Content-Length of " +
+                                                          std::to_string(*parser.content_length()) +
+                                                          " declares; nothing was kept.");
+  }
+  co_return std::nullopt;
 }
 
 bool HttpConnection::surplus_follows() {

@@ -86,6 +86,22 @@ bool is_request_id(std::string_view text) {
   });
 }
 
+HeadArrival look_at_head(std::string_view arrived, std::size_t from) {
+  HeadArrival seen;
+  for (std::size_t at = from < 2 ? 0 : from - 2; at < arrived.size() && !seen.whole && !seen.folded; ++at) {
+    const auto byte = static_cast<unsigned char>(arrived[at]);
+    const std::string_view next = arrived.substr(at + 1);
+    if (byte == '\n') {
+      const bool crlf = at > 0 && arrived[at - 1] == '\r';
+      seen.whole = !crlf || (next.size() > 1 && next[0] == '\r');
+      seen.folded = crlf && (next.starts_with(' ') || next.starts_with('\t'));
+    } else {
+      seen.whole = byte < ' ' && byte != '\r' && byte != '\t';
+    }
+  }
+  return seen;
+}
+
 GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
   GuardVerdict verdict;
   std::vector<std::string_view> seen;
@@ -107,7 +123,11 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
     } else if (name == "sec-fetch-site") {
       site = value;
     } else if (name == "transfer-encoding") {
-      return refuse(HttpFault::LengthRequired, "Bodies need Content-Length; Transfer-Encoding is not taken.");
+      if (head.version != 11 || !boost::beast::iequals(value, "chunked")) {
+        return refuse(HttpFault::LengthRequired,
+                      "Of transfer codings an upload takes chunked in HTTP/1.1; other bodies need Content-Length.");
+      }
+      verdict.chunked = true;
     } else if (name == "content-length") {
       const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), verdict.content_length);
       if (error != std::errc{} || stop != value.data() + value.size() || value.empty()) {
@@ -119,6 +139,9 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
       }
       verdict.expects_continue = true;
     }
+  }
+  if (verdict.chunked && std::find(seen.begin(), seen.end(), "content-length") != seen.end()) {
+    return refuse(HttpFault::LengthRequired, "Transfer-Encoding and Content-Length exclude each other.");
   }
   if (head.target.size() > limits.target_bytes) {
     return refuse(HttpFault::TargetTooLong, "The request target is longer than 8 KiB.");

@@ -2,7 +2,8 @@
 /// The header guard: decides from the header alone, before a byte of the body is read, whether a request may go on.
 ///
 /// Beast 1.81 accepts requests that proxies and servers read differently (request smuggling): `Transfer-Encoding` of
-/// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all. It also refuses hosts the
+/// any kind, two `Host` headers, none, repeated `Content-Length`. The guard refuses them all, but for `chunked` alone,
+/// which it reports: upload routes take it (server/http/chunked.hpp), others do not. It also refuses hosts the
 /// daemon was not told to answer for (DNS rebinding) and changes that a browser sends for a page of another origin: an
 /// origin is scheme, host and port, so a page on another port of this machine is another one. It is a pure function.
 #include "server/http/problem.hpp"
@@ -33,7 +34,17 @@ struct GuardVerdict {
   std::optional<Response> refusal;  ///< a problem; the connection closes after it
   std::uint64_t content_length = 0;
   bool expects_continue = false;
+  bool chunked = false;  ///< the body is chunked, without a Content-Length beside it
 };
+
+/// What of a request has arrived: whether its header is whole, and whether a line of it goes on in the next one.
+/// Folded lines (RFC 9112 section 5.2) are obsolete, and joined by Beast before the guard could see them.
+struct HeadArrival {
+  bool whole = false;   ///< its end is there, or something that no more bytes will mend
+  bool folded = false;  ///< a line begins with a space or a tab
+};
+/// `from`: bytes that were looked at before; a line end among the last two of them is looked at again.
+[[nodiscard]] HeadArrival look_at_head(std::string_view arrived, std::size_t from = 0);
 
 [[nodiscard]] GuardVerdict inspect(const HeadView& head, const GuardLimits& limits);
 

@@ -4,6 +4,8 @@
 #include "server/store/principal.hpp"
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,7 +24,7 @@ struct Request {
   std::vector<std::pair<std::string, std::string>> headers;  ///< names in lower case
   std::string body;                                          ///< empty for uploads, which stream
   std::string request_id;
-  Caller caller;  ///< who asks, once the request was admitted
+  Caller caller;                                ///< who asks, once the request was admitted
   const Budgets* budgets = &default_budgets();  ///< what an answer may take
 
   /// First value of a header (name in lower case), or nothing.
@@ -31,13 +33,23 @@ struct Request {
   [[nodiscard]] std::optional<std::string_view> parameter(std::string_view name) const;
 };
 
+/// Bytes of a file, sent as they are read.
+struct FileStretch {
+  std::filesystem::path path;
+  std::uint64_t first = 0;
+  std::uint64_t length = 0;
+};
+
 struct Response {
   int status = 200;
   std::string content_type = "application/json";
   std::vector<std::pair<std::string, std::string>> headers;
   std::string body;
+  std::optional<FileStretch> file = std::nullopt;  ///< stands for the body
   /// A job whose next event may change this answer: a client that sent `Prefer: wait=` gets it then.
   std::string pending_job;
+  /// Never twice the same, so that it has no tag: what counts its own requests.
+  bool volatile_body = false;
   /// Refused until that job has ended: nothing was done, so a request of any method may be repeated.
   bool undone = false;
 

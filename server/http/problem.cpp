@@ -62,6 +62,8 @@ std::string_view slug_of(HttpFault fault) {
       return "not-ready";
     case HttpFault::PoolingPending:
       return "pooling-pending";
+    case HttpFault::RangeNotSatisfiable:
+      return "range-not-satisfiable";
     case HttpFault::Unauthorized:
       return "unauthorized";
     case HttpFault::Forbidden:
@@ -193,7 +195,8 @@ const std::vector<ProblemType>& problem_types() {
        "The resource has no such method; Allow lists those it has."},
       {"not-acceptable", 406, "Not acceptable", false, "None of the media types in Accept is offered here."},
       {"length-required", 411, "Length required", false,
-       "An upload needs Content-Length; Transfer-Encoding is not taken."},
+       "A body needs Content-Length. Uploads may come chunked instead, which is the one transfer coding that is "
+       "taken."},
       {"body-too-large", 413, "Body too large", false, "The body is larger than this resource takes."},
       {"target-too-long", 400, "Target too long", false, "The request target is longer than 8 KiB."},
       {"unsupported-media-type", 415, "Unsupported media type", false,
@@ -208,9 +211,10 @@ const std::vector<ProblemType>& problem_types() {
       {"digest-mismatch", 400, "Digest mismatch", false,
        "The bytes received do not have the digest that Repr-Digest states. Nothing was stored; send them again."},
       {"checksum-mismatch", 460, "Checksum mismatch", true,
-       "The bytes of this piece do not have the checksum that Upload-Checksum states (tus 1.0). The piece was taken back; send it again."},
+       "The bytes of this piece do not have the checksum that Upload-Checksum states (tus 1.0). The piece was taken "
+       "back; send it again."},
       {"incomplete-body", 400, "Incomplete body", true,
-       "The connection ended, or stalled, before Content-Length bytes had arrived. Nothing was stored."},
+       "The connection ended, or stalled, before all of the body had arrived. Nothing was stored."},
       {"idempotency-key-reused", 422, "Idempotency key used for another request", false,
        "The Idempotency-Key was used within 24 h for a request with another method, path or body."},
       {"idempotency-in-flight", 409, "Request still running", true,
@@ -221,6 +225,8 @@ const std::vector<ProblemType>& problem_types() {
        "What was asked for reads a parameter table whose recordings are being fitted jointly. The detail names the "
        "job; "
        "ask again when it has ended, or send Prefer: wait=SECONDS."},
+      {"range-not-satisfiable", 416, "Range not satisfiable", false,
+       "Range asks for bytes behind the end; Content-Range says how many there are."},
       {"unauthorized", 401, "Token needed", false,
        "The daemon asks for a token, and none was sent, or one that is not known, was revoked or has expired. Send "
        "`Authorization: Bearer TOKEN`; see /docs/security."},

@@ -45,6 +45,7 @@ enum class HttpFault {
   Busy,
   NotReady,
   PoolingPending,
+  RangeNotSatisfiable,
   Unauthorized,
   Forbidden,
 };

@@ -9,21 +9,21 @@ namespace driftlab::server {
 namespace {
 
 /// The values of {…}, or nothing if the path has another shape.
-std::optional<std::vector<std::string>> bind(std::string_view pattern, std::string_view path) {
-  const auto wanted = split(pattern, '/');
-  const auto given = split(path, '/');
+std::optional<std::vector<std::string>> bind(const std::vector<std::string_view>& wanted,
+                                             const std::vector<std::string_view>& given) {
   if (wanted.size() != given.size()) {
+    return std::nullopt;
+  }
+  const auto fits = [](std::string_view segment, std::string_view value) {
+    return segment.starts_with('{') ? !value.empty() : segment == value;
+  };
+  if (!std::equal(wanted.begin(), wanted.end(), given.begin(), fits)) {
     return std::nullopt;
   }
   std::vector<std::string> values;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i].starts_with('{')) {
-      if (given[i].empty()) {
-        return std::nullopt;
-      }
       values.emplace_back(given[i]);
-    } else if (wanted[i] != given[i]) {
-      return std::nullopt;
     }
   }
   return values;
@@ -53,7 +53,10 @@ std::optional<Response> refuse_unknown_query(const Route& route, const Request& 
   return std::nullopt;
 }
 
-void Router::add(Route route) { routes_.push_back(std::move(route)); }
+void Router::add(Route route) {
+  segments_.push_back(split(route.pattern, '/'));
+  routes_.push_back(std::move(route));
+}
 
 void Router::set_scopes(const std::function<Scope(std::string_view operation_id)>& scope_of) {
   for (Route& route : routes_) {
@@ -63,10 +66,12 @@ void Router::set_scopes(const std::function<Scope(std::string_view operation_id)
 
 Router::Match Router::match(std::string_view method, std::string_view path) const {
   Match match;
+  const auto given = split(path, '/');
   // A literal segment wins over a placeholder because literal routes are tried in the order they were added; no two
   // patterns of the table overlap otherwise.
-  for (const Route& route : routes_) {
-    auto values = bind(route.pattern, path);
+  for (std::size_t i = 0; i < routes_.size(); ++i) {
+    const Route& route = routes_[i];
+    auto values = bind(segments_[i], given);
     if (!values) {
       continue;
     }

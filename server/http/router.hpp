@@ -59,8 +59,16 @@ struct Route {
   bool instant = false;
   /// The answer holds a secret: it is kept nowhere, so that it cannot be repeated by Idempotency-Key either.
   bool secret = false;
+  /// The answer depends on the rows of the store alone, so that it stands until one of them changes (AnswerCache).
+  bool from_rows = false;
   Scope scope = Scope::Admin;  ///< what a token needs; the contract says so (Router::set_scopes)
 };
+
+/// The route, whose answer depends on the rows of the store alone.
+[[nodiscard]] inline Route from_rows(Route route) {
+  route.from_rows = true;
+  return route;
+}
 
 /// The refusal of a query parameter that the route does not take, or that is given twice; nothing if all is well.
 [[nodiscard]] std::optional<Response> refuse_unknown_query(const Route& route, const Request& request);
@@ -81,6 +89,7 @@ class Router {
 
  private:
   std::vector<Route> routes_;
+  std::vector<std::vector<std::string_view>> segments_;  ///< of each route's pattern, between its slashes
 };
 
 }  // namespace driftlab::server

@@ -75,13 +75,16 @@ bool HttpServer::Shared::is_exempt(const std::string& address) const {
 
 bool HttpServer::Shared::close_longest_idle(const std::string* address) {
   std::shared_ptr<HttpConnection> longest;
+  std::optional<std::chrono::steady_clock::time_point> since;  // the longest one waits
   for (const auto& entry : connections) {
     auto connection = entry.lock();
-    if (!connection || !connection->idle_since() || (address != nullptr && connection->address() != *address)) {
+    if (!connection || (address != nullptr && connection->address() != *address)) {
       continue;
     }
-    if (!longest || *connection->idle_since() < *longest->idle_since()) {
+    const auto silent = connection->idle_since();
+    if (silent && (!since || *silent < *since)) {
       longest = std::move(connection);
+      since = silent;
     }
   }
   if (!longest) {

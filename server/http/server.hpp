@@ -57,6 +57,9 @@ struct HttpHooks {
   std::function<bool(const Principal&)> still_admitted;
   /// Runs a plain route on a pool thread: checks, handler, ETag, idempotency.
   std::function<Response(const Route&, const Request&)> dispatch;
+  /// The answer of a plain route, where it is known without running it. May be empty. Called from I/O threads; must not
+  /// block.
+  std::function<std::optional<Response>(const Route&, const Request&)> known;
   /// Pages and files for people, which are no part of the API. May be empty. Called from I/O threads; must not block.
   std::function<std::optional<Response>(const Request&)> page;
   /// Adds request id and instance to a problem document.

@@ -127,9 +127,11 @@ class Characterise final : public JobKind {
   /// A few arrays of one channel's length at a time.
   [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
     constexpr std::int64_t kBytesPerSample = 40;
+    constexpr double kSecondsPerSample = 1e-6;
     JobCost cost;
     for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
       cost.memory_bytes = std::max(cost.memory_bytes, JobCost{}.memory_bytes + kBytesPerSample * size.rows);
+      cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
     return cost;
   }
@@ -202,7 +204,9 @@ class Characterise final : public JobKind {
         fit.condition = row.condition;
         fit.model = model["model"].get<std::string>();
         fit.rank = rank++;
-        fit.document_json = to_text(model);
+        Json document_of_fit = model;
+        document_of_fit["density"] = channel["allan_parameters"]["N"];
+        fit.document_json = to_text(document_of_fit);
         fit.created_at = now;
         results.fits.push_back(std::move(fit));
       }

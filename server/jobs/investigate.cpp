@@ -165,9 +165,11 @@ class Investigate final : public JobKind {
   /// Every channel of every recording at once, some of them in several forms.
   [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
     constexpr std::int64_t kBytesPerSample = 220;
+    constexpr double kSecondsPerSample = 1e-5;
     JobCost cost;
     for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
       cost.memory_bytes += kBytesPerSample * size.rows * size.columns;
+      cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
     return cost;
   }

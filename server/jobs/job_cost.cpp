@@ -24,10 +24,10 @@ std::vector<RecordingSize> sizes_of(const Json& recordings, Store& store) {
   for (const Json& entry : recordings) {
     RecordingSize& size = sizes.emplace_back();
     const auto recording = store.recording(entry.value("id", ""));
-    const auto blob = recording ? store.blob(recording->blob_sha256) : Result<std::optional<Blob>>(std::nullopt);
-    if (blob && *blob) {
-      const auto names = parse_json((*blob)->columns_json);
-      size.rows = (*blob)->rows;
+    const auto found = recording ? store.blob(recording->blob_sha256) : Result<std::optional<Blob>>(std::nullopt);
+    if (const std::optional<Blob> blob = found.value_or(std::nullopt)) {
+      const auto names = parse_json(blob->columns_json);
+      size.rows = blob->rows;
       size.columns = names ? static_cast<std::int64_t>(names->size()) : 1;
     }
   }
@@ -41,14 +41,19 @@ std::int64_t memory_for_jobs(const Budgets& budgets) {
 
 Status admit_cost(const JobCost& cost, const Budgets& budgets) {
   const std::int64_t most = memory_for_jobs(budgets);
-  if (cost.memory_bytes <= most) {
-    return {};
-  }
   constexpr std::int64_t kMebi = std::int64_t{1} << 20;
-  return fail(ErrorCode::LimitExceeded, "The job would take about " + std::to_string(cost.memory_bytes / kMebi) +
-                                            " MiB of memory, and all jobs together have " +
-                                            std::to_string(most / kMebi) + " MiB " +
-                                            naming_budget("job_memory_bytes", most) + ".");
+  if (cost.memory_bytes > most) {
+    return fail(ErrorCode::LimitExceeded, "The job would take about " + std::to_string(cost.memory_bytes / kMebi) +
+                                              " MiB of memory, and all jobs together have " +
+                                              std::to_string(most / kMebi) + " MiB " +
+                                              naming_budget("job_memory_bytes", most) + ".");
+  }
+  if (cost.seconds > static_cast<double>(budgets.job_seconds)) {
+    return fail(ErrorCode::LimitExceeded,
+                "The job would take about " + std::to_string(static_cast<std::int64_t>(cost.seconds)) + " s " +
+                    naming_budget("job_seconds", budgets.job_seconds) + "; ask for less of it at once.");
+  }
+  return {};
 }
 
 MemoryGate::Share::Share(MemoryGate& gate, std::int64_t bytes, const std::stop_token& stop,

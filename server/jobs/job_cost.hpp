@@ -1,9 +1,10 @@
 #pragma once
-/// What a job will take, from its request alone: jobs are admitted against a budget of memory before they begin, so
-/// that neither one nor several together bring the machine down.
+/// What a job will take, from its request alone: jobs are admitted against budgets of memory and time before they
+/// begin, so that neither one nor several together bring the machine down.
 ///
-/// Each kind estimates on the high side, from figures measured on recordings of several sizes (tests/RELIABILITY.md). A
-/// job larger than the whole budget is refused when it is asked for; one that does not fit beside those that run waits.
+/// Each kind estimates memory on the high side and time as measured, from recordings of several sizes
+/// (tests/RELIABILITY.md). A job larger than a whole budget is refused when it is asked for; one whose memory does not
+/// fit beside those that run waits. What takes longer than its budget all the same is ended then.
 #include "core/signal/result.hpp"
 #include "schema/json/json.hpp"
 #include "server/store/budgets.hpp"
@@ -21,6 +22,7 @@ namespace driftlab::server {
 
 struct JobCost {
   std::int64_t memory_bytes = std::int64_t{32} << 20;
+  double seconds = 0.0;  ///< where it has every thread that it can use
 };
 
 /// The size of a stored recording.
@@ -35,7 +37,7 @@ struct RecordingSize {
 /// The budget job_memory_bytes, or half of the memory that this process may use where it is 0.
 [[nodiscard]] std::int64_t memory_for_jobs(const Budgets& budgets);
 
-/// Error: LimitExceeded naming the budget, for a job that could never run.
+/// Error: LimitExceeded naming the budget, for a job that could never run or never end in time.
 [[nodiscard]] Status admit_cost(const JobCost& cost, const Budgets& budgets);
 
 /// Shares memory out among running jobs, in the order in which they came: a large one is not passed by small ones for

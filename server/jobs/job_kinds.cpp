@@ -6,6 +6,7 @@
   KIND(make_characterise_kind)         \
   KIND(make_pool_kind)                 \
   KIND(make_outage_evaluation_kind)    \
+  KIND(make_drive_evaluation_kind)     \
   KIND(make_investigate_kind)          \
   KIND(make_regress_kind)
 // clang-format on

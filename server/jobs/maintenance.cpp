@@ -78,7 +78,7 @@ Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int6
 
 Maintenance::Maintenance(Store& store, BlobStore& blobs, const Clock& clock, MaintenanceOptions options,
                          std::function<void()> rescued)
-    : store_(store), blobs_(blobs), clock_(clock), options_(options), rescued_(std::move(rescued)) {}
+    : store_(store), blobs_(blobs), clock_(clock), options_(std::move(options)), rescued_(std::move(rescued)) {}
 
 Maintenance::~Maintenance() { stop(); }
 
@@ -114,6 +114,9 @@ void Maintenance::run() {
       (void)store_.forget_old_replies();
       (void)forget_old(store_, options_.budgets, clock_.now());
       (void)sweep_blobs(store_, blobs_, clock_.now(), options_.budgets.orphan_hours * kHourMicros);
+      if (options_.each_tidy) {
+        options_.each_tidy();
+      }
     }
     if (options_.each_turn) {
       options_.each_turn();

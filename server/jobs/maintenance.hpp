@@ -18,6 +18,7 @@ struct MaintenanceOptions {
   std::int64_t tidy_micros = 3'600'000'000;  ///< between removals of old replies and of files without rows
   Budgets budgets = {};
   std::function<bool()> is_nearly_full = {};  ///< then files without rows go at once
+  std::function<void()> each_tidy = {};       ///< what else is forgotten, at each removal of old replies
   std::function<void()> each_turn = {};       ///< what else is looked after, at each look for expired leases
 };
 

@@ -7,102 +7,15 @@
 /// when it is queued. `parameters`: {"runs", "seed", "relative_precision"}, all optional.
 #include "schema/json/outage_evaluation.hpp"
 
-#include "core/analysis/table_schedule.hpp"
-#include "core/signal/angle.hpp"
-#include "schema/json/imu_model.hpp"
 #include "schema/json/outage_scenario.hpp"
 #include "server/jobs/job_kind.hpp"
-#include "server/jobs/stored_sensor.hpp"
-#include "server/jobs/stored_table.hpp"
+#include "server/jobs/stored_models.hpp"
+
+#include <algorithm>
+#include <thread>
 
 namespace driftlab::server {
 namespace {
-
-/// Puts the processes of a stored fit in the place of its id.
-Status resolve_fit(Json& node, const std::string& pointer, JobContext& context, Faults& faults) {
-  auto fit = context.store.fit(node["fit"].get<std::string>());
-  if (!fit && fit.error().code != ErrorCode::NotFound) {
-    return fail(fit.error());
-  }
-  auto document = fit ? parse_json(fit->document_json) : Result<Json>(Json::object());
-  if (!fit || !document || !document->contains("processes")) {
-    faults.add(pointer + "/fit", ErrorCode::NotFound, "There is no fit " + node["fit"].get<std::string>() + ".");
-    return {};
-  }
-  node.erase("fit");
-  node["processes"] = (*document)["processes"];
-  for (Json& process : node["processes"]) {
-    process.erase("reasons");
-  }
-  return {};
-}
-
-/// Puts the models of a device's parameter table in the place of the table's query.
-Status resolve_table(Json& node, const std::string& pointer, JobContext& context, Faults& faults) {
-  ObjectReader reader(node["table"], pointer + "/table", faults);
-  StoredTableRequest wanted;
-  wanted.device = reader.required_text("device");
-  wanted.axis = reader.text("axis").value_or("");
-  wanted.method = reader.text("method").value_or(wanted.method);
-  wanted.model = reader.text("model").value_or("");
-  const std::string schedule = reader.text("schedule").value_or("switched");
-  TableScheduleOptions options;
-  options.continuous = schedule == "continuous";
-  options.hysteresis_rad_s = reader.real("hysteresis_deg_s").value_or(0.0) * kDegree;
-  options.step_rad_s = reader.real("step_deg_s").value_or(1.0) * kDegree;
-  reader.reject_unknown();
-  if (!options.continuous && schedule != "switched") {
-    faults.add(pointer + "/table/schedule", ErrorCode::InvalidArgument, "A schedule is switched or continuous.");
-  }
-  if (!faults.none()) {
-    return {};
-  }
-  auto table = stored_table(context.store, wanted);
-  if (!table) {
-    faults.add(pointer + "/table", table.error());
-    return {};
-  }
-  if (table->pooling.state == PoolingState::Pending) {
-    // An evaluation is kept for good: it must not depend on whether it was asked for before or after the joint fit.
-    return fail(ErrorCode::Conflict,
-                "The results behind the table of device '" + wanted.device + "' are being pooled by job " +
-                    table->pooling.job + "; ask again when it has ended.",
-                {{std::string(kPendingPool), table->pooling.job}});
-  }
-  const auto made = schedule_from_table(table->table, options);
-  if (!made) {
-    faults.add(pointer + "/table", made.error());
-    return {};
-  }
-  node.erase("table");
-  node.update(schedule_to_json(*made, Dimension::AngularRate));
-  return {};
-}
-
-/// Puts what is stored in the place of its names, so that the request says all by itself.
-Status resolve_stored(Json& node, const std::string& pointer, JobContext& context, StoredSensors& sensors,
-                      Faults& faults, int depth = 0) {
-  if (!node.is_structured() || depth > kMaxJsonDepth) {
-    return {};
-  }
-  if (node.is_object() && node.contains("simulation_model")) {
-    return resolve_simulation_model(node, pointer, context.store, sensors, faults);
-  }
-  if (node.is_object() && node.contains("fit") && node["fit"].is_string()) {
-    return resolve_fit(node, pointer, context, faults);
-  }
-  if (node.is_object() && node.contains("table") && node["table"].is_object()) {
-    return resolve_table(node, pointer, context, faults);
-  }
-  for (const auto& [name, child] : node.items()) {  // of an array the names are the indices
-    std::string where = pointer;
-    where.append("/").append(name);
-    if (auto status = resolve_stored(child, where, context, sensors, faults, depth + 1); !status) {
-      return status;
-    }
-  }
-  return {};
-}
 
 /// Known biases of the truth's models as deterministic errors of the truth. A truth that is no object is left as it is,
 /// for the reader of scenarios to refuse.
@@ -139,7 +52,7 @@ class OutageEvaluationKind final : public JobKind {
       faults.add("/inputs/scenario", ErrorCode::InvalidArgument, "Name a scenario or give its document.");
     } else {
       resolved = *scenario;
-      if (auto status = resolve_stored(resolved, "/inputs/scenario", context, sensors, faults); !status) {
+      if (auto status = resolve_stored(resolved, "/inputs/scenario", context.store, sensors, faults); !status) {
         return fail(status.error());
       }
       add_biases(resolved, sensors, "/inputs/scenario", faults);
@@ -163,10 +76,17 @@ class OutageEvaluationKind final : public JobKind {
   /// The motion of the drive, which all runs share; the runs themselves take their errors sample by sample.
   [[nodiscard]] JobCost cost(const Json& request, JobContext& /*context*/) const override {
     constexpr double kBytesPerSample = 160.0;
+    constexpr double kEpochsPerSecond = 1e6;  // of one filter (tests/bench/navigate.md)
+    constexpr int kFewestRuns = 20;           // of an evaluation that ends once it knows enough
     Faults faults;
     const OutageScenario scenario = scenario_or_name(request["inputs"]["scenario"], "/inputs/scenario", faults);
+    const OutageOptions options = outage_options_from_json(request["parameters"], "/parameters", faults);
+    const double epochs = scenario.drive.duration_s * scenario.imu_rate_hz;
+    const int runs = options.relative_precision > 0.0 ? std::min(options.runs, kFewestRuns) : options.runs;
     JobCost cost;
-    cost.memory_bytes += static_cast<std::int64_t>(kBytesPerSample * scenario.drive.duration_s * scenario.imu_rate_hz);
+    cost.memory_bytes += static_cast<std::int64_t>(kBytesPerSample * epochs);
+    const double threads = std::max(1U, std::thread::hardware_concurrency());
+    cost.seconds = epochs * runs * static_cast<double>(scenario.filters.size()) / kEpochsPerSecond / threads;
     return cost;
   }
 

@@ -1,10 +1,12 @@
 /// The constructor that daemons use. It alone needs the registry of kinds, and with it all that the kinds link.
 #include "server/jobs/worker_pool.hpp"
 
+#include <utility>
+
 namespace driftlab::server {
 
 WorkerPool::WorkerPool(JobContext context, WorkerOptions options,
                        std::function<void(const std::string& job_id)> changed)
-    : WorkerPool(context, std::move(options), std::move(changed), find_job_kind) {}
+    : WorkerPool(std::move(context), std::move(options), std::move(changed), find_job_kind) {}
 
 }  // namespace driftlab::server

@@ -7,6 +7,13 @@
 
 namespace driftlab::server {
 
+std::vector<std::string> hardware_of(const Device& device) { return {device.imu, device.model, device.name}; }
+
+std::vector<std::string> hardware_of(Store& store, const std::string& device_id) {
+  const auto device = store.device(device_id);
+  return device ? hardware_of(*device) : std::vector<std::string>();
+}
+
 std::vector<StoredRecordingRequest> recordings_from_request(const Json& list) {
   std::vector<StoredRecordingRequest> wanted;
   for (const Json& entry : list) {
@@ -59,7 +66,7 @@ Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunContr
     spec.id = wanted.name;
   }
   rows_[index] = std::move(*row);
-  return SourceRecording{std::move(spec), std::move(*columns), {}};
+  return SourceRecording{std::move(spec), std::move(*columns), {}, hardware_of(store_, rows_[index].device_id)};
 }
 
 Result<Calibration> StoredRecordings::calibration(std::size_t index) {

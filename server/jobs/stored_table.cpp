@@ -2,6 +2,7 @@
 
 #include "schema/json/pooled_sensor.hpp"
 #include "server/jobs/axis_sources.hpp"
+#include "server/jobs/stored_recordings.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -25,6 +26,7 @@ Result<TableRequest> checked(const StoredTableRequest& wanted, const Device& dev
   }
   table.method = *method;
   table.model = wanted.model;
+  table.hardware = hardware_of(device);
   return table;
 }
 

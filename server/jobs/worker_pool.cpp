@@ -16,7 +16,7 @@ namespace driftlab::server {
 struct WorkerPool::Implementation {
   Implementation(JobContext job_context, WorkerOptions worker_options,
                  std::function<void(const std::string&)> on_change, JobKindLookup lookup)
-      : context(job_context),
+      : context(std::move(job_context)),
         options(std::move(worker_options)),
         changed(std::move(on_change)),
         kinds(std::move(lookup)),
@@ -181,8 +181,8 @@ void WorkerPool::Implementation::stop() {
 
 WorkerPool::WorkerPool(JobContext context, WorkerOptions options,
                        std::function<void(const std::string& job_id)> changed, JobKindLookup kinds)
-    : implementation_(
-          std::make_unique<Implementation>(context, std::move(options), std::move(changed), std::move(kinds))) {}
+    : implementation_(std::make_unique<Implementation>(std::move(context), std::move(options), std::move(changed),
+                                                       std::move(kinds))) {}
 
 WorkerPool::~WorkerPool() { stop(); }
 

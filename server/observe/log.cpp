@@ -81,11 +81,12 @@ void write(spdlog::level::level_enum level, std::string_view name, std::string_v
   if (!logger || !logger->should_log(level)) {
     return;
   }
-  Json line{{"time", rfc3339(SystemClock().now())}, {"level", name}, {"event", event}};
-  for (const auto& [key, value] : fields.items()) {
-    line[key] = value;
+  std::string line = to_text(Json{{"time", rfc3339(SystemClock().now())}, {"level", name}, {"event", event}});
+  if (!fields.empty()) {
+    line.back() = ',';
+    line += std::string_view(to_text(fields)).substr(1);  // the members of one object after those of the other
   }
-  logger->log(level, to_text(line));
+  logger->log(level, line);
 }
 
 }  // namespace
@@ -100,7 +101,6 @@ Status start_log(std::string_view level, const std::string& file) {
                                                        spdlog::async_overflow_policy::overrun_oldest);
   logger->set_pattern("%v");
   logger->set_level(spdlog::level::from_str(std::string(level)));
-  logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
   return {};
 }

@@ -82,6 +82,11 @@ void Metrics::count_attempt(std::string_view kind, std::string_view outcome, dou
   observe(job_seconds_[std::string(kind)], kJobBounds, seconds);
 }
 
+void Metrics::count_delivery(std::string_view outcome) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  ++deliveries_[std::string(outcome)];
+}
+
 std::string Metrics::text(const Gauges& gauges, std::string_view version) const {
   std::string text;
   const std::lock_guard<std::mutex> guard(mutex_);
@@ -123,6 +128,17 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
   single(text, "driftlab_jobs_running", "gauge", "Jobs that run.", gauges.jobs_running);
   single(text, "driftlab_jobs_oldest_queued_seconds", "gauge", "How long the oldest of them has waited.",
          gauges.oldest_queued_seconds);
+
+  head(text, "driftlab_webhook_attempts_total", "counter", "Attempts at deliveries to webhooks, by outcome.");
+  // All outcomes from the start: a counter that appears with its first count has not risen for who watches it.
+  for (const char* const outcome : {"delivered", "failed", "given_up"}) {
+    const auto found = deliveries_.find(outcome);
+    const double count = found == deliveries_.end() ? 0.0 : static_cast<double>(found->second);
+    sample(text, "driftlab_webhook_attempts_total", label("outcome", outcome), count);
+  }
+  single(text, "driftlab_webhook_deliveries_waiting", "gauge", "Deliveries to webhooks that wait.",
+         gauges.deliveries_waiting);
+  single(text, "driftlab_webhooks_disabled", "gauge", "Webhooks that were disabled.", gauges.webhooks_disabled);
 
   single(text, "driftlab_devices", "gauge", "Devices known.", gauges.devices);
   single(text, "driftlab_recordings", "gauge", "Recordings stored.", gauges.recordings);

@@ -25,6 +25,8 @@ struct Gauges {
   double recordings = 0.0;
   double jobs_queued = 0.0;
   double jobs_running = 0.0;
+  double deliveries_waiting = 0.0;
+  double webhooks_disabled = 0.0;
   double oldest_queued_seconds = 0.0;
   double free_bytes = 0.0;
   double free_fraction = 0.0;
@@ -44,6 +46,9 @@ class Metrics {
                      std::uint64_t bytes_in, std::uint64_t bytes_out);
   /// One attempt at a job that ended: `succeeded`, `failed`, `retried`, `cancelled`, `released`, `lost`.
   void count_attempt(std::string_view kind, std::string_view outcome, double seconds);
+
+  /// One attempt at a delivery to a webhook that ended: `delivered`, `failed`, `given_up`.
+  void count_delivery(std::string_view outcome);
 
   /// Everything, ready to be sent.
   [[nodiscard]] std::string text(const Gauges& gauges, std::string_view version) const;
@@ -71,6 +76,7 @@ class Metrics {
   std::uint64_t bytes_in_ = 0;
   std::uint64_t bytes_out_ = 0;
   std::map<std::pair<std::string, std::string>, std::uint64_t> attempts_;  ///< kind, outcome
+  std::map<std::string, std::uint64_t, std::less<>> deliveries_;           ///< by outcome
   std::map<std::string, Histogram<8>> job_seconds_;                        ///< by kind
 };
 

@@ -13,9 +13,10 @@ constexpr std::string_view kShell = "/index.html";
 constexpr std::string_view kAssets = "/assets/";
 
 /// First parts of the addresses that are pages; `/` is one too.
-constexpr std::array<std::string_view, 14> kPages{"devices", "recordings",   "compare", "investigations", "outages",
-                                                  "jobs",    "upload",       "record",  "regressions",    "studies",
-                                                  "models",  "calibrations", "docs",    "problems"};
+constexpr std::array<std::string_view, 19> kPages{
+    "devices", "recordings",   "compare",  "investigations", "outages", "jobs",        "upload",
+    "record",  "regressions",  "studies",  "models",         "drives",  "populations", "drive-evaluations",
+    "docs",    "calibrations", "webhooks", "data-sheets",    "problems"};
 
 /// Nothing may run, load or frame but what this daemon serves; no style and no script in the document itself.
 constexpr std::string_view kPolicy =

@@ -5,6 +5,7 @@ scope, and by tokens that ended. What must come of it is the operation's `x-scop
 """
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import time
@@ -144,8 +145,9 @@ class Matrix(GuardedDaemon):
     def test_secrets_are_nowhere_on_the_disk_or_in_the_log(self) -> None:
         secret = self.token("read")
         self.expect(200, self.ask(secret, "GET", "/v1/devices"))
-        for path in self.daemon.data.glob("driftlab.db*"):
-            self.assertNotIn(secret.encode(), path.read_bytes(), path.name)
+        stored = self.daemon.database_bytes()
+        self.assertIn(hashlib.sha256(secret.encode()).hexdigest().encode(), stored)
+        self.assertNotIn(secret.encode(), stored)
         self.assertNotIn(secret, json.dumps(self.daemon.log))
 
 
@@ -190,7 +192,7 @@ class Sessions(GuardedDaemon):
 
     def test_an_event_stream_ends_with_its_token(self) -> None:
         made = self.daemon.post("/v1/tokens", {"name": "listener", "scope": "read"}).json
-        job = self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100000}).json["id"]
+        job = self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000}).json["id"]
         with self.daemon.connect() as connection:
             connection.sendall(f"GET /v1/jobs/{job}/events HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {made['secret']}\r\n\r\n".encode())
             self.assertTrue(connection.recv(65536).startswith(b"HTTP/1.1 200 "))
@@ -223,7 +225,7 @@ class OtherDevices(GuardedDaemon):
             assert answer.status in (200, 201, 202), answer.describe()
             return str(answer.json["id"])
 
-        device = made(daemon.post("/v1/devices", {"name": name, "serial": f"serial of {name}"}))
+        device = made(daemon.post("/v1/devices", {"name": name, "model": "one-line", "serial": f"serial of {name}"}))
         first, second = (made(daemon.upload(samples.gyro_csv(seed=seed + i), device=name, rate_hz=100, columns=samples.GYRO_Z)) for i in range(2))
         job = made(daemon.characterise(first))
         daemon.finished(job)
@@ -242,15 +244,20 @@ class OtherDevices(GuardedDaemon):
         loose = made(daemon.post("/v1/models", {**white, "name": f"loose of {name}"}))
         evaluation = made(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2, "seed": seed}))
         daemon.finished(evaluation)
-        return {"device": device, "name": name, "recording": first, "second": second, "job": job, "study": study, "calibration": calibration,
+        files = zip(samples.drive_csvs(seed=seed), (samples.DRIVE_IMU, samples.DRIVE_GNSS))
+        drive = made(daemon.post("/v1/drives", samples.drive_document(*(
+            made(daemon.upload(content, device=name, condition="drive", columns=samples.roles(roles))) for content, roles in files))))
+        driven = made(daemon.post("/v1/drive-evaluations", {"drive": drive}))
+        daemon.finished(driven)
+        return {"device": device, "name": name, "drive": drive, "driven": driven, "recording": first, "second": second, "job": job, "study": study, "calibration": calibration,
                 "investigation": investigation, "asked": asked, "regression": regression, "model": own, "loose": loose, "evaluation": evaluation,
-                "fit": daemon.items(f"/v1/fits?device={name}")[0]["id"]}
+                "fit": next(fit["id"] for fit in daemon.items(f"/v1/fits?device={name}") if fit["model"] == "WN" and fit["processes"][0]["params"]["N"])}
 
     def gets(self, of: dict[str, str]) -> list[str]:
         """Every address of the contract that reads something of a device, or a list."""
         ids = {"devices": of["device"], "recordings": of["recording"], "jobs": of["job"], "fits": of["fit"], "studies": of["study"],
                "calibrations": of["calibration"], "investigations": of["investigation"], "models": of["model"],
-               "outage-evaluations": of["evaluation"], "regressions": of["regression"], "exports": "kalibr"}
+               "outage-evaluations": of["evaluation"], "drives": of["drive"], "drive-evaluations": of["driven"], "regressions": of["regression"], "exports": "kalibr"}
         targets = []
         for path, operations in self.contract.paths.items():
             group = path.split("/")[2] if path.startswith("/v1/") else ""
@@ -267,6 +274,8 @@ class OtherDevices(GuardedDaemon):
                 target += f"?device={of['name']}&axis=z"
             elif group == "exports" and "{" in path:
                 target += f"?device={of['name']}"
+            elif group == "populations":
+                target += "?model=one-line"
             elif group == "search":
                 target += f"?q={of['name']}"
             elif "channel" in needed:
@@ -323,7 +332,7 @@ class OtherDevices(GuardedDaemon):
                 else:
                     self.expect(200, self.read(target))
         counts = self.ask(self.limited, "GET", "/v1/counts").json
-        self.assertEqual((counts["devices"], counts["recordings"]), (1, 2))
+        self.assertEqual((counts["devices"], counts["recordings"]), (1, 4))
         self.assertEqual([d["name"] for d in self.ask(self.limited, "GET", "/v1/devices").json["items"]], ["phone-mine"])
         everything = {r["id"] for r in self.daemon.items("/v1/jobs")}
         own = {r["id"] for r in self.ask(self.limited, "GET", "/v1/jobs?limit=500").json["items"]}
@@ -348,9 +357,10 @@ class OtherDevices(GuardedDaemon):
 
     def test_pages_of_lists_are_full(self) -> None:
         """Rows that are hidden take no room on a page, and no cursor leads through them."""
-        first = self.ask(self.limited, "GET", "/v1/recordings?limit=1").json
-        second = self.ask(self.limited, "GET", f"/v1/recordings?limit=1&cursor={first['next_cursor']}").json
-        self.assertEqual([first["items"][0]["id"], second["items"][0]["id"]], [self.mine["recording"], self.mine["second"]])
+        first = self.ask(self.limited, "GET", "/v1/recordings?limit=2").json
+        second = self.ask(self.limited, "GET", f"/v1/recordings?limit=2&cursor={first['next_cursor']}").json
+        self.assertEqual([each["id"] for each in first["items"]], [self.mine["recording"], self.mine["second"]])
+        self.assertEqual(len(second["items"]), 2)
         self.assertIsNone(second["next_cursor"])
 
     def test_nothing_of_another_device_can_be_changed_or_used(self) -> None:
@@ -393,6 +403,20 @@ class OtherDevices(GuardedDaemon):
         newcomer = self.token("write", devices=["phone-new"])
         self.expect(201, self.ask(newcomer, "POST", "/v1/devices", {"name": "phone-new"}))
         self.assertEqual([d["name"] for d in self.ask(newcomer, "GET", "/v1/devices").json["items"]], ["phone-new"])
+
+    def test_an_upload_under_way_is_there_for_who_began_it(self) -> None:
+        tus = {"Tus-Resumable": "1.0.0"}
+        begun = self.expect(201, self.ask(self.limited, "POST", "/v1/uploads", None, {**tus, "Upload-Length": "10"}))
+        upload = begun.headers["location"]
+        other = self.token("run")
+        piece = {**tus, "Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"}
+        for method, target, body, headers in (("GET", upload, None, {}), ("HEAD", upload, None, tus), ("PATCH", upload, b"0123456789", piece),
+                                              ("DELETE", upload, None, tus), ("POST", f"{upload}/recording?device=phone-mine&condition=static", b"", {})):
+            self.assertEqual(self.ask(other, method, target, body, headers).status, 404, method)
+        self.expect(204, self.ask(self.limited, "PATCH", upload, b"01234", piece))
+        self.assertEqual(self.ask(self.limited, "GET", upload).json["offset"], 5)
+        self.assertEqual(self.daemon.get(upload).json["offset"], 5, "an admin sees it")
+        self.expect(204, self.ask(self.limited, "DELETE", upload, None, tus))
 
     def test_what_it_asked_for_it_sees(self) -> None:
         """A model of no device, and a job that names none, are seen by who asked and not by another limited token."""

@@ -218,6 +218,22 @@ class UploadsShare(unittest.TestCase):
             for one in bombs:
                 self.assertIn(one.result().status, {201, 413})
 
+    def test_more_uploads_than_places_wait_and_all_are_stored(self) -> None:
+        with Daemon(arguments=("--budget", "uploads=2")) as daemon, ThreadPoolExecutor(12) as clients:
+            answers = list(clients.map(lambda k: daemon.upload(csv(2000 + k), device=f"imu-{k}"), range(12)))
+        self.assertEqual([answer.status for answer in answers], [201] * 12)
+
+    def test_who_waits_too_long_for_a_place_is_told_which_budget_it_was(self) -> None:
+        with Daemon(arguments=("--budget", "uploads=1", "--budget", "upload_wait_seconds=1")) as daemon, daemon.connect() as holding:
+            send_head(holding, "/v1/recordings?device=imu-1&condition=static", "Content-Length: 1000\r\nContent-Type: text/csv\r\n", "POST")
+            time.sleep(0.2)
+            answer = daemon.upload(csv(100), device="imu-2")
+            self.assertEqual(answer.status, 503, answer.describe())
+            self.assertIn("upload_wait_seconds", answer.json["detail"])
+            self.assertIn("retry-after", answer.headers)
+            holding.close()
+            self.assertEqual(daemon.upload(csv(100), device="imu-2").status, 201)
+
     def test_a_decoding_has_a_time_limit_that_is_named(self) -> None:
         rows = b"0.123456789,0.23456789,0.3456789,0.456789,0.56789,0.6789\n" * 400_000
         text = b"a [deg/s],b,c,d,e,f\n" + rows
@@ -259,11 +275,20 @@ class JobsHaveABudget(unittest.TestCase):
 
     def test_a_job_has_a_deadline_that_is_named(self) -> None:
         with Daemon(arguments=("--budget", "job_seconds=1", "--workers", "1")) as daemon:
-            recording = daemon.upload(csv(1_000_000)).json["id"]
+            recording = daemon.upload(csv(400_000)).json["id"]
             job = daemon.characterise(recording, bootstrap=2000).json
             ended = daemon.finished(job["id"])
             self.assertEqual(ended["state"], "failed")
             self.assertIn("(budget job_seconds = 1)", ended["problem"]["detail"])
+
+    def test_a_job_that_could_not_end_in_time_is_refused_before_it_begins(self) -> None:
+        with Daemon(arguments=("--budget", "job_seconds=1")) as daemon:
+            recording = daemon.upload(csv(1_500_000)).json["id"]
+            for answer in (daemon.characterise(recording),
+                           daemon.post("/v1/jobs", {"kind": "outage_evaluation", "inputs": {"scenario": "paper"}, "parameters": {"runs": 100_000}})):
+                self.assertEqual(answer.status, 413, answer.describe())
+                self.assertIn("(budget job_seconds = 1)", answer.json["detail"])
+            self.assertEqual(daemon.items("/v1/jobs"), [])
 
     def test_jobs_that_would_not_fit_together_wait_for_each_other(self) -> None:
         with Daemon(arguments=("--budget", "job_memory_bytes=60000000", "--workers", "2")) as daemon:

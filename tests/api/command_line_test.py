@@ -11,6 +11,7 @@ import unittest
 from pathlib import Path
 from typing import Any
 
+import samples
 from daemon import PATIENCE_S
 from suite import DaemonTest
 
@@ -126,6 +127,34 @@ class CommandLine(DaemonTest):
         table = self.said("table", *self.server, "--device", "same", "--sensor", "gyroscope", "--axis", "z")
         self.assertIn("static", table)
 
+    def test_a_study_through_a_daemon_prints_the_same_text(self) -> None:
+        """The daemon's names of results were not those of the recordings here, so that replicates were averaged instead of fitted jointly."""
+        recordings = []
+        for number, condition in enumerate(({"kind": "static"}, {"kind": "static"}, {"kind": "constant_rate", "axis": "z", "value": 9, "unit": "deg/s"})):
+            [column] = samples.noise(20000, 1, 70 + number)
+            walk, lines = 0.0, ["gz"]
+            for value in column:
+                walk = 0.999 * walk + 0.02 * value
+                lines.append(f"{value + walk:.6f}")
+            (self.folder / f"part {number}.csv").write_text("\n".join(lines) + "\n")
+            recordings.append({"id": f"run {3 - number}", "file": f"part {number}.csv", "rate_hz": 50, "condition": condition,
+                               "columns": {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}})
+        (self.folder / "printed.json").write_text(json.dumps({"device": {"id": "printed"}, "recordings": recordings}))
+        here = self.said("characterise", "printed.json", "--models", "WN,WN+GM")
+        self.assertIn("run 3", here)
+        self.assertEqual(self.said("characterise", "printed.json", "--models", "WN,WN+GM", *self.server), here)
+
+    def test_a_rate_that_exact_stamps_confirm_is_believed_where_half_is_lost(self) -> None:
+        [column] = samples.noise(60000, 1, 80)
+        draw = random.Random(80)
+        kept = [row for row in range(60000) if row % 2 == 0 or draw.random() < 0.05]  # the median step is two samples
+        (self.folder / "lossy.csv").write_text("t [s],gz [deg/s]\n" + "".join(f"{row / 100:.2f},{column[row]:.6f}\n" for row in kept))
+        text = self.said("characterise", "lossy.csv", "--rate-hz", "100", "--models", "WN")
+        self.assertIn("nothing is put in their place", text)
+        self.assertRegex(text, r"white noise of (5\.[89]|6\.[012])\d* deg/sqrt\(h\)")
+        refusal = self.refused(2, "characterise", "lossy.csv", "--rate-hz", "90")
+        self.assertIn("Leave the rate out to go by the time column.", refusal)
+
     def test_outages_through_a_daemon_are_the_same_to_the_bit(self) -> None:
         (self.folder / "turn.json").write_text(json.dumps(SCENARIO))
         run = ("outages", "--scenario", "turn.json", "--runs", "8", "--seed", "3", "--json")
@@ -162,6 +191,21 @@ class CommandLine(DaemonTest):
         (self.folder / "model.json").write_text(json.dumps(model))
         self.assertIn("'gq'", self.refused(2, "simulate", "--model", "model.json", "--channel", "gq", "--out", "none.csv"))
         self.assertFalse((self.folder / "none.csv").exists())
+
+    def test_what_is_simulated_is_read_back_and_an_array_says_with_what(self) -> None:
+        self.assertIn("deg/sqrt(h)", self.said("characterise", "rest.csv"))
+        made = self.driftlab("simulate", "--duration-s", "60", "--seed", "4", "--out", "rest.npy")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("--rate-hz 100", made.stderr)
+        self.assertIn("0 is gz [deg/s]", made.stderr)
+        self.assertIn("gyroscope z", self.said("characterise", "rest.npy", "--rate-hz", "100", "--columns", "0=angular_rate:z:deg/s"))
+
+    def test_a_first_column_of_time_may_be_named_with_its_unit_at_once(self) -> None:
+        rows = "\n".join(f"{i / 100:.2f}\t{(i * 7919) % 101 / 100:.2f}" for i in range(3000))
+        (self.folder / "bare.txt").write_text(rows + "\n")
+        text = self.said("characterise", "bare.txt", "--columns", "0=time:s,1=angular_rate:z:deg/s")
+        self.assertEqual(text, self.said("characterise", "bare.txt", "--columns", "0=time::s,1=angular_rate:z:deg/s"))
+        self.assertIn("gyroscope z", text)
 
     def test_what_cannot_be_is_one_sentence_and_an_exit_code(self) -> None:
         self.assertIn("absent.csv", self.refused(2, "characterise", "absent.csv"))

@@ -97,6 +97,8 @@ class Requests(DaemonTest):
         documents = [good, {**good, "rate_hz": 0}, {**good, "rate_hz": "100"}, {**good, "device": {"id": "a", "model": "b"}}, {**good, "device": {"model": "b"}},
                      {**good, "device": ""}, {**good, "device": {"id": "a", "colour": "b"}}, {**good, "trim": {"start_s": 1}}, {**good, "trim": {"start_s": -1}}, {**good, "trim": {"begin": 1}},
                      {**good, "columns": {"gz": {"axis": "z"}}}, {**good, "columns": {"gz": {"quantity": "spin"}}}, {**good, "columns": []}, {**good, "colums": {}},
+                     {**good, "labels": {"firmware": "1.5.0"}, "session": "Monday", "recorded_at": "2026-11-22T10:00:00Z"}, {**good, "labels": []}, {**good, "labels": {"a=b": "c"}},
+                     {**good, "labels": {"a": "b,c"}}, {**good, "labels": {"a": 1}}, {**good, "labels": {"": "c"}}, {**good, "labels": {"a": ""}}, {**good, "session": 3},
                      {**good, "columns": {"gz": {"quantity": "angular_rate", "axis": "z"}}}, {**good, "id": "x", "file": "y"}, {**good, "id": 7},
                      {k: v for k, v in good.items() if k != "condition"}, [], "x", 7,
                      *({**good, "condition": condition} for condition in bad_conditions + good_conditions)]
@@ -114,13 +116,20 @@ class Requests(DaemonTest):
     def test_jobs(self) -> None:
         recording = self.expect(201, self.daemon.upload(samples.gyro_csv(64, seed=99), rate_hz=100)).json["id"]
         study = self.daemon.post("/v1/studies", {"device": {"id": "phone-07"}, "recordings": [{"recording": recording}]}).json["id"]
+        files = zip(samples.drive_csvs(seed=2), (samples.DRIVE_IMU, samples.DRIVE_GNSS))
+        ids = [self.daemon.upload(content, condition="drive", columns=samples.roles(roles)).json["id"] for content, roles in files]
+        drive = self.expect(201, self.daemon.post("/v1/drives", samples.drive_document(*ids))).json["id"]
         good = {"kind": "characterise", "inputs": {"recordings": [recording]}, "parameters": {"models": ["WN"]}}
         for body in (good, {**good, "priority": 0}, {**good, "priority": 9}, {**good, "priority": -1}, {**good, "priority": 10}, {**good, "priority": 1.5}, {**good, "kind": "x"},
                      {**good, "inputs": {}}, {**good, "inputs": []}, {**good, "inputs": {"recordings": [recording] * 101}}, {**good, "parameters": {"seed": 0}},
                      {**good, "parameters": {"seed": -1}}, {**good, "parameters": {"seed": 0.5}}, {**good, "parameters": []}, {**good, "parameters": {"model": []}},
                      {**good, "colour": 1}, {"kind": "characterise"}, {"kind": "investigate", "inputs": {}}, {"kind": "investigate", "inputs": {"recordings": [recording]}},
                      {"kind": "investigate", "inputs": {"study": study}}, {"kind": "investigate", "inputs": {"study": study}, "parameters": {"models": []}},
-                     {"kind": "investigate", "inputs": {"study": study}, "parameters": {"baseline": {"kind": "auto"}}}):
+                     {"kind": "investigate", "inputs": {"study": study}, "parameters": {"baseline": {"kind": "auto"}}},
+                     {"kind": "drive_evaluation", "inputs": {}}, {"kind": "drive_evaluation", "inputs": {"drive": drive}},
+                     *({"kind": "drive_evaluation", "inputs": {"drive": drive}, "parameters": parameters} for parameters in (
+                         {"question": "simulate", "runs": 2}, {"question": "guess"}, {"seed": -1}, {"gate": -1}, {"colour": 1},
+                         {"zero_velocity": 1}, {"question": "explain", "runs": 0}))):
             self.agree({"$ref": "#/$defs/job-request.schema.json"}, body, self.daemon.post("/v1/jobs", body))
 
 
@@ -129,7 +138,7 @@ class Operations(DaemonTest):
         daemon = self.daemon
         device = daemon.post("/v1/devices", {"name": "phone-07"})
         daemon.post("/v1/devices", {"name": "phone-07"})
-        daemon.request("PATCH", device.headers["location"], {"serial": "1"}, {"If-Match": "*"})
+        daemon.request("PATCH", device.headers["location"], {"serial": "1", "model": "one-line"}, {"If-Match": "*"})
         first, second = (daemon.upload(samples.gyro_csv(seed=seed), rate_hz=100, columns=samples.GYRO_Z) for seed in (1, 2))
         daemon.upload(samples.gyro_csv(seed=1), rate_hz=100, columns=samples.GYRO_Z)
         daemon.request("PATCH", second.headers["location"], {"condition": {"kind": "drive"}}, {"If-Match": "*"})
@@ -146,6 +155,11 @@ class Operations(DaemonTest):
         study, _ = (daemon.post("/v1/studies", body) for _ in range(2))
         evaluation, _ = (daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}) for _ in range(2))
         daemon.finished(evaluation.json["id"])
+        files = zip(samples.drive_csvs(), (samples.DRIVE_IMU, samples.DRIVE_GNSS))
+        imu, gnss = (daemon.upload(content, condition="drive", columns=samples.roles(roles)).json["id"] for content, roles in files)
+        drive, _ = (daemon.post("/v1/drives", samples.drive_document(imu, gnss)) for _ in range(2))
+        driven, _ = (daemon.post("/v1/drive-evaluations", {"drive": drive.json["id"]}) for _ in range(2))
+        daemon.finished(driven.json["id"])
         apply = {"reading_unit": "rad/s", "bias": [0.01, 0, 0], "correction": [[1.01, 0, 0], [0, 1, 0], [0, 0, 1]]}
         body = {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": apply}}}
         calibration, _ = (daemon.post("/v1/calibrations", body) for _ in range(2))
@@ -158,8 +172,17 @@ class Operations(DaemonTest):
         arms = {name: {"recordings": [{"recording": made.json["id"]}]} for name, made in (("baseline", first), ("candidate", third))}
         regression = daemon.post("/v1/jobs", {"kind": "regress", "inputs": {"device": "phone-07", **arms}})
         daemon.finished(regression.json["id"])
+        for media in ("text/plain", "text/markdown"):
+            daemon.get(f"/v1/regressions/{regression.json['id']}", Accept=media)
+        self.expect(200, daemon.request("PATCH", first.headers["location"], {"labels": {"firmware": "1.0"}}, {"If-Match": "*"}))
+        daemon.post("/v1/regression-anchors", {"device": "phone-07", "label": "firmware=1.0", "reason": "the first"})
         body = {"name": "white", "processes": [{"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}]}
         model, _ = (daemon.post("/v1/models", body) for _ in range(2))
+        hook = daemon.post("/v1/webhooks", {"url": "https://ci.example.org/"}).headers["location"]
+        daemon.request("PATCH", hook, {"description": "a"}, {"If-Match": "*"})
+        daemon.post(hook + "/rotate")
+        daemon.post(hook + "/test")
+        self.expect(204, daemon.request("DELETE", daemon.post("/v1/webhooks", {"url": "https://ci.example.org/"}).headers["location"], headers={"If-Match": "*"}))
         # With the first token authentication is on: all further requests bring it.
         made = daemon.post("/v1/tokens", {"name": "first", "scope": "admin"})
         daemon.token = made.json["secret"]
@@ -173,11 +196,12 @@ class Operations(DaemonTest):
         values = {"/v1/tokens/{id}": other, "/v1/devices/{id}": device.json["id"], "/v1/recordings/{id}": first.json["id"], "/v1/fits/{id}": fit["id"], "/docs/{page}": "units",
                   "/v1/studies/{id}": study.json["id"], "/v1/calibrations/{id}": calibration.json["id"],
                   "/v1/outage-evaluations/{id}": evaluation.json["id"],
+                  "/v1/drives/{id}": drive.json["id"], "/v1/drive-evaluations/{id}": driven.json["id"],
                   "/v1/investigations/{id}": investigation, "/v1/models/{id}": model.json["id"],
-                  "/v1/regressions/{id}": regression.json["id"], "/v1/exports/{target}": "kalibr",
+                  **{f"/v1/regressions/{{id}}{part}": regression.json["id"] for part in ("", "/junit", "/figure", "/badge")}, "/v1/exports/{target}": "kalibr",
                   "/problems/{slug}": "busy", "/schemas/{name}": "job.schema.json", "/v1/samples/{preset}": "iphone5s-z",
                   "/v1/devices/{id}/summary": device.json["id"], "/v1/recordings/{id}/characterisation": first.json["id"],
-                  **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("trace", "spectrum", "histogram", "spectrogram")},
+                  **{f"/v1/recordings/{{id}}/{look}": first.json["id"] for look in ("content", "trace", "spectrum", "histogram", "spectrogram")},
                   "/v1/fits/{id}/implied": fit["id"]}
         tus = {"Tus-Resumable": "1.0.0"}
         content = samples.gyro_csv(seed=4)
@@ -186,19 +210,26 @@ class Operations(DaemonTest):
             daemon.request("PATCH", upload, content, {**tus, "Content-Type": "application/offset+octet-stream", "Upload-Offset": "0"})
             daemon.request("POST", upload + "/recording?device=phone-07&condition=static&rate_hz=100")
         daemon.request("DELETE", offered[2], headers=tus)
+        self.expect(200, daemon.request("POST", "/v1/recordings/preview", content, {"Content-Type": "application/octet-stream"}))
         about = {"device": "phone-07", "condition": {"kind": "static"}, "columns": {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}}
         lives = [daemon.post("/v1/live-recordings", about) for _ in range(2)]
         token = {"Live-Token": lives[0].json["token"], "Content-Type": "application/octet-stream"}
         rows = b"".join(struct.pack("<df", i / 100, i % 7) for i in range(200))
         daemon.request("POST", lives[0].headers["location"] + "/samples?sequence=0", rows, token)
         daemon.request("POST", lives[0].headers["location"] + "/finish", headers=token)
+        values["/v1/webhooks/{id}"] = values["/v1/webhooks/{id}/deliveries"] = hook.rpartition("/")[2]
         values["/v1/uploads/{id}"] = offered[3].rpartition("/")[2]
         values["/v1/live-recordings/{id}"] = values["/v1/live-recordings/{id}/events"] = lives[1].json["id"]
+        self.expect(206, daemon.get(f"/v1/recordings/{first.json['id']}/content", Range="bytes=0-9"))
+        while running := [one["id"] for one in daemon.items("/v1/jobs") if one["finished_at"] is None]:  # or answers change between two reads
+            for one in running:
+                daemon.finished(one)
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
                 target += "?device=phone-07&axis=z" if path in ("/v1/parameter-tables", "/v1/trends") else ""
                 target += "?q=phone" if path == "/v1/search" else ""
+                target += "?model=one-line" if path == "/v1/populations" else ""
                 target += "?device=phone-07" if path == "/v1/exports/{target}" else ""
                 target += "?channel=gz" if path.endswith(("/trace", "/spectrum", "/histogram", "/spectrogram")) else ""
                 if path in ("/v1/events", "/v1/live-recordings/{id}/events"):  # they do not end by themselves
@@ -207,6 +238,10 @@ class Operations(DaemonTest):
                 answer = self.expect(200, daemon.get(target))
                 if "etag" in answer.headers:
                     self.expect(304, daemon.get(target, If_None_Match=answer.headers["etag"]))
+        for target in (f"/v1/investigations/{investigation}", study.headers["location"], calibration.headers["location"], model.headers["location"]):
+            self.expect(204, daemon.request("DELETE", target))
+        spare = daemon.post("/v1/devices", {"name": "spare"}).headers["location"]
+        self.expect(204, daemon.request("DELETE", spare, headers={"If-Match": "*"}))
         listed = {(operation["operationId"], int(status)) for operations in self.contract.paths.values() for operation in operations.values()
                   for status in operation["responses"] if int(status) < 400}
         self.assertEqual(listed - self.contract.seen, set())

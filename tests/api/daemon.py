@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 import socket
+import sqlite3
 import subprocess
 import tempfile
 import threading
@@ -18,7 +19,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import postgres
+
 PROGRAM = os.environ.get("DRIFTLABD", "")
+# `postgres`: daemons keep their rows in a PostgreSQL that the test starts, unless a test names another store.
+STORE = os.environ.get("DRIFTLAB_TEST_STORE", "")
 # Sanitizers make everything slower; no test waits longer than this for something that must happen.
 PATIENCE_S = 120.0
 
@@ -55,6 +60,8 @@ class Daemon:
         self.token: str | None = None  # sent with every request that says nothing else
         self._listening = threading.Event()
         self.port = 0
+        if STORE == "postgres" and "--store" not in arguments:
+            arguments = ("--store", postgres.cluster().store_of(self.data), *arguments)
         settings = {name: value for name, value in os.environ.items() if not name.startswith("DRIFTLAB_")}
         self.process = subprocess.Popen(
             [PROGRAM, "--data", str(self.data), "--listen", listen, *arguments], stdin=subprocess.DEVNULL,
@@ -193,6 +200,24 @@ class Daemon:
         with self.connect() as connection:
             connection.sendall(text)
             return read_all(connection)
+
+    # --- what lies in the store
+
+    def rows(self, query: str, *values: str) -> list[list[Any]]:
+        """Rows of the daemon's database, read beside it; values stand for the `?` of the query."""
+        if STORE == "postgres":
+            return postgres.cluster().rows(self.data, query, *values)
+        database = sqlite3.connect(f"file:{self.data / 'driftlab.db'}?mode=ro", uri=True)
+        try:
+            return [list(row) for row in database.execute(query, values)]
+        finally:
+            database.close()
+
+    def database_bytes(self) -> bytes:
+        """Everything that the database holds, as it lies on the disk or as a dump."""
+        if STORE == "postgres":
+            return postgres.cluster().dump(self.data)
+        return b"".join(path.read_bytes() for path in self.data.glob("driftlab.db*"))
 
     # --- what lies on the disk
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import sqlite3
 import threading
 import time
 import unittest
@@ -74,9 +73,7 @@ class Life(JobTest):
                         self.assertEqual(value["unit"], units[place], fit["model"])
                         seen.add(place)
         self.assertIn(("white_noise", "N"), seen)
-        database = sqlite3.connect(f"file:{self.daemon.data / 'driftlab.db'}?mode=ro", uri=True)
-        self.addCleanup(database.close)
-        [(stored, document)] = database.execute("SELECT settings_json, document_json FROM channel_results WHERE job_id = ?", (job["id"],)).fetchall()
+        [(stored, document)] = self.daemon.rows("SELECT settings_json, document_json FROM channel_results WHERE job_id = ?", job["id"])
         settings, channel = json.loads(stored), json.loads(document)
         self.assertEqual(settings["seed"], 17)
         self.assertGreaterEqual(settings["algorithm_version"], 1)
@@ -282,6 +279,20 @@ class Tables(JobTest):
         cls.target = "/v1/parameter-tables?" + urllib.parse.urlencode({"device": 'phone, "07"', "sensor": "gyroscope", "axis": "z"})
         pooling = daemon.get(cls.target, Prefer="wait=60").json["pooling"]
         assert pooling["state"] == "done", pooling
+
+    def test_a_filtered_sensor_has_one_density_in_table_summary_and_stored_fit(self) -> None:
+        """The summary showed the white noise of the best model: nothing, or the wrong number, for a sensor behind a filter."""
+        noise = samples.noise(40_003, 1, seed=31)[0]
+        averaged = [sum(noise[i:i + 4]) / 4 for i in range(len(noise) - 3)]
+        device = "filtered-01"
+        recording = self.expect(201, self.daemon.upload(samples.csv([averaged], ["gz"]), device=device, rate_hz=100, columns=samples.GYRO_Z)).json["id"]
+        self.assertEqual(self.daemon.finished(self.daemon.characterise(recording).json["id"])["state"], "succeeded")
+        row = self.daemon.get(f"/v1/parameter-tables?device={device}&sensor=gyroscope&axis=z", Prefer="wait=60").json["rows"][0]
+        shown = self.daemon.get(f"/v1/devices/{device}/summary").json["channels"][0]["N"]
+        fits = self.daemon.items(f"/v1/fits?device={device}&best=true")
+        self.assertAlmostEqual(row["density"]["value"], 6.0, delta=0.2)  # 1 deg/s at 100 Hz: 0.1 deg/s/sqrt(Hz) = 6 deg/sqrt(h)
+        self.assertEqual(shown["value"], row["density"]["value"])
+        self.assertEqual([fit["density"] for fit in fits], [shown])
 
     def test_rows_are_conditions_and_replicates_share_one(self) -> None:
         table = self.expect(200, self.daemon.get(self.target)).json

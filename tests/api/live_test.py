@@ -99,20 +99,20 @@ class Live(DaemonTest):
 
 class Restart(unittest.TestCase):
     def test_a_recording_goes_on_after_the_daemon_was_killed(self) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            daemon = self.enterContext(Daemon(Path(folder)))
-            made = daemon.post("/v1/live-recordings", ABOUT)
-            live, token = made.headers["location"], {"Live-Token": made.json["token"], "Content-Type": "application/octet-stream"}
-            for number in range(5):
-                assert daemon.request("POST", f"{live}/samples?sequence={number}", rows(number * RATE, RATE), token).status == 204
-            daemon.kill()
-            daemon = self.enterContext(Daemon(Path(folder)))
-            self.assertEqual(daemon.get(live).json["samples"], 5 * RATE)
-            daemon.request("POST", f"{live}/samples?sequence=4", rows(4 * RATE, RATE), token)  # the answer may have been lost
-            daemon.request("POST", f"{live}/samples?sequence=5", rows(5 * RATE, RATE), token)
-            finished = daemon.request("POST", f"{live}/finish", headers={"Live-Token": token["Live-Token"]})
-            self.assertEqual(finished.status, 201, finished.describe())
-            self.assertEqual(finished.json["recording"]["quality"]["samples"], 6 * RATE)
+        folder = self.enterContext(tempfile.TemporaryDirectory())  # removed last, when no daemon writes into it
+        daemon = self.enterContext(Daemon(Path(folder)))
+        made = daemon.post("/v1/live-recordings", ABOUT)
+        live, token = made.headers["location"], {"Live-Token": made.json["token"], "Content-Type": "application/octet-stream"}
+        for number in range(5):
+            assert daemon.request("POST", f"{live}/samples?sequence={number}", rows(number * RATE, RATE), token).status == 204
+        daemon.kill()
+        daemon = self.enterContext(Daemon(Path(folder)))
+        self.assertEqual(daemon.get(live).json["samples"], 5 * RATE)
+        daemon.request("POST", f"{live}/samples?sequence=4", rows(4 * RATE, RATE), token)  # the answer may have been lost
+        daemon.request("POST", f"{live}/samples?sequence=5", rows(5 * RATE, RATE), token)
+        finished = daemon.request("POST", f"{live}/finish", headers={"Live-Token": token["Live-Token"]})
+        self.assertEqual(finished.status, 201, finished.describe())
+        self.assertEqual(finished.json["recording"]["quality"]["samples"], 6 * RATE)
 
 
 if __name__ == "__main__":

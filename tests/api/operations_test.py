@@ -77,7 +77,8 @@ class WithPrometheus(unittest.TestCase):
         board = json.loads((SOURCE / "deploy/grafana/driftlab.json").read_text())
         queries += [target["expr"] for panel in board["panels"] for target in panel["targets"]]
         self.assertGreater(len(queries), 30)
-        with Daemon() as daemon, tempfile.TemporaryDirectory() as folder:
+        deaf = ("--webhook-allow", "127.0.0.1", "--budget", "webhook_pause_milliseconds=1", "--budget", "webhook_attempts=7")
+        with Daemon(arguments=deaf) as daemon, tempfile.TemporaryDirectory() as folder:
             recording = daemon.upload(csv(2000)).json["id"]
             daemon.finished(daemon.characterise(recording).json["id"])
             port = free_port()
@@ -109,6 +110,16 @@ class WithPrometheus(unittest.TestCase):
                         self.assertIn(re.sub(r"_(bucket|sum|count)$", "", name), known, query)
                     if not re.search(r"[<>]|== 0", query):  # figures show something; alerts must not
                         self.assertTrue(ask(query), query)
+                alerts = dict(re.findall(r"- alert: (\w+)\n +expr: (.+)", rules.read_text()))
+                missed = [alerts[name] for name in ("DriftlabWebhooksFail", "DriftlabWebhookGivenUp")]
+                self.assertEqual([ask(query) for query in missed], [[], []])
+                hook = daemon.post("/v1/webhooks", {"url": f"http://127.0.0.1:{free_port()}/nobody"}).json["id"]
+                self.assertEqual(daemon.post(f"/v1/webhooks/{hook}/test").status, 202)
+                until = time.monotonic() + 30 * SLOW
+                while time.monotonic() < until and not all(ask(query) for query in missed):
+                    time.sleep(0.5)
+                for query in missed:
+                    self.assertTrue(ask(query), query)
             finally:
                 server.terminate()
                 server.wait(PATIENCE_S)
@@ -283,6 +294,24 @@ class Kept(unittest.TestCase):
             self.assertIn("damaged", seen["failed_attempts"][0]["detail"])
             self.assertEqual(daemon.get("/readyz").json["damaged_files"], 1)
             self.assertEqual(len([line for line in daemon.log if line.get("event") == "bad state"]), 1)
+
+    def test_a_flipped_bit_is_not_drawn_either(self) -> None:
+        with Daemon(arguments=("--budget", "scrub_bytes_per_second=0")) as daemon:
+            upload = daemon.upload(csv(3000, 1)).json
+            sha = upload["file"]["sha256"]
+            columns = daemon.data / "columns" / sha[:2] / f"{sha}.columns"
+            looks = [f"/v1/recordings/{upload['id']}/{look}?channel=gz%20%5Bdeg/s%5D" for look in ("trace", "spectrum")]
+            before = [daemon.get(look) for look in looks]
+            self.assertEqual([answer.status for answer in before], [200, 200], [answer.text for answer in before])
+            for answer in before:
+                flip(columns)
+                self.assertEqual(daemon.get(answer.target).body, answer.body, "made anew from the bytes")
+            flip(columns)
+            flip(daemon.data / "blobs" / sha[:2] / sha)
+            for look in looks:
+                answer = daemon.get(look)
+                self.assertGreaterEqual(answer.status, 500)
+                self.assertIn("damaged", answer.json["detail"])
 
     def test_the_background_finds_and_heals(self) -> None:
         with Daemon(arguments=("--budget", "scrub_bytes_per_second=1000000000")) as daemon:

@@ -48,6 +48,14 @@ class OutageEvaluations(DaemonTest):
         mean = quiet["mean_error_m"]["value"] - matched["mean_error_m"]["value"]
         self.assertAlmostEqual(pair["difference_m"]["value"], mean, places=9)
         self.assertIsNone(result["attribution"])
+        summary = result["summary"]
+        self.assertTrue(summary["verdict"].startswith("matched "), summary)
+        self.assertIn("after 10 s without GNSS", summary["verdict"])
+        for fact in summary["facts"]:
+            at: Any = result
+            for key in fact["pointer"].split("/")[1:]:
+                at = at[int(key)] if isinstance(at, list) else at[key]
+            self.assertEqual(at, fact["value"], "a fact is what its pointer leads to: " + fact["pointer"])
 
     def test_the_papers_scenario_by_name_is_judged_in_words(self) -> None:
         result = self.evaluated(scenario="paper", runs=2, seed=9)["evaluation"]
@@ -158,7 +166,7 @@ class OutageEvaluations(DaemonTest):
         self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro_errors/bias"])
 
     def test_a_running_evaluation_is_cancelled(self) -> None:
-        job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100000})).json["id"]
+        job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000})).json["id"]
         for event in events(self.daemon, job):
             if event.type == "progress" and event.data["progress"] > 0:
                 break

@@ -38,6 +38,7 @@ class Problems(DaemonTest):
             d.post("/v1/devices", b"{}", {"Origin": "http://evil.example"}), upload(csv(seed=2), {"Repr-Digest": "sha-256=:AAAA:"}, rate_hz=100),
             self.raw(b"GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"), self.raw(b"nonsense\r\n\r\n"),
             self.raw(b"POST /v1/devices HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n"),
+            d.get(d.items("/v1/recordings")[0]["id"].join(("/v1/recordings/", "/content")), Range="bytes=99999999-"),
             self.raw(b"GET /" + b"a" * 9000 + b" HTTP/1.1\r\nHost: localhost\r\n\r\n"),
             self.raw(b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"a" * 17000 + b"\r\n\r\n"),
         ]

@@ -8,6 +8,7 @@ import signal
 import socket
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 import samples
 from daemon import Answer, Daemon, events, parse_answer, read_all, read_answer
@@ -111,6 +112,37 @@ class Guard(DaemonTest):
         self.assertNotIn("<script", answer.text)
 
 
+class Chunked(DaemonTest):
+    def chunked(self, body: bytes, target: str = "/v1/recordings?device=chunked&condition=static&rate_hz=100") -> bytes:
+        head = f"POST {target} HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n"
+        return self.daemon.exchange(head.encode() + body)
+
+    def test_a_chunked_upload_ends_where_it_says_and_hides_no_request(self) -> None:
+        content = samples.gyro_csv(64, seed=77)
+        size = f"{len(content):x}".encode()
+        last = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
+        raw = self.chunked(size + b";note=\"a\"\r\n" + content + b"\r\n0\r\n\r\n" + last)
+        self.assertEqual(re.findall(rb"HTTP/1\.1 (\d+)", raw), [b"201", b"200"], "the next request is read as one")
+        for body in (size + b"\r\n" + content + b"\r\n0\r\nAuthorization: Bearer x\r\n\r\n", size + b"\n" + content + b"\r\n0\r\n\r\n",
+                     b"5\r\n" + content + b"\r\n0\r\n\r\n", b"+5\r\nabcde\r\n0\r\n\r\n", b"5;" + b"x" * 300 + b"\r\nabcde\r\n0\r\n\r\n", b"\r\n"):
+            raw = self.chunked(body + last)
+            self.assertEqual(raw.count(b"HTTP/1.1 "), 1, raw)
+            self.contract.check_problem(parse_answer(raw))
+            self.assertEqual(parse_answer(raw).status, 400, body[:40])
+        self.assertEqual(len(self.daemon.items("/v1/recordings?device=chunked")), 1)
+        self.assertEqual(self.daemon.files("incoming"), [])
+
+    def test_a_chunked_upload_that_breaks_off_leaves_nothing(self) -> None:
+        with self.daemon.connect() as connection:
+            connection.sendall(b"POST /v1/recordings?device=cut&condition=static&rate_hz=100 HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n"
+                               b"8\r\ngz\n1\n2\n")
+            connection.shutdown(socket.SHUT_WR)
+            answer = read_answer(connection)
+        self.problem(400, "incomplete_body", answer)
+        self.assertIn("last chunk", answer.json["detail"])
+        self.assertEqual(self.daemon.files("incoming"), [])
+
+
 class Connections(DaemonTest):
     def test_a_connection_serves_a_hundred_requests_and_says_when_it_closes(self) -> None:
         with self.daemon.connect() as connection:
@@ -142,12 +174,15 @@ class Connections(DaemonTest):
             until = time.monotonic() + 20
             while len(self.daemon.files("incoming")) < 16 and time.monotonic() < until:
                 time.sleep(0.01)
-            busy = self.problem(503, "busy", self.daemon.upload(content, rate_hz=100))
-            self.assertTrue(busy["retryable"])
-            self.expect(200, self.daemon.get("/healthz"))  # reading goes on beside
-            for connection in held:
-                connection.sendall(content[100:])
-            self.assertEqual(sorted(read_answer(connection).status for connection in held), [200] * 15 + [201])
+            with ThreadPoolExecutor(1) as pool:
+                seventeenth = pool.submit(self.daemon.upload, content, device="slow", rate_hz=100)
+                time.sleep(0.2)
+                self.expect(200, self.daemon.get("/healthz"))  # reading goes on beside
+                self.assertFalse(seventeenth.done(), "it waits for a place")
+                for connection in held:
+                    connection.sendall(content[100:])
+                answers = [read_answer(connection).status for connection in held] + [seventeenth.result().status]
+            self.assertEqual(sorted(answers), [200] * 16 + [201])
         finally:
             for connection in held:
                 connection.close()

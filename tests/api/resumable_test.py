@@ -93,16 +93,16 @@ class Restart(unittest.TestCase):
     def test_an_upload_goes_on_after_the_daemon_was_killed(self) -> None:
         """What was acknowledged is on the disk: a daemon that dies and comes back stands at the same offset."""
         content = samples.gyro_csv(seed=6)
-        with tempfile.TemporaryDirectory() as folder:
-            daemon = self.enterContext(Daemon(Path(folder)))
-            headers = {**TUS, "Upload-Length": str(len(content))}
-            upload = daemon.request("POST", "/v1/uploads", headers=headers).headers["location"]
-            daemon.request("PATCH", upload, content[:3000], {**PIECE, "Upload-Offset": "0"})
-            daemon.kill()
-            daemon = self.enterContext(Daemon(Path(folder)))
-            self.assertEqual(daemon.get(upload).json["offset"], 3000)
-            daemon.request("PATCH", upload, content[3000:], {**PIECE, "Upload-Offset": "3000"})
-            self.assertEqual(daemon.request("POST", f"{upload}/recording?{META}").status, 201)
+        folder = self.enterContext(tempfile.TemporaryDirectory())  # removed last, when no daemon writes into it
+        daemon = self.enterContext(Daemon(Path(folder)))
+        headers = {**TUS, "Upload-Length": str(len(content))}
+        upload = daemon.request("POST", "/v1/uploads", headers=headers).headers["location"]
+        daemon.request("PATCH", upload, content[:3000], {**PIECE, "Upload-Offset": "0"})
+        daemon.kill()
+        daemon = self.enterContext(Daemon(Path(folder)))
+        self.assertEqual(daemon.get(upload).json["offset"], 3000)
+        daemon.request("PATCH", upload, content[3000:], {**PIECE, "Upload-Offset": "3000"})
+        self.assertEqual(daemon.request("POST", f"{upload}/recording?{META}").status, 201)
 
 
 if __name__ == "__main__":

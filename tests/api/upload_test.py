@@ -10,6 +10,7 @@ import tempfile
 import threading
 import unittest
 from pathlib import Path
+from typing import Any
 
 import samples
 from daemon import PATIENCE_S, Answer, multipart, parse_answer, read_answer
@@ -203,10 +204,10 @@ class IdempotencyKey(DaemonTest):
 class Curl(DaemonTest):
     """The commands of the manual, run by curl itself."""
 
-    def curl(self, *arguments: str) -> Answer:
+    def curl(self, *arguments: str, stdin: Any = subprocess.DEVNULL) -> Answer:
         with tempfile.TemporaryDirectory() as folder:
             shown = subprocess.run(["curl", "--silent", "--show-error", "--noproxy", "*", "--max-time", str(int(PATIENCE_S)), "--dump-header",
-                                    f"{folder}/head", *arguments], capture_output=True, check=True)
+                                    f"{folder}/head", *arguments], stdin=stdin, capture_output=True, check=True)
             blocks = [block for block in Path(f"{folder}/head").read_bytes().split(b"\r\n\r\n") if block]
         self.interim = [block.split(b"\r\n")[0] for block in blocks[:-1]]
         answer = parse_answer(blocks[-1] + b"\r\n\r\n" + shown.stdout)
@@ -229,6 +230,53 @@ class Curl(DaemonTest):
             refused = self.curl("--header", "Expect: 100-continue", "--data-binary", f"@{file.name}", self.url("/v1/recordings?condition=static"))
             self.expect(400, refused)
             self.assertEqual(self.interim, [], "a refused upload is not asked for")
+
+    def test_chunked_from_a_pipe_and_from_a_file(self) -> None:
+        """curl sends what it reads from standard input in chunks, and asks before it does."""
+        content = samples.gyro_csv(100_000, seed=43)
+        target = self.url("/v1/recordings?device=piped&condition=static&rate_hz=100")
+        with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+            file.write(content)
+            file.flush()
+            with open(file.name, "rb") as pipe:
+                first = self.expect(201, self.curl("--request", "POST", "--upload-file", "-", target, stdin=pipe))
+            self.assertEqual(self.interim, [b"HTTP/1.1 100 Continue"])
+            self.assertEqual(first.json["file"]["sha256"], hashlib.sha256(content).hexdigest())
+            self.expect(200, self.curl("--request", "POST", "--upload-file", file.name, target))
+            self.expect(200, self.curl("--header", "Transfer-Encoding: chunked", "--data-binary", f"@{file.name}", target))
+            form = self.url("/v1/recordings")
+            self.expect(200, self.curl("--header", "Transfer-Encoding: chunked", "--form", f"file=@{file.name}", "--form", "device=piped",
+                                       "--form", "condition=static", "--form", "rate_hz=100", form))
+        created = self.curl("--request", "POST", "--header", "Tus-Resumable: 1.0.0", "--header", "Upload-Length: 4", self.url("/v1/uploads"))
+        piece = ("--request", "PATCH", "--header", "Tus-Resumable: 1.0.0", "--header", "Content-Type: application/offset+octet-stream", "--header",
+                 "Transfer-Encoding: chunked", self.url(created.headers["location"]))
+        self.problem(400, "invalid_argument", self.curl("--header", "Upload-Offset: 0", "--data-binary", "12345", *piece), parameter="Upload-Length")
+        self.expect(204, self.curl("--header", "Upload-Offset: 0", "--data-binary", "1234", *piece))
+
+    def test_a_form_needs_no_metadata_part(self) -> None:
+        with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+            file.write(samples.gyro_csv(seed=44))
+            file.flush()
+            whole = ("device=formed", "condition=constant_rate:z:9:deg/s", "rate_hz=100", "columns=gz=angular_rate:z:deg/s")
+            first = self.expect(201, self.curl("--form", f"file=@{file.name}", self.url("/v1/recordings?" + "&".join(whole))))
+            self.assertEqual(first.json["metadata"]["condition"]["value"], 9)
+            fields = [word for field in whole for word in ("--form", field)]
+            self.expect(200, self.curl("--form", f"file=@{file.name}", *fields, self.url("/v1/recordings")))
+            self.expect(200, self.curl(*fields, "--form", f"file=@{file.name}", self.url("/v1/recordings")))
+            nameless = self.problem(400, "invalid_argument", self.curl("--form", f"file=@{file.name}", self.url("/v1/recordings")), parameter="device")
+            self.assertIn("device", str(nameless["detail"]))
+            self.problem(400, "invalid_argument", self.curl("--form", f"file=@{file.name}", "--form", "colour=red", self.url("/v1/recordings")), part="colour")
+            self.problem(400, "invalid_argument", self.curl(*fields, "--form", f"file=@{file.name}", self.url("/v1/recordings?device=formed")), part="device")
+            both = ("--form", f"metadata={json.dumps(METADATA)}", "--form", f"file=@{file.name}")
+            self.problem(400, "invalid_argument", self.curl(*both, self.url("/v1/recordings?rate_hz=50")), parameter="rate_hz")
+            self.problem(400, "invalid_argument", self.curl("--form", "device=formed", self.url("/v1/recordings")), part="file")
+
+    def test_form_fields_belong_to_the_body(self) -> None:
+        content, key = samples.gyro_csv(seed=45), {"Idempotency-Key": "form-1"}
+        fields = [("device", b"keyed"), ("condition", b"static"), ("rate_hz", b"100")]
+        self.expect(201, self.daemon.upload_parts(*fields, ("file", content), headers=key))
+        self.expect(201, self.daemon.upload_parts(*fields, ("file", content), headers=key))
+        self.problem(422, "idempotency_key_reused", self.daemon.upload_parts(*fields[:2], ("rate_hz", b"50"), ("file", content), headers=key))
 
     def test_job_and_cancel_without_a_body(self) -> None:
         recording = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=42), rate_hz=100)).json["id"]

@@ -18,6 +18,7 @@ struct World {
     blobs = std::move(open_blob_directory(directory).value());
     context.reset(new ApiContext{*store, *blobs, clock, bell, events, [this] { ++wake_ups; },
                                  [this] { return not_ready; }, directory, store->access(), gate()});
+    context->webhooks = &store->webhooks();
     add_all_routes(router, *context);
     dispatcher = std::make_unique<Dispatcher>(*context);
   }

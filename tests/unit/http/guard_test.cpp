@@ -48,12 +48,21 @@ TEST(Guard, RefusesWhatMayBeGivenOnceWhenItComesTwice) {
   }
 }
 
-TEST(Guard, RefusesEveryTransferEncodingWhateverElseIsThere) {
-  for (const char* const coding : {"chunked", "gzip", "identity", "", "chunked, gzip"}) {
+TEST(Guard, RefusesEveryTransferEncodingButChunkedAlone) {
+  for (const char* const coding : {"gzip", "identity", "", "chunked, gzip", "gzip, chunked", "chunked, chunked"}) {
     EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"transfer-encoding", coding}})), "length_required");
+  }
+  for (const char* const coding : {"chunked", "gzip"}) {
     EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"content-length", "4"}, {"transfer-encoding", coding}})),
               "length_required");
+    EXPECT_EQ(refusal(head("POST", {{"host", "localhost"}, {"transfer-encoding", coding}, {"content-length", "0"}})),
+              "length_required");
   }
+  HeadView upload = head("POST", {{"host", "localhost"}, {"transfer-encoding", "Chunked"}});
+  EXPECT_TRUE(inspect(upload, kLimits).chunked);
+  EXPECT_EQ(refusal(upload), "");
+  upload.version = 10;
+  EXPECT_EQ(refusal(upload), "length_required");
 }
 
 TEST(Guard, ReadsContentLengthStrictly) {
@@ -129,6 +138,28 @@ TEST(Guard, BelievesWhatTheBrowserSaysOfTheSite) {
   EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "https://localhost"}}), "");
   EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "https://evil.example"}}), "origin_not_allowed");
   EXPECT_EQ(post({{"sec-fetch-site", "same-origin"}, {"origin", "null"}}), "origin_not_allowed");
+}
+
+TEST(Guard, SeesWhereAHeaderEndsAndThatALineIsFolded) {
+  const std::string whole = "GET / HTTP/1.1\r\nHost: a\r\nX: 1\r\n\r\n";
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::string_view part = std::string_view(whole).substr(0, length);
+    EXPECT_FALSE(look_at_head(part).whole) << length;
+    EXPECT_FALSE(look_at_head(part).folded) << length;
+    EXPECT_TRUE(look_at_head(whole, length).whole) << "however much was looked at before: " << length;
+  }
+  for (const char* const fold : {" ", "\t"}) {
+    const std::string folded = "GET / HTTP/1.1\r\nHost: a\r\n" + std::string(fold) + "b: 1\r\n\r\n";
+    const std::size_t line_end = folded.find("\r\n" + std::string(fold)) + 2;
+    for (std::size_t length = 0; length <= line_end; ++length) {
+      EXPECT_FALSE(look_at_head(std::string_view(folded).substr(0, length)).folded) << length;
+      EXPECT_TRUE(look_at_head(folded, length).folded) << length;
+    }
+  }
+  EXPECT_FALSE(look_at_head(whole + " a body may begin with a space").folded);
+  for (const char* const beyond_repair : {"GET / HTTP/1.1\n", "\x16\x03\x01", "GET / HTTP/1.1\r\n\rx"}) {
+    EXPECT_TRUE(look_at_head(beyond_repair).whole) << "more bytes mend nothing: the parser is to say so at once";
+  }
 }
 
 TEST(Guard, MeetsOneExpectationOnly) {

@@ -65,5 +65,17 @@ TEST(Settings, RefuseWhatIsNoAddressAndPort) {
   }
 }
 
+TEST(Settings, AConnectionStringIsShownWithoutItsPassword) {
+  EXPECT_EQ(without_password("postgresql://me:secret@db:5432/x?sslmode=require"),
+            "postgresql://me:***@db:5432/x?sslmode=require");
+  EXPECT_EQ(without_password("postgresql://me:a/b@c@db/x"), "postgresql://me:***@db/x");
+  EXPECT_EQ(without_password("postgresql:///x?user=me&password=secret&host=/run"),
+            "postgresql:///x?user=me&password=***&host=/run");
+  for (const char* const plain :
+       {"", "postgresql://me@db:5432/x", "postgresql://[::1]:5432/x", "postgresql:///x?host=/run"}) {
+    EXPECT_EQ(without_password(plain), plain);
+  }
+}
+
 }  // namespace
 }  // namespace driftlab::server

@@ -1,0 +1,80 @@
+"""`driftlab plot` and `driftlab report` of every document that --json writes: a figure and a page that stand alone."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+PROGRAM = os.environ.get("DRIFTLAB", "")
+
+
+class Pages(unittest.TestCase):
+    folder: Path
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-report-")))
+        for seed in range(1, 7):
+            cls.said("simulate", "--out", f"{seed}.csv", "--seed", str(seed), "--duration-s", "120")
+        lines = (cls.folder / "6.csv").read_text().splitlines()
+        clipped = [line if "#" in line or "[" in line else f"{max(-0.2, min(0.2, float(line))):.6f}" for line in lines]
+        (cls.folder / "6.csv").write_text("\n".join(clipped) + "\n")
+        role = {"gz [deg/s]": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}
+        recordings = [{"id": f"static-{seed}", "file": f"{seed}.csv", "condition": {"kind": "static"}, "rate_hz": 100, "columns": role} for seed in (1, 6)]
+        (cls.folder / "study.json").write_text(json.dumps({"device": {"id": "d"}, "recordings": recordings, "baseline": {"kind": "auto"}}))
+
+    @classmethod
+    def said(cls, *arguments: str) -> str:
+        done = subprocess.run([PROGRAM, *arguments], cwd=cls.folder, capture_output=True, text=True, timeout=600, check=False)
+        assert done.returncode in (0, 1, 3), (arguments, done.stderr)
+        return done.stdout
+
+    def page(self, name: str, *arguments: str) -> str:
+        """The page of a document, of which the figures stand alone too."""
+        (self.folder / name).write_text(self.said(*arguments, "--json"))
+        ElementTree.fromstring(self.said("plot", name, "--output", "figure.svg") or (self.folder / "figure.svg").read_text())
+        page = self.said("report", name)
+        self.assertTrue(page.startswith("<!doctype html>") and page.rstrip().endswith("</html>"), page[:200])
+        for outside in ("src=", "href=\"http", "<script", "@import", "url(h"):
+            self.assertNotIn(outside, page)
+        return page
+
+    def test_of_a_characterisation(self) -> None:
+        page = self.page("c.json", "characterise", "1.csv")
+        self.assertIn('class="verdict"', page)
+        self.assertEqual(page.count("<svg"), 1)
+
+    def test_of_an_investigation(self) -> None:
+        page = self.page("i.json", "investigate", "study.json")
+        document = json.loads((self.folder / "i.json").read_text())
+        self.assertIn(document["summary"]["verdict"].split(";")[0].replace("'", "&#39;")[:40], page)
+        self.assertEqual(page.count("<svg"), 4 * len(document["figures"]))
+        for finding in document["findings"]:
+            self.assertIn(finding["cause"], page)
+            for name in finding["parameters"]:
+                self.assertIn(f"<td>{name}</td>", page)
+        for heading in ("Extended model", "Not examined"):
+            self.assertIn(f"<h2>{heading}</h2>", page)
+
+    def test_of_a_regression_run(self) -> None:
+        page = self.page("r.json", "regress", "--baseline", "1.csv", "2.csv", "--candidate", "3.csv", "4.csv")
+        document = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(page.count("<svg"), len(document["units"]))
+        for heading in ("Tests", "Recordings compared", "Sessions"):
+            self.assertIn(f"<h2>{heading}</h2>", page)
+        self.assertIn("3.csv", page)
+
+    def test_of_an_outage_evaluation(self) -> None:
+        page = self.page("o.json", "outages", "--runs", "2")
+        self.assertEqual(page.count("<svg"), 1)
+        self.assertRegex(page, r'<p class="verdict">[^<]*after 10 s without GNSS')
+        for text in ("<h2>Filters</h2>", "<h2>What the paper claims</h2>", "2 runs, seed 1, algorithm "):
+            self.assertIn(text, page)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""How many answers a second one core gives: /healthz, a parameter table, and a table that the client has already.
+
+usage: doors.py [SECONDS]     (each figure is the median of five runs of SECONDS / 5; default 25; DRIFTLABD is the daemon)
+
+The daemon runs on one core, wrk (Debian package `wrk`) on another, 16 connections with keep-alive. The table is one of
+three recorded axes of two recordings. Each is measured with the cache of answers and without; the bytes of both
+must be the same. The last line is that of one connection, for the latency of a request that waits for nobody.
+"""
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "api"))
+from daemon import Daemon  # noqa: E402 - beside the tests
+
+RUNS = 5
+CONNECTIONS = 16
+
+
+def recording(seed: int) -> bytes:
+    generator = np.random.default_rng(seed)
+    rates = generator.normal(0.0, 1e-3, (20_000, 3)) + np.cumsum(generator.normal(0.0, 1e-6, (20_000, 3)), axis=0)
+    return b"gx,gy,gz\n" + "\n".join(",".join(f"{v:.9g}" for v in row) for row in rates).encode() + b"\n"
+
+
+def fill(daemon: Daemon) -> str:
+    """Two recordings of a device and their results; the target of its table."""
+    ids = []
+    for seed in (1, 2):
+        answer = daemon.upload(recording(seed), device="bench", rate_hz=100)
+        assert answer.status == 201, answer.describe()
+        ids.append(answer.json["id"])
+    job = daemon.characterise(*ids)
+    assert job.status in (201, 202), job.describe()
+    assert daemon.finished(job.json["id"])["state"] == "succeeded"
+    target = "/v1/parameter-tables?device=bench&sensor=gyroscope&axis=x"
+    table = daemon.get(target, Prefer="wait=60")
+    assert table.status == 200 and table.json["pooling"]["state"] != "pending", table.describe()
+    return target
+
+
+@contextlib.contextmanager
+def on_one_core(data: Path, *arguments: str) -> Iterator[str]:
+    """The daemon on core 0 with its log in a file, for whoever reads it from a pipe takes a part of the core; its address."""
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        port = found.getsockname()[1]
+    process = subprocess.Popen([os.environ["DRIFTLABD"], "--data", str(data), "--listen", f"127.0.0.1:{port}", "--log-file", str(data.parent / "log"), *arguments],
+                               stderr=subprocess.DEVNULL, preexec_fn=lambda: os.sched_setaffinity(0, {0}))
+    address = f"http://127.0.0.1:{port}"
+    try:
+        for _ in range(200):
+            try:
+                fetch(address + "/healthz")
+                break
+            except OSError:
+                time.sleep(0.05)
+        yield address
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def fetch(url: str) -> tuple[bytes, str]:
+    """Body and tag."""
+    with urllib.request.urlopen(url, timeout=30) as answer:
+        return answer.read(), answer.headers["ETag"]
+
+
+def load(url: str, seconds: float, *, connections: int = CONNECTIONS, header: str = "") -> tuple[float, float]:
+    """Answers a second and the 99th percentile of the latency in ms."""
+    command = ["taskset", "-c", "1", "wrk", "-t1", f"-c{connections}", f"-d{max(1, round(seconds))}s", "--latency", url]
+    if header:
+        command[-1:-1] = ["-H", header]
+    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert "Non-2xx or 3xx" not in text and "Socket errors" not in text, text
+    rate = float(re.search(r"Requests/sec:\s+([\d.]+)", text)[1])
+    value, unit = re.search(r"99%\s+([\d.]+)(us|ms|s)", text).groups()
+    return rate, float(value) * {"us": 1e-3, "ms": 1.0, "s": 1e3}[unit]
+
+
+def measure(name: str, url: str, seconds: float, **options: object) -> float:
+    runs = [load(url, seconds / RUNS, **options) for _ in range(RUNS)]
+    rate, late = (statistics.median(column) for column in zip(*runs))
+    print(f"| {name} | {rate:,.0f} | {late:.2f} |", flush=True)
+    return rate
+
+
+def main() -> int:
+    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 25.0
+    if shutil.which("wrk") is None:
+        print("doors.py: wrk is missing: apt-get install wrk", file=sys.stderr)
+        return 2
+    if (os.cpu_count() or 1) < 2:
+        print("doors.py: needs two cores, one for the daemon and one for wrk", file=sys.stderr)
+        return 2
+    keep_alive = ("--budget", "requests_per_connection=1000000")
+    with tempfile.TemporaryDirectory() as folder:
+        data = Path(folder) / "data"
+        with Daemon(data) as daemon:
+            target = fill(daemon)
+        print("| what | answers a second | p99 ms |\n|---|---|---|")
+        with on_one_core(data, *keep_alive) as base:
+            kept = [fetch(base + target) for _ in range(2)]
+            alive = measure("/healthz", base + "/healthz", seconds)
+            table = measure("parameter table", base + target, seconds)
+            known = measure("parameter table, If-None-Match", base + target, seconds, header=f"If-None-Match: {kept[0][1]}")
+            measure("parameter table, one connection", base + target, seconds, connections=1)
+        with on_one_core(data, *keep_alive, "--budget", "answer_cache_bytes=0") as base:
+            made = fetch(base + target)
+            measure("parameter table, cache off", base + target, seconds)
+    print(f"\nratios to /healthz: table {table / alive:.2f}, revalidation {known / alive:.2f}; "
+          f"bytes with the cache off are the same: {'yes' if made == kept[0] == kept[1] else 'NO'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
