@@ -50,6 +50,44 @@ test('a refusal is repaired in place, and the recording ends in a figure that is
   await page.context().close();
 });
 
+test('what the first values say of units and condition is said before anything is sent', async () => {
+  const page = await open(browser, daemon, '/upload');
+  const rows = Array.from({length: 400}, (_, i) => `0.01,-0.02,${(9 + 0.01 * (i % 7)).toFixed(3)},0.1,0.2,${(9.8 + 0.001 * (i % 5)).toFixed(4)}`).join('\n');
+  await page.locator('input[type=file]').setInputFiles({name: 'table.csv', mimeType: 'text/csv', buffer: Buffer.from(`gx [deg/s],gy [deg/s],gz [deg/s],ax [g],ay [g],az [g]\n${rows}\n`)});
+  await page.getByText(/length of .* is 9\.8\d* g, where gravity is 1(\.0*)? g: these columns look like m\/s²/).waitFor();
+  await page.getByText(/The gyroscope about z reads 9\.0\d deg\/s and hardly changes\. The condition says that it is at rest\./).waitFor();
+  await page.getByText('The condition says that it is at rest').scrollIntoViewIfNeeded();
+  await page.getByRole('button', {name: 'Say so'}).click();
+  assert.equal(await page.getByLabel('Condition of table.csv', {exact: true}).inputValue(), 'constant_rate');
+  assert.equal(await page.getByLabel('Condition of table.csv: deg/s').inputValue(), '9');
+  await page.getByText('The condition says').waitFor({state: 'detached'});
+  await page.getByText('where gravity is').waitFor({state: 'detached'});
+  // What would refuse the upload stands there already, beside the field that mends it; nothing is stored by looking.
+  await page.getByLabel('Rate in Hz that repairs table.csv').fill('100');
+  await page.getByLabel('Rate in Hz that repairs table.csv').blur();
+  await visible(page, '6 columns read');
+  const device = await page.getByLabel('Device of table.csv').inputValue();
+  assert.equal((await fetch(`${daemon.address}/v1/devices/${device}`)).status, 404);
+  await page.getByRole('row', {name: /^gz \[deg\/s\] .*angular rate.* z .*deg\/s .*read from the header/}).waitFor();
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('a column that rises as a time does is proposed as one', async () => {
+  const page = await open(browser, daemon, '/upload');
+  const rows = Array.from({length: 300}, (_, i) => `${i * 4},${(0.01 * (i % 7)).toFixed(3)}`).join('\n');
+  await page.locator('input[type=file]').setInputFiles({name: 'table of turns.csv', mimeType: 'text/csv', buffer: Buffer.from(`all_time,gz [deg/s]\n${rows}\n`)});
+  await visible(page, 'Column all_time rises as a time in ms does, at 250 Hz.');
+  await page.getByRole('button', {name: 'It is the time'}).click();
+  await visible(page, '2 columns read');
+  assert.equal(await page.getByLabel('Quantity of all_time').inputValue(), 'time');
+  assert.equal(await page.getByLabel('Unit of all_time').inputValue(), 'ms');
+  assert.equal(await page.getByLabel('Quantity of gz [deg/s]').inputValue(), 'angular_rate');
+  assert.equal(await page.getByLabel('Rate in Hz of table of turns.csv').getAttribute('placeholder'), '250');
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
 test('the address holds the view: back undoes, reload restores, a second tab shows the same', async () => {
   const [recording] = (await daemon.json('/v1/recordings?sort=-created_at')).items;
   const page = await open(browser, daemon, `/recordings/${recording.id}`);

@@ -68,11 +68,16 @@ export class Daemon {
   }
 }
 
-// White noise that is the same each time: a linear congruential generator, twelve uniforms a value.
-export function noise(samples, seed = 1, sigma = 0.1) {
+// Normal numbers that are the same each time: a linear congruential generator, twelve uniforms a value.
+export function normal(seed = 1) {
   let state = seed;
   const uniform = () => { state = (Math.imul(state, 1664525) + 1013904223) >>> 0; return state / 2 ** 32; };
-  return Array.from({length: samples}, () => { let sum = -6; for (let i = 0; i < 12; ++i) sum += uniform(); return sum * sigma; });
+  return () => { let sum = -6; for (let i = 0; i < 12; ++i) sum += uniform(); return sum; };
+}
+
+export function noise(samples, seed = 1, sigma = 0.1) {
+  const random = normal(seed);
+  return Array.from({length: samples}, () => random() * sigma);
 }
 
 export const csv = (samples, seed = 1, heading = 'gz [deg/s]') => `${heading}\n${noise(samples, seed).map(x => x.toFixed(6)).join('\n')}\n`;

@@ -16,30 +16,46 @@ declare const DRIFTLAB_VERSION: string;
 const VERSION = DRIFTLAB_VERSION;
 
 type Page = () => JSX.Element;
-const PAGES: Record<string, () => Promise<{default: Page}>> = {
-  '': () => import('./pages/Lab'),
-  devices: () => import('./pages/Devices'),
-  'devices/*': () => import('./pages/Device'),
-  'recordings/*': () => import('./pages/Recording'),
-  compare: () => import('./pages/Compare'),
-  investigations: () => import('./pages/Investigations'),
-  'investigations/*': () => import('./pages/Investigation'),
-  outages: () => import('./pages/Outages'),
-  'outages/*': () => import('./pages/Outage'),
-  jobs: () => import('./pages/Jobs'),
-  'jobs/*': () => import('./pages/Job'),
-  upload: () => import('./pages/Upload'),
-  record: () => import('./pages/Record'),
-  regressions: () => import('./pages/Regressions'),
-  'regressions/*': () => import('./pages/Regression'),
-  docs: () => import('./pages/Docs'),
-  'docs/*': () => import('./pages/Docs'),
-  'problems/*': () => import('./pages/Docs'),
-  'models/*': () => import('./pages/Resource'),
-  'studies/*': () => import('./pages/Resource'),
-  'calibrations/*': () => import('./pages/Resource'),
+type Load = () => Promise<Page>;
+
+// Pages come in few files: each alone would pack far worse. What needs a library of its own comes alone.
+const lists = (pick: (pages: typeof import('./routes/lists')) => Page): Load => () => import('./routes/lists').then(pick);
+const measured = (pick: (pages: typeof import('./routes/measured')) => Page): Load => () => import('./routes/measured').then(pick);
+const results = (pick: (pages: typeof import('./routes/results')) => Page): Load => () => import('./routes/results').then(pick);
+
+const PAGES: Record<string, Load> = {
+  '': () => import('./pages/Lab').then(page => page.default),
+  devices: lists(pages => pages.Devices),
+  'devices/*': measured(pages => pages.Device),
+  'recordings/*': measured(pages => pages.Recording),
+  compare: measured(pages => pages.Compare),
+  investigations: lists(pages => pages.Investigations),
+  'investigations/*': results(pages => pages.Investigation),
+  outages: lists(pages => pages.Outages),
+  'outages/*': results(pages => pages.Outage),
+  drives: lists(pages => pages.Drives),
+  'drives/*': lists(pages => pages.Drive),
+  'drive-evaluations/*': results(pages => pages.DriveEvaluation),
+  populations: lists(pages => pages.Populations),
+  'populations/*': measured(pages => pages.Population),
+  'data-sheets': lists(pages => pages.DataSheets),
+  'data-sheets/*': lists(pages => pages.DataSheet),
+  webhooks: lists(pages => pages.Webhooks),
+  'webhooks/*': lists(pages => pages.Webhook),
+  jobs: lists(pages => pages.Jobs),
+  'jobs/*': lists(pages => pages.Job),
+  upload: lists(pages => pages.Upload),
+  record: () => import('./pages/Record').then(page => page.default),
+  regressions: lists(pages => pages.Regressions),
+  'regressions/*': results(pages => pages.Regression),
+  docs: lists(pages => pages.Docs),
+  'docs/*': lists(pages => pages.Docs),
+  'problems/*': lists(pages => pages.Docs),
+  'models/*': lists(pages => pages.Resource),
+  'studies/*': lists(pages => pages.Resource),
+  'calibrations/*': lists(pages => pages.Resource),
 };
-const absent = (): Promise<{default: Page}> => import('./pages/Absent');
+const absent: Load = () => import('./pages/Absent').then(page => page.default);
 
 function App(): JSX.Element {
   const place = usePlace();
@@ -49,7 +65,7 @@ function App(): JSX.Element {
   const first = useRef(true);
   useEffect(() => {
     let current = true;
-    (place.parts.length > 2 ? absent : PAGES[key] ?? absent)().then(module => { if (current) setShown({key, Page: module.default}); }, () => window.location.reload());
+    (place.parts.length > 2 ? absent : PAGES[key] ?? absent)().then(Page => { if (current) setShown({key, Page}); }, () => window.location.reload());
     return () => { current = false; };
   }, [key]);
   useEffect(() => {

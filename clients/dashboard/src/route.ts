@@ -3,9 +3,11 @@ import {useEffect, useState} from 'preact/hooks';
 
 export interface Place {
   path: string;
-  parts: string[];  // decoded segments
+  parts: string[];  // decoded segments, from the kind of the page on
   query: URLSearchParams;
 }
+
+export const listOf = (kind: string): string => `/${kind}`;
 
 function read(): Place {
   const {pathname, search} = window.location;
@@ -58,7 +60,7 @@ export function usePlace(): Place {
   return place;
 }
 
-const PAGES = /^\/(devices|recordings|compare|investigations|outages|jobs|upload|record|regressions|studies|models|calibrations|docs|problems)?(\/|$)/;
+const PAGES = /^\/(devices|recordings|compare|investigations|outages|jobs|upload|record|regressions|studies|models|calibrations|populations|data-sheets|webhooks|drives|drive-evaluations|docs|problems)?(\/|$)/;
 
 // Links of the page itself do not load it again.
 export function followLinks(): void {
@@ -72,4 +74,4 @@ export function followLinks(): void {
   });
 }
 
-export const pageOf = (kind: string, id: string): string => `/${kind}/${encodeURIComponent(id)}`;
+export const pageOf = (kind: string, id: string): string => `${listOf(kind)}/${encodeURIComponent(id)}`;

@@ -5,7 +5,7 @@ export interface LabEvent { type: string; data: {job?: string; kind?: string; st
 type Listener = (event: LabEvent) => void;
 
 // `ready` comes with every connection: what happened before it was not heard.
-const TYPES = ['ready', 'job', 'recording.created', 'recording.changed', 'recording.deleted', 'device.created', 'device.changed', 'result.created', 'reset'];
+const TYPES = ['ready', 'job', 'recording.created', 'recording.changed', 'recording.deleted', 'device.created', 'device.changed', 'device.deleted', 'result.created', 'reset'];
 const listeners = new Set<Listener>();
 let stream: EventSource | null = null;
 let open = false;

@@ -66,7 +66,7 @@ export function modelWords(model: string): string {
 }
 
 // A sentence of the API as it is printed: units and minus signs of the field.
-export const writeSentence = (text: string): string => writeUnit(text);
+export const writeSentence = (text: string): string => writeUnit(text).replace(/(^|[\s[(])-(?=\d)/g, '$1\u2212');
 
 export const plural = (n: number, one: string, many = `${one}s`): string => `${n} ${n === 1 ? one : many}`;
 const COUNTS = ['no', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight', 'nine', 'ten', 'eleven', 'twelve'];

@@ -19,9 +19,11 @@ import {useTitle} from '../shell/title';
 import {qualityWords} from './Recording';
 import {colours, type ParameterTable, type Trends} from './device/documents';
 import {Parameters} from './device/Table';
+import {SheetLine} from './device/SheetLine';
 import {TrendFrame} from './device/TrendPanel';
 
 const CONDITIONS = 8;
+const PRINTED = 10;  // recordings of a report, as style/print.css says
 const WAITS_MS = 2500;
 
 function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}): JSX.Element | null {
@@ -59,12 +61,13 @@ function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.
   const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
   return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
     <Shown read={read}>{list => <>
-      <div class="scroll"><table class="stacked">
+      <div class="scroll"><table class="stacked list-of-recordings">
         <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">samples</th><th scope="col">quality</th><th scope="col">uploaded</th></tr></thead>
         <tbody>{list.items.map(recording => <tr key={recording.id}>
           <th scope="row"><a href={pageOf('recordings', recording.id)}>{recording.metadata.id ?? recording.id}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
           <td class="n" data-label="samples">{writeCount(recording.quality.samples)}</td><td class="sec">{qualityWords(recording)}</td><td class="sec">{writeWhen(recording.created_at)}</td>
         </tr>)}</tbody></table></div>
+      {(list.items.length > PRINTED || list.next_cursor) && <p class="print-only note">The newest {PRINTED} of {list.next_cursor ? `more than ${list.items.length}` : list.items.length} recordings; the page has all.</p>}
       {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
     </>}</Shown>
   </Panel>;
@@ -98,7 +101,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
         <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. Seed, algorithm version and revision of each recording stand on its own page and in the table’s document.</p>} />
       </div>
       {read.data?.pooling.state === 'pending' && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
-      <Shown read={read}>{table => <Parameters table={table} />}</Shown>
+      <Shown read={read}>{table => <><Parameters table={table} />{table.data_sheet && <SheetLine comparison={table.data_sheet} />}</>}</Shown>
     </section>
     {read.data && <div class="grid two">
       <Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} />
@@ -109,6 +112,12 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
     </div>}
     <Recordings device={device} axis={chosen.axis} />
   </>;
+}
+
+// What it is, each text leading to the other devices of that model.
+function Unit({device}: {device: Device}): JSX.Element {
+  const models = [...new Set([device.model, device.imu].filter((text): text is string => Boolean(text)))];
+  return <>{models.map((text, i) => <span key={text}>{i > 0 && ', '}<a href={pageOf('populations', text)} title={`All devices of ${text}`}>{text}</a></span>)}{device.serial && `${models.length > 0 ? ', ' : ''}${device.serial}`}</>;
 }
 
 function CharacteriseAll({device}: {device: Device}): JSX.Element | null {
@@ -128,7 +137,7 @@ export default function DevicePage(): JSX.Element {
   useTitle(read.data?.name ?? name);
   return <Shown read={read}>{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
-      facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), [device.model, device.imu, device.serial].filter(Boolean).join(', '), summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
+      facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
       actions={<><a class="btn" href={`/upload`}>Add recordings</a><a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a><Report /></>} />
     <Shown read={summary}>{found => <>{found.channels.length > 0 ? <Results device={device} summary={found} /> : <><Results device={device} summary={found} /><Recordings device={device} axis={null} /></>}</>}</Shown>
   </>}</Shown>;

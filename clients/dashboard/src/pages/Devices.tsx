@@ -7,6 +7,7 @@ import {conditionName} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {Panel, Shown} from '../shell/states';
+import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
 
 export default function Devices(): JSX.Element {
@@ -17,6 +18,7 @@ export default function Devices(): JSX.Element {
   const read = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
   return <>
     <Head title="Devices" facts={['newest first']} actions={<input type="search" aria-label="Only names with" placeholder="Only names with" value={q} onInput={event => choose({q: event.currentTarget.value || null})} />} />
+    <Tabs group="devices" />
     <Panel><Shown read={read}>{list => {
       const shown = list.items.filter(device => device.name.toLowerCase().includes(q));
       return <>

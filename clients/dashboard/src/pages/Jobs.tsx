@@ -8,6 +8,7 @@ import {capital, jobKind, plural} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
+import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
 
 const STATES: Record<string, [string, string]> = {succeeded: ['✓', 'good'], failed: ['✗', 'bad'], dead: ['✗', 'bad'], cancelled: ['–', ''], running: ['●', ''], queued: ['○', '']};
@@ -17,7 +18,9 @@ const SURE_S = 5;
 export function what(job: Job): string {
   const {inputs, parameters} = job.request;
   if (inputs.scenario !== undefined) return `scenario ${typeof inputs.scenario === 'string' ? inputs.scenario : 'of its own'}${parameters.runs ? `, ${parameters.runs} runs` : ''}`;
-  const names = inputs.recordings?.map(one => one.name).filter(Boolean) ?? [];
+  if (inputs.candidate) return `${inputs.candidate.label || 'candidate'} against ${inputs.baseline?.label || 'the baseline'}`;
+  if (job.kind === 'drive_evaluation') return `${parameters.question ?? 'run'} ${inputs.document?.id ?? ''}`.trim();
+  const names = inputs.recordings?.map(one => one.name).filter(name => name && !name.startsWith('rec_')) ?? [];
   if (inputs.recordings) return names.length > 0 && names.length < 4 ? names.join(', ') : plural(inputs.recordings.length, 'recording');
   return inputs.axis ? `axis ${inputs.axis}` : '–';
 }
@@ -25,6 +28,8 @@ export function what(job: Job): string {
 export function resultPage(job: Job): string {
   if (job.kind === 'characterise' && job.request.inputs.recordings?.[0]) return pageOf('recordings', job.request.inputs.recordings[0].id);
   if (job.kind === 'outage_evaluation') return pageOf('outages', job.id);
+  if (job.kind === 'drive_evaluation') return pageOf('drive-evaluations', job.id);
+  if (job.kind === 'regress') return pageOf('regressions', job.id);
   if (job.kind === 'investigate') return `/investigations?job=${job.id}`;
   return pageOf('jobs', job.id);
 }
@@ -87,6 +92,7 @@ export default function Jobs(): JSX.Element {
   return <>
     <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued`, 'live']}
       actions={<Segments label="State" options={[['all', 'All'], ['running', 'Running'], ['failed', 'Failed']] as const} value={state as 'all'} onChange={value => choose({state: value === 'all' ? null : value, after: null})} />} />
+    <Tabs group="jobs" />
     {running.map(job => <Panel key={job.id} title={<a href={pageOf('jobs', job.id)}>{capital(jobKind(job.kind))}: {what(job)}</a>} sub={`${job.stage ?? 'starting'} · attempt ${job.attempt} · started ${job.started_at ? writeClock(job.started_at) : '–'}`}
       tools={<div class="tools"><Cancel job={job} onDone={read.again} /></div>}>
       <div class="row"><span class="grow"><Progress share={job.progress} label={jobKind(job.kind)} /></span><b>{Math.round(job.progress * 100)} %</b><span class="sec">{timeLeft(job)}</span></div>
@@ -98,7 +104,7 @@ export default function Jobs(): JSX.Element {
           <th scope="row"><a href={pageOf('jobs', job.id)}>{jobKind(job.kind)}</a></th>
           <td class="sec">{what(job)}{job.problem && <div><span class="g bad" aria-hidden="true">✗ </span>{job.problem.detail}</div>}</td>
           <td><State job={job} /></td>
-          <td class="n" data-label="took">{job.started_at ? writeDuration(((job.finished_at ? Date.parse(job.finished_at) : Date.now()) - Date.parse(job.started_at)) / 1000) : '–'}</td>
+          <td class="n nowrap" data-label="took">{job.started_at ? writeDuration(((job.finished_at ? Date.parse(job.finished_at) : Date.now()) - Date.parse(job.started_at)) / 1000) : '–'}</td>
           <td class="desk-only" style={{width: '38%'}}><Clock job={job} from={from} to={to} /></td>
           <td class="n">{job.state === 'succeeded' ? <a href={resultPage(job)}>Result</a> : <Cancel job={job} onDone={read.again} />}</td>
         </tr>)}

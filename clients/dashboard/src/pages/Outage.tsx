@@ -1,4 +1,5 @@
 // What error models are worth in navigation: error, gain, honesty.
+import {scaleLinear} from 'd3-scale';
 import type {JSX} from 'preact';
 import {useJobEvents, useRead} from '../api/client';
 import type {Quantity} from '../api/documents';
@@ -8,7 +9,7 @@ import {writeSentence} from '../format/words';
 import {csvOf, save} from '../figure/export';
 import {curlOf, Tools, useWidth} from '../figure/Figure';
 import {choose, usePlace} from '../route';
-import {Head, MadeBy, Report} from '../shell/Head';
+import {Head, MadeBy, Report, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
@@ -23,9 +24,9 @@ function Dots({filters, pick, most, title, colours}: {filters: Filter[]; pick: (
   const [box, width] = useWidth();
   const x = (value: number): number => 4 + value / most * (width - 40);
   const height = filters.length * ROW + 20;
-  const ticks = most > 12 ? [0, 10, 20].filter(tick => tick <= most) : [0, 5, 10].filter(tick => tick <= most);
+  const ticks = scaleLinear().domain([0, most]).ticks(Math.max(1, Math.floor(width / 50)));
   return <div ref={box}><div class="u"><b>{title}</b></div><svg width={width} height={height} aria-hidden="true">
-    {ticks.map(tick => <g key={tick}><line class={tick === 0 ? 'ax' : 'gr'} x1={x(tick)} x2={x(tick)} y1="0" y2={height - 18} /><text class="s" x={x(tick)} y={height - 5} text-anchor={tick === 0 ? 'start' : 'middle'}>{tick === 0 ? '0 m' : tick}</text></g>)}
+    {ticks.map(tick => <g key={tick}><line class={tick === 0 ? 'ax' : 'gr'} x1={x(tick)} x2={x(tick)} y1="0" y2={height - 18} /><text class="s" x={x(tick)} y={height - 5} text-anchor={tick === 0 ? 'start' : 'middle'}>{tick === 0 ? '0 m' : writeTick(tick)}</text></g>)}
     {filters.map((filter, i) => { const value = pick(filter); const [low, high] = value.ci95 ?? []; const y = i * ROW + ROW / 2; return <g key={filter.name}>
       {low !== null && low !== undefined && high !== null && high !== undefined && <line x1={x(low)} x2={x(high)} y1={y} y2={y} stroke={colours[i]} stroke-width="1.6" />}
       <circle cx={x(value.value ?? 0)} cy={y} r="4" fill={colours[i]} /><text x={x(high ?? value.value ?? 0) + 7} y={y + 4}>{writeQuantity(value).value}</text></g>; })}
@@ -38,7 +39,7 @@ function Nees({filters, colours}: {filters: Filter[]; colours: string[]}): JSX.E
   const low = Math.min(1, ...values) / 1.1;
   const high = Math.max(4, ...values) * 1.1;
   const x = (value: number): number => 6 + Math.log(value / low) / Math.log(high / low) * (width - 12);
-  const ticks = [1, 2, 5, 10, 20, 50, 100].filter(tick => tick >= low && tick <= high);
+  const ticks = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].filter(tick => tick >= low && tick <= high);
   const height = filters.length * ROW + 20;
   return <div ref={box}><svg width={width} height={height} aria-hidden="true">
     {ticks.map(tick => <g key={tick}><line class={tick === HONEST ? 'ax' : 'gr'} x1={x(tick)} x2={x(tick)} y1="0" y2={height - 18} /><text class="s" x={x(tick)} y={height - 5} text-anchor="middle">{tick}</text></g>)}
@@ -66,14 +67,6 @@ function Staircase({evaluation, from}: {evaluation: Evaluation; from: Filter | u
   </svg></div>;
 }
 
-function sentence(left: Filter, right: Filter): string {
-  const [a, b] = [left.mean_error_m.value ?? 0, right.mean_error_m.value ?? 0];
-  const length = (left.outages[0]?.end_s ?? 0) - (left.outages[0]?.start_s ?? 0);
-  const gain = Math.round((1 - b / a) * 100);
-  const honesty = `Its 95 % ellipse holds the truth in ${writeShare(right.coverage95)} of runs, that of ${left.name} in ${writeShare(left.coverage95)}.`;
-  return `${right.name} ${gain > 0 ? 'lowers' : 'raises'} the error after ${writeTick(length)} s without GNSS from ${writeNumber(a, 2)} to ${writeNumber(b, 2)} m, by ${Math.abs(gain)} %. ${honesty}`;
-}
-
 function Found({stored, evaluation}: {stored: StoredEvaluation; evaluation: Evaluation}): JSX.Element {
   const {query} = usePlace();
   const ranked = [...evaluation.filters].sort((a, b) => (a.mean_error_m.value ?? 0) - (b.mean_error_m.value ?? 0));
@@ -90,7 +83,7 @@ function Found({stored, evaluation}: {stored: StoredEvaluation; evaluation: Eval
   const table = (): void => save('outage-errors.csv', 'text/csv', csvOf({heading: ['filter', 'outage', 'error_m', 'low_m', 'high_m', 'nees', 'coverage95'], rows: evaluation.filters.flatMap(filter => filter.outages.map(one => [filter.name, one.index, one.error_m.value, one.error_m.ci95?.[0] ?? null, one.error_m.ci95?.[1] ?? null, one.nees, one.coverage95]))}));
   const choice = (side: 'left' | 'right', value: Filter): JSX.Element => <label class="nowrap">{side} <select value={value.name} onChange={event => choose({[side]: event.currentTarget.value})}>{evaluation.filters.map(filter => <option key={filter.name}>{filter.name}</option>)}</select></label>;
   return <>
-    <p class="verdict">{sentence(left, right)}<small>{evaluation.attribution && <>Of the gain, {writeQuantity(evaluation.attribution.low_frequency_noise.difference_m).value} m come from telling the filter of low-frequency noise, {writeQuantity(evaluation.attribution.gauss_markov_states.difference_m).value} m from Gauss-Markov states, {writeQuantity(evaluation.attribution.switching.difference_m).value} m from following the rate.</>}</small></p>
+    {evaluation.summary && <Verdict summary={evaluation.summary} />}
     <div class="grid side-main">
       <Panel title="Drive" sub={`${writeDuration(evaluation.trajectory.time_s[evaluation.trajectory.time_s.length - 1] ?? 0)}, outage ${outage + 1} enlarged`}><DriveMap evaluation={evaluation} outage={outage} left={left} right={right} /></Panel>
       <Panel title={`Outage ${outage + 1}, end`} controls={<Segments label="Outage" options={left.outages.map(one => [String(one.index), String(one.index)] as const)} value={String(outage + 1)} onChange={value => choose({outage: value})} />} sub={<>{evaluation.runs} runs · solid: the filter’s own 95 %, dashed: what happened</>} tools={<div class="tools">{choice('left', left)}{choice('right', right)}</div>}>

@@ -7,6 +7,7 @@ import {writeWhen} from '../format/time';
 import {go, pageOf} from '../route';
 import {Head} from '../shell/Head';
 import {Panel, Refusal, Shown} from '../shell/states';
+import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
 import type {StoredEvaluation} from './outage/documents';
 
@@ -21,6 +22,7 @@ export default function Outages(): JSX.Element {
   const start = (): void => { setProblem(undefined); send<StoredEvaluation>('POST', '/v1/outage-evaluations', {scenario, runs: Number(runs)}).then(made => go(pageOf('outages', made.id)), error => setProblem(error as Problem)); };
   return <>
     <Head title="Outages" facts={['what error models are worth in navigation']} />
+    <Tabs group="outages" />
     <Panel title="Simulate">
       <div class="row"><label>scenario <select value={scenario} onChange={event => setScenario(event.currentTarget.value)}>{SCENARIOS.map(name => <option key={name}>{name}</option>)}</select></label>
         <label>runs <input type="number" min={2} max={100000} value={runs} onInput={event => setRuns(event.currentTarget.value)} /></label><button type="button" class="btn primary" onClick={start}>Simulate</button></div>

@@ -15,7 +15,7 @@ import {useTitle} from '../shell/title';
 import type {Regression as Document, Test, Unit} from './regression/documents';
 
 const COLOURS: Record<string, string> = {beyond: 'var(--robust)', worse_within_margin: 'var(--measured)', open: 'var(--measured)', ok: 'var(--measured)', improved: 'var(--model)'};
-const WORDS: Record<string, string> = {ok: 'no worse', worse_within_margin: 'worse, within the margin', beyond: 'beyond the margin', open: 'open: too few or too short', improved: 'better'};
+const WORDS: Record<string, string> = {ok: 'no worse', worse_within_margin: 'worse, within the margin', beyond: 'beyond the margin', open: 'open', improved: 'better'};
 
 const nameOf = (unit: Unit): string => `${unit.sensor} ${unit.axis}, ${unit.condition.includes(':') ? unit.condition.split(':').slice(1).join(' ') : conditionName({kind: unit.condition})}`;
 
@@ -23,18 +23,19 @@ function ratioPlots(tests: readonly Test[]): Plot[] {
   const scales = tests.filter(test => test.kind === 'scale' && test.tau_s !== undefined);
   const x = scales.map(test => test.tau_s!);
   const ends = (i: 0 | 1): Nullable => scales.map(test => test.ci[i] ?? null);
+  // `open`: the interval reaches beyond the margin and back, for want of sessions or of length.
   const kinds = [...new Set(scales.map(test => test.verdict))];
-  const series: Series[] = kinds.map(kind => ({id: kind, name: WORDS[kind] ?? kind, x, y: scales.map(test => test.verdict === kind ? test.ratio : null), low: ends(0), high: ends(1), mark: kind === 'beyond' ? 'square' : kind === 'open' ? 'open' : 'dot', colour: COLOURS[kind] ?? 'var(--measured)'}));
+  const series: Series[] = kinds.map(kind => ({id: kind, name: WORDS[kind] ?? kind, ...(kind === 'open' ? {detail: 'too few or too short'} : {}), x, y: scales.map(test => test.verdict === kind ? test.ratio : null), low: ends(0), high: ends(1), mark: kind === 'beyond' ? 'square' : kind === 'open' ? 'open' : 'dot', colour: COLOURS[kind] ?? 'var(--measured)'}));
   // Each averaging time has its own margin; those that are not gated have none.
-  const limit: Series = {id: 'margin', name: 'margin', detail: 'of the gated times', x, y: scales.map(test => test.gated ? 1 + test.margin : null), line: true, colour: 'var(--robust)', dash: '7 4'};
+  const limit: Series = {id: 'margin', name: 'margin', detail: 'of the gated times', x, y: scales.map(test => test.gated ? test.margin : null), line: true, colour: 'var(--robust)', dash: '7 4'};
   return [{id: 'ratio', height: 220, x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: 'candidate ÷ baseline, Allan deviation', write: writeTick}, rules: [1], series: [...series, limit]}];
 }
 
 function Tests({unit}: {unit: Unit}): JSX.Element {
   const parameters = unit.tests.filter(test => test.kind === 'parameter');
-  return <Panel title="Parameters" sub={unit.structure.changed ? 'the structure changed: they are not compared' : unit.structure.pooled ?? ''}>
+  return <Panel title="Parameters" sub={unit.structure.changed ? 'not compared: no model describes both arms' : unit.structure.pooled ?? ''}>
     {parameters.length === 0 ? <p class="sec">None is compared; the scales decide.</p> : <table><thead><tr><th scope="col">parameter</th><th scope="col" class="n">candidate ÷ baseline</th><th scope="col">interval</th><th scope="col" class="n">margin</th><th scope="col">word</th></tr></thead>
-      <tbody>{parameters.map(test => <tr key={test.name}><th scope="row">{test.name}</th><td class="n"><b>{test.ratio === null ? '…' : writeNumber(test.ratio, 4)}</b></td><td class="ci">[{test.ci.map(end => end === null ? '…' : writeNumber(end, 4)).join(', ')}]</td><td class="n">{Math.round(test.margin * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
+      <tbody>{parameters.map(test => <tr key={test.name}><th scope="row">{test.name}</th><td class="n"><b>{test.ratio === null ? '…' : writeNumber(test.ratio, 4)}</b></td><td class="ci">[{test.ci.map(end => end === null ? '…' : writeNumber(end, 4)).join(', ')}]</td><td class="n">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
     <p class="note">Structure: {unit.structure.baseline ?? '…'} before, {unit.structure.candidate ?? '…'} after{unit.structure.p !== undefined && unit.structure.p !== null ? `, ${writeP(unit.structure.p)}` : ''}.</p>
   </Panel>;
 }
@@ -55,7 +56,7 @@ function Shown({document}: {document: Document}): JSX.Element {
         readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
         how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl></>} />
       <div class="stack"><Tests unit={unit} />
-        <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}><span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>{finding.sentence}</li>)}{document.comparability.map(each => <li key={each.item}>{each.sentence}</li>)}</ul>}
+        <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}>{finding.verdict !== 'ok' && <span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>}{finding.sentence}</li>)}{document.comparability.map(each => <li key={each.item}>{each.sentence}</li>)}</ul>}
           {document.versus_previous && <p class="note">Against {document.versus_previous.label}: {document.versus_previous.sentence}</p>}</Panel>
         <Panel title="Recordings" sub={`${plural(document.arms.baseline.sessions.length, 'session')} before, ${document.arms.candidate.sessions.length} after`}><ul class="rows plain">{[...new Set(recordings)].map(id => <li key={id}><a href={pageOf('recordings', id)}>{id}</a></li>)}</ul>{document.arms.excluded.map(each => <p key={each.recording} class="note">Left out: {each.recording}, {each.reason}</p>)}</Panel></div>
     </div>}

@@ -2,8 +2,8 @@
 import type {JSX} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
 import {Problem, ask} from '../api/client';
-import {writeBytes} from '../format/number';
-import {countWord} from '../format/words';
+import {writeBytes, writeTick} from '../format/number';
+import {countWord, plural, writeSentence} from '../format/words';
 import {copy} from '../figure/Figure';
 import {choose, go, pageOf, usePlace} from '../route';
 import {characterise} from '../shell/Characterise';
@@ -57,8 +57,19 @@ async function sendAll(analyse: boolean, refused: (problem: Problem) => void): P
   if (left.length === 0 && sent.length === 1) go(pageOf('recordings', sent[0]!));
 }
 
+// What is known of a file that waits: what would refuse it stands beside the field that mends it.
+function Seen({each}: {each: Pending}): JSX.Element {
+  const seen = each.look?.document;
+  const problem = seen?.problems[0];
+  if (problem) return <><span class="g bad" aria-hidden="true">✗ </span>{writeSentence(problem.detail)} {problem.fields.parameter === 'rate_hz' && !each.rate && <label class="row">rate <input type="text" size={7} placeholder="Hz" aria-label={`Rate in Hz that repairs ${each.file.name}`} value={each.rate} onChange={event => change(each.key, {rate: event.currentTarget.value})} /></label>}</>;
+  const count = seen?.columns.length ?? 0;
+  return <span class="sec">{!each.look ? 'reading' : count > 0 ? <><span class="g good" aria-hidden="true">✓ </span>{plural(count, 'column')} read</> : 'ready'}</span>;
+}
+
 function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
   const name = each.file.name;
+  const rate = each.look?.document?.rate_hz;
+  const byTime = rate?.from === 'time_column' ? rate : null;
   const text = (field: 'device' | 'rate', label: string, size: number, placeholder = ''): JSX.Element =>
     <input type="text" aria-label={`${label} of ${name}`} size={size} placeholder={placeholder} value={each[field]} disabled={each.state === 'sending' || each.state === 'sent'} onInput={event => change(each.key, {[field]: event.currentTarget.value})} />;
   return <tr aria-selected={chosen}>
@@ -66,9 +77,9 @@ function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
     <td data-label="device">{text('device', 'Device', 16)}</td>
     <td data-label="condition"><ConditionField label={`Condition of ${name}`} value={each.condition} onChange={condition => change(each.key, {condition})} /></td>
     <td class="n nowrap" data-label="size">{writeBytes(each.file.size)}</td>
-    <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, 'by time')}</td>
+    <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, byTime ? writeTick(Number(byTime.value.toPrecision(4))) : 'by time')}</td>
     <td>
-      {each.state === 'ready' && <span class="sec">{each.look ? each.look.columns.length > 0 ? `${each.look.columns.length} column${each.look.columns.length === 1 ? '' : 's'} seen` : 'ready' : 'reading'}</span>}
+      {each.state === 'ready' && <Seen each={each} />}
       {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Pause ${name}`} onClick={() => running.get(each.key)?.abort()}>Pause</button></span></>}
       {each.state === 'paused' && <span class="sec">paused at {writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Go on with ${name}`} onClick={() => { void sendOne(each); }}>Go on</button></span>}
       {each.state === 'sent' && <><span class="g good" aria-hidden="true">✓ </span><a href={pageOf('recordings', each.recording ?? '')}>stored</a>{each.job && <>, <a href={pageOf('jobs', each.job)}>characterising</a></>}</>}

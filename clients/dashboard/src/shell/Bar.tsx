@@ -6,7 +6,7 @@ import {usePlace} from '../route';
 import {Find} from './Find';
 
 const PAGES: readonly (readonly [string, string])[] = [['/', 'Lab'], ['/devices', 'Devices'], ['/investigations', 'Investigations'], ['/outages', 'Outages'], ['/regressions', 'Regressions'], ['/jobs', 'Jobs']];
-const OWNERS: Record<string, string> = {record: '/', recordings: '/devices', compare: '/devices', studies: '/devices', models: '/devices', calibrations: '/devices'};
+const OWNERS: Record<string, string> = {record: '/', recordings: '/devices', compare: '/devices', studies: '/devices', models: '/devices', calibrations: '/devices', populations: '/devices', 'data-sheets': '/devices', drives: '/outages', 'drive-evaluations': '/outages', webhooks: '/jobs'};
 
 export function Mark(): JSX.Element {
   return <svg width="18" height="18" viewBox="0 0 18 18" aria-hidden="true"><path d="M1.5 3.5C5 10.5 7 13.2 9.4 13.2S13.6 11.8 16.5 7.4" fill="none" stroke-width="2" stroke-linecap="round" /></svg>;

@@ -1,6 +1,6 @@
 // The drawer at the right: how something was computed. Esc closes it and gives the focus back.
 import type {JSX} from 'preact';
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useLayoutEffect, useRef, useState} from 'preact/hooks';
 
 interface Open { title: string; content: () => JSX.Element }
 let show: (open: Open | null) => void = () => undefined;
@@ -20,7 +20,8 @@ export function Drawer(): JSX.Element | null {
     };
     return () => { show = () => undefined; };
   }, []);
-  useEffect(() => { if (open) heading.current?.focus(); }, [open]);
+  // In the frame in which it appears: an Esc that follows at once must find the drawer in focus.
+  useLayoutEffect(() => { if (open) heading.current?.focus(); }, [open]);
   if (!open) return null;
   return <aside class="drawer" role="dialog" aria-label={open.title} onKeyDown={event => { if (event.key === 'Escape') { event.stopPropagation(); closeDrawer(); } }}>
     <div class="row"><h2 tabIndex={-1} ref={heading}>{open.title}</h2><button type="button" class="btn right" onClick={closeDrawer}>Close</button></div>

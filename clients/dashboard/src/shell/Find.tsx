@@ -2,15 +2,17 @@
 import type {JSX} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {get} from '../api/client';
-import {go, pageOf} from '../route';
+import {go, listOf, pageOf} from '../route';
 
 interface Hit { title: string; subtitle: string; href: string }
 const PLACES: Hit[] = [
   {title: 'Upload', subtitle: 'recordings, a folder', href: '/upload'}, {title: 'Jobs', subtitle: 'what runs and what ran', href: '/jobs'},
   {title: 'Investigations', subtitle: 'what simulations get wrong', href: '/investigations'}, {title: 'Outages', subtitle: 'what error models are worth', href: '/outages'},
+  {title: 'Populations', subtitle: 'all devices of a model', href: listOf('populations')}, {title: 'Data sheets', subtitle: 'what manufacturers state', href: listOf('data-sheets')},
+  {title: 'Drives', subtitle: 'recorded drives, measured outages', href: listOf('drives')}, {title: 'Webhooks', subtitle: 'who is told when jobs end', href: listOf('webhooks')},
   {title: 'Compare', subtitle: 'several recordings side by side', href: '/compare'}, {title: 'Manual', subtitle: 'the pages of the documentation', href: '/docs'},
 ];
-const IDS: readonly (readonly [string, string])[] = [['rec_', 'recordings'], ['dev_', 'devices'], ['job_', 'jobs'], ['inv_', 'investigations'], ['mod_', 'models'], ['stu_', 'studies'], ['cal_', 'calibrations']];
+const IDS: readonly (readonly [string, string])[] = [['rec_', 'recordings'], ['dev_', 'devices'], ['job_', 'jobs'], ['inv_', 'investigations'], ['mod_', 'models'], ['stu_', 'studies'], ['cal_', 'calibrations'], ['drv_', 'drives'], ['whk_', 'webhooks']];
 const WAIT_MS = 120;
 
 async function hitsFor(text: string): Promise<Hit[]> {

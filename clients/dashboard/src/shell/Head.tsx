@@ -23,24 +23,38 @@ export function Verdict({summary, children}: {summary: Summary; children?: Compo
   </p>;
 }
 
-// The page as it is, on paper: what is folded is opened while it prints, and `?print=1` asks for it at once.
+// --- the page as it is, on paper: what is folded is opened, and all is laid out as wide as the paper before figures are drawn
+let folded: HTMLDetailsElement[] = [];
+function onto(): void {
+  folded = [...folded, ...document.querySelectorAll<HTMLDetailsElement>('main details:not([open]):not([data-stays])')];
+  for (const each of folded) each.open = true;
+  document.documentElement.classList.add('paper');
+}
+function off(): void {
+  for (const each of folded) each.open = false;
+  folded = [];
+  document.documentElement.classList.remove('paper');
+}
+const LAID_OUT_MS = 300;  // for figures to be drawn again
+const printed = (): void => { onto(); setTimeout(() => window.print(), LAID_OUT_MS); };
+
+// `?print=1` asks for it at once, and stays on paper.
 export function Report(): JSX.Element {
   const {query} = usePlace();
   const asked = query.get('print') === '1';
   useEffect(() => {
-    let opened: HTMLDetailsElement[] = [];
-    const open = (): void => { opened = [...document.querySelectorAll<HTMLDetailsElement>('main details:not([open])')]; for (const each of opened) each.open = true; };
-    const close = (): void => { for (const each of opened) each.open = false; opened = []; };
-    window.addEventListener('beforeprint', open);
-    window.addEventListener('afterprint', close);
-    return () => { window.removeEventListener('beforeprint', open); window.removeEventListener('afterprint', close); };
-  }, []);
+    const leave = (): void => { if (!asked) off(); };
+    window.addEventListener('beforeprint', onto);
+    window.addEventListener('afterprint', leave);
+    return () => { window.removeEventListener('beforeprint', onto); window.removeEventListener('afterprint', leave); off(); };
+  }, [asked]);
   useEffect(() => {
     if (!asked) return undefined;
-    const timer = setInterval(() => { if (!document.querySelector('[aria-busy=true]')) { clearInterval(timer); window.print(); } }, 500);
+    onto();
+    const timer = setInterval(() => { if (!document.querySelector('[aria-busy=true]')) { clearInterval(timer); printed(); } }, 500);
     return () => clearInterval(timer);
   }, [asked]);
-  return <button type="button" class="btn" onClick={() => window.print()}>Report</button>;
+  return <button type="button" class="btn" onClick={printed}>Report</button>;
 }
 
 // What a report must say of the job that made a result; on paper only, for on the screen the job has its page.

@@ -1,8 +1,8 @@
 // Keys that work on every page; a page adds its own by `usePageKeys`.
 import {useEffect} from 'preact/hooks';
-import {go} from '../route';
+import {go, listOf} from '../route';
 
-const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', r: '/regressions', j: '/jobs'};
+const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', r: '/regressions', j: '/jobs', p: listOf('populations'), s: listOf('data-sheets'), v: listOf('drives'), w: listOf('webhooks')};
 const GO_MS = 1200;
 
 const typing = (target: EventTarget | null): boolean => target instanceof HTMLElement && (target.isContentEditable || ['INPUT', 'SELECT', 'TEXTAREA'].includes(target.tagName));

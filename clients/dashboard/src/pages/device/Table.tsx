@@ -5,7 +5,7 @@ import {writeP, writeQuantity, writeTick} from '../../format/number';
 import {conditionName, plural, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 import {Segments} from '../../shell/states';
-import {colours, columnName, withDensity, type Cell, type ParameterTable, type TableRow} from './documents';
+import {colours, columnName, uniqueName, withDensity, type Cell, type ParameterTable, type TableRow} from './documents';
 
 const WIDTH = 88;
 const ARROWS: Record<string, string> = {up: '↑', down: '↓'};
@@ -86,7 +86,7 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
   };
   const phone = table.columns[phoneColumn];
   return <>
-    <div class="scroll desk-only"><table class="pt">
+    <div class="scroll desk-only"><table class="pt" style={{'--columns': String(table.columns.length)}}>
       <thead><tr><th scope="col">condition</th>{table.columns.map(column => { const name = columnName(column.key); return <th key={column.key} scope="colgroup" colSpan={2}>{name.process} <b>{name.symbol}</b> <span class="u">{writeUnit(column.unit)}</span></th>; })}</tr></thead>
       <tbody>{table.rows.map((row, i) => <tr key={row.label} class={i === reference ? 'ref' : ''}>
         <RowHead row={row} axis={table.axis} colour={colour[i]!} isReference={i === reference} onReference={() => choose({ref: i === 0 ? null : row.label})} chosen={chosen.includes(row.label)} onChoose={add => pick(row.label, add)} />
@@ -99,7 +99,7 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
       </tbody>
     </table></div>
     <div class="phone-only">
-      <Segments label="Parameter" options={table.columns.map((column, i) => [String(i), columnName(column.key).symbol] as const)} value={String(phoneColumn)} onChange={value => setPhoneColumn(Number(value))} />
+      <Segments label="Parameter" options={table.columns.map((column, i) => [String(i), uniqueName(column.key, table.columns)] as const)} value={String(phoneColumn)} onChange={value => setPhoneColumn(Number(value))} />
       {phone && <><p class="sec">{columnName(phone.key).process}, {writeUnit(phone.unit)}</p><ul class="pl">{table.rows.map((row, i) => { const {cell, change, against} = cellOf(row, phone.key); return <li key={row.label}><b>{conditionName(row.condition, table.axis)}</b><Micro cell={cell} reference={against} scale={scales[phoneColumn] ?? null} colour={colour[i]!} /><Value cell={cell} reason={row.reasons[phone.key]} change={change} against={referenceLabel} /></li>; })}</ul></>}
     </div>
     <p class="note">Value and 95 % interval; the interval decides the digits. ↑ ↓ {reference === 0 ? 'changed against the reference row at 5 %' : 'intervals apart from those of the reference row'}. … the data do not identify it. Dotted line: the reference row. Axes logarithmic.</p>

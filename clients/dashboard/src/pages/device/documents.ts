@@ -5,9 +5,13 @@ export interface TableRow {
   condition: Condition; label: string; contamination?: string | null; warnings?: string[]; recordings: string[]; pooling?: string; robust?: boolean;
   agreement?: {p: number | null} | null; density?: Cell | null; values: Record<string, Cell | null>; reasons: Record<string, string>;
 }
+export interface SheetComparison {
+  sensor: string; source: string; condition: string;
+  figures: {parameter: 'N' | 'B'; stated: number; unit: string; measured: Quantity | null; ratio: number | null; ci95: Ends | null; verdict: 'agrees' | 'above' | 'below' | null}[];
+}
 export interface ParameterTable {
   device: string; sensor: string; axis: string | null; method: string; model: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
-  pooling: {state: string; job: string | null; reason: string | null}; summary?: Summary;
+  pooling: {state: string; job: string | null; reason: string | null}; summary?: Summary; data_sheet?: SheetComparison;
 }
 export interface Trend {
   parameter: string; unit: string | null; against: {kind: string; unit: string};
@@ -47,4 +51,11 @@ export function columnName(key: string): {process: string; symbol: string} {
   const [, name = process, number] = /^(.*?)(?:_(\d))?$/.exec(process) ?? [];
   const symbol = {sigma: 'σ', beta: 'β'}[parameter] ?? parameter;
   return {process: `${NAMES[name] ?? name.replace(/_/g, ' ')}${number && number !== '1' ? ` ${number}` : ''}`, symbol};
+}
+
+/// The symbol of a column; with its process where another column has the same one.
+export function uniqueName(key: string, columns: readonly {key: string}[]): string {
+  const {process, symbol} = columnName(key);
+  const alone = columns.filter(column => columnName(column.key).symbol === symbol).length < 2;
+  return alone || !process ? symbol : `${process} ${symbol}`;
 }

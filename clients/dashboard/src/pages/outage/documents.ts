@@ -1,4 +1,4 @@
-import type {Ends, Nullable, Quantity} from '../../api/documents';
+import type {Ends, Nullable, Quantity, Summary} from '../../api/documents';
 
 export interface Ellipse { fraction: number; semi_major_m: number; semi_minor_m: number; major_axis_azimuth_deg: number }
 export interface Moments { ellipses: Ellipse[] }
@@ -9,7 +9,7 @@ export interface Path { time_s: number[]; north_m: number[]; east_m: number[] }
 export interface Filter { name: string; about: string; states: number; mean_error_m: Quantity; outages: Outage[]; nees: number; nees_ci95: Ends; coverage95: number; trajectory: Path }
 export interface Pair { filter: string; against: string; difference_m: Quantity; relative: Quantity }
 export interface Evaluation {
-  runs: number; seed: number; stopped_early: boolean; algorithm_version: number; filters: Filter[];
+  summary?: Summary; runs: number; seed: number; stopped_early: boolean; algorithm_version: number; filters: Filter[];
   attribution: {total: Pair; low_frequency_noise: Pair; gauss_markov_states: Pair; switching: Pair} | null;
   claims: {claim: string; supported: boolean; because: string}[]; trajectory: Path;
 }

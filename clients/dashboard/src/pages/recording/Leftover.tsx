@@ -77,7 +77,7 @@ export function Leftover({recording, channel, fit, fitId}: {recording: Recording
   const path = `/v1/recordings/${recording.id}/spectrogram?channel=${encodeURIComponent(channel.channel)}${fitId ? `&fit=${fitId}` : ''}`;
   const read = useRead<Spectrogram>(open ? path : null);
   const name = fit ? `Spectrogram of what ${fit.model} leaves` : 'Spectrogram';
-  return <Panel><details onToggle={event => setOpen(event.currentTarget.open)}>
+  return <Panel><details data-stays onToggle={event => setOpen(event.currentTarget.open)}>
     <summary><h2>{name}</h2></summary>
     {open && <Shown read={read}>{spectrogram => <>
       <Tools title={name} curl={curlOf(path)} onCsv={() => save(`${recording.id}-${channel.channel}-spectrogram.csv`, 'text/csv', csvOf(spectrogram))} />

@@ -1,7 +1,7 @@
 // Files that wait to be uploaded, and what was said about them. They outlive a change of page, so nothing typed is lost.
 import {useEffect, useState} from 'preact/hooks';
 import type {Problem} from '../../api/client';
-import {lookAt, type Look} from './look';
+import {lookAt, type Look} from './preview';
 
 export interface Role { quantity: string; axis: string; unit: string }
 export type State = 'ready' | 'sending' | 'paused' | 'sent' | 'refused';
@@ -39,8 +39,27 @@ export function usePending(): readonly Pending[] {
 
 export const pending = (): readonly Pending[] => list;
 
+// --- the daemon is asked again once what was said of a file has changed, and nobody types any more
+const PAUSE_MS = 300;
+const waiting = new Map<number, ReturnType<typeof setTimeout>>();
+const SAID: readonly (keyof Pending)[] = ['device', 'condition', 'rate', 'roles'];
+
+async function look(key: number): Promise<void> {
+  const asked = list.find(each => each.key === key);
+  if (!asked) return;
+  const seen = await lookAt(asked);
+  const now = list.find(each => each.key === key);
+  if (!now || SAID.some(member => now[member] !== asked[member])) return;
+  const known = asked.look === null && seen.document ? remembered()[signature(seen)] : undefined;
+  change(key, {look: seen, ...(known ? {roles: known.roles, rate: known.rate} : {})});
+}
+
 export function change(key: number, changes: Partial<Pending>): void {
   list = list.map(each => each.key === key ? {...each, ...changes} : each);
+  if (SAID.some(member => member in changes)) {
+    clearTimeout(waiting.get(key));
+    waiting.set(key, setTimeout(() => { waiting.delete(key); void look(key); }, PAUSE_MS));
+  }
   tell();
 }
 
@@ -57,10 +76,10 @@ function remembered(): Remembered {
   try { return JSON.parse(localStorage.getItem(KEY) ?? '{}') as Remembered; } catch { return {}; }
 }
 
-const signature = (look: Look): string => look.columns.map(column => column.name).join('\u0001');
+const signature = (seen: Look): string => (seen.document?.columns ?? []).map(column => column.name).join('\u0001');
 
 export function remember(each: Pending): void {
-  if (!each.look || each.look.columns.length === 0 || (Object.keys(each.roles).length === 0 && !each.rate)) return;
+  if (!each.look?.document || each.look.document.columns.length === 0 || (Object.keys(each.roles).length === 0 && !each.rate)) return;
   try { localStorage.setItem(KEY, JSON.stringify({...remembered(), [signature(each.look)]: {roles: each.roles, rate: each.rate}})); } catch { /* then it is asked again */ }
 }
 
@@ -77,10 +96,7 @@ export function addFiles(files: readonly File[]): void {
   for (const file of files) {
     const each: Pending = {key: next++, file, device: device ?? deviceIn(file.name), condition: conditionIn(file.name), rate: '', roles: {}, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null};
     list = [...list, each];
-    void lookAt(file).then(look => {
-      const known = look.columns.length > 0 ? remembered()[signature(look)] : undefined;
-      change(each.key, {look, ...(known ? {roles: known.roles, rate: known.rate} : {})});
-    });
+    void look(each.key);
   }
   tell();
 }

@@ -2,12 +2,13 @@
 import {ask, Problem, type ProblemDocument} from '../../api/client';
 import type {Recording} from '../../api/documents';
 import type {Pending} from './pending';
+import {columnsOf} from './preview';
 
 function queryOf(each: Pending): string {
   const query = new URLSearchParams({device: each.device, condition: each.condition, id: each.file.name.replace(/\.[^.]+(\.(gz|xz|zst))?$/, '')});
   if (each.rate.trim()) query.set('rate_hz', each.rate.trim());
-  const columns = Object.entries(each.roles).filter(([, role]) => role.quantity).map(([name, role]) => `${name}=${role.quantity}:${role.axis}:${role.unit}`);
-  if (columns.length > 0) query.set('columns', columns.join(','));
+  const columns = columnsOf(each.roles);
+  if (columns) query.set('columns', columns);
   return query.toString();
 }
 

@@ -1,0 +1,5 @@
+// What was measured: devices, their recordings, populations.
+export {default as Device} from '../pages/Device';
+export {default as Recording} from '../pages/Recording';
+export {default as Compare} from '../pages/Compare';
+export {default as Population} from '../pages/Population';

@@ -1,0 +1,5 @@
+// Results of the longer jobs.
+export {default as Investigation} from '../pages/Investigation';
+export {default as Outage} from '../pages/Outage';
+export {default as Regression} from '../pages/Regression';
+export {default as DriveEvaluation} from '../pages/DriveEvaluation';
