@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import io
 import json
 import math
@@ -10,14 +11,14 @@ import tempfile
 import unittest
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy
 
 import samples
 from daemon import Daemon
 from driftlab import Calibration, Client, Conflict, InvalidInput, JobCancelled, NotFound, Problem, Retry, Unavailable
-from driftlab.contract import OPERATIONS
+from driftlab.contract import OPERATIONS, Drive
 from driftlab.transport import Answer, Body, Query, Transport
 
 SCENARIO: Any = {
@@ -128,7 +129,7 @@ class Problems(ClientTest):
         self.assertEqual(caught.exception.code, "too_few_samples")
 
     def test_waiting_ends_at_the_time_given_and_a_cancelled_job_says_so(self) -> None:
-        queued = self.client.create_outage_evaluation({"scenario": "paper", "runs": 100000})
+        queued = self.client.create_outage_evaluation({"scenario": "paper", "runs": 20000})
         with self.assertRaises(TimeoutError):
             self.client.wait(queued["id"], timeout_s=0.2)
         self.client.cancel_job(queued["id"])
@@ -245,6 +246,7 @@ class Everything(ClientTest):
         with contextlib.suppress(NotFound):  # a fit may leave a parameter open
             self.assertIn("allan", client.implied(next(client.fits(best=True))["id"])["implied"])
         self.assertTrue(client.sample(seed=2).startswith("gz"))
+        self.assertEqual(client.preview(client.sample(seed=2).encode())["format"], "csv")
         column = client.recording(first)["file"]["columns"][0]
         self.assertGreater(len(client.spectrum(first, column, scale="linear")["density"]), 50)
         self.assertEqual(len(client.histogram(first, column, bins=16)["counts"]), 16)
@@ -267,6 +269,14 @@ class Everything(ClientTest):
             "device": "all-07", "baseline": {"recordings": [{"recording": first}]}, "candidate": {"recordings": [{"recording": second}]}}}))
         self.assertEqual([run["id"] for run in client.regressions()], [compared["id"]])
         self.assertIn(client.regression(compared["id"])["verdict"], ("pass", "inconclusive"))
+        self.assertIn("testsuite", client.regression_junit(compared["id"], inconclusive="pass"))
+        self.assertIn("**", client.regression_text(compared["id"], media="text/markdown"))
+        self.assertIn("<svg", client.regression_badge(compared["id"]))
+        self.assertIn("<svg", client.regression_figure(compared["id"]))
+        client.change_recording(first, {"labels": {"firmware": "1.0"}, "session": "Monday"})
+        self.assertEqual([each["id"] for each in client.recordings(labels={"firmware": "1.0"})], [first])
+        anchor = client.move_regression_anchor("all-07", "firmware=1.0", "the first release")
+        self.assertEqual(list(client.regression_anchors(device="all-07")), [anchor])
 
         model = client.create_model({"name": "sheet", "processes": [
             {"process": "white_noise", "params": {"N": {"value": 0.3, "unit": "deg/sqrt(h)"}}}]})
@@ -279,6 +289,18 @@ class Everything(ClientTest):
         evaluation = client.outage_evaluation(listed_evaluation["id"], wait_s=5)
         self.assertEqual(json.dumps(evaluation["evaluation"]), json.dumps(done.document))
 
+        imu, gnss = (client.upload(content, device="car-07", condition="drive", columns=samples.roles(roles))["id"]
+                     for content, roles in zip(samples.drive_csvs(), (samples.DRIVE_IMU, samples.DRIVE_GNSS)))
+        drive = client.create_drive(cast(Drive, samples.drive_document(imu, gnss)))
+        self.assertEqual(client.drive(drive["id"]), drive)
+        self.assertEqual([each["id"] for each in client.drives(device="car-07")], [drive["id"]])
+        driven = client.create_drive_evaluation({"drive": drive["id"]})
+        client.wait(driven["id"])
+        self.assertEqual([each["id"] for each in client.drive_evaluations(state="succeeded")], [driven["id"]])
+        measured = client.drive_evaluation(driven["id"])["evaluation"]
+        assert measured is not None
+        self.assertIn("After 10 s", measured["summary"])
+
         made = client.create_calibration("all-07", calibration={"gyroscope": {"apply": {
             "reading_unit": "rad/s", "bias": [0.0] * 3, "correction": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]}}})
         self.assertEqual(client.calibration(made["id"]), made)
@@ -287,11 +309,40 @@ class Everything(ClientTest):
         self.assertIn("driftlab_ready 1", client.metrics())
         self.assertIn("kalibr", [each["target"] for each in client.export_targets()])
         self.assertIn("gyroscope_noise_density", client.export("kalibr", "all-07")["text"])
+        self.assertEqual([each["name"] for each in client.data_sheets("MPU6050")], ["MPU-6050"])
+        with self.assertRaises(NotFound):
+            client.population("a model that no device has")
+        self.assertEqual(client.population("Galaxy S4")["devices"], ["all-07"])
+        self.assertIn("No device of 1 stands out", client.population_text("Galaxy S4", media="text/markdown"))
 
+        whole = client.content(first)
+        self.assertEqual(hashlib.sha256(whole).hexdigest(), client.recording(first)["file"]["sha256"])
+        self.assertEqual(client.content(first, first=3, last=9), whole[3:10])
+        with tempfile.TemporaryDirectory() as folder:
+            client.download(first, Path(folder, "first.csv"))
+            self.assertEqual(Path(folder, "first.csv").read_bytes(), whole)
+
+        self.deletes(client, study["id"], listed["id"], model["id"], made["id"], first, second)
+        self.assertEqual(recorder.seen | self.access(), set(OPERATIONS))
+
+    def deletes(self, client: Client, study: str, investigation: str, model: str, calibration: str, first: str, second: str) -> None:
+        with self.assertRaises(Conflict) as caught:
+            client.delete_study(study)
+        self.assertIn(investigation, str(caught.exception))
+        client.delete_investigation(investigation)
+        client.delete_study(study)
+        client.delete_model(model)
+        client.delete_calibration(calibration)
+        with self.assertRaises(Conflict) as caught:
+            client.delete_device("all-07")
+        self.assertIn(first, str(caught.exception))
         client.delete_recording(second)
         with self.assertRaises(NotFound):
             client.recording(second)
-        self.assertEqual(recorder.seen | self.access(), set(OPERATIONS))
+        client.create_device("spare")
+        client.delete_device("spare")
+        with self.assertRaises(NotFound):
+            client.device("spare")
 
     def access(self) -> set[str]:
         """Everything about tokens, on a daemon of its own: the first one switches authentication on for good."""
@@ -308,6 +359,16 @@ class Everything(ClientTest):
             self.assertEqual(client.token(other["id"])["name"], "rig")
             self.assertNotEqual(client.rotate_token(other["id"])["secret"], other["secret"])
             self.assertTrue(client.revoke_token(other["id"])["revoked_at"])
+            hook = client.create_webhook("https://ci.example.org/", events=["regression.ended"])
+            self.assertTrue(hook["secret"].startswith("whsec_"))
+            self.assertEqual([each["id"] for each in client.webhooks()], [hook["id"]])
+            self.assertEqual(client.webhook(hook["id"])["events"], ["regression.ended"])
+            self.assertNotEqual(client.rotate_webhook(hook["id"])["secret"], hook["secret"])
+            self.assertFalse(client.change_webhook(hook["id"], enabled=False)["enabled"])
+            self.assertTrue(client.change_webhook(hook["id"], enabled=True)["enabled"])
+            queued = client.test_webhook(hook["id"])
+            self.assertEqual([each["id"] for each in client.deliveries(hook["id"])], [queued["id"]])
+            client.delete_webhook(hook["id"])
             self.assertTrue(list(client.audit()))
             self.assertTrue(client.verify_audit()["sound"])
             return recorder.seen

@@ -21,7 +21,8 @@ from driftlab.contract import OPERATIONS
 REPOSITORY = Path(__file__).resolve().parents[2]
 CONTRACT = yaml.safe_load((REPOSITORY / "schema/openapi.yaml").read_text("utf-8"))
 GENERATOR = REPOSITORY / "clients/python/generate_contract.py"
-SECRETS = {"openSession", "createToken", "rotateToken"}  # answers that are kept nowhere, so that none can be repeated
+# Answers that are kept nowhere, so that none can be repeated.
+SECRETS = {"openSession", "createToken", "rotateToken", "createWebhook", "rotateWebhook"}
 BY_THE_CLIENT = {"limit", "cursor"}  # lists ask for page after page by themselves
 
 

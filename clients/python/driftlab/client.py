@@ -22,13 +22,14 @@ from .routes.recordings import RecordingRoutes
 from .routes.results import ResultRoutes
 from .routes.service import ServiceRoutes
 from .routes.studies import StudyRoutes
+from .routes.webhooks import WebhookRoutes
 from .transport import Retry, Transport
 
 PIECE_S = 20.0  # the daemon is asked to wait this long at a time
 JobProgress = Callable[[float, str], None]  # fraction done, what is being done
 
 
-class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoutes, AccessRoutes):
+class Client(ServiceRoutes, RecordingRoutes, JobRoutes, ResultRoutes, StudyRoutes, AccessRoutes, WebhookRoutes):
     """A daemon at an address, for example Client("http://127.0.0.1:8477").
 
     Where the daemon asks for a token, it is `token`, or what the file `token_file` holds, or DRIFTLAB_TOKEN of the environment.

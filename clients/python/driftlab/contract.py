@@ -15,6 +15,8 @@ class Operation(NamedTuple):
 
 
 DriveTimeOdd = TypedDict("DriveTimeOdd", {"is": NotRequired[Literal['validity', 'arrival']]})
+RecordingPreviewColumnOdd = TypedDict("RecordingPreviewColumnOdd", {"from": Literal['header', 'number', 'stated']})
+RecordingPreviewRateHzOdd = TypedDict("RecordingPreviewRateHzOdd", {"from": Literal['time_column', 'stated']})
 
 
 class AuditRow(TypedDict):
@@ -459,6 +461,19 @@ class ContractAnswer(TypedDict):
     components: dict[str, Any]
 
 
+class DataSheet(TypedDict):
+    """What a manufacturer states of a sensor; members that are not stated are absent."""
+
+    name: str
+    manufacturer: str
+    # Number or title.
+    document: str
+    revision: NotRequired[str]
+    # Other names of the same sensor.
+    also: list[str]
+    sensors: list[SensorSheet]
+
+
 class Device(TypedDict):
     """Device."""
 
@@ -484,8 +499,8 @@ class DeviceChange(TypedDict):
 
 
 class DeviceSummary(TypedDict):
-    """Device at a glance. How many recordings a device has under which conditions, and the white noise of each of its
-    axes."""
+    """Device at a glance. How many recordings a device has under which conditions, and the density N at low frequencies
+    of each of its axes."""
 
     recordings: int
     conditions: list[DeviceSummaryCondition]
@@ -533,9 +548,10 @@ class Drive(TypedDict):
     vehicle: Literal['road', 'rail', 'rover', 'air', 'foot', 'boat']
     imu: DriveImu
     gnss: DriveGnss
-    reference: NotRequired[Literal['withheld_fixes'] | DriveReference2]
+    reference: NotRequired[Literal['withheld_fixes', 'smoothed_fixes'] | DriveReference2]
     odometer: NotRequired[DriveOdometer]
-    # What the filter believes, as the sensors of an outage scenario.
+    # What the filter believes, as the sensors of an outage scenario; on a server a sensor or axis may be a stored fit,
+    # simulation model or parameter table.
     model: DriveModel
     start: NotRequired[DriveStart]
     outages: NotRequired[DriveOutages]
@@ -548,6 +564,354 @@ class DriveColumn(TypedDict):
     axis: NotRequired[Literal['x', 'y', 'z', 'lat', 'lon', 'height', 'north', 'east', 'down', 'up', 'horizontal',
                               'vertical', 'speed']]
     unit: NotRequired[str]
+
+
+class DriveEvaluationDuration(TypedDict):
+    """Outages of one duration, over all phases."""
+
+    duration_s: float
+    period_s: float
+    n: int
+    rms_m: DriveEvaluationEstimate
+    median_m: DriveEvaluationEstimate
+    mean_m: float
+    p95_m: float
+    worst_m: float
+    along_rms_m: float
+    across_rms_m: float
+    nees: DriveEvaluationEstimate
+    coverage50: DriveEvaluationEstimate
+    coverage95: DriveEvaluationEstimate
+    start_error_rms_m: float
+    straight_line_rms_m: float
+    # By the filter's own covariance.
+    promised_rms_m: float
+    by_motion: list[DriveEvaluationDurationByMotionItem]
+    outages: list[DriveEvaluationOutage]
+
+
+class DriveEvaluationDurationByMotionItem(TypedDict):
+    motion: DriveEvaluationMotion
+    n: int
+    rms_m: float
+    nees: float | None
+
+
+class DriveEvaluationEstimate(TypedDict):
+    """With the interval of a bootstrap over blocks of one period."""
+
+    value: float | None
+    ci95: list[float | None]
+
+
+class DriveEvaluationExplanation(TypedDict):
+    """Why a simulation of the drive is too optimistic, and what the mended model gains."""
+
+    # Of the document.
+    id: str
+    vehicle: str
+    # One sentence.
+    summary: str
+    algorithm_version: int
+    facts: DriveEvaluationFacts
+    findings: list[DriveEvaluationFinding]
+    rungs: list[DriveEvaluationRung]
+    white_noise_factors: DriveEvaluationExplanationWhiteNoiseFactors
+    before: DriveEvaluationSide
+    after: DriveEvaluationSide
+    notes: list[str]
+    # What stored simulation models say that a filter is not told.
+    left_out: NotRequired[list[DriveEvaluationExplanationLeftOutItem]]
+
+
+class DriveEvaluationExplanationLeftOutItem(TypedDict):
+    where: str
+    simulation_model: str
+    what: list[str]
+
+
+class DriveEvaluationExplanationWhiteNoiseFactors(TypedDict):
+    gyroscope: float
+    accelerometer: float
+
+
+class DriveEvaluationFacts(TypedDict):
+    """What is true of the files, before any filter."""
+
+    duration_s: float
+    length_m: float
+    highest_speed_m_s: float
+    # Parts between gaps of the unit.
+    runs: int
+    imu: DriveEvaluationFactsImu
+    gnss: DriveEvaluationFactsGnss
+    reference: Literal['withheld_fixes', 'smoothed_fixes', 'own']
+    notes: list[str]
+
+
+class DriveEvaluationFactsGnss(TypedDict):
+    fixes: int
+    rate_hz: float
+    held: int
+    other_types: int
+    incomplete: int
+    far_away: int
+    accuracy_constant: bool
+    speed_accuracy_constant: bool
+
+
+class DriveEvaluationFactsImu(TypedDict):
+    rows: int
+    incomplete_rows: int
+    repeated_rows: int
+    stuck_rows: int
+    polled_faster_than_sampled: bool
+    stamped_rate_hz: float
+    sensor_rate_hz: float
+    jitter_s: float
+    gaps_bridged: int
+    samples_bridged: int
+    gaps_splitting: int
+    longest_gap_s: float
+
+
+class DriveEvaluationFinding(TypedDict):
+    """A parameter that the drive shows."""
+
+    cause: str
+    # The cause as people call it; absent from evaluations that were made before they had it.
+    words: NotRequired[str]
+    parameter: str
+    title: str
+    value: float | None
+    se: float | None
+    unit: str
+    score: float | None
+    evidence: str
+    told_apart: str
+    # In the mended model.
+    kept: bool
+    # Mean log score gained on outages that were not used to find it.
+    held_out_gain: float | None
+    # A cause whose score was within 2 of this one's when it was named.
+    pair: NotRequired[str]
+    # That cause as people call it.
+    pair_words: NotRequired[str]
+
+
+class DriveEvaluationInnovation(TypedDict):
+    kind: Literal['position', 'velocity', 'constraint', 'zero_velocity', 'odometer']
+    n: int
+    rms: float
+    stated_rms: float
+    normalised_square: float | None
+    correlation_next: float | None
+    correlation_1s: float | None
+    correlation_4s: float | None
+
+
+class DriveEvaluationMeasured(TypedDict):
+    """Measured outages."""
+
+    # Of the document.
+    id: str
+    vehicle: str
+    # One sentence.
+    summary: str
+    algorithm_version: int
+    facts: DriveEvaluationFacts
+    options: DriveEvaluationMeasuredOptions
+    starts: list[DriveEvaluationStart]
+    durations: list[DriveEvaluationDuration]
+    innovations: list[DriveEvaluationInnovation]
+    # Gaps of the receiver itself, not scored.
+    natural_outages: list[DriveEvaluationMeasuredNaturalOutage]
+    rejected_fixes: int
+    notes: list[str]
+    heading_known_s: float | None
+    # What stored simulation models say that a filter is not told.
+    left_out: NotRequired[list[DriveEvaluationMeasuredLeftOutItem]]
+
+
+class DriveEvaluationMeasuredLeftOutItem(TypedDict):
+    where: str
+    simulation_model: str
+    what: list[str]
+
+
+class DriveEvaluationMeasuredNaturalOutage(TypedDict):
+    start_s: float
+    duration_s: float
+
+
+class DriveEvaluationMeasuredOptions(TypedDict):
+    velocity_constraint: bool
+    zero_velocity: bool
+    odometer: bool
+
+
+class DriveEvaluationOutage(TypedDict):
+    """One measured outage: estimate minus reference at its end."""
+
+    start_s: float
+    phase: int
+    motion: DriveEvaluationMotion
+    north_m: float
+    east_m: float
+    along_m: float
+    across_m: float
+    # North, north-east, east, of the filter's estimate and the reference.
+    covariance_m2: list[float]
+    nees: float | None
+    start_error_m: float
+    straight_line_error_m: float
+    # North and east of the first reference point.
+    map_m: list[float]
+
+
+class DriveEvaluationResource(TypedDict):
+    """Drive evaluation with its result."""
+
+    id: str
+    job: DriveEvaluationResourceJob
+    drive: str
+    # The document's own id.
+    name: str
+    question: Literal['run', 'simulate', 'explain']
+    seed: int
+    state: JobState
+    stage: str | None
+    progress: float
+    created_at: str
+    finished_at: str | None
+    problem: ProblemStored | None
+    evaluation: DriveEvaluation | None
+
+
+class DriveEvaluationResourceJob(TypedDict):
+    href: str
+
+
+class DriveEvaluationRung(TypedDict):
+    """One step of the repair: everything before, and this; errors on outages that found its values and on those that
+    did not."""
+
+    name: str
+    kept: bool
+    durations: list[DriveEvaluationRungDuration]
+
+
+class DriveEvaluationRungDuration(TypedDict):
+    duration_s: float
+    found: DriveEvaluationRungDurationFound
+    held_out: DriveEvaluationRungDurationHeldOut
+
+
+class DriveEvaluationRungDurationFound(TypedDict):
+    n: int
+    rms_m: float
+    nees: float | None
+
+
+class DriveEvaluationRungDurationHeldOut(TypedDict):
+    n: int
+    rms_m: float
+    median_m: float
+    nees: float | None
+    coverage50: float
+    coverage95: float
+    log_score: float | None
+
+
+class DriveEvaluationSide(TypedDict):
+    durations: list[DriveEvaluationDuration]
+    simulated: list[DriveEvaluationSimulated]
+
+
+class DriveEvaluationSimulated(TypedDict):
+    """The same outages simulated along the same trajectory with the same model."""
+
+    duration_s: float
+    n: int
+    rms_m: float
+    mean_m: float
+    median_m: float
+    nees: float | None
+    coverage50: float
+    coverage95: float
+    measured_over_simulated: DriveEvaluationEstimate
+
+
+class DriveEvaluationSimulation(TypedDict):
+    """Measured outages, and the same simulated."""
+
+    # Of the document.
+    id: str
+    vehicle: str
+    # One sentence.
+    summary: str
+    algorithm_version: int
+    facts: DriveEvaluationFacts
+    options: DriveEvaluationSimulationOptions
+    starts: list[DriveEvaluationStart]
+    durations: list[DriveEvaluationDuration]
+    innovations: list[DriveEvaluationInnovation]
+    # Gaps of the receiver itself, not scored.
+    natural_outages: list[DriveEvaluationSimulationNaturalOutage]
+    rejected_fixes: int
+    notes: list[str]
+    heading_known_s: float | None
+    simulated: list[DriveEvaluationSimulated]
+    # What stored simulation models say that a filter is not told.
+    left_out: NotRequired[list[DriveEvaluationSimulationLeftOutItem]]
+
+
+class DriveEvaluationSimulationLeftOutItem(TypedDict):
+    where: str
+    simulation_model: str
+    what: list[str]
+
+
+class DriveEvaluationSimulationNaturalOutage(TypedDict):
+    start_s: float
+    duration_s: float
+
+
+class DriveEvaluationSimulationOptions(TypedDict):
+    velocity_constraint: bool
+    zero_velocity: bool
+    odometer: bool
+
+
+class DriveEvaluationStart(TypedDict):
+    time_s: float
+    roll_deg: float
+    pitch_deg: float
+    heading_deg: float
+    tilt_from: Literal['stated', 'rest', 'motion']
+    heading_from: Literal['stated', 'course']
+
+
+class DriveEvaluationSummary(TypedDict):
+    """Drive evaluation without its result."""
+
+    id: str
+    job: DriveEvaluationSummaryJob
+    drive: str
+    # The document's own id.
+    name: str
+    question: Literal['run', 'simulate', 'explain']
+    seed: int
+    state: JobState
+    stage: str | None
+    progress: float
+    created_at: str
+    finished_at: str | None
+    problem: ProblemStored | None
+
+
+class DriveEvaluationSummaryJob(TypedDict):
+    href: str
 
 
 class DriveGnss(TypedDict):
@@ -592,7 +956,8 @@ class DriveImu(TypedDict):
 
 
 class DriveModel(TypedDict):
-    """What the filter believes, as the sensors of an outage scenario."""
+    """What the filter believes, as the sensors of an outage scenario; on a server a sensor or axis may be a stored fit,
+    simulation model or parameter table."""
 
     gyroscope: dict[str, Any]
     accelerometer: dict[str, Any]
@@ -656,8 +1021,17 @@ class DriveTime(DriveTimeOdd):
     offset_s: NotRequired[float]
     # Where the scale is `row`.
     rate_hz: NotRequired[float]
-    # An RTKLIB time tag that dates the file.
+    # An RTKLIB time tag that dates the file; not on a server.
     tag: NotRequired[str]
+    # What such a tag says: GPS time of the first and of the last row [s since 1970].
+    dates: NotRequired[DriveTimeDates]
+
+
+class DriveTimeDates(TypedDict):
+    """What such a tag says: GPS time of the first and of the last row [s since 1970]."""
+
+    first_s: float
+    last_s: float
 
 
 class Export(TypedDict):
@@ -723,6 +1097,9 @@ class Fit(TypedDict):
     described_within: NotRequired[float | None]
     status: str
     warnings: list[str]
+    # The density N of the channel at low frequencies, whatever the model; absent from fits that were stored before fits
+    # kept it.
+    density: NotRequired[QuantityIdentified]
     created_at: str
 
 
@@ -1108,6 +1485,25 @@ class IssuedToken(TypedDict):
     secret: str
 
 
+class IssuedWebhook(TypedDict):
+    id: str
+    url: str
+    description: str
+    events: WebhookEvents
+    enabled: bool
+    disabled_at: str | None
+    # A sentence.
+    disabled_why: str | None
+    # Deliveries given up since the last that arrived.
+    given_up: int
+    previous_secret_until: str | None
+    revision: int
+    created_at: str
+    updated_at: str
+    # Shown this once.
+    secret: str
+
+
 class Job(TypedDict):
     """Job."""
 
@@ -1147,8 +1543,10 @@ class JobEvent(TypedDict):
 
 
 class JobRequestArm(TypedDict):
+    """Recordings, or with labels alone all recordings of the device that have them."""
+
     labels: NotRequired[dict[str, str]]
-    recordings: list[JobRequestArmRecording]
+    recordings: NotRequired[list[JobRequestArmRecording]]
 
 
 class JobRequestArmRecording(TypedDict):
@@ -1195,6 +1593,39 @@ class JobRequestCharacteriseParameters(TypedDict):
     from_tau_s: NotRequired[float]
 
 
+class JobRequestDriveEvaluation(TypedDict):
+    kind: Literal['drive_evaluation']
+    inputs: JobRequestDriveEvaluationInputs
+    parameters: NotRequired[JobRequestDriveQuestion]
+    priority: NotRequired[int]
+
+
+class JobRequestDriveEvaluationInputs(TypedDict):
+    drive: str
+    # In place of the document's.
+    model: NotRequired[DriveModel]
+    # In place of the document's.
+    outages: NotRequired[DriveOutages]
+
+
+class JobRequestDriveQuestion(TypedDict):
+    # Measure outages; simulate the same beside them; say why the two differ.
+    question: NotRequired[Literal['run', 'simulate', 'explain']]
+    # The vehicle moves along its nose.
+    velocity_constraint: NotRequired[bool]
+    # Zero velocity and no turn at rest; not of `explain`.
+    zero_velocity: NotRequired[bool]
+    # Use the odometer; not of `explain`.
+    odometer: NotRequired[bool]
+    # Of `run`: reject fixes with a normalised squared innovation above; 0: none.
+    gate: NotRequired[float]
+    # Of `run`: believe the unit's stamps and keep repeated rows.
+    as_stamped: NotRequired[bool]
+    seed: NotRequired[int]
+    # Simulated drives; not of `run`.
+    runs: NotRequired[int]
+
+
 class JobRequestInvestigate(TypedDict):
     kind: Literal['investigate']
     inputs: JobRequestInvestigateInputs
@@ -1236,7 +1667,11 @@ class JobRequestMemberInputs(TypedDict):
     recordings: NotRequired[list[JobRequestMemberInputsRecording]]
     # Of an outage evaluation: a name, or the document.
     scenario: NotRequired[str | dict[str, Any]]
-    # Of an outage evaluation: what its stored simulation models say that the scenario does not hold.
+    # Of a drive evaluation.
+    drive: NotRequired[str]
+    # Of a drive evaluation: the drive, its model complete.
+    document: NotRequired[dict[str, Any]]
+    # Of an evaluation: what its stored simulation models say that a scenario or filter does not hold.
     left_out: NotRequired[list[dict[str, Any]]]
     # Of a regression run.
     device_name: NotRequired[str]
@@ -1248,6 +1683,10 @@ class JobRequestMemberInputs(TypedDict):
     history: NotRequired[list[dict[str, Any]]]
     # Of a regression run: recordings left out, and why.
     excluded: NotRequired[list[dict[str, Any]]]
+    # Of a regression run whose history is that of earlier runs: how many of these releases came before the baseline.
+    before_baseline: NotRequired[int]
+    # Of such a run: place in `history` of the release before the candidate.
+    previous: NotRequired[int]
 
 
 class JobRequestMemberInputsRecording(TypedDict):
@@ -1273,6 +1712,13 @@ class JobRequestMemberParameters(TypedDict):
     also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
     taus: NotRequired[int]
     runs: NotRequired[int]
+    # Of a drive evaluation, as the five that follow.
+    question: NotRequired[Literal['run', 'simulate', 'explain']]
+    velocity_constraint: NotRequired[bool]
+    zero_velocity: NotRequired[bool]
+    odometer: NotRequired[bool]
+    gate: NotRequired[float]
+    as_stamped: NotRequired[bool]
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
     baseline: NotRequired[dict[str, Any]]
@@ -1340,9 +1786,10 @@ class JobRequestRegress(TypedDict):
 class JobRequestRegressInputs(TypedDict):
     # Id or name.
     device: str
-    baseline: JobRequestArm
+    # anchor: the label of /v1/regression-anchors. last_pass: the candidate that passed last.
+    baseline: NotRequired[JobRequestArm | Literal['anchor', 'last_pass']]
     candidate: JobRequestArm
-    # Earlier releases, oldest first.
+    # Earlier releases, oldest first; without them those of the device's earlier runs.
     history: NotRequired[list[JobRequestArm]]
     excluded: NotRequired[list[JobRequestRegressInputsExcludedItem]]
 
@@ -1380,6 +1827,17 @@ class JobRequestRegressParametersMargin(TypedDict):
     accelerometer: NotRequired[list[float]]
     sigma: NotRequired[float]
     slow: NotRequired[float]
+    # How far a bias may move: gyroscope [deg/s], accelerometer [mg]; 0: it is told and not tested. Needs three sessions
+    # an arm.
+    bias: NotRequired[JobRequestRegressParametersMarginBias]
+
+
+class JobRequestRegressParametersMarginBias(TypedDict):
+    """How far a bias may move: gyroscope [deg/s], accelerometer [mg]; 0: it is told and not tested. Needs three
+    sessions an arm."""
+
+    gyroscope: NotRequired[float]
+    accelerometer: NotRequired[float]
 
 
 class JobRequestRegressParametersTau0(TypedDict):
@@ -1518,6 +1976,25 @@ class NewDevice(TypedDict):
     labels: NotRequired[dict[str, str]]
 
 
+class NewDriveEvaluation(TypedDict):
+    # Id of a stored drive.
+    drive: str
+    # In place of the document's.
+    model: NotRequired[DriveModel]
+    # In place of the document's.
+    outages: NotRequired[DriveOutages]
+    question: NotRequired[JobRequestDriveQuestionQuestion]
+    velocity_constraint: NotRequired[bool]
+    zero_velocity: NotRequired[bool]
+    odometer: NotRequired[bool]
+    gate: NotRequired[float]
+    as_stamped: NotRequired[bool]
+    seed: NotRequired[int]
+    runs: NotRequired[int]
+    # 0 is first.
+    priority: NotRequired[int]
+
+
 class NewLiveRecording(TypedDict):
     """A recording as an upload describes it, with the device and with columns that all have a unit; values come in the
     order of the columns."""
@@ -1537,6 +2014,13 @@ class NewLiveRecording(TypedDict):
     # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
     # HTTP the id of a stored one.
     calibration: NotRequired[str]
+    # What the recording is called, for example its firmware; regression runs compare by it. No commas, and no = in
+    # names.
+    labels: NotRequired[dict[str, str]]
+    # The power-up of the device that the recording belongs to, under any name.
+    session: NotRequired[str]
+    # When it began. Without sessions, recordings that begin within ten minutes of the end of another are one session.
+    recorded_at: NotRequired[str]
     device: NotRequired[str | RecordingDevice]
 
 
@@ -1552,6 +2036,15 @@ class NewOutageEvaluation(TypedDict):
     priority: NotRequired[int]
 
 
+class NewRegressionAnchor(TypedDict):
+    # Id or name.
+    device: str
+    # NAME=VALUE, several with commas between them; recordings of the device have it.
+    label: str
+    # Why the baseline moves.
+    reason: str
+
+
 class NewToken(TypedDict):
     # What it is for.
     name: str
@@ -1562,10 +2055,20 @@ class NewToken(TypedDict):
     expires_in_s: NotRequired[int]
 
 
+class NewWebhook(TypedDict):
+    # https; plain http and addresses that are not of the Internet only where the daemon was told of them.
+    url: str
+    description: NotRequired[str]
+    # Without: all.
+    events: NotRequired[WebhookEvents]
+
+
 class OutageEvaluation(TypedDict):
     """Outage evaluation. Filters compared through simulated GNSS outages; every filter saw the same data."""
 
     scenario: OutageScenario
+    # What the comparison says; absent from evaluations that were made before they had it.
+    summary: NotRequired[RecordingCharacterisationSummary]
     runs: int
     seed: int
     # The precision asked for was reached before the last run.
@@ -1968,6 +2471,7 @@ class ParameterTable(TypedDict):
     model: str | None
     pooling: ParameterTablePooling
     summary: NotRequired[RecordingCharacterisationSummary]
+    data_sheet: NotRequired[ParameterTableSheetComparison]
     columns: list[ParameterTableColumn]
     rows: list[ParameterTableRow]
 
@@ -2019,6 +2523,31 @@ class ParameterTableRow(TypedDict):
     values: dict[str, ParameterTableCell | None]
     # Why a value is null.
     reasons: dict[str, str]
+
+
+class ParameterTableSheetComparison(TypedDict):
+    """The first row against the data sheet of the sensor; absent where the sensor is not known or not at rest there."""
+
+    sensor: str
+    source: str
+    # Of the row that is compared, for people.
+    condition: str
+    figures: list[ParameterTableSheetComparisonFigure]
+
+
+class ParameterTableSheetComparisonFigure(TypedDict):
+    parameter: Literal['N', 'B']
+    # Comparable to what is measured: N two-sided, B the least Allan deviation over 0.664.
+    stated: float
+    unit: str
+    # null where it is not identified.
+    measured: Quantity | None
+    # Measured over stated.
+    ratio: float | None
+    # Of the ratio.
+    ci95: list[float | None] | None
+    # agrees: the interval of the ratio reaches between 1/1.5 and 1.5.
+    verdict: Literal['agrees', 'above', 'below', None]
 
 
 class PooledSensor(TypedDict):
@@ -2092,6 +2621,76 @@ class PooledSensorStructureByConditionItem(TypedDict):
 class PooledSensorStructureRankingItem(TypedDict):
     model: str
     criterion: float | None
+
+
+class Population(TypedDict):
+    """Populations of a model. All devices of a model: one population for each sensor axis, condition and parameter."""
+
+    model: str
+    # Which devices are not of the line, or that none stands out.
+    summary: RecordingCharacterisationSummary
+    # Names of the devices that have results.
+    devices: list[str]
+    rows: list[PopulationPopulation]
+    # Every flag again, as a list to watch.
+    outlying: list[PopulationOutlyingItem]
+
+
+class PopulationOutlyingItem(TypedDict):
+    device: str
+    sensor: Literal['gyroscope', 'accelerometer']
+    axis: str | None
+    label: str
+    parameter: Literal['N', 'B', 'K']
+
+
+class PopulationPlace(TypedDict):
+    device: str
+    estimate: Quantity
+    # Distance from the mean over spread and own error, on the log scale.
+    z: float
+    # Share of such estimates below it, by the other devices; null with fewer than four.
+    quantile: float | None
+    # Two-sided, leave-one-out.
+    p: float | None
+    # Corrected over the devices.
+    p_holm: float | None
+    # p_holm below 0.05.
+    outlying: bool
+
+
+class PopulationPopulation(TypedDict):
+    sensor: Literal['gyroscope', 'accelerometer']
+    axis: str | None
+    condition: Condition
+    # The condition for people.
+    label: str
+    parameter: Literal['N', 'B', 'K']
+    # Random-effects mean with its 95 % interval; null with fewer than two devices.
+    mean: Quantity | None
+    # tau: standard deviation of the logarithm between devices.
+    spread: float | None
+    # 95 % of further devices lie here; null with fewer than three.
+    prediction: list[float] | None
+    # Cochran's Q: that all devices share one value.
+    heterogeneity: PopulationPopulationHeterogeneity | None
+    # Why there is no mean.
+    reason: str | None
+    places: list[PopulationPlace]
+    left_out: list[PopulationPopulationLeftOutItem]
+
+
+class PopulationPopulationHeterogeneity(TypedDict):
+    """Cochran's Q: that all devices share one value."""
+
+    q: float
+    dof: int
+    p: float
+
+
+class PopulationPopulationLeftOutItem(TypedDict):
+    device: str
+    reason: str
 
 
 class Problem(TypedDict):
@@ -2168,6 +2767,13 @@ class Recording(TypedDict):
     # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
     # HTTP the id of a stored one.
     calibration: NotRequired[str]
+    # What the recording is called, for example its firmware; regression runs compare by it. No commas, and no = in
+    # names.
+    labels: NotRequired[dict[str, str]]
+    # The power-up of the device that the recording belongs to, under any name.
+    session: NotRequired[str]
+    # When it began. Without sessions, recordings that begin within ten minutes of the end of another are one session.
+    recorded_at: NotRequired[str]
 
 
 class RecordingChange(TypedDict):
@@ -2177,6 +2783,10 @@ class RecordingChange(TypedDict):
     columns: NotRequired[RecordingMembersColumns | None]
     condition: NotRequired[Condition]
     trim: NotRequired[RecordingMembersTrim | None]
+    calibration: NotRequired[str | None]
+    labels: NotRequired[dict[str, str] | None]
+    session: NotRequired[str | None]
+    recorded_at: NotRequired[str | None]
 
 
 class RecordingCharacterisation(TypedDict):
@@ -2307,6 +2917,80 @@ class RecordingMembers(TypedDict):
     # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
     # HTTP the id of a stored one.
     calibration: NotRequired[str]
+    # What the recording is called, for example its firmware; regression runs compare by it. No commas, and no = in
+    # names.
+    labels: NotRequired[dict[str, str]]
+    # The power-up of the device that the recording belongs to, under any name.
+    session: NotRequired[str]
+    # When it began. Without sessions, recordings that begin within ten minutes of the end of another are one session.
+    recorded_at: NotRequired[str]
+
+
+class RecordingPreview(TypedDict):
+    """Preview of a recording. What the beginning of a file would be as a recording; nothing is kept."""
+
+    # null where no format is recognised.
+    format: str | None
+    compression: Literal['none', 'gzip', 'xz', 'zstd']
+    # The bytes were all of the file.
+    whole_file: bool
+    # Rows that were decoded, 20000 at most.
+    rows_seen: int
+    # In file order, with what an upload would take them to mean; empty where the format tells its columns at the end of
+    # the file.
+    columns: list[RecordingPreviewColumn]
+    rate_hz: RecordingPreviewRateHz | None
+    # A column that rises evenly, as a time does, though nothing calls it one or says its unit.
+    time_guess: RecordingPreviewTimeGuess | None
+    # The condition that the readings show; null where they show none.
+    condition_guess: RecordingPreviewConditionGuess | None
+    # Sentences that speak against a unit.
+    hints: list[str]
+    # What the upload would be refused for.
+    problems: list[RecordingPreviewProblem]
+    # What was left out, renamed or assumed.
+    notes: list[str]
+
+
+class RecordingPreviewColumn(RecordingPreviewColumnOdd):
+    name: str
+    # null for a column that would not be read.
+    quantity: str | None
+    axis: str | None
+    # null where nobody states it.
+    unit: str | None
+    # Its first values; null where one is missing.
+    first: list[float | None]
+    # Values spread over the rows seen.
+    course: list[float | None]
+
+
+class RecordingPreviewConditionGuess(TypedDict):
+    """The condition that the readings show; null where they show none."""
+
+    condition: Condition
+    # Its compact form.
+    text: str
+    because: str
+
+
+class RecordingPreviewProblem(TypedDict):
+    code: str
+    detail: str
+    # Where: `column`, `row`, `parameter`.
+    fields: dict[str, str]
+
+
+class RecordingPreviewRateHz(RecordingPreviewRateHzOdd):
+    value: float
+
+
+class RecordingPreviewTimeGuess(TypedDict):
+    """A column that rises evenly, as a time does, though nothing calls it one or says its unit."""
+
+    column: str
+    unit: str
+    rate_hz: float
 
 
 class RecordingTrim(TypedDict):
@@ -2334,6 +3018,13 @@ class RecordingUploadMetadata(TypedDict):
     # The calibration that corrects the readings: in a study on disk a file that `driftlab calibrate --json` wrote, over
     # HTTP the id of a stored one.
     calibration: NotRequired[str]
+    # What the recording is called, for example its firmware; regression runs compare by it. No commas, and no = in
+    # names.
+    labels: NotRequired[dict[str, str]]
+    # The power-up of the device that the recording belongs to, under any name.
+    session: NotRequired[str]
+    # When it began. Without sessions, recordings that begin within ten minutes of the end of another are one session.
+    recorded_at: NotRequired[str]
     device: NotRequired[str | RecordingDevice]
 
 
@@ -2364,6 +3055,14 @@ class Regression(TypedDict):
     trend: list[RegressionTrendItem]
     versus_previous: RegressionVersusPrevious | None
     algorithm_version: int
+
+
+class RegressionAnchor(TypedDict):
+    id: str
+    device: str
+    label: str
+    reason: str
+    created_at: str
 
 
 class RegressionArm(TypedDict):
@@ -2419,7 +3118,7 @@ class RegressionFactor(TypedDict):
 
 class RegressionFinding(TypedDict):
     check: Literal['full_scale', 'missing', 'frozen', 'repeated', 'timestamps', 'resolution', 'contamination',
-                   'findings', 'rate']
+                   'findings', 'rate', 'bias']
     verdict: Literal['ok', 'note', 'fail']
     sentence: str | None
     sessions: list[str]
@@ -2454,7 +3153,39 @@ class RegressionRun(TypedDict):
     summary: RegressionSummary | None
     look: int | None
     needs: RegressionNeeds | None
+    # The test that shows the candidate furthest beyond its margin.
+    worst: RegressionRunWorst | None
+    # How much sessions scatter, in units of what is expected: of all axes in common, and of scales.
+    between: RegressionRunBetween | None
     created_at: str
+
+
+class RegressionRunBetween(TypedDict):
+    """How much sessions scatter, in units of what is expected: of all axes in common, and of scales."""
+
+    common: RegressionRunFactor
+    local: RegressionRunFactor
+
+
+class RegressionRunFactor(TypedDict):
+    value: float
+    ci95: list[float]
+
+
+class RegressionRunWorst(TypedDict):
+    """The test that shows the candidate furthest beyond its margin."""
+
+    sensor: str
+    axis: str
+    kind: Literal['scale', 'parameter']
+    tau_s: NotRequired[float]
+    name: NotRequired[str]
+    # Candidate over baseline, of deviations.
+    ratio: float
+    ci: list[float | None]
+    margin: float
+    gated: bool
+    verdict: str
 
 
 class RegressionSummary(TypedDict):
@@ -2474,6 +3205,7 @@ class RegressionTest(TypedDict):
     ci: list[float]
     # Upper limit of this test alone.
     upper_single: float
+    # The greatest ratio that is tolerated: 1.1 where 10 % are.
     margin: float
     gated: bool
     verdict: Literal['ok', 'worse_within_margin', 'beyond', 'open', 'improved']
@@ -2533,6 +3265,32 @@ class SearchItem(TypedDict):
     href: str
 
 
+class SensorSheet(TypedDict):
+    """The figures of the gyroscope or the accelerometer."""
+
+    sensor: Literal['gyroscope', 'accelerometer']
+    unit: str
+    # Table or section of the document.
+    place: str
+    full_scales: list[SensorSheetFullScale]
+    noise_density: NotRequired[StatedFigure]
+    noise_density_z: NotRequired[StatedFigure]
+    random_walk: NotRequired[StatedFigure]
+    bias_stability: NotRequired[StatedFigure]
+    N: NotRequired[StatedFigure]
+    # Lowest and highest, -3 dB.
+    bandwidth_hz: NotRequired[list[float]]
+    # Lowest and highest output rate.
+    rate_hz: NotRequired[list[float]]
+
+
+class SensorSheetFullScale(TypedDict):
+    # Readings from -limit to limit.
+    limit: float
+    # What one count means.
+    per_count: NotRequired[float]
+
+
 class Session(TypedDict):
     # How the request was admitted.
     authentication: Literal['off', 'token', 'session']
@@ -2584,6 +3342,25 @@ class Spectrum(TypedDict):
     segments: int
     segment_samples: int
     window: str
+
+
+class StatedFigure(TypedDict):
+    """A figure as it is stated; `N` is what a measured N compares with."""
+
+    value: float
+    unit: str
+
+
+class StoredDrive(TypedDict):
+    """Stored drive. A drive document over uploaded recordings of one device."""
+
+    id: str
+    device: str
+    # The document's own id.
+    name: str
+    vehicle: str
+    drive: Drive
+    created_at: str
 
 
 class StoredRecording(TypedDict):
@@ -2760,17 +3537,28 @@ class Trace(TypedDict):
 
     # 1: the samples themselves.
     samples_per_bucket: int
-    # Of the first sample of each stretch since the first of the file, evenly spaced.
+    # Of the first sample of each stretch since the first of the file; evenly spaced, but in a long recording the first
+    # stretch may be shorter.
     time_s: list[float]
     # null where a stretch has no sample.
     min: list[float | None]
     max: list[float | None]
     mean: list[float | None]
+    # From when to when [s] stretches lack samples.
+    missing: list[list[float]]
+    # What of the whole file is not analysed - trimmed ends, and where the sensor gives one value only.
+    flags: list[TraceFlag]
     # null where nobody states it.
     unit: str | None
     # Of the whole file.
     duration_s: float | None
     rate_hz: float | None
+
+
+class TraceFlag(TypedDict):
+    kind: Literal['trim', 'frozen']
+    t0: float
+    t1: float
 
 
 class Trends(TypedDict):
@@ -2869,18 +3657,65 @@ class VerifyAuditAnswer(TypedDict):
     fault: str | None
 
 
+class Webhook(TypedDict):
+    id: str
+    url: str
+    description: str
+    events: WebhookEvents
+    enabled: bool
+    disabled_at: str | None
+    # A sentence.
+    disabled_why: str | None
+    # Deliveries given up since the last that arrived.
+    given_up: int
+    previous_secret_until: str | None
+    revision: int
+    created_at: str
+    updated_at: str
+
+
+class WebhookChange(TypedDict):
+    url: NotRequired[str]
+    description: NotRequired[str]
+    events: NotRequired[WebhookEvents]
+    enabled: NotRequired[bool]
+
+
+class WebhookDelivery(TypedDict):
+    # The webhook-id that the receiver sees.
+    id: str
+    webhook: str
+    type: Literal['job.ended', 'regression.ended', 'investigation.ended', 'webhook.test']
+    job: str | None
+    state: Literal['waiting', 'delivered', 'given_up']
+    attempts: int
+    next_attempt_at: str | None
+    # What the receiver answered last.
+    last_status: int | None
+    # Why the last attempt failed.
+    last_error: str | None
+    # What is sent.
+    message: dict[str, Any]
+    created_at: str
+    ended_at: str | None
+
+
 CalibrationEstimates: TypeAlias = "dict[str, Quantity]"
 Condition: TypeAlias = (
     "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
     "ConditionSixPosition")
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 DriveColumns: TypeAlias = "dict[str, DriveColumn]"
+DriveEvaluation: TypeAlias = "DriveEvaluationMeasured | DriveEvaluationSimulation | DriveEvaluationExplanation"
+DriveEvaluationMotion: TypeAlias = "Literal['rest', 'straight', 'turning']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
 FitModelFitVerdict: TypeAlias = "Literal['accepted', 'described', 'not_described', 'untested', None]"
 InvestigationConcern: TypeAlias = "Literal['recording', 'calibration', 'noise', 'format']"
 JobRequest: TypeAlias = (
-    "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestInvestigate | JobRequestPool | JobRequestRegress")
+    "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestDriveEvaluation | JobRequestInvestigate | "
+    "JobRequestPool | JobRequestRegress")
+JobRequestDriveQuestionQuestion: TypeAlias = "Literal['run', 'simulate', 'explain']"
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"
 ModelChannels: TypeAlias = "dict[str, ModelChannel]"
 ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"
@@ -2896,6 +3731,7 @@ RecordingMembersTrim: TypeAlias = "RecordingTrim"
 RegressionVerdict: TypeAlias = "Literal['pass', 'fail', 'inconclusive']"
 Scope: TypeAlias = "Literal['read', 'write', 'run', 'admin']"
 StudyBaseline: TypeAlias = "StudyBaselineAuto | StudyBaselineModel | StudyBaselineFitModel"
+WebhookEvents: TypeAlias = "list[Literal['job.ended', 'regression.ended', 'investigation.ended']]"
 
 # operationId -> what it takes and gives; `media` are the types of a good answer.
 OPERATIONS: dict[str, Operation] = {
@@ -2931,21 +3767,31 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/devices/{id}', (), (), ('application/json',)),
     'changeDevice': Operation(
         'PATCH', '/v1/devices/{id}', (), ('If-Match',), ('application/json',)),
+    'deleteDevice': Operation(
+        'DELETE', '/v1/devices/{id}', (), ('If-Match',), ()),
     'getDeviceSummary': Operation(
         'GET', '/v1/devices/{id}/summary', (), (), ('application/json',)),
     'listRecordings': Operation(
-        'GET', '/v1/recordings', ('limit', 'cursor', 'sort', 'device', 'condition'), (), ('application/json',)),
+        'GET', '/v1/recordings',
+        ('limit', 'cursor', 'sort', 'device', 'condition', 'labels'),
+        (), ('application/json',)),
     'uploadRecording': Operation(
         'POST', '/v1/recordings',
         ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration'),
+         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at'),
         ('Idempotency-Key', 'Repr-Digest'), ('application/json',)),
+    'previewRecording': Operation(
+        'POST', '/v1/recordings/preview',
+        ('device', 'condition', 'rate_hz', 'columns'),
+        ('Content-Range', 'Idempotency-Key'), ('application/json',)),
     'getRecording': Operation(
         'GET', '/v1/recordings/{id}', (), (), ('application/json',)),
     'changeRecording': Operation(
         'PATCH', '/v1/recordings/{id}', (), ('If-Match',), ('application/json',)),
     'deleteRecording': Operation(
         'DELETE', '/v1/recordings/{id}', (), ('If-Match',), ()),
+    'getRecordingContent': Operation(
+        'GET', '/v1/recordings/{id}/content', (), ('Range', 'If-Range'), ('application/octet-stream',)),
     'getCharacterisation': Operation(
         'GET', '/v1/recordings/{id}/characterisation', ('channel',), (), ('application/json',)),
     'getTrace': Operation(
@@ -2969,7 +3815,7 @@ OPERATIONS: dict[str, Operation] = {
     'recordUpload': Operation(
         'POST', '/v1/uploads/{id}/recording',
         ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration'),
+         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at'),
         ('Idempotency-Key',), ('application/json',)),
     'createLiveRecording': Operation(
         'POST', '/v1/live-recordings', (), ('Idempotency-Key',), ('application/json',)),
@@ -3015,38 +3861,74 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/exports', (), (), ('application/json',)),
     'getExport': Operation(
         'GET', '/v1/exports/{target}', ('device',), (), ('text/plain', 'application/json')),
+    'listDataSheets': Operation(
+        'GET', '/v1/data-sheets', ('model',), (), ('application/json',)),
+    'getPopulations': Operation(
+        'GET', '/v1/populations',
+        ('model', 'sensor'),
+        (), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
     'listStudies': Operation(
         'GET', '/v1/studies', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
     'createStudy': Operation(
         'POST', '/v1/studies', (), ('Idempotency-Key',), ('application/json',)),
     'getStudy': Operation(
         'GET', '/v1/studies/{id}', (), (), ('application/json',)),
+    'deleteStudy': Operation(
+        'DELETE', '/v1/studies/{id}', (), ('If-Match',), ()),
     'listOutageEvaluations': Operation(
         'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
     'createOutageEvaluation': Operation(
         'POST', '/v1/outage-evaluations', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getOutageEvaluation': Operation(
         'GET', '/v1/outage-evaluations/{id}', (), ('Prefer',), ('application/json',)),
+    'listDrives': Operation(
+        'GET', '/v1/drives', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
+    'createDrive': Operation(
+        'POST', '/v1/drives', (), ('Idempotency-Key',), ('application/json',)),
+    'getDrive': Operation(
+        'GET', '/v1/drives/{id}', (), (), ('application/json',)),
+    'listDriveEvaluations': Operation(
+        'GET', '/v1/drive-evaluations', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
+    'createDriveEvaluation': Operation(
+        'POST', '/v1/drive-evaluations', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
+    'getDriveEvaluation': Operation(
+        'GET', '/v1/drive-evaluations/{id}', (), ('Prefer',), ('application/json',)),
     'listCalibrations': Operation(
         'GET', '/v1/calibrations', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
     'createCalibration': Operation(
         'POST', '/v1/calibrations', (), ('Idempotency-Key',), ('application/json',)),
     'getCalibration': Operation(
         'GET', '/v1/calibrations/{id}', (), (), ('application/json',)),
+    'deleteCalibration': Operation(
+        'DELETE', '/v1/calibrations/{id}', (), ('If-Match',), ()),
     'listInvestigations': Operation(
         'GET', '/v1/investigations', ('limit', 'cursor', 'sort', 'device', 'study', 'job'), (), ('application/json',)),
     'getInvestigation': Operation(
         'GET', '/v1/investigations/{id}', (), (), ('application/json', 'text/markdown')),
+    'deleteInvestigation': Operation(
+        'DELETE', '/v1/investigations/{id}', (), ('If-Match',), ()),
     'listRegressions': Operation(
-        'GET', '/v1/regressions', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+        'GET', '/v1/regressions', ('limit', 'cursor', 'sort', 'device', 'label'), (), ('application/json',)),
     'getRegression': Operation(
-        'GET', '/v1/regressions/{id}', (), (), ('application/json',)),
+        'GET', '/v1/regressions/{id}', (), (), ('application/json', 'text/plain', 'text/markdown')),
+    'getRegressionJunit': Operation(
+        'GET', '/v1/regressions/{id}/junit', ('inconclusive',), (), ('text/xml',)),
+    'getRegressionFigure': Operation(
+        'GET', '/v1/regressions/{id}/figure', (), (), ('image/svg+xml',)),
+    'getRegressionBadge': Operation(
+        'GET', '/v1/regressions/{id}/badge', (), (), ('image/svg+xml',)),
+    'listRegressionAnchors': Operation(
+        'GET', '/v1/regression-anchors', ('limit', 'cursor', 'sort', 'device'), (), ('application/json',)),
+    'moveRegressionAnchor': Operation(
+        'POST', '/v1/regression-anchors', (), ('Idempotency-Key',), ('application/json',)),
     'listModels': Operation(
         'GET', '/v1/models', ('limit', 'cursor', 'sort', 'device', 'parent'), (), ('application/json',)),
     'createModel': Operation(
         'POST', '/v1/models', (), ('Idempotency-Key',), ('application/json',)),
     'getModel': Operation(
         'GET', '/v1/models/{id}', (), (), ('application/json',)),
+    'deleteModel': Operation(
+        'DELETE', '/v1/models/{id}', (), ('If-Match',), ()),
     'getSession': Operation(
         'GET', '/v1/session', (), (), ('application/json',)),
     'openSession': Operation(
@@ -3063,6 +3945,22 @@ OPERATIONS: dict[str, Operation] = {
         'POST', '/v1/tokens/{id}/rotate', (), (), ('application/json',)),
     'revokeToken': Operation(
         'POST', '/v1/tokens/{id}/revoke', (), ('Idempotency-Key',), ('application/json',)),
+    'listWebhooks': Operation(
+        'GET', '/v1/webhooks', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+    'createWebhook': Operation(
+        'POST', '/v1/webhooks', (), (), ('application/json',)),
+    'getWebhook': Operation(
+        'GET', '/v1/webhooks/{id}', (), (), ('application/json',)),
+    'changeWebhook': Operation(
+        'PATCH', '/v1/webhooks/{id}', (), ('If-Match',), ('application/json',)),
+    'deleteWebhook': Operation(
+        'DELETE', '/v1/webhooks/{id}', (), ('If-Match',), ()),
+    'rotateWebhook': Operation(
+        'POST', '/v1/webhooks/{id}/rotate', (), (), ('application/json',)),
+    'testWebhook': Operation(
+        'POST', '/v1/webhooks/{id}/test', (), ('Idempotency-Key',), ('application/json',)),
+    'listDeliveries': Operation(
+        'GET', '/v1/webhooks/{id}/deliveries', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
     'listAudit': Operation(
         'GET', '/v1/audit', ('limit', 'cursor', 'sort'), (), ('application/json',)),
     'verifyAudit': Operation(

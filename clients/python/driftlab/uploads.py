@@ -92,6 +92,12 @@ def condition_query(condition: str | Condition) -> dict[str, str | float]:
     return {"condition": members.pop("kind"), **members}
 
 
+def tag_query(labels: Mapping[str, str] | None, session: str | None, recorded_at: str | None) -> dict[str, str | None]:
+    """What a recording is called, as the query has it."""
+    words = ",".join(f"{name}={value}" for name, value in (labels or {}).items())
+    return {"labels": words or None, "session": session, "recorded_at": recorded_at}
+
+
 def columns_text(columns: Columns | None) -> str | None:
     """NAME=QUANTITY:AXIS:UNIT,... from that form or from the document of columns."""
     if columns is None or isinstance(columns, str):

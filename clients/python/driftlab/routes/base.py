@@ -39,11 +39,11 @@ class Routes:
     def _etag(self, name: str, path: dict[str, str]) -> str:
         return self._transport.call(name, path, accept="application/json").headers["etag"]
 
-    def _list(self, name: str, query: dict[str, str | None], page_size: int) -> Iterator[Any]:
+    def _list(self, name: str, query: dict[str, str | None], page_size: int, path: dict[str, str] | None = None) -> Iterator[Any]:
         """Every item, asking for the next page when the one before is used up."""
         cursor: str | None = None
         while True:
-            page = cast("dict[str, Any]", self._get(name, None, {**query, "limit": page_size, "cursor": cursor}))
+            page = cast("dict[str, Any]", self._get(name, path, {**query, "limit": page_size, "cursor": cursor}))
             yield from page["items"]
             cursor = page["next_cursor"]
             if cursor is None:

@@ -1,12 +1,13 @@
-"""Jobs, and outage evaluations, which are jobs of their own kind."""
+"""Jobs, and evaluations of outages and drives, which are jobs of their own kinds."""
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
 from typing import Any, cast
 
-from ..contract import Characterisation, Investigation, Job, JobEvent, JobRequest, JobState, NewOutageEvaluation
-from ..contract import OutageEvaluation, OutageEvaluationResource, OutageEvaluationSummary
+from ..contract import Characterisation, DriveEvaluation, DriveEvaluationResource, DriveEvaluationSummary
+from ..contract import Investigation, Job, JobEvent, JobRequest, JobState
+from ..contract import NewDriveEvaluation, NewOutageEvaluation, OutageEvaluation, OutageEvaluationResource, OutageEvaluationSummary
 from .base import PAGE, Routes, operation
 
 
@@ -27,9 +28,9 @@ class JobRoutes(Routes):
         return cast(Job, self._get("getJob", {"id": id}, wait_s=wait_s))
 
     @operation("getJobResult")
-    def job_result(self, id: str) -> Characterisation | OutageEvaluation | Investigation:
+    def job_result(self, id: str) -> Characterisation | OutageEvaluation | DriveEvaluation | Investigation:
         """What a job found, of the shape of its kind; NotFound until it has succeeded."""
-        return cast("Characterisation | OutageEvaluation | Investigation", self._get("getJobResult", {"id": id}))
+        return cast("Characterisation | OutageEvaluation | DriveEvaluation | Investigation", self._get("getJobResult", {"id": id}))
 
     @operation("cancelJob")
     def cancel_job(self, id: str, *, idempotency_key: str | None = None) -> Job:
@@ -83,3 +84,19 @@ class JobRoutes(Routes):
     def outage_evaluation(self, id: str, *, wait_s: float | None = None) -> OutageEvaluationResource:
         """One evaluation; its member `evaluation` is None until its job has succeeded."""
         return cast(OutageEvaluationResource, self._get("getOutageEvaluation", {"id": id}, wait_s=wait_s))
+
+    @operation("listDriveEvaluations")
+    def drive_evaluations(self, *, state: JobState | None = None, page_size: int = PAGE) -> Iterator[DriveEvaluationSummary]:
+        """Drive evaluations, oldest first, without their results."""
+        return self._list("listDriveEvaluations", {"state": state}, page_size)
+
+    @operation("createDriveEvaluation")
+    def create_drive_evaluation(self, request: NewDriveEvaluation, *, wait_s: float | None = None,
+                                idempotency_key: str | None = None) -> DriveEvaluationResource:
+        """Asks a stored drive: measure its outages, simulate them beside it, or explain the difference."""
+        return cast(DriveEvaluationResource, self._post("createDriveEvaluation", request, idempotency_key, wait_s=wait_s))
+
+    @operation("getDriveEvaluation")
+    def drive_evaluation(self, id: str, *, wait_s: float | None = None) -> DriveEvaluationResource:
+        """One evaluation; its member `evaluation` is None until its job has succeeded."""
+        return cast(DriveEvaluationResource, self._get("getDriveEvaluation", {"id": id}, wait_s=wait_s))

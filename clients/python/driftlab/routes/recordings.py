@@ -2,15 +2,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, Literal, cast
 
 from ..contract import Condition, Device, DeviceChange, DeviceSummary, Histogram, RecordingChange, RecordingCharacterisation
-from ..contract import Spectrogram, Spectrum, StoredRecording, Trace
+from ..contract import RecordingPreview, Spectrogram, Spectrum, StoredRecording, Trace
 from ..problems import Problem
 from ..transport import Body
-from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query
+from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query, tag_query
 from .base import PAGE, given, operation
 from .uploads import UploadRoutes
+
+DOWNLOADED = 8 << 20  # bytes of a file that are asked for at once
 
 
 class RecordingRoutes(UploadRoutes):
@@ -53,10 +56,17 @@ class RecordingRoutes(UploadRoutes):
         answer = self._transport.call("changeDevice", {"id": id}, body=Body.of_json(change), if_match=if_match)
         return cast(Device, answer.json)
 
+    @operation("deleteDevice")
+    def delete_device(self, id: str, *, if_match: str = "*") -> None:
+        """Deletes a device; Conflict names what depends on it."""
+        self._transport.call("deleteDevice", {"id": id}, if_match=if_match)
+
     @operation("listRecordings")
-    def recordings(self, *, device: str | None = None, condition: str | None = None, page_size: int = PAGE) -> Iterator[StoredRecording]:
-        """Recordings, oldest first; `condition` in its compact form, for example constant_rate:z:9:deg/s."""
-        return self._list("listRecordings", {"device": device, "condition": condition}, page_size)
+    def recordings(self, *, device: str | None = None, condition: str | None = None, labels: Mapping[str, str] | None = None,
+                   page_size: int = PAGE) -> Iterator[StoredRecording]:
+        """Recordings, oldest first; `condition` in its compact form, for example constant_rate:z:9:deg/s; those that have all labels."""
+        query = {"device": device, "condition": condition, "labels": tag_query(labels, None, None)["labels"]}
+        return self._list("listRecordings", query, page_size)
 
     @operation("getCharacterisation")
     def characterisation(self, id: str, *, channel: str | None = None) -> RecordingCharacterisation:
@@ -90,27 +100,43 @@ class RecordingRoutes(UploadRoutes):
         """A recording to try driftlab with, as CSV: simulated from published figures."""
         return self._text("getSample", "text/csv", {"preset": preset}, {"condition": condition, "seed": seed})
 
+    @operation("previewRecording")
+    def preview(self, beginning: bytes, *, file_bytes: int | None = None, device: str | None = None, condition: str | None = None,
+                rate_hz: float | None = None, columns: Columns | None = None, idempotency_key: str | None = None) -> RecordingPreview:
+        """What a file would be as a recording, by its first bytes (1 MiB at most): columns, rate, condition, problems. Keeps nothing.
+
+        `file_bytes` is the size of the whole file; without it the bytes are taken for the beginning of a longer one.
+        """
+        query = {"device": device, "rate_hz": rate_hz, "columns": columns_text(columns), "condition": condition}
+        body = Body(len(beginning), "application/octet-stream", lambda: [beginning])
+        headers = {} if file_bytes is None else {"Content-Range": f"bytes 0-{len(beginning) - 1}/{file_bytes}"}
+        answer = self._transport.call("previewRecording", query=query, body=body, headers=headers, idempotency_key=idempotency_key)
+        return cast(RecordingPreview, answer.json)
+
     @operation("uploadRecording")
     def upload(self, source: Source, *, device: str, condition: str | Condition = "static", rate_hz: float | None = None,
                columns: Columns | None = None, id: str | None = None, trim_start_s: float | None = None, trim_end_s: float | None = None,
                calibration: str | None = None, axis: str | None = None, value: float | None = None, unit: str | None = None,
-               direction: str | None = None, progress: Progress | None = None, idempotency_key: str | None = None) -> StoredRecording:
+               direction: str | None = None, labels: Mapping[str, str] | None = None, session: str | None = None,
+               recorded_at: str | None = None, progress: Progress | None = None, idempotency_key: str | None = None) -> StoredRecording:
         """Uploads a file, bytes, or an array whose rows are samples, and says what it is. Queues no job.
 
         columns and condition are given as in the manual (gz=angular_rate:z:deg/s; constant_rate:z:9:deg/s) or as documents; axis,
-        value, unit and direction stand beside a condition of which only the kind is given. `progress` is called with the bytes sent
-        and the bytes in all. An upload that the network cuts off is sent again under the same Idempotency-Key; the daemon checks the
-        digest, and stores the recording once. One of 64 MiB or more goes in pieces that are kept as they arrive, so that a broken
-        connection costs one piece.
+        value, unit and direction stand beside a condition of which only the kind is given. Labels, session and recorded_at (RFC 3339)
+        are what regression runs compare by. `progress` is called with the bytes sent and the bytes in all. An upload that the network
+        cuts off is sent again under the same Idempotency-Key; the daemon checks the digest, and stores the recording once. One of
+        64 MiB or more goes in pieces that are kept as they arrive, so that a broken connection costs one piece.
         """
         upload = Upload(source, progress)
         if upload.size >= self.resumable_from:
             return self.record_upload(self._sent_in_pieces(upload), device=device, condition=condition, rate_hz=rate_hz, columns=columns,
                                       name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
-                                      value=value, unit=unit, direction=direction, idempotency_key=idempotency_key)
+                                      value=value, unit=unit, direction=direction, labels=labels, session=session,
+                                      recorded_at=recorded_at, idempotency_key=idempotency_key)
         query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns),
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
-                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition)}
+                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition),
+                                 **tag_query(labels, session, recorded_at)}
         answer = self._transport.call("uploadRecording", None, query, upload.body(), idempotency_key=idempotency_key,
                                       headers={"Repr-Digest": upload.digest})
         return cast(StoredRecording, answer.json)
@@ -141,6 +167,21 @@ class RecordingRoutes(UploadRoutes):
     def recording_etag(self, id: str) -> str:
         """Names the state of a recording, for `if_match`."""
         return self._etag("getRecording", {"id": id})
+
+    @operation("getRecordingContent")
+    def content(self, id: str, *, first: int | None = None, last: int | None = None) -> bytes:
+        """The uploaded file, or its bytes from `first` to `last`, both included, from 0."""
+        wanted = {} if first is None and last is None else {"Range": f"bytes={first or 0}-{'' if last is None else last}"}
+        return self._transport.call("getRecordingContent", {"id": id}, accept="*/*", headers=wanted).content
+
+    def download(self, id: str, target: str | Path, *, progress: Progress | None = None) -> None:
+        """Writes the uploaded file to `target` piece by piece; what a broken connection left is asked for again, not the whole."""
+        size = self.recording(id)["file"]["bytes"]
+        with open(target, "wb") as file:
+            for first in range(0, size, DOWNLOADED):
+                file.write(self.content(id, first=first, last=min(first + DOWNLOADED, size) - 1))
+                if progress is not None:
+                    progress(file.tell(), size)
 
     @operation("changeRecording")
     def change_recording(self, id: str, change: RecordingChange, *, if_match: str = "*") -> StoredRecording:

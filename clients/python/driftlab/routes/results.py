@@ -4,9 +4,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, cast
 
+from ..contract import DataSheet, RegressionAnchor
 from ..contract import Export, ExportTarget, Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
 from ..contract import Investigation as InvestigationDocument
 from ..contract import ParameterTable as ParameterTableDocument
+from ..contract import Population as PopulationDocument
 from ..contract import Trends as TrendsDocument
 from ..results import Investigation
 from ..tables import ParameterTable, Trends
@@ -60,11 +62,25 @@ class ResultRoutes(Routes):
         query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
         return Trends(cast(TrendsDocument, self._get("getTrends", None, query, wait_s)))
 
-    def trends_text(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
-                    model: str | None = None, wait_s: float | None = 30.0) -> str:
-        """The same trends as the daemon writes them."""
+    def trends_text(self, device: str, *, media: TableText = "text/plain", sensor: Sensor = "gyroscope", axis: Axis | None = None,
+                    method: AnalysisMethod = "gmwm", model: str | None = None, wait_s: float | None = 30.0) -> str:
+        """The same trends as the daemon writes them: lines, CSV or Markdown."""
         query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
-        return self._text("getTrends", "text/plain", None, query, wait_s)
+        return self._text("getTrends", media, None, query, wait_s)
+
+    @operation("getPopulations")
+    def population(self, model: str, *, sensor: Sensor | None = None) -> PopulationDocument:
+        """All devices of a model: mean, spread, prediction, and which of them is not of the line."""
+        return cast(PopulationDocument, self._get("getPopulations", None, {"model": model, "sensor": sensor}))
+
+    def population_text(self, model: str, *, media: TableText = "text/plain", sensor: Sensor | None = None) -> str:
+        """The same populations as the daemon writes them: lines, CSV or Markdown."""
+        return self._text("getPopulations", media, None, {"model": model, "sensor": sensor})
+
+    @operation("listDataSheets")
+    def data_sheets(self, model: str | None = None) -> list[DataSheet]:
+        """What manufacturers state of their sensors, with the source; with `model` of the sensors that this text names."""
+        return cast("list[DataSheet]", self._get("listDataSheets", None, {"model": model})["items"])
 
     @operation("listExportTargets")
     def export_targets(self) -> list[ExportTarget]:
@@ -91,12 +107,47 @@ class ResultRoutes(Routes):
         """One report as a page for people."""
         return self._text("getInvestigation", "text/markdown", {"id": id})
 
+    @operation("deleteInvestigation")
+    def delete_investigation(self, id: str, *, if_match: str | None = None) -> None:
+        """Deletes an investigation with its job; the models that it made stay."""
+        self._transport.call("deleteInvestigation", {"id": id}, if_match=if_match)
+
     @operation("listRegressions")
-    def regressions(self, *, page_size: int = PAGE) -> Iterator[RegressionRun]:
-        """Regression runs with their verdicts, oldest first. A run is a job of kind `regress`."""
-        return self._list("listRegressions", {}, page_size)
+    def regressions(self, *, device: str | None = None, label: str | None = None, page_size: int = PAGE) -> Iterator[RegressionRun]:
+        """Regression runs with their verdicts, oldest first; `label` is the candidate's. A run is a job of kind `regress`."""
+        return self._list("listRegressions", {"device": device, "label": label}, page_size)
 
     @operation("getRegression")
     def regression(self, id: str) -> Regression:
         """One run with every test."""
         return cast(Regression, self._get("getRegression", {"id": id}))
+
+    def regression_text(self, id: str, *, media: Literal["text/plain", "text/markdown"] = "text/plain") -> str:
+        """The same run as text or as a page."""
+        return self._text("getRegression", media, {"id": id})
+
+    @operation("getRegressionJunit")
+    def regression_junit(self, id: str, *, inconclusive: Literal["pass", "fail"] | None = None) -> str:
+        """The same run as a JUnit report; with `pass` what is open is skipped, else an error."""
+        return self._text("getRegressionJunit", "text/xml", {"id": id}, {"inconclusive": inconclusive})
+
+    @operation("getRegressionFigure")
+    def regression_figure(self, id: str) -> str:
+        """Candidate over baseline against averaging time, as SVG."""
+        return self._text("getRegressionFigure", "image/svg+xml", {"id": id})
+
+    @operation("getRegressionBadge")
+    def regression_badge(self, id: str) -> str:
+        """The verdict as a badge, SVG of 20 px."""
+        return self._text("getRegressionBadge", "image/svg+xml", {"id": id})
+
+    @operation("listRegressionAnchors")
+    def regression_anchors(self, *, device: str | None = None, page_size: int = PAGE) -> Iterator[RegressionAnchor]:
+        """Each time an anchor was moved, oldest first; the newest of a device holds."""
+        return self._list("listRegressionAnchors", {"device": device}, page_size)
+
+    @operation("moveRegressionAnchor")
+    def move_regression_anchor(self, device: str, label: str, reason: str, *, idempotency_key: str | None = None) -> RegressionAnchor:
+        """Runs of the device compare with this label from now on."""
+        body = {"device": device, "label": label, "reason": reason}
+        return cast(RegressionAnchor, self._post("moveRegressionAnchor", body, idempotency_key))

@@ -1,10 +1,11 @@
-"""Studies, simulation models and calibrations."""
+"""Studies, drives, simulation models and calibrations."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import cast
 
-from ..contract import Calibration, CalibrationSensors, Model, ModelRequest, StoredStudy, StudyBaseline, StudyRequestRecording
+from ..contract import Calibration, CalibrationSensors, Drive, Model
+from ..contract import ModelRequest, StoredDrive, StoredStudy, StudyBaseline, StudyRequestRecording
 from .base import PAGE, Routes, given, operation
 
 
@@ -27,6 +28,26 @@ class StudyRoutes(Routes):
         """One study."""
         return cast(StoredStudy, self._get("getStudy", {"id": id}))
 
+    @operation("deleteStudy")
+    def delete_study(self, id: str, *, if_match: str | None = None) -> None:
+        """Deletes a study; Conflict names the investigations of it."""
+        self._transport.call("deleteStudy", {"id": id}, if_match=if_match)
+
+    @operation("listDrives")
+    def drives(self, *, device: str | None = None, page_size: int = PAGE) -> Iterator[StoredDrive]:
+        """Recorded drives, oldest first."""
+        return self._list("listDrives", {"device": device}, page_size)
+
+    @operation("createDrive")
+    def create_drive(self, document: Drive, *, idempotency_key: str | None = None) -> StoredDrive:
+        """Stores a drive document over uploaded recordings, which is checked; the same document again gives the drive that exists."""
+        return cast(StoredDrive, self._post("createDrive", document, idempotency_key))
+
+    @operation("getDrive")
+    def drive(self, id: str) -> StoredDrive:
+        """One drive."""
+        return cast(StoredDrive, self._get("getDrive", {"id": id}))
+
     @operation("listModels")
     def models(self, *, device: str | None = None, parent: str | None = None, page_size: int = PAGE) -> Iterator[Model]:
         """Simulation models; with `parent` the revisions of that one."""
@@ -41,6 +62,11 @@ class StudyRoutes(Routes):
     def model(self, id: str) -> Model:
         """One model."""
         return cast(Model, self._get("getModel", {"id": id}))
+
+    @operation("deleteModel")
+    def delete_model(self, id: str, *, if_match: str | None = None) -> None:
+        """Deletes a model; Conflict names its revisions and the investigations that began or ended with it."""
+        self._transport.call("deleteModel", {"id": id}, if_match=if_match)
 
     @operation("listCalibrations")
     def calibrations(self, *, device: str | None = None, page_size: int = PAGE) -> Iterator[Calibration]:
@@ -60,3 +86,8 @@ class StudyRoutes(Routes):
     def calibration(self, id: str) -> Calibration:
         """One stored calibration."""
         return cast(Calibration, self._get("getCalibration", {"id": id}))
+
+    @operation("deleteCalibration")
+    def delete_calibration(self, id: str, *, if_match: str | None = None) -> None:
+        """Deletes a calibration; Conflict names the recordings and studies that use it."""
+        self._transport.call("deleteCalibration", {"id": id}, if_match=if_match)

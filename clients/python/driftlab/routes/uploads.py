@@ -4,12 +4,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from ..contract import Condition, LiveRecording, NewLiveRecording, StoredRecording, Upload
 from ..transport import Body
-from ..uploads import Columns, columns_text, condition_query
+from ..uploads import Columns, columns_text, condition_query, tag_query
 from .base import Routes, operation
 
 TUS = {"Tus-Resumable": "1.0.0"}
@@ -47,11 +47,13 @@ class UploadRoutes(Routes):
                       columns: Columns | None = None, name: str | None = None, trim_start_s: float | None = None,
                       trim_end_s: float | None = None, calibration: str | None = None, axis: str | None = None,
                       value: float | None = None, unit: str | None = None, direction: str | None = None,
+                      labels: Mapping[str, str] | None = None, session: str | None = None, recorded_at: str | None = None,
                       idempotency_key: str | None = None) -> StoredRecording:
         """Makes a recording of a complete upload, which `name` names; the rest is as in `upload`. Refused, the upload stays."""
         query: dict[str, Any] = {"device": device, "id": name, "rate_hz": rate_hz, "columns": columns_text(columns),
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
-                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition)}
+                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition),
+                                 **tag_query(labels, session, recorded_at)}
         return cast(StoredRecording, self._transport.call("recordUpload", {"id": id}, query, idempotency_key=idempotency_key).json)
 
     @operation("createLiveRecording")
