@@ -15,9 +15,15 @@ namespace driftlab::cli {
 [[nodiscard]] tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const CharacteriseOptions& options,
                                                              const std::string& server);
 
+/// A document of the daemon with its recordings called as the inputs call them, wherever it names them: what is printed
+/// is then what is printed without a daemon.
+[[nodiscard]] Json named_as_here(Json document, const Inputs& inputs);
+
 /// Parameter tables, as text, of every sensor axis in a characterisation document, by both methods.
+/// `hardware`: texts that describe the device, in which its sensor may be named.
 /// Error: Internal, for a document that driftlab has not written.
-[[nodiscard]] Result<std::string> tables_of(const Json& document, const std::string& device);
+[[nodiscard]] Result<std::string> tables_of(const Json& document, const std::string& device,
+                                            const std::vector<std::string>& hardware);
 
 /// The curves asked for with --taus, --total, --theo1 and --psd, as text: one line per tau, density or spectral line.
 [[nodiscard]] std::string further_to_text(const Json& document);

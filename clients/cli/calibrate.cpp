@@ -56,7 +56,8 @@ void add_calibrate(CLI::App& app, Command& chosen) {
   command->add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. 1=specific_force:x");
   command->add_option("--condition", flags->file.condition, "Condition of a bare recording")->capture_default_str();
   command->add_option("--gravity", flags->options.gravity_m_s2, "Local gravity [m/s^2]")->capture_default_str();
-  command->add_flag("--misalignment", flags->options.misalignment, "Estimate the misalignment of the axes too");
+  command->add_flag("--misalignment", flags->options.misalignment,
+                    "Estimate the misalignment of the axes of known positions too; from rests it always is");
   command->add_flag("--json", flags->json, "Print a document instead of lines");
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });
 }

@@ -48,13 +48,16 @@ Exit run(const Flags& flags) {
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
+  if (!flags.server.empty() && !flags.json) {
+    *document = named_as_here(std::move(*document), *inputs);
+  }
   if (!flags.plot.empty()) {
     if (auto drawn = write_plots(*document, flags.plot); !drawn) {
       return complain(drawn.error());
     }
   }
-  Result<std::string> text =
-      flags.json ? Result<std::string>(document->dump(2) + "\n") : tables_of(*document, inputs->device);
+  Result<std::string> text = flags.json ? Result<std::string>(document->dump(2) + "\n")
+                                        : tables_of(*document, inputs->device, inputs->hardware);
   if (!text) {
     return complain(text.error());
   }

@@ -13,10 +13,16 @@
   COMMAND(add_plot)                \
   COMMAND(add_report)              \
   COMMAND(add_export)              \
+  COMMAND(add_datasheet)           \
+  COMMAND(add_population)          \
   COMMAND(add_outages)             \
   COMMAND(add_regress)             \
   COMMAND(add_ci)                  \
-  COMMAND(add_drive)
+  COMMAND(add_drive)               \
+  COMMAND(add_convert)             \
+  COMMAND(add_watch)               \
+  COMMAND(add_api)                 \
+  COMMAND(add_manual)
 // clang-format on
 
 namespace driftlab::cli {

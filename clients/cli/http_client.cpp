@@ -12,6 +12,7 @@
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
 
+#include <algorithm>
 #include <fstream>
 
 namespace driftlab::cli {
@@ -146,14 +147,24 @@ Result<HttpReply> HttpClient::get(const std::string& target, const std::string& 
 }
 
 Result<HttpReply> HttpClient::post(const std::string& target, const std::string& json) {
+  return send({"POST", target, json, "*/*", ""});
+}
+
+Result<HttpReply> HttpClient::send(const HttpRequest& wanted) {
   Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return fail(connected.error());
   }
-  http::request<http::string_body> request(http::verb::post, target, 11);
+  http::request<http::string_body> request(http::string_to_verb(wanted.method), wanted.target, 11);
   exchange.prepare(request);
-  request.set(http::field::content_type, "application/json");
-  request.body() = json;
+  request.set(http::field::accept, wanted.accept);
+  if (!wanted.if_match.empty()) {
+    request.set(http::field::if_match, wanted.if_match);
+  }
+  if (!wanted.json.empty()) {
+    request.set(http::field::content_type, "application/json");
+    request.body() = wanted.json;
+  }
   request.prepare_payload();
   return exchange.ask(request);
 }
@@ -192,7 +203,24 @@ Result<HttpReply> HttpClient::upload(const std::string& target, const std::files
   return exchange.read_reply(error);
 }
 
-Status HttpClient::follow(const std::string& target, const std::function<bool(std::string_view)>& event) {
+namespace {
+
+/// The value of a field of an event, `name: value`; empty where it is not there.
+std::string_view field_of(std::string_view block, std::string_view name) {
+  while (!block.empty()) {
+    const std::string_view line = block.substr(0, block.find('\n'));
+    block.remove_prefix(std::min(block.size(), line.size() + 1));
+    if (line.starts_with(name)) {
+      return line.substr(name.size());
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status HttpClient::follow(const std::string& target, const std::function<bool(std::string_view)>& event,
+                          std::string* last_id) {
   Exchange exchange(host_, port_, secure_);
   if (auto connected = exchange.connect(); !connected) {
     return connected;
@@ -200,6 +228,9 @@ Status HttpClient::follow(const std::string& target, const std::function<bool(st
   http::request<http::empty_body> request(http::verb::get, target, 11);
   exchange.prepare(request);
   request.set(http::field::accept, "text/event-stream");
+  if (last_id != nullptr && !last_id->empty()) {
+    request.set("Last-Event-ID", *last_id);
+  }
   boost::system::error_code error;
   http::write(exchange.link(), request, error);
   boost::beast::flat_buffer buffer;
@@ -226,8 +257,10 @@ Status HttpClient::follow(const std::string& target, const std::function<bool(st
     while ((end = text.find("\n\n")) != std::string::npos) {
       const std::string block = text.substr(0, end);
       text.erase(0, end + 2);
-      const std::size_t data = block.find("data: ");
-      if (data != std::string::npos && !event(std::string_view(block).substr(data + 6))) {
+      if (const std::string_view id = field_of(block, "id: "); last_id != nullptr && !id.empty()) {
+        *last_id = id;
+      }
+      if (const std::string_view data = field_of(block, "data: "); !data.empty() && !event(data)) {
         return {};
       }
     }

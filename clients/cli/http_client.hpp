@@ -19,6 +19,14 @@ struct HttpReply {
   bool pending = false;  ///< the answer will change when a job ends: it has Retry-After
 };
 
+struct HttpRequest {
+  std::string method;  ///< GET, POST, PATCH, DELETE
+  std::string target;  ///< path and query
+  std::string json;    ///< body; empty: none
+  std::string accept = "application/json";
+  std::string if_match;  ///< ETag, or `*`; empty: not said
+};
+
 /// Talks to one daemon. Every failure to reach it is ErrorCode::Io, with a sentence that names the address. Not thread
 /// safe.
 class HttpClient {
@@ -36,11 +44,14 @@ class HttpClient {
   [[nodiscard]] Result<HttpReply> get_settled(const std::string& target, const std::string& accept,
                                               const std::function<bool()>& stop);
   [[nodiscard]] Result<HttpReply> post(const std::string& target, const std::string& json);
+  [[nodiscard]] Result<HttpReply> send(const HttpRequest& wanted);
   /// Streams a file; `sent` is called with the fraction sent.
   [[nodiscard]] Result<HttpReply> upload(const std::string& target, const std::filesystem::path& file,
                                          const std::function<void(double)>& sent);
-  /// Follows a server-sent event stream until it closes or `event` returns false. `event` gets the data of each.
-  [[nodiscard]] Status follow(const std::string& target, const std::function<bool(std::string_view data)>& event);
+  /// Follows a server-sent event stream until it closes or `event` returns false. `event` gets the data of each. With
+  /// `last_id` it goes on behind the event of that id, where that is not empty, and leaves the id of the last there.
+  [[nodiscard]] Status follow(const std::string& target, const std::function<bool(std::string_view data)>& event,
+                              std::string* last_id = nullptr);
 
  private:
   [[nodiscard]] Result<HttpReply> get(const std::string& target, const std::string& accept, int wait_s);

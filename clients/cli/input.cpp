@@ -90,6 +90,11 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
   ObjectReader reader(*document, "", faults);
   if (const Json* const device = reader.member("device"); device != nullptr && device->is_object()) {
     inputs.device = device->value("id", "");
+    for (const char* const member : {"imu", "model"}) {
+      if (const Json text = device->value(member, Json(nullptr)); text.is_string()) {
+        inputs.hardware.push_back(text.get<std::string>());
+      }
+    }
   }
   if (const Json* const baseline = reader.member("baseline"); baseline != nullptr) {
     inputs.baseline = *baseline;
@@ -133,6 +138,9 @@ Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlag
     if (study && !flags.device.empty()) {
       study->device = flags.device;
     }
+    if (study) {
+      study->hardware.push_back(study->device);
+    }
     return study;
   }
   auto spec = spec_from_flags(flags);
@@ -150,6 +158,7 @@ Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlag
     return fail(left_out.error());
   }
   inputs.device = flags.device.empty() ? inputs.files.front().spec.id : flags.device;
+  inputs.hardware = {inputs.device};
   if (auto read = read_calibrations({}, inputs); !read) {
     return fail(read.error());
   }

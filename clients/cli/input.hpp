@@ -37,7 +37,9 @@ struct InputFile {
 
 struct Inputs {
   std::string device;
-  Json study;  ///< the id of the study's file, or null
+  /// Texts that describe the device, most telling first: IMU, model, name.
+  std::vector<std::string> hardware = {};
+  Json study = nullptr;  ///< the id of the study's file, or null
   std::vector<InputFile> files;
   Json baseline;                                   ///< the study's `baseline`, or null
   std::shared_ptr<Workspace> workspace = nullptr;  ///< keeps filtered copies

@@ -25,10 +25,10 @@ Status Link::connect(const std::string& host, const std::string& port) {
   if (error) {
     return fail(ErrorCode::Io, "The daemon at " + address + " cannot be reached: " + error.message() + ".");
   }
-  return tls_ ? shake_hands(host, address) : Status{};
+  return tls_ ? shake_hands(*tls_, host, address) : Status{};
 }
 
-Status Link::shake_hands(const std::string& host, const std::string& address) {
+Status Link::shake_hands(TlsStream& stream, const std::string& host, const std::string& address) {
   boost::system::error_code error;
   SSL_CTX_set_min_proto_version(context_.native_handle(), TLS1_2_VERSION);
   if (ca_file_.empty()) {
@@ -36,18 +36,18 @@ Status Link::shake_hands(const std::string& host, const std::string& address) {
   } else if (error = context_.load_verify_file(ca_file_, error); error) {
     return fail(ErrorCode::NotFound, "The file " + ca_file_ + " holds no certificates in PEM, or cannot be read.");
   }
-  tls_->set_verify_mode(asio::ssl::verify_peer);
-  tls_->set_verify_callback(asio::ssl::host_name_verification(host));
+  stream.set_verify_mode(asio::ssl::verify_peer);
+  stream.set_verify_callback(asio::ssl::host_name_verification(host));
   boost::system::error_code no_address;
   asio::ip::make_address(host, no_address);
   if (no_address) {
-    SSL_set_tlsext_host_name(tls_->native_handle(), host.c_str());
+    SSL_set_tlsext_host_name(stream.native_handle(), host.c_str());
   }
-  error = tls_->handshake(asio::ssl::stream_base::client, error);
+  error = stream.handshake(asio::ssl::stream_base::client, error);
   if (!error) {
     return {};
   }
-  const long verified = SSL_get_verify_result(tls_->native_handle());
+  const long verified = SSL_get_verify_result(stream.native_handle());
   if (verified != X509_V_OK) {
     return fail(ErrorCode::Io, "The daemon at " + address + " shows a certificate that is not trusted (" +
                                    X509_verify_cert_error_string(verified) +

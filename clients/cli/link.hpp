@@ -41,11 +41,12 @@ class Link {
   }
 
  private:
-  [[nodiscard]] Status shake_hands(const std::string& host, const std::string& address);
+  using TlsStream = boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>;
+  [[nodiscard]] Status shake_hands(TlsStream& stream, const std::string& host, const std::string& address);
 
   boost::asio::ssl::context context_{boost::asio::ssl::context::tls_client};
   boost::asio::ip::tcp::socket socket_;
-  std::optional<boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>> tls_;
+  std::optional<TlsStream> tls_;
   std::string ca_file_;
 };
 

@@ -76,7 +76,8 @@ struct AxisTables {
 
 constexpr std::array kMethods{TableMethod::Av, TableMethod::Gmwm};
 
-Result<AxisTables> axis_tables(const Json& document, const std::string& device, const SensorSources& sensor) {
+Result<AxisTables> axis_tables(const Json& document, const std::string& device,
+                               const std::vector<std::string>& hardware, const SensorSources& sensor) {
   auto found = pooled_of(document, sensor);
   if (!found) {
     return fail(found.error());
@@ -87,7 +88,8 @@ Result<AxisTables> axis_tables(const Json& document, const std::string& device, 
   const PooledSensor* const pooled = axis.pooled ? &*axis.pooled : nullptr;
   const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
-    axis.tables[m] = build_parameter_table({device, quantity, sensor.axis, kMethods[m], ""}, sensor.sources, pooled);
+    axis.tables[m] =
+        build_parameter_table({device, quantity, sensor.axis, kMethods[m], "", hardware}, sensor.sources, pooled);
   }
   return axis;
 }
@@ -124,14 +126,15 @@ std::string one_axis_text(const AxisTables& axis) {
 
 }  // namespace
 
-Result<std::string> tables_of(const Json& document, const std::string& device) {
+Result<std::string> tables_of(const Json& document, const std::string& device,
+                              const std::vector<std::string>& hardware) {
   const auto sensors = sensors_of(document);
   if (!sensors) {
     return fail(sensors.error());
   }
   std::vector<AxisTables> axes;
   for (const SensorSources& sensor : *sensors) {
-    auto axis = axis_tables(document, device, sensor);
+    auto axis = axis_tables(document, device, hardware, sensor);
     if (!axis) {
       return fail(axis.error());
     }

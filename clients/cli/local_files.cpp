@@ -22,7 +22,7 @@ Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& co
   if (!columns) {
     return fail(columns.error());
   }
-  return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes)};
+  return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes), inputs_.hardware};
 }
 
 Error LocalFiles::located(std::size_t index, Error error) const {

@@ -18,8 +18,14 @@ struct Flags {
   std::string channel;
 };
 
+struct Documented {
+  std::string device;
+  std::vector<std::string> hardware;  ///< texts that describe the device
+  Json document;
+};
+
 /// A document as it stands, or recordings characterised now, with the name of their device.
-tl::expected<std::pair<std::string, Json>, Failure> document_of(const Flags& flags) {
+tl::expected<Documented, Failure> document_of(const Flags& flags) {
   if (flags.files.size() == 1 && flags.files.front().ends_with(".json")) {
     auto document = read_result(flags.files.front());
     if (!document) {
@@ -31,7 +37,7 @@ tl::expected<std::pair<std::string, Json>, Failure> document_of(const Flags& fla
       const std::string device = document->is_object() && document->value("device", Json(nullptr)).is_string()
                                      ? document->at("device").get<std::string>()
                                      : flags.file.device;
-      return std::pair(device, std::move(*document));
+      return Documented{device, {device}, std::move(*document)};
     }
   }
   auto inputs = read_inputs(flags.files, flags.file);
@@ -42,7 +48,7 @@ tl::expected<std::pair<std::string, Json>, Failure> document_of(const Flags& fla
   if (!document) {
     return tl::unexpected(document.error());
   }
-  return std::pair(inputs->device, std::move(*document));
+  return Documented{inputs->device, inputs->hardware, std::move(*document)};
 }
 
 Exit run_plot(const Flags& flags) {
@@ -50,7 +56,7 @@ Exit run_plot(const Flags& flags) {
   if (!document) {
     return complain(document.error().error, document.error().exit);
   }
-  const auto written = write_plots(document->second, flags.output, flags.channel);
+  const auto written = write_plots(document->document, flags.output, flags.channel);
   return written ? Exit::Success : complain(written.error());
 }
 
@@ -60,14 +66,14 @@ Exit run_report(const Flags& flags) {
     return complain(document.error().error, document.error().exit);
   }
   std::string tables;
-  if (document->second.contains("recordings") && document->second.at("recordings").is_array()) {
-    auto text = tables_of(document->second, document->first);
+  if (document->document.contains("recordings") && document->document.at("recordings").is_array()) {
+    auto text = tables_of(document->document, document->device, document->hardware);
     if (!text) {
       return complain(text.error());
     }
     tables = std::move(*text);
   }
-  const auto page = report_page(document->second, document->first, tables);
+  const auto page = report_page(document->document, document->device, tables);
   if (!page) {
     return complain(page.error());
   }

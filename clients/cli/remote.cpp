@@ -1,46 +1,16 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/progress.hpp"
-#include "core/signal/number.hpp"
+#include "clients/cli/remote_upload.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterise.hpp"
-#include "schema/json/recording_spec.hpp"
+
+#include <algorithm>
+#include <map>
 
 namespace driftlab::cli {
 namespace {
 
 constexpr double kUploads = 0.3;  ///< share of the progress bar
-
-std::string columns_text(const std::map<std::string, ColumnRole>& columns) {
-  std::string text;
-  for (const auto& [name, role] : columns) {
-    text += (text.empty() ? "" : ",") + name + "=" + std::string(name_of(role.quantity)) + ":" + role.axis;
-    if (role.unit) {
-      text += ":" + role.unit->symbol;
-    }
-  }
-  return text;
-}
-
-std::string upload_target(const std::string& device, const RecordingSpec& spec) {
-  std::string target = "/v1/recordings?device=" + percent_encode(device) +
-                       "&condition=" + percent_encode(to_text(spec.condition)) + "&id=" + percent_encode(spec.id);
-  if (spec.rate_hz) {
-    target += "&rate_hz=" + to_text(*spec.rate_hz);
-  }
-  if (!spec.columns.empty()) {
-    target += "&columns=" + percent_encode(columns_text(spec.columns));
-  }
-  if (spec.trim.start_s > 0.0) {
-    target += "&trim_start_s=" + to_text(spec.trim.start_s);
-  }
-  if (spec.trim.end_s > 0.0) {
-    target += "&trim_end_s=" + to_text(spec.trim.end_s);
-  }
-  if (!spec.calibration.empty()) {
-    target += "&calibration=" + percent_encode(spec.calibration);
-  }
-  return target;
-}
 
 /// Stores the calibrations that files name in the daemon, and names those instead.
 tl::expected<std::vector<InputFile>, Failure> with_stored_calibrations(HttpClient& client, const Inputs& inputs) {
@@ -87,23 +57,13 @@ tl::expected<Json, Failure> upload_all(HttpClient& client, const Inputs& inputs,
   Json ids = Json::array();
   for (const InputFile& file : *files) {
     const auto done = static_cast<double>(ids.size());
-    auto reply = client.upload(upload_target(inputs.device, file.spec), file.bytes(), [&](double fraction) {
+    auto id = upload_file(client, inputs.device, file, {}, [&](double fraction) {
       bar.show("upload " + file.spec.id, kUploads * (done + fraction) / static_cast<double>(inputs.files.size()));
     });
-    if (!reply) {
-      const bool missing = reply.error().code == ErrorCode::NotFound;
-      return tl::unexpected(Failure{reply.error(), missing ? Exit::BadInput : Exit::ServerOrJob});
+    if (!id) {
+      return tl::unexpected(id.error());
     }
-    if (reply->status != 200 && reply->status != 201) {
-      auto failure = refused(*reply);
-      failure.value().error.message = file.path.string() + ": " + failure.value().error.message;
-      return failure;
-    }
-    auto recording = parse_json(reply->body);
-    if (!recording || !recording->contains("id")) {
-      return unreachable(Error{ErrorCode::ParseError, "The daemon's answer to an upload is not understood.", {}});
-    }
-    ids.push_back((*recording)["id"]);
+    ids.push_back(std::move(*id));
   }
   return ids;
 }
@@ -129,7 +89,40 @@ tl::expected<void, Failure> await_pooling(HttpClient& client, const std::string&
   return {};
 }
 
+/// Names of `ids` as the inputs have them.
+void rename_all(Json& ids, const std::map<std::string, std::string>& names) {
+  for (Json& id : ids) {
+    const auto found = id.is_string() ? names.find(id.get<std::string>()) : names.end();
+    if (found != names.end()) {
+      id = found->second;
+    }
+  }
+}
+
 }  // namespace
+
+Json named_as_here(Json document, const Inputs& inputs) {
+  std::map<std::string, std::string> names;
+  Json& recordings = document["recordings"];
+  for (std::size_t i = 0; i < recordings.size() && i < inputs.files.size(); ++i) {
+    names[recordings[i].value("id", "")] = inputs.files[i].spec.id;
+    recordings[i]["id"] = inputs.files[i].spec.id;
+  }
+  Json pooled = document.value("replicates", Json::array());
+  for (Json& sensor : pooled) {
+    for (Json& condition : sensor["conditions"]) {
+      // The daemon's members are results, of the recordings in the same order; here they are the recordings.
+      if (condition["members"].size() == condition["recordings"].size()) {
+        condition["members"] = condition["recordings"];
+      }
+      rename_all(condition["recordings"], names);
+      rename_all(condition["members"], names);
+      std::sort(condition["members"].begin(), condition["members"].end());
+    }
+  }
+  document["replicates"] = std::move(pooled);
+  return document;
+}
 
 tl::expected<Json, Failure> characterise_there(const Inputs& inputs, const CharacteriseOptions& options,
                                                const std::string& server) {

@@ -7,13 +7,13 @@ namespace {
 
 /// Follows the job to its end. Events that stop early (a restarted daemon) are asked for again.
 tl::expected<Json, Failure> wait_for(HttpClient& client, const std::string& job_id, ProgressBar& bar,
-                                     double progress_before) {
+                                     double progress_before, double progress_after) {
   for (int attempt = 0; attempt < 20; ++attempt) {
     auto followed = client.follow("/v1/jobs/" + job_id + "/events", [&](std::string_view data) {
       if (const auto event = parse_json(data); event && event->contains("progress")) {
         const Json& stage = (*event)["stage"];
         bar.show(stage.is_string() ? stage.get<std::string>() : event->value("state", ""),
-                 progress_before + (1.0 - progress_before) * (*event)["progress"].get<double>());
+                 progress_before + (progress_after - progress_before) * (*event)["progress"].get<double>());
       }
       return !interrupt_token().stop_requested();
     });
@@ -70,13 +70,14 @@ tl::expected<Json, Failure> post_for_id(HttpClient& client, const std::string& t
   return (*made)["id"];
 }
 
-tl::expected<Json, Failure> run_job(HttpClient& client, const Json& request, ProgressBar& bar, double progress_before) {
+tl::expected<std::string, Failure> succeeded_job(HttpClient& client, const Json& request, ProgressBar& bar,
+                                                 double progress_before, double progress_after) {
   auto queued = post_for_id(client, "/v1/jobs", request, "a job");
   if (!queued) {
     return tl::unexpected(queued.error());
   }
-  const std::string job_id = queued->get<std::string>();
-  auto job = wait_for(client, job_id, bar, progress_before);
+  std::string job_id = queued->get<std::string>();
+  auto job = wait_for(client, job_id, bar, progress_before, progress_after);
   if (!job) {
     return tl::unexpected(job.error());
   }
@@ -88,7 +89,15 @@ tl::expected<Json, Failure> run_job(HttpClient& client, const Json& request, Pro
         "The job " + job_id + " ended " + (*job)["state"].get<std::string>() + (detail.empty() ? "." : ": " + detail),
         {}});
   }
-  auto result = client.get("/v1/jobs/" + job_id + "/result");
+  return job_id;
+}
+
+tl::expected<Json, Failure> run_job(HttpClient& client, const Json& request, ProgressBar& bar, double progress_before) {
+  const auto job_id = succeeded_job(client, request, bar, progress_before);
+  if (!job_id) {
+    return tl::unexpected(job_id.error());
+  }
+  auto result = client.get("/v1/jobs/" + *job_id + "/result");
   if (!result) {
     return unreachable(result.error());
   }

@@ -28,4 +28,9 @@ struct Failure {
 [[nodiscard]] tl::expected<Json, Failure> run_job(HttpClient& client, const Json& request, ProgressBar& bar,
                                                   double progress_before = 0.0);
 
+/// The same where the job itself is wanted: its id, once it has succeeded.
+[[nodiscard]] tl::expected<std::string, Failure> succeeded_job(HttpClient& client, const Json& request,
+                                                               ProgressBar& bar, double progress_before = 0.0,
+                                                               double progress_after = 1.0);
+
 }  // namespace driftlab::cli

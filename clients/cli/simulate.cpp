@@ -80,12 +80,30 @@ Result<AxisSimulation> axis_of(const Flags& flags) {
   return AxisSimulation{*condition, flags.rate_hz, flags.duration_s, flags.seed};
 }
 
+/// An .npy file has no names: what reads it must be told them, and this says how.
+void say_columns(const Flags& flags, const SampleTable& table) {
+  if (!flags.out.ends_with(".npy")) {
+    return;
+  }
+  std::string columns;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    columns.append(c == 0 ? "" : ", ").append(std::to_string(c)).append(" is ").append(table.columns[c]);
+  }
+  std::fprintf(stderr,
+               "driftlab: %s holds numbers alone: to read it, give --rate-hz %s and its columns by --columns (%s).\n",
+               flags.out.c_str(), to_text(flags.rate_hz).c_str(), columns.c_str());
+}
+
 /// One axis at one condition.
 Exit write_preset(const Flags& flags) {
   const auto wanted = axis_of(flags);
   const auto table = wanted ? simulate_preset(flags.preset, *wanted) : fail(wanted.error());
   const Status written = table ? write_table(flags.out, provenance(flags), *table) : fail(table.error());
-  return written ? Exit::Success : complain(written.error());
+  if (!written) {
+    return complain(written.error());
+  }
+  say_columns(flags, *table);
+  return Exit::Success;
 }
 
 /// One channel of a simulation model. What cannot be brought about is named on standard error and in the file.
@@ -106,8 +124,11 @@ Exit write_model(const Flags& flags) {
     comment.append("; left out: ").append(left);
     std::fprintf(stderr, "driftlab: left out: %s\n", left.c_str());
   }
-  const Status written = write_table(flags.out, comment, made->table);
-  return written ? Exit::Success : complain(written.error());
+  if (const Status written = write_table(flags.out, comment, made->table); !written) {
+    return complain(written.error());
+  }
+  say_columns(flags, made->table);
+  return Exit::Success;
 }
 
 /// All axes along a drive, with fixes and truth.
@@ -124,12 +145,14 @@ Exit write_drive(const Flags& flags) {
   const std::string about = provenance(flags);
   Status written =
       write_table(flags.out, about + "; each row is the mean over the interval that ends at t", drive->imu);
-  if (written && drive->fixes) {
-    written = write_table(flags.gnss, about + "; fixes; t is when one arrives, validity the moment it describes",
-                          *drive->fixes);
+  const auto& fixes = drive->fixes;
+  const auto& truth = drive->truth;
+  if (written && fixes) {
+    written =
+        write_table(flags.gnss, about + "; fixes; t is when one arrives, validity the moment it describes", *fixes);
   }
-  if (written && drive->truth) {
-    written = write_table(flags.truth, about + "; truth", *drive->truth);
+  if (written && truth) {
+    written = write_table(flags.truth, about + "; truth", *truth);
   }
   return written ? Exit::Success : complain(written.error());
 }

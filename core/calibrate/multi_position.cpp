@@ -142,6 +142,22 @@ Triple MultiPositionCalibration::correct(const Triple& reading) const {
   return corrected;
 }
 
+std::array<std::array<Estimate, 3>, 3> MultiPositionCalibration::misalignment() const {
+  const auto& a = correction;
+  const std::array<double, 3> diagonal{a[0][0].value, a[1][1].value, a[2][2].value};
+  std::array<std::array<Estimate, 3>, 3> angles{};
+  const double between = a[0][1].value * a[1][2].value / (diagonal[1] * diagonal[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i + 1; j < 3; ++j) {
+      Estimate& angle = angles[i][j];
+      angle.value = -a[i][j].value / diagonal[j] + (j == i + 2 ? between : 0.0);
+      const double half = 0.5 * (a[i][j].ci95.high - a[i][j].ci95.low) / std::abs(diagonal[j]);
+      angle.ci95 = {angle.value - half, angle.value + half};
+    }
+  }
+  return angles;
+}
+
 Result<MultiPositionCalibration> calibrate_multi_position(std::span<const Triple> readings, double gravity_m_s2) {
   if (!(gravity_m_s2 > 0.0 && std::isfinite(gravity_m_s2))) {
     return fail(ErrorCode::InvalidArgument, "Gravity must be a positive number of m/s^2.", {{"parameter", "gravity"}});

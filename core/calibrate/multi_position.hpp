@@ -32,6 +32,9 @@ struct MultiPositionCalibration {
   std::vector<std::string> warnings;
 
   [[nodiscard]] Triple correct(const Triple& reading) const;
+  /// What sensor i reads of the true value along axis j [rad], j > i; zeros elsewhere, for the frame is that of the
+  /// sensors themselves. A_ii (A^-1)_ij, with the interval of A_ij: that of the diagonal is of second order.
+  [[nodiscard]] std::array<std::array<Estimate, 3>, 3> misalignment() const;
 };
 
 /// Errors: TooFewSamples (below 10 positions, or all in one half of an axis), InvalidArgument (g not positive),

@@ -240,6 +240,21 @@ Status check_model(const std::string& model, const std::vector<TableSource>& sou
   return {};
 }
 
+/// The first row against the sensor's data sheet, where it is known and the row is at rest.
+void compare_first_row(const TableRequest& request, ParameterTable& table) {
+  const TableRow& first = table.rows.front();
+  const auto known = known_sensor(request.hardware, request.quantity);
+  if (!known || first.condition.kind != ConditionKind::Static) {
+    return;
+  }
+  const auto flicker = std::find_if(table.columns.begin(), table.columns.end(),
+                                    [](const TableColumn& column) { return column.key == "B"; });
+  const ReportedValue* const b = flicker == table.columns.end()
+                                     ? nullptr
+                                     : &first.cells[static_cast<std::size_t>(flicker - table.columns.begin())].estimate;
+  table.data_sheet = compare_with_sheet(*known, table.axis, first.label, first.density.estimate, b);
+}
+
 }  // namespace
 
 std::string_view name_of(TableMethod method) { return method == TableMethod::Av ? "av" : "gmwm"; }
@@ -303,6 +318,7 @@ Result<ParameterTable> build_parameter_table(const TableRequest& request, const 
       row.cells[c].change = change_between(first.cells[c].estimate, row.cells[c].estimate);
     }
   }
+  compare_first_row(request, table);
   return table;
 }
 

@@ -13,6 +13,7 @@
 /// against the root of the summed squared half-widths), none where not, nothing where either is not identified.
 #include "core/campaign/pooled_sensor.hpp"
 #include "core/campaign/sensor_sources.hpp"
+#include "core/campaign/sheet_comparison.hpp"
 #include "core/campaign/table_cells.hpp"
 #include "core/signal/quantity.hpp"
 
@@ -35,6 +36,8 @@ struct TableRequest {
   std::string axis;
   TableMethod method = TableMethod::Gmwm;
   std::string model;  ///< empty: chosen by the criterion
+  /// Texts in which the sensor may be named, most telling first: the IMU, the model, the name of the device.
+  std::vector<std::string> hardware = {};
 };
 
 /// How the values of a row came about.
@@ -79,6 +82,8 @@ struct ParameterTable {
   std::string model;  ///< the one model of all rows; empty for method av
   std::vector<TableColumn> columns;
   std::vector<TableRow> rows;  ///< static first, then by kind and value; at least one
+  /// Of the first row, where the sensor is known and at rest there.
+  std::optional<SheetComparison> data_sheet = std::nullopt;
 };
 
 /// `pooled`: the pooled result of this sensor axis, or nullptr; entries that are not of these sources are passed over.

@@ -1,5 +1,6 @@
 #include "core/campaign/verdict.hpp"
 
+#include "core/campaign/words.hpp"
 #include "core/signal/significant.hpp"
 
 #include <algorithm>
@@ -9,26 +10,6 @@
 
 namespace driftlab {
 namespace {
-
-constexpr std::array<std::string_view, 13> kCounts{"no",    "one",   "two",  "three", "four",   "five",  "six",
-                                                   "seven", "eight", "nine", "ten",   "eleven", "twelve"};
-
-std::string counted(std::size_t n) { return n < kCounts.size() ? std::string(kCounts[n]) : std::to_string(n); }
-
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  }
-  return text;
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  }
-  return text;
-}
 
 std::string p_text(double p) {
   if (p < kRejected) {
@@ -52,12 +33,13 @@ const ReportedValue* parameter(const ReportedProcess& process, std::string_view 
   return nullptr;
 }
 
-/// 1/beta with its interval.
+/// 1/beta with its interval; empty where beta is zero or unknown.
 std::string correlation_time(const ReportedValue& beta) {
   const auto inverse = [](const std::optional<double>& x) {
     return x && *x > 0.0 ? std::optional<double>(1.0 / *x) : std::nullopt;
   };
-  return significant(1.0 / *beta.value, inverse(beta.high), inverse(beta.low)) + " s";
+  const auto time_s = inverse(beta.value);
+  return time_s ? significant(*time_s, inverse(beta.high), inverse(beta.low)) + " s" : std::string();
 }
 
 /// A process in words, with its figure; empty where the data do not identify its level.
@@ -71,8 +53,8 @@ std::string phrase_of(const ReportedProcess& process) {
   }
   if (process.process == "gauss_markov") {
     const ReportedValue* const beta = parameter(process, "beta");
-    return "a Gauss-Markov bias of " + written(*level) +
-           (beta != nullptr && *beta->value > 0.0 ? " with a correlation time of " + correlation_time(*beta) : "");
+    const std::string time = beta != nullptr ? correlation_time(*beta) : std::string();
+    return "a Gauss-Markov bias of " + written(*level) + (time.empty() ? "" : " with a correlation time of " + time);
   }
   std::string name = process.process;
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -120,25 +102,26 @@ void say_fit(const ReportedChannel& channel, Verdict& verdict) {
     raise(verdict, VerdictLevel::Look);
     return;
   }
+  const std::string p = p_text(best.j_test->p);
   if (fits(best)) {
-    verdict.sentence = best.model + " describes this recording (J test " + p_text(best.j_test->p) + ")" +
-                       (figures.empty() ? "" : ": " + figures) + ".";
+    verdict.sentence =
+        best.model + " describes this recording (J test " + p + ")" + (figures.empty() ? "" : ": " + figures) + ".";
     return;
   }
   raise(verdict, VerdictLevel::Look);
   const auto other = std::find_if(channel.fits.begin(), channel.fits.end(), fits);
-  if (other != channel.fits.end()) {
-    verdict.sentence = best.model + ", ranked first by the criterion, does not fit (J test " + p_text(best.j_test->p) +
-                       "); " + other->model + " does (" + p_text(other->j_test->p) + ")" +
+  const auto accepted = other != channel.fits.end() ? other->j_test : std::nullopt;
+  if (accepted) {
+    verdict.sentence = best.model + ", ranked first by the criterion, does not fit (J test " + p + "); " +
+                       other->model + " does (" + p_text(accepted->p) + ")" +
                        (figures_of(*other).empty() ? "" : ": " + figures_of(*other)) + ".";
     return;
   }
-  verdict.sentence =
-      (channel.fits.size() == 1
-           ? best.model + " does not describe this recording (J test " + p_text(best.j_test->p) + ")"
-           : "None of " + counted(channel.fits.size()) + " candidates describes this recording (J test " +
-                 p_text(best.j_test->p) + " for the best, " + best.model + ")") +
-      ".";
+  verdict.sentence = (channel.fits.size() == 1 ? best.model + " does not describe this recording (J test " + p + ")"
+                                               : "None of " + counted(channel.fits.size()) +
+                                                     " candidates describes this recording (J test " + p +
+                                                     " for the best, " + best.model + ")") +
+                     ".";
   if (!figures.empty()) {
     verdict.details.push_back("The closest has " + figures + "; its intervals are too short.");
   }
@@ -205,6 +188,7 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
   std::size_t moved = 0;
   std::size_t compared = 0;
   const TableRow* highest = nullptr;
+  double most = 0.0;
   for (const TableRow& row : table.rows) {
     const TableCell& cell = row.cells[column];
     if (&row == &table.rows.front() || !cell.estimate.value) {
@@ -212,8 +196,9 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
     }
     ++compared;
     moved += cell.change && *cell.change != Change::None ? 1U : 0U;
-    if (highest == nullptr || *cell.estimate.value > *highest->cells[column].estimate.value) {
+    if (highest == nullptr || *cell.estimate.value > most) {
       highest = &row;
+      most = *cell.estimate.value;
     }
   }
   if (highest == nullptr) {
@@ -280,6 +265,11 @@ Verdict verdict_of(const ParameterTable& table) {
     if (row.contamination == "contaminated") {
       verdict.details.push_back("Gross errors move the variances under " + row.label + ".");
       raise(verdict, VerdictLevel::Look);
+    }
+  }
+  if (table.data_sheet) {
+    for (const SheetFigure& figure : table.data_sheet->figures) {
+      verdict.details.push_back(sentence_of(figure) + " (" + table.data_sheet->sensor + ").");
     }
   }
   if (!misfits.empty()) {

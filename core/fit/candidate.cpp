@@ -72,7 +72,10 @@ class LeastDistance {
     sort_repeats(found);
     const bool in_order = std::equal(found.begin(), found.end(), as_found.begin(),
                                      [](const Process& a, const Process& b) { return a.parameters == b.parameters; });
-    return in_order ? std::move(fit) : std::make_unique<LogFit>(moments_, std::move(found), curve_);
+    if (!in_order) {
+      fit = std::make_unique<LogFit>(moments_, std::move(found), curve_);
+    }
+    return fit;
   }
 
   void keep(std::unique_ptr<LogFit> fit) {

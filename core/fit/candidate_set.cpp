@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -140,7 +141,9 @@ void measure_by_own(const WaveletMoments& moments, CandidateSet& set, const Cova
   for (std::size_t i = 0; i < rising.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (is_nested(rising[j]->structure, rising[i]->structure)) {
-        rising[i]->own_distance = std::min(*rising[i]->own_distance, *rising[j]->own_distance);
+        constexpr double kUnknown = std::numeric_limits<double>::infinity();
+        std::optional<double>& own = rising[i]->own_distance;
+        own = std::min(own.value_or(kUnknown), rising[j]->own_distance.value_or(kUnknown));
       }
     }
   }

@@ -211,10 +211,12 @@ void store_fits(CandidateSet& set, double unit, double samples, ModelFit best_fi
     best = std::min(best, light(candidate));
   }
   result.discrepancy = set.curve->delta;
+  result.fits.push_back(std::move(best_fit));
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    result.fits.push_back(report_fit(candidates[i], unit, samples, IntervalMethod::Preview));
+  }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    result.fits.push_back(i == 0 ? std::move(best_fit)
-                                 : report_fit(candidates[i], unit, samples, IntervalMethod::Preview));
-    result.fits.back().plausible = light(candidates[i]) <= best + kPlausible;
+    result.fits[i].plausible = light(candidates[i]) <= best + kPlausible;
   }
 }
 

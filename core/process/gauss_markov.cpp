@@ -69,7 +69,7 @@ std::optional<double> GaussMarkov::autocovariance(double lag, double dt_s) const
 }
 
 LowFrequencyDensity GaussMarkov::low_frequency(double dt_s) const {
-  return {*spectral_density(0.0, dt_s), beta / (6.0 * std::numbers::pi)};
+  return {spectral_density(0.0, dt_s).value_or(0.0), beta / (6.0 * std::numbers::pi)};
 }
 
 double GaussMarkov::variogram(double lag, double dt_s) const {

@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::size_t kFewestRows = 100;
 constexpr double kMostLost = 0.7;
+constexpr double kMostLostStated = 0.6;  ///< more is not analysed as one recording (core/signal/stretch.hpp)
+constexpr double kExact = 0.8;           ///< mean phase of steps that err by a tenth of an interval
+constexpr double kStatedLonger = 1.5;    ///< median steps of this many stated intervals are more than one
+constexpr double kLeastOdd = 0.005;      ///< of the steps are no multiple of each small factor
 constexpr double kStatedAgrees = 0.01;
 constexpr std::size_t kPhaseRows = 256;
 /// The same of stamps within the phase rows: 0.64 for errors of 0.15 intervals, near 0 for a clock whose errors add up.
@@ -71,7 +75,7 @@ double find_interval(std::span<const double> steps, double start) {
 
 /// Length of the mean phase of the steps where they are whole multiples of `interval`, hardly ever none, and most
 /// samples are there; else 0.
-double concentration(std::span<const double> steps, double interval) {
+double concentration(std::span<const double> steps, double interval, double most_lost = kMostLost) {
   if (!(interval > 0.0)) {
     return 0.0;
   }
@@ -85,7 +89,7 @@ double concentration(std::span<const double> steps, double interval) {
     too_short += count < 0.5 ? 1.0 : 0.0;
   }
   const auto all = static_cast<double>(steps.size());
-  const bool sound = too_short <= kMostTooShort * all && held - all <= kMostLost * held;
+  const bool sound = too_short <= kMostTooShort * all && held - all <= most_lost * held;
   return sound ? std::abs(phase) / all : 0.0;
 }
 
@@ -106,6 +110,20 @@ std::optional<double> best_interval(std::span<const double> steps, double typica
     }
   }
   return most >= kLeastConcentration ? std::optional(best) : std::nullopt;
+}
+
+/// Whether all steps but a few are multiples of twice, three times, ... the interval: it is then stated too short.
+bool share_a_factor(std::span<const double> steps, double interval) {
+  for (const std::int64_t factor : {2, 3, 5, 7}) {
+    std::size_t others = 0;
+    for (const double step : steps) {
+      others += std::llround(step / interval) % factor == 0 ? 0 : 1;
+    }
+    if (static_cast<double>(others) < kLeastOdd * static_cast<double>(steps.size())) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Whether long steps are not made up for by short ones. The squares are limited, so that one long gap decides nothing.
@@ -242,6 +260,25 @@ std::optional<SampleGrid> find_sample_grid(std::span<const double> stamps, std::
   }
   const Placed rough = place_rows(stamps, backward, *interval);
   if (rough.held < kLeastHeld) {
+    return std::nullopt;
+  }
+  return place_rows(stamps, backward, rough.grid.interval_s).grid;
+}
+
+std::optional<SampleGrid> find_stated_grid(std::span<const double> stamps, std::span<const std::size_t> backward,
+                                           std::span<const double> steps, double typical_s, double stated_s) {
+  if (stamps.size() < kFewestRows || steps.size() < kFewestRows / 2 || !(stated_s > 0.0) ||
+      typical_s < kStatedLonger * stated_s) {
+    return std::nullopt;
+  }
+  const double interval = refined(steps, stated_s, kLongGap);
+  const bool agrees = std::abs(interval / stated_s - 1.0) <= kStatedAgrees;
+  if (!agrees || concentration(steps, interval, kMostLostStated) < kExact || share_a_factor(steps, interval) ||
+      !independent(steps, interval)) {
+    return std::nullopt;
+  }
+  const Placed rough = place_rows(stamps, backward, interval);
+  if (rough.held < kExact) {
     return std::nullopt;
   }
   return place_rows(stamps, backward, rough.grid.interval_s).grid;

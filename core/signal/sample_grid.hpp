@@ -37,4 +37,13 @@ struct SampleGrid {
                                                          std::span<const double> steps, double typical_s,
                                                          double stated_s);
 
+/// The grid of a stated interval of which the median step is several, as where a logger drops nearly every second
+/// sample. Only for stamps that are exact to a tenth of an interval or so, whose multiples have no common factor (of a
+/// rate that is stated twice too high they have), and whose long steps are not made up for by short ones; at most three
+/// fifths lost.
+[[nodiscard]] std::optional<SampleGrid> find_stated_grid(std::span<const double> stamps,
+                                                         std::span<const std::size_t> backward,
+                                                         std::span<const double> steps, double typical_s,
+                                                         double stated_s);
+
 }  // namespace driftlab

@@ -160,6 +160,10 @@ Spacing find_spacing(const std::vector<double>& stamps, std::span<const std::siz
   }
   spacing.long_steps = find_long_steps(stamps, groups, spacing.interval_s);
   std::vector<double> steps = forward_steps(stamps);
+  if (auto grid = find_stated_grid(stamps, backward, steps, spacing.interval_s, stated_s)) {
+    read_as_grid(std::move(*grid), stamps, groups, spacing);
+    return spacing;
+  }
   const double long_share = static_cast<double>(spacing.long_steps.size()) / static_cast<double>(stamps.size());
   if (long_share > kManyGaps) {
     if (auto grid = find_sample_grid(stamps, backward, steps, spacing.interval_s, stated_s)) {

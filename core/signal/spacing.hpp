@@ -1,7 +1,8 @@
 #pragma once
 /// The spacing of time stamps: where samples are missing, and how evenly the rest lie. Internal to core/signal.
 ///
-/// Three readings are tried, in this order. Samples of an even sampler of which some are lost: steps are whole
+/// Readings are tried in this order. Samples of the rate that is stated, where it is a whole number of times what the
+/// stamps show at first sight, for most are lost. Samples of an even sampler of which some are lost: steps are whole
 /// multiples of the interval (core/signal/sample_grid.hpp). Stamps on arrival, in bursts: more than 2 % of the steps
 /// look like gaps, though no grid fits; the samples are then evenly spaced by their mean step, and a gap is what is far
 /// beyond every other step. Otherwise every step is judged by itself: it is a gap if it exceeds 1.5 intervals, and what

@@ -151,7 +151,8 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
     return fail(
         ErrorCode::InconsistentSampling,
         "The stated rate is " + short_text(*spec.rate_hz) + " Hz, but the time column" + read_as + " says " +
-            short_text(measured_hz) + " Hz." + (unit_known ? "" : hint_for_unit(measured_hz, *spec.rate_hz)),
+            short_text(measured_hz) + " Hz." +
+            (unit_known ? " Leave the rate out to go by the time column." : hint_for_unit(measured_hz, *spec.rate_hz)),
         {{"parameter", "rate_hz"}, {"stated_hz", short_text(*spec.rate_hz)}, {"measured_hz", short_text(measured_hz)}});
   }
   if (difference <= kRateConfirmed) {

@@ -132,7 +132,7 @@ void add_band(const Series& series, const Area& area, std::vector<Shape>& shapes
     const double x = tenth(area.x.at(series.x[i]));
     const auto low = at(series.low, i);
     shape.points.push_back({x, tenth(area.y.at(*high))});
-    lower.push_back({x, tenth(drawable(low, log) ? area.y.at(*low) : area.bottom)});
+    lower.push_back({x, tenth(low && drawable(low, log) ? area.y.at(*low) : area.bottom)});
   }
   shape.points.insert(shape.points.end(), lower.rbegin(), lower.rend());
   if (!shape.points.empty()) {
@@ -162,7 +162,10 @@ void add_curve(const Series& series, const Area& area, std::vector<Shape>& shape
       flush();
     }
     before = i;
-    shape.points.push_back({tenth(area.x.at(series.x[i])), tenth(area.y.at(*series.y[i]))});
+    const auto& y = series.y[i];
+    if (y) {
+      shape.points.push_back({tenth(area.x.at(series.x[i])), tenth(area.y.at(*y))});
+    }
   }
   flush();
 }
@@ -199,7 +202,7 @@ void add_points(const Series& series, const Area& area, std::vector<Shape>& shap
     const auto low = at(series.low, i);
     const auto high = at(series.high, i);
     if ((low && std::isfinite(*low)) || (high && std::isfinite(*high))) {
-      const double y1 = tenth(drawable(low, log) ? area.y.at(*low) : area.bottom);
+      const double y1 = tenth(low && drawable(low, log) ? area.y.at(*low) : area.bottom);
       const double y2 = tenth(drawable(high, log) ? area.y.at(*high) : area.top);
       Shape bar = line(Role::Interval, {x, y1}, {x, y2}, "");
       bar.stroke = series.colour;
@@ -276,8 +279,8 @@ void add_keys(const Layout& plan, std::vector<Shape>& shapes) {
       }
       const std::size_t index = count++;
       const double x = plan.key_below ? static_cast<double>(index % columns) * 190.0 : plan.key_left;
-      const double at_y =
-          plan.key_below ? plan.areas.back().foot + 12.0 + std::floor(static_cast<double>(index / columns)) * 18.0 : y;
+      const std::size_t line = index / columns;
+      const double at_y = plan.key_below ? plan.areas.back().foot + 12.0 + static_cast<double>(line) * 18.0 : y;
       y += series.detail.empty() ? 26.0 : 40.0;
       add_sample(series, x, at_y, shapes);
       shapes.push_back(words(x + 30.0, at_y + 4.0, series.name, Anchor::Start, palette::kInk));

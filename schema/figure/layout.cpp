@@ -80,8 +80,9 @@ Range domain_x(const std::vector<Plot>& plots) {
 
 void add_inside(const Series& one, const Values& values, const Range& x, Extent& extent) {
   for (std::size_t i = 0; i < values.size() && i < one.x.size(); ++i) {
-    if (values[i] && one.x[i] >= x.first && one.x[i] <= x.second) {
-      extent.add(*values[i]);
+    const auto& value = values[i];
+    if (value && one.x[i] >= x.first && one.x[i] <= x.second) {
+      extent.add(*value);
     }
   }
 }

@@ -59,6 +59,23 @@ std::optional<SensorCalibration> sensor_from_json(const Json& sensor, const std:
 
 double half_width(const Estimate& estimate) { return 0.5 * (estimate.ci95.high - estimate.ci95.low); }
 
+/// A line for each pair of axes whose angle was estimated.
+std::string misalignment_lines(const std::array<std::array<Estimate, 3>, 3>& angles) {
+  std::string text;
+  std::array<char, 200> line{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Estimate& angle = angles[i][j];
+      if (i != j && angle.ci95.high > angle.ci95.low) {
+        std::snprintf(line.data(), line.size(), "  %c reads %+.3f +- %.3f mrad of %c\n", "xyz"[i], 1e3 * angle.value,
+                      1e3 * half_width(angle), "xyz"[j]);
+        text += line.data();
+      }
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 Json to_json(const TriadCalibration& calibration, const Unit& si) {
@@ -91,6 +108,12 @@ Json to_json(const MultiPositionCalibration& calibration, const Unit& reading) {
     document["bias"][axis] = quantity(calibration.bias[i], 1.0, "1");
     for (std::size_t j = i; j < 3; ++j) {
       document["correction"][axis + "xyz"[j]] = quantity(calibration.correction[i][j], 1.0, "m/s^2");
+    }
+  }
+  const auto angles = calibration.misalignment();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i + 1; j < 3; ++j) {
+      document["misalignment"][std::string(1, "xyz"[i]) + "xyz"[j]] = quantity(angles[i][j], 1e3, "mrad");
     }
   }
   document["positions"] = calibration.positions;
@@ -145,16 +168,7 @@ std::string to_text(const TriadCalibration& calibration, std::string_view unit) 
                   unit.data(), 1e6 * calibration.scale_factor[i].value, 1e6 * half_width(calibration.scale_factor[i]));
     text += line.data();
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Estimate& angle = calibration.misalignment[i][j];
-      if (i != j && angle.ci95.high > angle.ci95.low) {
-        std::snprintf(line.data(), line.size(), "  %c reads %+.3f +- %.3f mrad of %c\n", "xyz"[i], 1e3 * angle.value,
-                      1e3 * half_width(angle), "xyz"[j]);
-        text += line.data();
-      }
-    }
-  }
+  text += misalignment_lines(calibration.misalignment);
   std::snprintf(line.data(), line.size(), "  residual %.4g -> %.4g %.*s over %zu readings\n",
                 calibration.residual_before, calibration.residual_after, static_cast<int>(unit.size()), unit.data(),
                 calibration.readings);
@@ -170,6 +184,7 @@ std::string to_text(const MultiPositionCalibration& calibration) {
                   half_width(calibration.correction[i][i]));
     text += line.data();
   }
+  text += misalignment_lines(calibration.misalignment());
   std::snprintf(line.data(), line.size(), "  length of the reading beside gravity, rms %.4g -> %.4g m/s^2\n",
                 calibration.residual_before, calibration.residual_after);
   text += line.data();

@@ -4,6 +4,9 @@
 #include "core/signal/significant.hpp"
 #include "core/signal/unit.hpp"
 #include "schema/json/channel_summary.hpp"
+#include "schema/json/figure_values.hpp"
+#include "schema/json/investigation_figures.hpp"
+#include "schema/json/regression_figures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,69 +25,12 @@ using figure::Note;
 using figure::Plot;
 using figure::ScaleKind;
 using figure::Series;
-using Values = std::vector<std::optional<double>>;
-
-std::optional<double> value_of(const Json& value) {
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-
-Values values_of(const Json& list, double factor = 1.0) {
-  Values values;
-  for (const Json& value : list) {
-    const auto one = value_of(value);
-    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
-  }
-  return values;
-}
-
-/// One end (0 or 1) of each interval.
-Values ends_of(const Json& intervals, std::size_t end, double factor = 1.0) {
-  Values values;
-  for (const Json& interval : intervals) {
-    const auto one = interval.is_array() && interval.size() > end ? value_of(interval[end]) : std::nullopt;
-    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
-  }
-  return values;
-}
 
 Values roots(Values values, double factor) {
   for (auto& value : values) {
     value = value && *value >= 0.0 ? std::optional(std::sqrt(*value) * factor) : std::nullopt;
   }
   return values;
-}
-
-std::vector<double> numbers_of(const Json& list) {
-  std::vector<double> values;
-  for (const Json& value : list) {
-    values.push_back(value.is_number() ? value.get<double>() : 0.0);
-  }
-  return values;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-/// As in print: deg/√h, m/s².
-std::string printed_unit(std::string unit) {
-  for (std::size_t at = unit.find("sqrt("); at != std::string::npos; at = unit.find("sqrt(")) {
-    const std::size_t end = unit.find(')', at);
-    unit = unit.substr(0, at) + "√" + unit.substr(at + 5, end - at - 5) +
-           (end == std::string::npos ? "" : unit.substr(end + 1));
-  }
-  return replaced(replaced(std::move(unit), "^2", "²"), "*", "·");
-}
-
-std::string quantity_text(const Json& quantity) {
-  const Json ci95 = quantity.value("ci95", Json(nullptr));
-  const bool bounded = ci95.is_array() && ci95.size() == 2;
-  return significant(quantity.at("value").get<double>(), bounded ? value_of(ci95[0]) : std::nullopt,
-                     bounded ? value_of(ci95[1]) : std::nullopt) +
-         " " + printed_unit(quantity.value("unit", ""));
 }
 
 /// The unit in which a channel's deviations are drawn, and its size in units of the channel: that of the parameters.
@@ -174,7 +120,7 @@ std::vector<Series> component_series(const Json& allan, double factor) {
     const auto process = component.at("process").get<std::string>();
     const int nth = seen[process]++;
     const ComponentStyle style = style_of(process, nth);
-    std::string name = *style.name != '\0' ? style.name : replaced(process, "_", " ");
+    const std::string name = *style.name != '\0' ? style.name : replaced(process, "_", " ");
     Series series = line_series(name + (nth > 0 ? " " + std::to_string(nth + 1) : ""), allan.at("tau_s"),
                                 component.at("deviation"), factor);
     series.colour = style.colour;
@@ -187,17 +133,19 @@ std::vector<Series> component_series(const Json& allan, double factor) {
 /// The value of a curve at x, between its points on both logarithms.
 std::optional<double> curve_at(const Series& series, double x) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (series.x[i] < x * (1.0 - 1e-9) || !series.y[i]) {
+    const std::optional<double> here = series.y[i];
+    if (series.x[i] < x * (1.0 - 1e-9) || !here) {
       continue;
     }
     if (std::abs(series.x[i] - x) <= 1e-9 * x) {
-      return series.y[i];
+      return here;
     }
-    if (i == 0 || !series.y[i - 1]) {
+    const std::optional<double> before = i > 0 ? series.y[i - 1] : std::nullopt;
+    if (!before) {
       return std::nullopt;
     }
     const double share = std::log(x / series.x[i - 1]) / std::log(series.x[i] / series.x[i - 1]);
-    return std::exp(std::log(*series.y[i - 1]) + std::log(*series.y[i] / *series.y[i - 1]) * share);
+    return std::exp(std::log(*before) + std::log(*here / *before) * share);
   }
   return std::nullopt;
 }
@@ -228,15 +176,6 @@ std::vector<Note> notes_of(const Json& channel, const Json& fit, const std::vect
     notes.push_back({tau.back(), level, "B = " + quantity_text(bias), "line at 0.664 B", figure::palette::kInk, true});
   }
   return notes;
-}
-
-Values over(const Values& values, const Values& base) {
-  Values ratio;
-  for (std::size_t i = 0; i < values.size() && i < base.size(); ++i) {
-    const bool known = values[i] && base[i] && *base[i] > 0.0;
-    ratio.push_back(known ? std::optional(*values[i] / *base[i]) : std::nullopt);
-  }
-  return ratio;
 }
 
 /// Measured over model, on a scale on which misfit shows.
@@ -285,17 +224,6 @@ Plot ratio_plot(const Series& measured, const std::optional<Series>& robust, con
   return plot;
 }
 
-/// A name for a file and an id.
-std::string word(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    const bool plain =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
-    out += plain ? std::string(1, c) : out.empty() || out.back() == '-' ? std::string() : std::string("-");
-  }
-  return out.empty() || out == "-" ? "figure" : out.back() == '-' ? out.substr(0, out.size() - 1) : out;
-}
-
 std::vector<NamedFigure> of_characterisation(const Json& document, const std::string& channel) {
   std::vector<NamedFigure> figures;
   const bool several = document.at("recordings").size() > 1;
@@ -304,84 +232,10 @@ std::vector<NamedFigure> of_characterisation(const Json& document, const std::st
     for (const Json& one : recording.at("channels")) {
       const auto name = one.at("channel").get<std::string>();
       if ((channel.empty() || name == channel) && !one.at("allan").at("tau_s").empty()) {
-        figures.push_back({word(several ? id + "-" + name : name), allan_figure(one, id)});
+        std::string of_all = id;
+        of_all.append("-").append(name);
+        figures.push_back({word(several ? of_all : name), allan_figure(one, id)});
       }
-    }
-  }
-  return figures;
-}
-
-Plot over_plot(const Axis& x, std::string name, Series series) {
-  Plot plot{.x = x, .y = {ScaleKind::Log, std::move(name)}, .series = {std::move(series)}};
-  plot.height = 130.0;
-  plot.rules = {1.0};
-  return plot;
-}
-
-Figure spectrum_figure(const Json& series, const std::string& title) {
-  const Json& spectrum = series.at("spectrum");
-  const Values base = values_of(spectrum.at("baseline"));
-  Figure figure{.title = title + ": spectrum",
-                .sentence = "Two-sided density over the baseline, before and after the findings.",
-                .source = "driftlab " DRIFTLAB_VERSION};
-  for (const auto& [member, name] : {std::pair{"measured", "before: measured ÷ baseline"},
-                                     std::pair{"remaining", "after: what remains ÷ baseline"}}) {
-    Series one{.name = name, .x = numbers_of(spectrum.at("f_hz")), .y = over(values_of(spectrum.at(member)), base)};
-    one.line = true;
-    one.key = false;
-    one.width = 1.0;
-    figure.plots.push_back(over_plot({ScaleKind::Linear, "frequency, Hz"}, name, std::move(one)));
-  }
-  figure.plots.front().hide_x = true;
-  return figure;
-}
-
-Figure wavelet_figure(const Json& series, const std::string& title) {
-  const Json& wavelet = series.at("wavelet");
-  Figure figure{
-      .title = title + ": wavelet deviation",
-      .sentence = "Haar wavelet deviation over the simulated median with the simulated 95 % band, before and after.",
-      .source = "driftlab " DRIFTLAB_VERSION};
-  for (const auto& [member, of, name] : {std::tuple{"measured", "baseline", "before: deviation ÷ simulated"},
-                                         std::tuple{"remaining", "extended", "after: remaining ÷ simulated"}}) {
-    const Json& band = wavelet.at(of);
-    const Values median = values_of(band.at("median"));
-    Series simulated{.name = "simulated, 95 %",
-                     .x = numbers_of(wavelet.at("scale_s")),
-                     .y = over(median, median),
-                     .low = over(values_of(band.at("q025")), median),
-                     .high = over(values_of(band.at("q975")), median)};
-    simulated.band = figure::palette::kModelBand;
-    simulated.colour = figure::palette::kModel;
-    simulated.line = true;
-    simulated.key = false;
-    Series measured{
-        .name = "measured", .x = simulated.x, .y = over(values_of(wavelet.at(member)), median), .mark = Mark::Dot};
-    measured.key = false;
-    Plot plot = over_plot({ScaleKind::Log, "scale, s"}, name, std::move(simulated));
-    plot.y.domain = {0.5, 2.0};
-    plot.y.ticks = {0.5, 0.7, 1.0, 1.4, 2.0};
-    plot.series.push_back(std::move(measured));
-    figure.plots.push_back(std::move(plot));
-  }
-  figure.plots.front().hide_x = true;
-  return figure;
-}
-
-std::vector<NamedFigure> of_investigation(const Json& document, const std::string& channel) {
-  std::vector<NamedFigure> figures;
-  std::vector<std::string> seen;
-  for (const Json& finding : document.at("findings")) {
-    const Json series = finding.value("series", Json(nullptr));
-    if (!series.is_object()) {
-      continue;
-    }
-    const auto name = series.at("channel").get<std::string>();
-    const bool wanted = (channel.empty() || name == channel) && std::find(seen.begin(), seen.end(), name) == seen.end();
-    if (wanted) {
-      seen.push_back(name);
-      figures.push_back({word(name + "-spectrum"), spectrum_figure(series, name)});
-      figures.push_back({word(name + "-wavelet"), wavelet_figure(series, name)});
     }
   }
   return figures;
@@ -437,7 +291,7 @@ std::vector<NamedFigure> of_table(const Json& document, const std::string& param
   for (const Json& column : document.at("columns")) {
     const auto key = column.at("key").get<std::string>();
     Series series{.name = key};
-    std::string unit = column.value("unit", "");
+    const std::string unit = column.value("unit", "");
     std::string against = "condition";
     for (const Json& row : document.at("rows")) {
       const Json cell = row.at("values").value(key, Json(nullptr));
@@ -467,7 +321,9 @@ std::vector<NamedFigure> of_table(const Json& document, const std::string& param
     Plot plot{.x = {ScaleKind::Linear, replaced(against, "_", " "), std::pair{-far * 0.04, far * 1.06}},
               .y = {ScaleKind::Linear, key + ", " + printed_unit(unit), std::pair{0.0, most * 1.12}},
               .series = {std::move(series)}};
-    Figure figure{.title = title + ": " + key,
+    std::string named = title;
+    named.append(": ").append(key);
+    Figure figure{.title = std::move(named),
                   .sentence = key + " under each condition with its 95 % interval, from zero.",
                   .source = "driftlab " DRIFTLAB_VERSION ", " + document.value("model", std::string())};
     figure.plots.push_back(std::move(plot));
@@ -526,15 +382,18 @@ Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::str
     std::vector<NamedFigure> figures;
     if (document.contains("recordings") && document["recordings"].is_array()) {
       figures = of_characterisation(document, channel);
+    } else if (document.contains("units") && document.contains("verdict")) {
+      figures = figures_of_regression(document, channel);
     } else if (document.contains("findings")) {
-      figures = of_investigation(document, channel);
+      figures = figures_of_investigation(document, channel);
     } else if (document.contains("filters") && document.contains("runs")) {
       figures = of_outages(document);
     } else if (document.contains("columns") && document.contains("rows")) {
       figures = of_table(document, channel);
     } else {
       return fail(ErrorCode::InvalidArgument,
-                  "This is no document with a figure: a characterisation, an investigation, an outage evaluation or a "
+                  "This is no document with a figure: a characterisation, an investigation, an outage evaluation, a "
+                  "regression run or a "
                   "parameter "
                   "table, as --json writes them.");
     }

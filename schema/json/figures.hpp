@@ -19,9 +19,9 @@ struct NamedFigure {
 [[nodiscard]] figure::Figure allan_figure(const Json& channel, const std::string& recording);
 
 /// Of a characterisation (one a channel), an investigation (spectrum and wavelet deviation of each channel with a
-/// series), an outage evaluation (errors by outage) or a parameter table (one a parameter). `channel`: of these alone;
-/// empty: all. Errors: InvalidArgument (a document of another kind; nothing of that name); Internal (not as driftlab
-/// writes it).
+/// series), a regression run (one a unit; `channel` is its axis), an outage evaluation (errors by outage) or a
+/// parameter table (one a parameter). `channel`: of these alone; empty: all. Errors: InvalidArgument (a document of
+/// another kind; nothing of that name); Internal (not as driftlab writes it).
 [[nodiscard]] Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::string& channel);
 
 }  // namespace driftlab

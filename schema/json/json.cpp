@@ -272,9 +272,16 @@ void ObjectReader::reject_unknown() {
   if (object_ == nullptr) {
     return;
   }
+  std::string known;
+  for (auto name = known_.begin(); name != known_.end(); ++name) {
+    if (std::find(known_.begin(), name, *name) == name) {
+      known += (known.empty() ? "" : ", ") + *name;
+    }
+  }
   for (const auto& [name, value] : object_->items()) {
     if (std::find(known_.begin(), known_.end(), name) == known_.end()) {
-      faults_.add(pointer(name), ErrorCode::InvalidArgument, "The member '" + name + "' is not known here.");
+      faults_.add(pointer(name), ErrorCode::InvalidArgument,
+                  "The member '" + name + "' is not known here" + (known.empty() ? "." : "; known are " + known + "."));
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "core/signal/angle.hpp"
+#include "schema/json/channel_summary.hpp"
 #include "schema/json/outage_scenario.hpp"
 
 #include <algorithm>
@@ -117,6 +118,7 @@ Json to_json(const OutageReport& report) {
     claims.push_back(Json{{"claim", claim.claim}, {"supported", claim.supported}, {"because", claim.because}});
   }
   return Json{{"scenario", to_json(report.scenario)},
+              {"summary", to_json(report.summary)},
               {"runs", evaluation.runs},
               {"seed", evaluation.seed},
               {"stopped_early", evaluation.stopped_early},

@@ -74,8 +74,15 @@ void add_pair(Rows& rows, std::string title, const PairedDifference& pair) {
 
 std::string outage_text(const OutageReport& report) {
   const OutageEvaluation& evaluation = report.evaluation;
-  std::string text = "Scenario ";
-  text.append(evaluation.scenario).append(", ").append(std::to_string(evaluation.runs)).append(" runs, seed ");
+  std::string text = report.summary.sentence + "\n";
+  for (const std::string& detail : report.summary.details) {
+    text.append(detail).append("\n");
+  }
+  text.append("\nScenario ")
+      .append(evaluation.scenario)
+      .append(", ")
+      .append(std::to_string(evaluation.runs))
+      .append(" runs, seed ");
   text.append(std::to_string(evaluation.seed)).append(evaluation.stopped_early ? " (precise enough)" : "");
   text.append(". Horizontal error at the end of each outage; 95 % intervals.\n\n").append(filters_text(evaluation));
 

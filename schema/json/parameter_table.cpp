@@ -44,6 +44,30 @@ Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
               {"reasons", std::move(reasons)}};
 }
 
+Json to_json(const SheetFigure& figure) {
+  const auto end = [](const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); };
+  Json reasons = Json::object();
+  const Json measured = to_json(ReportedValues{{figure.parameter, figure.measured}}, reasons);
+  return Json{{"parameter", figure.parameter},
+              {"stated", number(figure.stated)},
+              {"unit", figure.unit},
+              {"measured", measured.at(figure.parameter)},
+              {"ratio", end(figure.ratio)},
+              {"ci95", figure.ratio ? Json::array({end(figure.ratio_low), end(figure.ratio_high)}) : Json(nullptr)},
+              {"verdict", figure.verdict ? Json(name_of(*figure.verdict)) : Json(nullptr)}};
+}
+
+Json to_json(const SheetComparison& comparison) {
+  Json figures = Json::array();
+  for (const SheetFigure& figure : comparison.figures) {
+    figures.push_back(to_json(figure));
+  }
+  return Json{{"sensor", comparison.sensor},
+              {"source", comparison.source},
+              {"condition", comparison.condition},
+              {"figures", std::move(figures)}};
+}
+
 }  // namespace
 
 Json to_json(const ParameterTable& table) {
@@ -55,10 +79,14 @@ Json to_json(const ParameterTable& table) {
   for (const TableRow& row : table.rows) {
     rows.push_back(row_to_json(row, table.columns));
   }
-  return Json{
+  Json document{
       {"device", table.device},          {"sensor", sensor_of(table.quantity)}, {"axis", text_or_null(table.axis)},
       {"method", name_of(table.method)}, {"model", text_or_null(table.model)},  {"columns", std::move(columns)},
       {"rows", std::move(rows)}};
+  if (table.data_sheet) {
+    document["data_sheet"] = to_json(*table.data_sheet);
+  }
+  return document;
 }
 
 }  // namespace driftlab

@@ -1,6 +1,7 @@
 #include "schema/json/recording_spec.hpp"
 
 #include "core/signal/text.hpp"
+#include "schema/json/recording_tags.hpp"
 
 namespace driftlab {
 namespace {
@@ -65,6 +66,11 @@ Json to_json(const Condition& condition) {
 }
 
 Condition condition_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+  if (document.is_string()) {
+    faults.add(pointer, ErrorCode::InvalidArgument,
+               "In a document a condition is an object, for example {\"kind\": \"static\"}.");
+    return {};
+  }
   ObjectReader reader(document, pointer, faults);
   WrittenCondition written;
   written.kind = reader.required_text("kind");
@@ -155,6 +161,10 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
     }
   }
   spec.calibration = reader.text("calibration").value_or("");
+  for (const char* const tag : {"labels", "session", "recorded_at"}) {
+    (void)reader.member(tag);
+  }
+  (void)recording_tags_from_json(document, pointer, faults);
   reader.reject_unknown();
   return spec;
 }
@@ -183,8 +193,14 @@ Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
     }
     role.quantity = *quantity;
     role.axis = parts.size() > 1 ? parts[1] : std::string_view{};
-    if (parts.size() > 2) {
-      auto unit = parse_unit(parts[2]);
+    // What has no axis may have its unit at once: time:s as well as time::s.
+    const bool unit_at_once = parts.size() == 2 && !role.axis.empty() && !check_role(name, role) &&
+                              check_role(name, ColumnRole{role.quantity, "", {}}).has_value();
+    if (unit_at_once) {
+      role.axis.clear();
+    }
+    if (parts.size() > 2 || unit_at_once) {
+      auto unit = parse_unit(parts.back());
       if (!unit) {
         return named(unit.error());
       }

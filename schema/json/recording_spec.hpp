@@ -16,7 +16,8 @@ namespace driftlab {
 /// One recording without its file: id, rate_hz, columns, condition, trim. Members nobody gave are left out.
 [[nodiscard]] Json to_json(const RecordingSpec& spec);
 
-/// Reads the members of a recording; `file` is accepted and ignored (an upload carries its bytes itself).
+/// Reads the members of a recording; `file` is accepted and ignored (an upload carries its bytes itself), and so are
+/// labels, session and recorded_at (schema/json/recording_tags.hpp), whose faults are found nevertheless.
 [[nodiscard]] RecordingSpec recording_spec_from_json(const Json& document, const std::string& pointer, Faults& faults);
 
 /// `columns` of a query string or command line: `gz=angular_rate:z:deg/s,temp=temperature::degC,t=time::s`. A column is

@@ -94,7 +94,8 @@ std::optional<std::vector<double>> read_effect_values(const Json& params, const 
   for (std::size_t k = 0; k < cause.parameters.size(); ++k) {
     const CauseParameter& parameter = cause.parameters[k];
     const std::string name(parameter.name);
-    const std::string here = pointer + "/" + name;
+    std::string here = pointer;
+    here.append("/").append(name);
     const auto found = params.find(name);
     if (found == params.end()) {
       if (one_of_them && k + 1 < cause.parameters.size()) {
@@ -278,7 +279,7 @@ Baseline baseline_from_json(const Json& document, const std::string& pointer, Fa
 namespace {
 
 /// The members of a model, from the base of each channel that `base` points to.
-Json bases_json(const Report& report, ChannelBase ChannelModel::*base) {
+Json bases_json(const Report& report, ChannelBase ChannelModel::* base) {
   Json document{{"processes", Json::array()}, {"deterministic", Json::object()}};
   if (report.models.empty()) {
     return document;

@@ -14,8 +14,7 @@ using investigate::OpenQuestion;
 using investigate::Proposal;
 
 std::string question_in_words(const OpenQuestion& question) {
-  return question.rivals.empty() ? question.cause
-                                 : question.cause + " or " + investigate::list_of(question.rivals);
+  return question.rivals.empty() ? question.cause : question.cause + " or " + investigate::list_of(question.rivals);
 }
 
 void append_decision(const Decision& decision, const CampaignPlan& plan, std::string& text) {

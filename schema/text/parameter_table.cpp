@@ -1,6 +1,7 @@
 #include "schema/text/parameter_table.hpp"
 
 #include "core/signal/number.hpp"
+#include "schema/text/fields.hpp"
 
 #include <algorithm>
 #include <array>
@@ -49,20 +50,6 @@ std::size_t width(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string result = "\"";
-  for (const char c : text) {
-    result += c;
-    if (c == '"') {
-      result += '"';
-    }
-  }
-  return result + "\"";
-}
-
 bool contaminated(const TableRow& row) { return row.contamination == "contaminated"; }
 bool disagrees(const TableRow& row) { return row.agreement && !row.agreement->agree(); }
 
@@ -74,7 +61,7 @@ std::string notes_of(const ParameterTable& table) {
       text += "! " + row.label + ": gross errors move the variances of this recording" +
               (row.robust ? "; the values are from robust variances.\n" : ".\n");
     }
-    if (disagrees(row)) {
+    if (row.agreement && disagrees(row)) {
       text += "! " + row.label + ": its recordings disagree (p = " + rounded(row.agreement->p) +
               "); the pooled values stand for none of them.\n";
     }
@@ -107,6 +94,40 @@ std::string density_unit(const ParameterTable& table) {
 /// Method av has N among its columns.
 bool shows_density(const ParameterTable& table) { return table.method == TableMethod::Gmwm; }
 
+/// What the data sheet states under that column; empty: nothing.
+std::string stated_text(const ParameterTable& table, const std::string& key) {
+  if (table.data_sheet) {
+    for (const SheetFigure& figure : table.data_sheet->figures) {
+      if (figure.parameter == key) {
+        return rounded(figure.stated);
+      }
+    }
+  }
+  return "";
+}
+
+/// The data sheet as a row: what it states under the columns that it speaks of.
+std::vector<std::string> sheet_row(const ParameterTable& table, const std::vector<std::string>& keys) {
+  std::vector<std::string> line{"data sheet"};
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    line.push_back(stated_text(table, keys[i]));
+  }
+  return line;
+}
+
+/// Measured against stated, with the source; a line.
+std::string sheet_line(const ParameterTable& table) {
+  if (!table.data_sheet) {
+    return "";
+  }
+  std::string text;
+  for (const SheetFigure& figure : table.data_sheet->figures) {
+    text += (text.empty() ? "" : "; ") + sentence_of(figure);
+  }
+  return "= " + table.data_sheet->condition + ": " + text + ". " + table.data_sheet->sensor + ": " +
+         table.data_sheet->source + ".\n";
+}
+
 /// Lines of the table: keys, units, one per row.
 std::vector<std::vector<std::string>> grid_of(const ParameterTable& table) {
   std::vector<std::vector<std::string>> grid(2, {"condition"});
@@ -128,6 +149,9 @@ std::vector<std::vector<std::string>> grid_of(const ParameterTable& table) {
       line.push_back(cell_text(cell));
     }
     grid.push_back(std::move(line));
+  }
+  if (table.data_sheet) {
+    grid.push_back(sheet_row(table, grid[0]));
   }
   return grid;
 }
@@ -168,6 +192,21 @@ std::string table_to_csv(const ParameterTable& table) {
     }
     for (const TableCell& cell : row.cells) {
       figures(cell.estimate);
+    }
+    text += "\r\n";
+  }
+  if (table.data_sheet) {
+    text += "data sheet," + csv_field(table.data_sheet->sensor + ": " + table.data_sheet->source);
+    const auto stated = [&](const std::string& key) {
+      const auto found = std::find_if(table.data_sheet->figures.begin(), table.data_sheet->figures.end(),
+                                      [&](const SheetFigure& figure) { return figure.parameter == key; });
+      text += "," + (found == table.data_sheet->figures.end() ? "" : exact(found->stated)) + ",,";
+    };
+    if (shows_density(table)) {
+      stated("N");
+    }
+    for (const TableColumn& column : table.columns) {
+      stated(column.key);
     }
     text += "\r\n";
   }
@@ -225,7 +264,7 @@ std::vector<TableColumn> columns_of(const std::vector<ParameterTable>& tables) {
 
 std::string table_to_text(const ParameterTable& table, bool legend) {
   return heading_of(table) + (legend ? std::string(" (") + kLegend + ")" : std::string()) + "\n\n" +
-         aligned(grid_of(table)) + notes_of(table);
+         aligned(grid_of(table)) + notes_of(table) + sheet_line(table);
 }
 
 std::string table_legend() { return std::string("Legend: ") + kLegend + "; – no part of the model.\n"; }
@@ -265,6 +304,13 @@ std::string axes_to_text(const std::vector<ParameterTable>& tables) {
     ParameterTable named = table;
     named.rows.front().label = table.axis.empty() ? row.label : table.axis;
     notes += notes_of(named);
+    if (named.data_sheet) {
+      named.data_sheet->condition = named.rows.front().label;
+      notes += sheet_line(named);
+    }
+  }
+  if (first.data_sheet) {
+    grid.push_back(sheet_row(first, grid[0]));
   }
   const std::string heading = first.device + ", " + std::string(sensor_of(first.quantity)) + ", " +
                               first.rows.front().label + (gmwm ? ", GMWM" : ", Allan variance");
@@ -286,7 +332,7 @@ std::string table_to_markdown(const ParameterTable& table) {
   for (std::size_t r = 2; r < grid.size(); ++r) {
     line([&](std::size_t i) { return grid[r][i]; });
   }
-  const std::string notes = notes_of(table);
+  const std::string notes = notes_of(table) + sheet_line(table);
   for (std::size_t start = 0; start < notes.size();) {
     const std::size_t end = notes.find('\n', start);
     text += (start == 0 ? "\n- " : "- ") + notes.substr(start + 2, end - start - 2) + "\n";

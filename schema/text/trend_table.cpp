@@ -1,5 +1,7 @@
 #include "schema/text/trend_table.hpp"
 
+#include "schema/text/fields.hpp"
+
 #include <array>
 #include <cstdio>
 
@@ -45,25 +47,6 @@ std::array<std::string, kTrendHeading.size()> fields_of(const ColumnTrend& colum
           statement(trend)};
 }
 
-std::string quoted_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string result = "\"";
-  for (const char c : text) {
-    result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  }
-  return result + "\"";
-}
-
-std::string piped_field(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '|' ? std::string("\\|") : std::string(1, c);
-  }
-  return result;
-}
-
 }  // namespace
 
 std::string trends_to_csv(const TrendTable& table) {
@@ -75,7 +58,7 @@ std::string trends_to_csv(const TrendTable& table) {
   for (const ColumnTrend& column : table.trends) {
     const auto fields = fields_of(column);
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      text += (i == 0 ? "" : ",") + quoted_field(fields[i]);
+      text += (i == 0 ? "" : ",") + csv_field(fields[i]);
     }
     text += "\r\n";
   }
@@ -93,7 +76,7 @@ std::string trends_to_markdown(const TrendTable& table) {
   for (const ColumnTrend& column : table.trends) {
     text += "|";
     for (const std::string& field : fields_of(column)) {
-      text += " " + piped_field(field) + " |";
+      text += " " + markdown_field(field) + " |";
     }
     text += "\n";
   }

@@ -13,7 +13,8 @@ void add_sensor(const SensorNoise& sensor, const std::string& group, const std::
   const char* const names[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string noise = "imu/" + group + "/" + names[i] + "/noise type=\"gaussian\"/";
-    const double driving = time[i].value ? std::sqrt(2.0 / *time[i].value) : 1.0;
+    const std::optional<double>& time_s = time[i].value;
+    const double driving = time_s ? std::sqrt(2.0 / *time_s) : 1.0;
     entries.push_back({.key = noise + "mean", .figures = {{0.0, {}, {}, false, ""}}, .unit = unit, .what = ""});
     entries.push_back({.key = noise + "stddev",
                        .figures = {density[i].scaled(std::sqrt(rate_hz))},

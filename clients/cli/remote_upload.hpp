@@ -1,0 +1,25 @@
+#pragma once
+/// Files of this machine as recordings of a daemon.
+#include "clients/cli/input.hpp"
+#include "clients/cli/remote_job.hpp"
+#include "schema/json/recording_tags.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace driftlab::cli {
+
+/// The id of the recording that the daemon has of the file's bytes, uploaded now or before. `sent` is called with the
+/// fraction sent.
+[[nodiscard]] tl::expected<Json, Failure> upload_recording(HttpClient& client, const std::string& device,
+                                                           const RecordingSpec& spec, const RecordingTags& tags,
+                                                           const std::filesystem::path& file,
+                                                           const std::function<void(double)>& sent);
+
+/// The same of a file from the command line, whose path a refusal names.
+[[nodiscard]] tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& device,
+                                                      const InputFile& file, const RecordingTags& tags,
+                                                      const std::function<void(double)>& sent);
+
+}  // namespace driftlab::cli

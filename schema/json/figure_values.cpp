@@ -1,0 +1,84 @@
+#include "schema/json/figure_values.hpp"
+
+#include "core/signal/significant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab {
+
+std::optional<double> value_of(const Json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+Values values_of(const Json& list, double factor) {
+  Values values;
+  for (const Json& value : list) {
+    const auto one = value_of(value);
+    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
+  }
+  return values;
+}
+
+Values ends_of(const Json& intervals, std::size_t end, double factor) {
+  Values values;
+  for (const Json& interval : intervals) {
+    const auto one = interval.is_array() && interval.size() > end ? value_of(interval[end]) : std::nullopt;
+    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
+  }
+  return values;
+}
+
+std::vector<double> numbers_of(const Json& list) {
+  std::vector<double> values;
+  for (const Json& value : list) {
+    values.push_back(value.is_number() ? value.get<double>() : 0.0);
+  }
+  return values;
+}
+
+Values over(const Values& values, const Values& base) {
+  Values ratio;
+  for (std::size_t i = 0; i < values.size() && i < base.size(); ++i) {
+    const auto& value = values[i];
+    const auto& unit = base[i];
+    ratio.push_back(value && unit && *unit > 0.0 ? std::optional(*value / *unit) : std::nullopt);
+  }
+  return ratio;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+std::string printed_unit(std::string unit) {
+  for (std::size_t at = unit.find("sqrt("); at != std::string::npos; at = unit.find("sqrt(")) {
+    const std::size_t end = unit.find(')', at);
+    unit = unit.substr(0, at) + "√" + unit.substr(at + 5, end - at - 5) +
+           (end == std::string::npos ? "" : unit.substr(end + 1));
+  }
+  return replaced(replaced(std::move(unit), "^2", "²"), "*", "·");
+}
+
+std::string quantity_text(const Json& quantity) {
+  const Json ci95 = quantity.value("ci95", Json(nullptr));
+  const bool bounded = ci95.is_array() && ci95.size() == 2;
+  return significant(quantity.at("value").get<double>(), bounded ? value_of(ci95[0]) : std::nullopt,
+                     bounded ? value_of(ci95[1]) : std::nullopt) +
+         " " + printed_unit(quantity.value("unit", ""));
+}
+
+std::string word(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+    out += plain ? std::string(1, c) : out.empty() || out.back() == '-' ? std::string() : std::string("-");
+  }
+  return out.empty() || out == "-" ? "figure" : out.back() == '-' ? out.substr(0, out.size() - 1) : out;
+}
+
+}  // namespace driftlab
