@@ -13,7 +13,8 @@ Installs what is missing, builds the release preset and runs every suite, with 5
   --only REGEX        run only the tests whose name matches
   --sanitize          also the suites under address, undefined-behaviour and thread sanitizers
   --tidy              also clang-tidy over every source, warnings as errors, and the clang-format check
-  --fuzz [SECONDS]    fuzz longer: this long for each target (60 when no number follows)
+  --fuzz [SECONDS]    fuzz longer: this long for each target (60 when no number follows), and documents too, whose
+                      target needs nearly every library
   --long              also the long simulation suites (label `long`: accuracy and coverage), and their page anew:
                       tests/ACCURACY.md; $DRIFTLAB_ACCURACY_SHARE scales their repetitions
   --help              this text
@@ -24,7 +25,7 @@ TXT
 }
 misuse() { printf 'run.sh: %s (--help lists the options)\n' "$*" >&2; exit 2; }
 
-only='' sanitize=no tidy=no long=no fuzz_seconds=5
+only='' sanitize=no tidy=no long=no fuzz_seconds=5 fuzz_documents=OFF
 while [ $# -gt 0 ]; do
   case "$1" in
     --only) [ $# -ge 2 ] || misuse "--only needs a regular expression"; only=$2; shift ;;
@@ -32,7 +33,7 @@ while [ $# -gt 0 ]; do
     --tidy) tidy=yes ;;
     --long) long=yes ;;
     --fuzz)
-      fuzz_seconds=60
+      fuzz_seconds=60 fuzz_documents=ON
       if [[ "${2:-}" =~ ^[0-9]+$ ]]; then fuzz_seconds=$2; shift; fi ;;
     --help | -h) usage; exit 0 ;;
     *) misuse "unknown option '$1'" ;;
@@ -120,7 +121,7 @@ fi
 # Release suites and fuzz targets are one ctest run, so that its closing lines speak for all of them.
 trees=()
 step "build release" build release "all benchmarks header_check" -DDRIFTLAB_TESTS=ON -DDRIFTLAB_BENCH=ON && trees+=(release)
-step "build fuzz targets" build fuzz fuzz_targets "-DDRIFTLAB_FUZZ_SECONDS=$fuzz_seconds" && trees+=(fuzz)
+step "build fuzz targets" build fuzz fuzz_targets "-DDRIFTLAB_FUZZ_SECONDS=$fuzz_seconds" "-DDRIFTLAB_FUZZ_DOCUMENTS=$fuzz_documents" && trees+=(fuzz)
 labels=(--label-exclude long)
 if [ "$long" = yes ]; then
   labels=()

@@ -15,9 +15,9 @@ inline std::optional<std::filesystem::path> shared_folder(std::string_view part 
   const char* const stated = std::getenv("DRIFTLAB_SHARED");
   const char* const source = std::getenv("DRIFTLAB_SOURCE");
   // NOLINTEND(concurrency-mt-unsafe)
-  const std::filesystem::path path = stated != nullptr && *stated != '\0'
-                                         ? std::filesystem::path(stated)
-                                         : std::filesystem::path(source != nullptr ? source : ".") / ".." / "shared";
+  std::filesystem::path path = stated != nullptr && *stated != '\0'
+                                   ? std::filesystem::path(stated)
+                                   : std::filesystem::path(source != nullptr ? source : ".") / ".." / "shared";
   if (std::filesystem::exists(path / part)) {
     return path;
   }

@@ -14,10 +14,10 @@ import tree
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
 INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "facts", "consistency", "causes", "search", "report")]  # lowest first
-ANALYSIS = [*CORE, "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
+ANALYSIS = [*CORE, "core/datasheet", "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
-RESULTS = ["core/signal", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema"]
+RESULTS = ["core/signal", "core/datasheet", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -25,7 +25,8 @@ FLOORS: dict[str, list[str]] = {
     "core/process": CORE[:1],
     "core/variance": CORE[:2],
     "core/fit": CORE[:3],
-    "core/campaign": CORE,
+    "core/datasheet": ["core/signal"],  # what manufacturers state
+    "core/campaign": [*CORE, "core/datasheet"],
     "core/export": [*CORE, "core/campaign"],  # what other programs want of a campaign
     "core/calibrate": CORE,
     "core/navigate": CORE,
@@ -37,21 +38,24 @@ FLOORS: dict[str, list[str]] = {
     "schema/figure": ["core/signal"],  # drawings: data in, nothing known of where they come from
     "schema/json": [*USE_CASES, "schema/figure"],
     "schema/text": USE_CASES,  # for people: tables and lines, of the same types and without a document in between
+    "schema/shell": [],  # what --help knows, as manuals and completions
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
     "server/observe": ["core/signal", "server/store", "schema/json"],
     "server/auth": SERVER,
     "server/jobs": [*RESULTS, "core/process", *SERVER],  # core/process: the units of parameters
     "server/http": [*SERVER, "server/auth", "schema/json"],
-    "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http"],
+    "server/webhooks": SERVER,
+    "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http", "server/webhooks"],
     "server/pages": ["server/store", "server/http"],
-    "server": [*RESULTS, "core/read", *SERVER, "server/pages", "server/auth", "server/jobs", "server/http", "server/api"],
-    "clients/cli": [*RESULTS, "core/read"],
+    "server": [*RESULTS, "core/read", *SERVER, "server/pages", "server/auth", "server/jobs", "server/http", "server/webhooks", "server/api", "schema/shell"],
+    "clients/cli": [*RESULTS, "core/read", "schema/shell"],
 }
 
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.
 RESERVED = {
     r"sqlite3\.h": ("server/store", "core/read/rosbag2.cpp"),  # a ROS 2 bag is an SQLite database
+    r"libpq-fe\.h": ("server/store",),
     r"boost/(beast|asio).*": ("server", "clients/cli"),
     r"nlohmann/.*": ("schema/json", "server", "clients/cli"),
     r"cairo/.*": ("schema/figure/png.cpp",),

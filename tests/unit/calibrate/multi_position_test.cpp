@@ -63,6 +63,21 @@ TEST(MultiPosition, FindsTheNineNumbersOfATriadInCounts) {
   EXPECT_NEAR(length(found->correct(counts({0.0, kG, 0.0}))), kG, 1e-9);
 }
 
+TEST(MultiPosition, SaysHowTheAxesLieToEachOther) {
+  // counts(): x reads 3 counts of y where it reads 410 of x, and so on; noise of 4 counts in 40 positions.
+  const auto exact = calibrate_multi_position(attitudes(40, 0.0, 1), kG)->misalignment();
+  EXPECT_NEAR(exact[0][1].value, 3.0 / 410.0, 1e-9);
+  EXPECT_NEAR(exact[0][2].value, -2.0 / 410.0, 1e-9);
+  EXPECT_NEAR(exact[1][2].value, 4.0 / 405.0, 1e-9);
+  EXPECT_EQ(exact[1][0].value, 0.0);
+  int held = 0;
+  for (std::uint64_t run = 0; run < 200; ++run) {
+    const auto angle = calibrate_multi_position(attitudes(40, 4.0, 1000 + run), kG)->misalignment()[0][2];
+    held += angle.ci95.low < -2.0 / 410.0 && -2.0 / 410.0 < angle.ci95.high ? 1 : 0;
+  }
+  EXPECT_GE(held, 180);  // 0.95 * 200, less three standard errors of 3.1
+}
+
 TEST(MultiPosition, IntervalsHoldTheTruthInNinetyFivePercent) {
   // 400 runs of 30 positions, noise of 4 counts (0.01 m/s^2): standard error of a coverage 1.1 %.
   int bias = 0;

@@ -69,6 +69,13 @@ TEST(Condition, IsReadStrictly) {
   }
 }
 
+TEST(Condition, AWordInADocumentIsAnsweredWithTheObject) {
+  Faults faults;
+  (void)condition_from_json("static", "/recordings/0/condition", faults);
+  ASSERT_EQ(pointers(faults), std::vector<std::string>{"/recordings/0/condition"});
+  EXPECT_NE(faults.error().message.find(R"({"kind": "static"})"), std::string::npos) << faults.error().message;
+}
+
 TEST(Condition, WritesTheValueAsTheUserDid) {
   for (const char* const text : {"static", "constant_rate:z:9:deg/s", "constant_angular_acceleration:y:-1:deg/s^2",
                                  "profile", "six_position:x:down", "drive"}) {
@@ -89,6 +96,15 @@ TEST(ParseColumns, ReadsNamesQuantitiesAxesAndUnits) {
   EXPECT_EQ(columns->at("gz").axis, "z");
   EXPECT_EQ(columns->at("gz").unit->symbol, "deg/s");
   EXPECT_FALSE(columns->at("3").unit);
+}
+
+TEST(ParseColumns, WhatHasNoAxisMayHaveItsUnitAtOnce) {
+  const auto columns = parse_columns("0=time:s,temp=temperature:degC,3=specific_force:x");
+  ASSERT_TRUE(columns) << columns.error().message;
+  EXPECT_EQ(columns->at("0"), parse_columns("0=time::s")->at("0"));
+  EXPECT_EQ(columns->at("temp").unit->symbol, "degC");
+  EXPECT_EQ(columns->at("3").axis, "x");
+  EXPECT_EQ(parse_columns("0=time:furlong").error().code, ErrorCode::UnknownUnit);
 }
 
 TEST(ParseColumns, NamesTheColumnAtFault) {

@@ -12,6 +12,7 @@ namespace {
 
 /// A file of the source tree; empty where a test runs without one.
 std::string source_text(const std::string& path) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests read their environment before they start anything
   const char* const root = std::getenv("DRIFTLAB_SOURCE");
   std::ifstream in(root != nullptr ? std::string(root) + "/" + path : path);
   std::ostringstream text;

@@ -309,7 +309,8 @@ TEST(Quality, CountsEqualSamplesOfACoarseClockOrAFrozenSensor) {
   std::vector<double> stamps(4000);
   std::vector<double> values = noise(4000);
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    stamps[i] = 0.02 * static_cast<double>(i / 2);
+    const std::size_t tick = i / 2;
+    stamps[i] = 0.02 * static_cast<double>(tick);
     values[i] = 0.1 * std::round(values[i] / 0.1);
   }
   const auto coarse = view({stamps, values}, {"time (s)", "gz"}, std::nullopt);

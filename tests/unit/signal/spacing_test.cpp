@@ -67,6 +67,40 @@ TEST(Spacing, PlacesSamplesHoweverManyAreLost) {
   }
 }
 
+// A logger that kept every second sample of 100 Hz, and few of the others, was refused with --rate-hz 100: "the time
+// column says 52.5 Hz".
+TEST(Spacing, BelievesAStatedRateThatTheStampsAreMultiplesOf) {
+  const Lost half = lose(0.0, 60000, 0.01);
+  std::mt19937_64 random(5);
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < half.stamps.size(); ++i) {
+    if (i % 2 == 0 || random() % 20 == 0) {
+      kept.push_back(half.stamps[i]);
+    }
+  }
+  const Spacing found = find_spacing(kept, {}, 0.01);
+  EXPECT_NEAR(found.interval_s, 0.01, 1e-12);
+  EXPECT_EQ(total(found.gaps) + kept.size(), static_cast<std::size_t>(std::llround(kept.back() / 0.01)) + 1);
+}
+
+TEST(Spacing, DoesNotBelieveARateThatIsStatedTooHigh) {
+  const auto interval = [](const std::vector<double>& stamps, double stated) {
+    return find_spacing(stamps, {}, stated).interval_s;
+  };
+  for (const double share : {0.0, 0.1, 0.5}) {  // all steps are multiples of two, four, five stated intervals
+    for (const double stated : {0.005, 0.0025, 0.002}) {
+      EXPECT_NEAR(interval(lose(share, 60000, 0.01).stamps, stated), 0.01, 1e-9) << share << ", " << stated;
+    }
+  }
+  // Stamps in whole milliseconds of a sensor of 104 Hz are multiples of a millisecond, 9 and 10 of them, that make up
+  // for each other.
+  std::vector<double> rounded;
+  for (int i = 0; i < 30000; ++i) {
+    rounded.push_back(1e-3 * std::round(1e3 * i / 104.0));
+  }
+  EXPECT_GT(interval(rounded, 1e-3), 0.009);
+}
+
 TEST(Spacing, PlacesSamplesWhoseStampsJitter) {
   for (const double share : {0.02, 0.05, 0.2, 0.5}) {
     for (const double jitter : {0.05, 0.1}) {

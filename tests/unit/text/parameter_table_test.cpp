@@ -50,6 +50,25 @@ TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
             "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
 }
 
+TEST(TableText, PutsTheDataSheetBelowTheRowsAndTheRatioBelowTheTable) {
+  ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05))});
+  found.data_sheet =
+      SheetComparison{"MPU-6050",
+                      "InvenSense PS-MPU-6000A-00, revision 3.4, section 6.1",
+                      "static",
+                      {{"N", 0.5, "deg/sqrt(h)", cell(1.0, 0.95, 1.05).estimate, 2.0, 1.9, 2.1, SheetVerdict::Above}}};
+  const std::string text = table_to_text(found, false);
+  EXPECT_NE(text.find("static      1.000 [0.9500, 1.050]  …      …\ndata sheet  0.5000\n"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find("= static: N is 2.00 times the 0.500 deg/sqrt(h) of its data sheet: above it. MPU-6050: InvenSense"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(table_to_csv(found).find("\r\ndata sheet,\"MPU-6050: InvenSense PS-MPU-6000A-00, revision 3.4, section "
+                                     "6.1\",0.5,,,,,,,,\r\n"),
+            std::string::npos);
+  EXPECT_NE(table_to_markdown(found).find("\n- static: N is 2.00 times"), std::string::npos);
+}
+
 TEST(TableText, PutsTheLowFrequencyDensityBeforeTheParametersOfAModel) {
   ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05)), row("drive", {"rec_b"}, cell(2.0))});
   found.method = TableMethod::Gmwm;
