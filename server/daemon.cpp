@@ -12,6 +12,7 @@
 #include "server/open_store.hpp"
 #include "server/pages/pages.hpp"
 #include "server/process.hpp"
+#include "server/readiness.hpp"
 #include "server/scrubber.hpp"
 #include "server/store/disk_reserve.hpp"
 #include "server/store/files.hpp"
@@ -29,11 +30,8 @@
 namespace driftlab::server {
 namespace {
 
-constexpr double kLeastFreeFraction = 0.05;
-constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
 /// Of the time to stop, the part that running jobs get before they are handed back.
 constexpr double kGraceShare = 0.7;
-constexpr std::chrono::seconds kProbeInterval{2};
 constexpr std::int64_t kMicrosPerDay = 24LL * 3600 * 1'000'000;
 
 /// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
@@ -119,6 +117,7 @@ struct Daemon::Parts {
         directory_lock(std::move(store_in.lock)),
         store(std::move(store_in.store)),
         visible(make_visible_store(*store)),
+        readiness(*store, *blobs),
         gate(std::move(gate_in)),
         scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second),
         deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
@@ -183,44 +182,8 @@ struct Daemon::Parts {
     return options;
   }
 
-  [[nodiscard]] std::string not_ready_why() const {
-    if (stopping) {
-      return "The daemon is stopping.";
-    }
-    if (const Status answered = store->ping(); !answered) {
-      return "The store does not answer: " + answered.error().message;
-    }
-    if (is_nearly_full()) {
-      return "The disk is nearly full.";
-    }
-    if (const std::string why = cannot_write_why(); !why.empty()) {
-      return why;
-    }
-    return "";
-  }
-
-  [[nodiscard]] bool is_nearly_full() const {
-    const auto space = blobs->space();
-    return !space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes);
-  }
-
-  /// Why a row cannot be written; tried once in a few seconds, for who asks whether the daemon is ready asks often. A
-  /// bad state is logged when it begins and when it ends.
-  [[nodiscard]] std::string cannot_write_why() const {
-    const std::lock_guard<std::mutex> guard(probe_mutex);
-    const auto now = std::chrono::steady_clock::now();
-    if (probed_at && now - *probed_at < kProbeInterval) {
-      return write_fault;
-    }
-    const Status written = store->write_probe();
-    probed_at = std::chrono::steady_clock::now();
-    const std::string fault = written ? "" : "The store cannot be written: " + written.error().message;
-    if (fault != write_fault) {
-      fault.empty() ? log_info("the store can be written again") : log_error("bad state", Json{{"detail", fault}});
-    }
-    write_fault = fault;
-    return write_fault;
-  }
+  [[nodiscard]] std::string not_ready_why() const { return stopping ? "The daemon is stopping." : readiness.why_not(); }
+  [[nodiscard]] bool is_nearly_full() const { return readiness.is_nearly_full(); }
 
   [[nodiscard]] Gauges gauges() const {
     Gauges found;
@@ -277,14 +240,12 @@ struct Daemon::Parts {
   Metrics metrics;
   UtcMicros started_at = SystemClock().now();
   DiskReserve reserve;
-  mutable std::mutex probe_mutex;
-  mutable std::optional<std::chrono::steady_clock::time_point> probed_at;
-  mutable std::string write_fault;
   std::unique_ptr<SystemClock> clock;
   std::unique_ptr<BlobStore> blobs;
   FileHandle directory_lock;
   std::unique_ptr<SqlStore> store;
   std::unique_ptr<Store> visible;
+  Readiness readiness;
   std::unique_ptr<Gate> gate;
   Scrubber scrubber;
   Bell bell;
