@@ -12,13 +12,6 @@ namespace {
 
 constexpr double kPercent = 100.0;
 
-/// An end of an interval; what rounds to zero has no sign.
-std::string end_of(double end, double low, double high) {
-  std::string text = significant(end, low, high);
-  const bool zero = text.find_first_of("123456789") == std::string::npos;
-  return zero && text.front() == '-' ? text.substr(1) : text;
-}
-
 std::string seconds(double time_s) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", time_s);
@@ -30,8 +23,8 @@ std::string with_interval(const Estimate& estimate, double factor, const std::st
   const double low = factor * estimate.ci95.low;
   const double high = factor * estimate.ci95.high;
   std::string text = significant(factor * estimate.value, low, high);
-  text.append(unit.empty() ? "" : " " + unit).append(" [").append(end_of(low, low, high));
-  return text.append(", ").append(end_of(high, low, high)).append("]");
+  text.append(unit.empty() ? "" : " " + unit).append(" [").append(significant(low, low, high));
+  return text.append(", ").append(significant(high, low, high)).append("]");
 }
 
 std::string metres(const Estimate& estimate) {

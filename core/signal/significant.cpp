@@ -18,10 +18,13 @@ int last_digit(double half) {
   return begins_with_one ? e - 1 : e;
 }
 
+/// What rounds to zero has no sign.
 std::string printed(double value, int decimals) {
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, "%.*f", std::clamp(decimals, 0, 20), value);
-  return buffer;
+  std::string text = buffer;
+  const bool zero = text.find_first_of("123456789") == std::string::npos;
+  return zero && text.front() == '-' ? text.substr(1) : text;
 }
 
 std::string rounded(double value, int last) {

@@ -3,8 +3,8 @@
 ///
 /// With h half the length of the interval and 10^e the power of its first digit, the last digit shown is that of 10^e,
 /// or of 10^(e-1) where the first digit of h is 1: 1.0382 [1.0347, 1.0417] is 1.038, and 297.3 [180.1, 467.2] is 300.
-/// Without an interval three significant digits are shown. schema/number-format.json holds the cases that every writer
-/// keeps to.
+/// Without an interval three significant digits are shown. What rounds to zero has no sign. schema/number-format.json
+/// holds the cases that every writer keeps to.
 #include <optional>
 #include <string>
 
