@@ -30,7 +30,7 @@ std::vector<Odd> odd_devices(const PopulationReport& report) {
     const PopulationRow& row = report.rows[r];
     for (std::size_t d = 0; d < row.population.places.size(); ++d) {
       const DevicePlace& place = row.population.places[d];
-      if (!place.outlying) {
+      if (!place.outlying || !place.p_holm) {
         continue;
       }
       auto found = std::find_if(odd.begin(), odd.end(), [&](const Odd& one) { return one.device == place.device; });

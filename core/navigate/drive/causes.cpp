@@ -119,7 +119,7 @@ const Knob* find_knob(std::string_view cause, std::string_view parameter) {
 }
 
 std::string_view words_of(std::string_view cause) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 14> words{{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords{{
       {"sample_clock", "a poll faster than the sensor samples"},
       {"imu_time_offset", "an offset of the unit's clock"},
       {"gnss_velocity_latency", "late velocities of fixes"},
@@ -136,8 +136,8 @@ std::string_view words_of(std::string_view cause) {
       {"noise_level", "the level of white noise on the road"},
   }};
   const auto* const found =
-      std::find_if(words.begin(), words.end(), [&](const auto& pair) { return pair.first == cause; });
-  assert(found != words.end());
+      std::find_if(kWords.begin(), kWords.end(), [&](const auto& pair) { return pair.first == cause; });
+  assert(found != kWords.end());
   return found->second;
 }
 
