@@ -11,7 +11,7 @@
 namespace driftlab {
 
 /// Grows whenever the same study could give another report.
-inline constexpr int kInvestigationVersion = 3;
+inline constexpr int kInvestigationVersion = 4;
 
 struct InvestigationRequest {
   std::string study;  ///< the name of the study, as the report gives it
@@ -20,9 +20,11 @@ struct InvestigationRequest {
   investigate::InvestigateOptions options;
 };
 
-/// Memory: the columns of every recording stay mapped, and about ten numbers a sample are kept, until the report is
-/// made. Errors: those of the source and of make_study_recording, located; those of investigate::investigate;
-/// Cancelled.
+/// Memory: the columns of every recording stay mapped until the report is made. Of each channel that has been searched
+/// 9 bytes a sample are kept, to be compared with the others; the one that is being searched takes about fifty, or
+/// eighty where its length is just above a power of two. Vibration is looked at sample by sample in up to a million of
+/// them, which takes 480 bytes more for each. Errors: those of the source and of make_study_recording, located; those
+/// of investigate::investigate; Cancelled.
 [[nodiscard]] Result<investigate::Report> investigate_study(const InvestigationRequest& request,
                                                             RecordingSource& recordings,
                                                             const RunControl& control = {});

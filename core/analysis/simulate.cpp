@@ -28,15 +28,15 @@ Result<std::string> column_of(const Baseline& model, const std::string& wanted) 
   return wanted;
 }
 
-/// A recording that moves as wanted and has read nothing yet.
+/// A recording that moves as wanted and has read nothing yet, which it has from `blank`.
 Result<investigate::StudyRecording> blank_recording(const AxisSimulation& wanted, const std::string& column,
-                                                    const ColumnRole& role) {
+                                                    const ColumnRole& role, std::vector<double>& blank) {
   RecordingSpec spec;
   spec.id = "simulated";
   spec.rate_hz = wanted.rate_hz;
   spec.condition = wanted.condition;
   spec.columns[column] = role;
-  const std::vector<double> blank(samples_of(wanted), 0.0);
+  blank.assign(samples_of(wanted), 0.0);
   return investigate::make_study_recording(spec, {column}, blank.size(),
                                            [&](std::size_t) { return std::span<const double>(blank); });
 }
@@ -69,7 +69,8 @@ Result<ChannelSimulation> simulate_model(const Baseline& model, const std::strin
   const Unit unit = *parse_unit(gyro ? "deg/s" : "m/s^2");
   const std::string last = column->substr(column->size() - 1);
   const ColumnRole role{gyro ? Quantity::AngularRate : Quantity::SpecificForce, axis_index(last) ? last : "z", unit};
-  auto recording = blank_recording(wanted, *column, role);
+  std::vector<double> blank;
+  auto recording = blank_recording(wanted, *column, role, blank);
   if (!recording) {
     return fail(recording.error());
   }

@@ -17,6 +17,7 @@
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -133,7 +134,7 @@ double left_over(const Report& report) {
 void settle_gains(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes, Report& report) {
   double samples = 0.0;
   for (const GroupOutcome& outcome : outcomes) {
-    for (const auto& e : outcome.after.residual) {
+    for (const Series& e : outcome.after.innovation) {
       samples += static_cast<double>(e.size());
     }
   }
@@ -167,6 +168,29 @@ std::size_t first_shown(const Report& report, std::size_t group) {
   return 0;
 }
 
+/// What the report takes from the samples of the channels, group by group.
+struct Taken {
+  std::vector<ChannelChecks> checks;
+  std::vector<std::vector<double>> means;
+  std::vector<MeasuredFigures> figures;
+  std::vector<Remainder> remains;  ///< of all of them
+};
+
+/// Takes what is needed of a channel whose search has ended, and lets its samples go but for the innovations, which are
+/// compared with those of other channels.
+void take_from(const ChannelGroup& group, GroupOutcome& outcome, Taken& taken) {
+  taken.checks.push_back(check_channel(group, outcome));
+  taken.means.push_back(means_of(outcome.before));
+  taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
+  outcome.before = {};
+  outcome.after.residual.clear();
+  if (outcome.usable) {
+    std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
+    taken.remains.insert(taken.remains.end(), std::make_move_iterator(remains.begin()),
+                         std::make_move_iterator(remains.end()));
+  }
+}
+
 }  // namespace
 
 Result<Report> investigate(const Study& given, const InvestigateOptions& options, const RunControl& control) {
@@ -186,6 +210,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   report.notes = study.notes;
   const std::vector<ChannelGroup> groups = group_channels(study);
   std::vector<GroupOutcome> outcomes;
+  Taken taken;
   std::vector<Evidence> found;
   std::vector<Evidence> examined;
   for (const StudyRecording& recording : study.recordings) {
@@ -209,6 +234,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
       return fail(ErrorCode::Cancelled, "The investigation was stopped.");
     }
     GroupOutcome& outcome = outcomes.back();
+    take_from(groups[g], outcome, taken);
     if (!outcome.usable) {
       report.notes.push_back("The channel " + groups[g].column + " cannot be examined: " + outcome.why_not + ".");
       for (const Cause& cause : cause_registry()) {
@@ -233,14 +259,14 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   join_axes(found);
   drop_confirmed(study.baseline, groups, found, report.notes);
   control.report("checks", 0.95);
-  make_checks(groups, outcomes, examined, report);
-  const std::vector<Remainder> remains = what_remains(groups, outcomes);
-  doubt_what_is_not_earned(groups, outcomes, remains, report, found);
+  make_checks(groups, outcomes, taken.checks, examined, report);
+  const std::vector<Remainder> remains = what_remains(groups, outcomes, std::move(taken.remains));
+  doubt_what_is_not_earned(groups, taken.means, remains, report, found);
   list_findings(std::move(found), groups, report);
   settle_gains(groups, outcomes, report);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (outcomes[g].usable) {
-      report.figures.push_back(figures_of(groups[g], outcomes[g], first_shown(report, g), report.checks));
+      report.figures.push_back(figures_of(taken.figures[g], first_shown(report, g), report.checks));
     }
   }
   if (options.predict_outages) {

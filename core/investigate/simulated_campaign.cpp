@@ -205,6 +205,8 @@ SimulatedStudy SimulatedCampaign::simulate(const Answer& answer, std::uint64_t s
     const std::size_t axis = axis_index(role_.axis).value_or(2);
     const bool turns = role_.quantity == Quantity::AngularRate && !recording.rate[axis].empty();
     std::vector<double> rows(channel.measured.size());
+    std::vector<double> measured(rows.size());
+    std::vector<double> errors(channel.error.size());
     // Digits far below the noise, as a file has them.
     const double finest = std::pow(
         10.0,
@@ -213,11 +215,13 @@ SimulatedStudy SimulatedCampaign::simulate(const Answer& answer, std::uint64_t s
       const double truth = channel.error.empty() ? 0.0 : channel.measured[i] - channel.error[i];
       const double error = made.reading[i] - (turns ? recording.rate[axis][i] : 0.0);
       rows[i] = finest * std::round(channel.unit.from_si(truth + error) / finest);
-      channel.measured[i] = channel.unit.to_si(rows[i]);
-      if (!channel.error.empty()) {
-        channel.error[i] = channel.measured[i] - truth;
+      measured[i] = channel.unit.to_si(rows[i]);
+      if (!errors.empty()) {
+        errors[i] = measured[i] - truth;
       }
     }
+    channel.measured = std::move(measured);
+    channel.error = std::move(errors);
     simulated.memory.push_back(std::move(rows));
     channel.rows = simulated.memory.back();
   }

@@ -12,6 +12,8 @@
 #include "server/jobs/stored_baseline.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
+#include <algorithm>
+
 namespace driftlab::server {
 namespace {
 
@@ -162,15 +164,22 @@ class Investigate final : public JobKind {
                 {"algorithm_version", kInvestigationVersion}};
   }
 
-  /// Every channel of every recording at once, some of them in several forms.
+  /// The innovations of every channel, and beside them one channel at a time. Where a gyroscope may see vibration, up
+  /// to a million samples of it are looked at one by one (core/investigate/search/slow_search.cpp).
   [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
-    constexpr std::int64_t kBytesPerSample = 220;
+    constexpr std::int64_t kBytesKept = 9;
+    constexpr std::int64_t kBytesSearched = 80;
+    constexpr std::int64_t kBytesVibrating = 480;
+    constexpr std::int64_t kMostVibrating = std::int64_t{1} << 20;
     constexpr double kSecondsPerSample = 1e-5;
     JobCost cost;
+    std::int64_t beside_others = 0;  // rows in which a gyroscope may stand beside an accelerometer
     for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
-      cost.memory_bytes += kBytesPerSample * size.rows * size.columns;
+      cost.memory_bytes += (kBytesKept * size.columns + kBytesSearched) * size.rows;
+      beside_others += size.columns > 1 ? size.rows : 0;
       cost.seconds += kSecondsPerSample * static_cast<double>(size.rows * size.columns);
     }
+    cost.memory_bytes += kBytesVibrating * std::min(beside_others, kMostVibrating);
     return cost;
   }
 

@@ -9,6 +9,7 @@ import io
 import json
 import lzma
 import os
+import random
 import re
 import resource
 import socket
@@ -272,6 +273,25 @@ class JobsHaveABudget(unittest.TestCase):
                 self.assertEqual(answer.status, 413, answer.describe())
                 self.assertIn("(budget job_memory_bytes = ", answer.json["detail"])
             self.assertLess(daemon.memory_kib("VmHWM"), 200 * 1024)
+
+    def test_an_investigation_takes_no_more_than_it_is_admitted_for(self) -> None:
+        most = 75_000_000  # 32 MiB and 89 bytes for each of 400,000 samples are 69,154,432; it was once 220 a sample
+        noise = random.Random(5)
+        table = "gz [deg/s]\n" + "".join(f"{noise.gauss(0.0, 0.05):.6f}\n" for _ in range(400_000))
+        with Daemon(arguments=("--budget", f"job_memory_bytes={most}", "--workers", "1")) as daemon:
+            recording = daemon.upload(table.encode(), rate_hz=100).json["id"]
+            study = daemon.post("/v1/studies", {"device": {"id": "phone-07"}, "recordings": [{"recording": recording}]}).json["id"]
+            before = daemon.memory_kib("RssAnon")
+            job = daemon.post("/v1/jobs", {"kind": "investigate", "inputs": {"study": study}})
+            self.assertEqual(job.status, 202, job.describe())
+            largest = 0
+            until = time.monotonic() + 120
+            while time.monotonic() < until and not daemon.get(f"/v1/jobs/{job.json['id']}").json["finished_at"]:
+                largest = max(largest, daemon.memory_kib("RssAnon") - before)
+                time.sleep(0.02)
+            self.assertEqual(daemon.finished(job.json["id"])["state"], "succeeded")
+            self.assertLess(largest * 1024, most)
+            self.assertGreater(largest, 0)
 
     def test_a_job_has_a_deadline_that_is_named(self) -> None:
         with Daemon(arguments=("--budget", "job_seconds=1", "--workers", "1")) as daemon:

@@ -55,8 +55,8 @@ double oracle_level(const SimulatedStudy& clean, const ProcessKind& kind, double
   std::vector<double> ratio;  // of the added density at level 1 to the base
   for (double k = 1.0; k < 0.5 * n; k += 1.0) {
     const double f = k / n / recording.dt_s;
-    ratio.push_back(slow_density(unit, {}, 0, f, recording.dt_s, n) /
-                    (base.white + slow_density(base, {}, 0, f, recording.dt_s, n)));
+    ratio.push_back(slow_density(unit, 0, f, recording.dt_s, n) /
+                    (base.white + slow_density(base, 0, f, recording.dt_s, n)));
   }
   const auto seen = [&](double level) {
     double sum = 0.0;

@@ -15,6 +15,7 @@ namespace {
 using investigate::Baseline;
 using investigate::ChannelGroup;
 using investigate::GivenEffect;
+using investigate::Series;
 using investigate::StudyRecording;
 
 constexpr double kPi = std::numbers::pi;
@@ -33,11 +34,11 @@ std::vector<double> each(const StudyRecording& recording, const std::function<do
   return values;
 }
 
-double at(const std::vector<double>& values, std::size_t i) { return values.empty() ? 0.0 : values[i]; }
+double at(const Series& values, std::size_t i) { return values.empty() ? 0.0 : values[i]; }
 
 /// Temperature behind a first-order lag, less its mean over the recording.
 std::vector<double> lagged(const StudyRecording& recording, double lag_s) {
-  std::vector<double> value = recording.temperature;
+  std::vector<double> value = recording.temperature.values();
   const double step = lag_s > 0.0 ? 1.0 - std::exp(-recording.dt_s / lag_s) : 1.0;
   for (std::size_t i = 1; i < value.size(); ++i) {
     value[i] = value[i - 1] + step * (recording.temperature[i] - value[i - 1]);
@@ -53,7 +54,7 @@ std::vector<double> lagged(const StudyRecording& recording, double lag_s) {
 }
 
 /// Variance of the specific force in a centred window of 1 s.
-std::vector<double> vibration(const StudyRecording& recording, const std::vector<double>& f) {
+std::vector<double> vibration(const StudyRecording& recording, const Series& f) {
   const auto half = static_cast<std::ptrdiff_t>(0.5 / recording.dt_s);
   const auto n = static_cast<std::ptrdiff_t>(f.size());
   return each(recording, [&](std::size_t i) {
@@ -75,8 +76,8 @@ std::vector<double> vibration(const StudyRecording& recording, const std::vector
 /// What a mean effect of fixed form adds; empty where it is none.
 std::vector<double> mean_of(const GivenEffect& effect, const StudyRecording& recording, const ChannelGroup& group) {
   const std::size_t axis = group.axis();
-  const std::vector<double>& w = recording.rate[axis];
-  const std::vector<double>& a = recording.acceleration[axis];
+  const Series& w = recording.rate[axis];
+  const Series& a = recording.acceleration[axis];
   const double p = effect.values[0];
   const double q = effect.values.size() > 1 ? effect.values[1] : 0.0;
   const auto time = [&](std::size_t i) { return recording.time_s(i); };
@@ -411,7 +412,7 @@ ChannelScore score_channel(const Baseline& model, const ChannelGroup& group, con
     const StudyRecording& recording = *member.recording;
     Part part;
     part.noise = noise_of(model, recording, group, finest);
-    std::vector<double> error = member.channel->error;
+    std::vector<double> error = member.channel->error.values();
     std::vector<std::vector<double>> quadratures;
     for (const GivenEffect& effect : model.effects) {
       if (!lists(effect.channels, group.column) || !lists(effect.recordings, recording.id)) {

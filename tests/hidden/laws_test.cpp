@@ -23,7 +23,7 @@ constexpr std::size_t kSamples = 40000;
 /// motion, written in lab units and read as the product reads a file.
 StudyRecording recording_in_motion() {
   static std::deque<std::vector<double>> memory;
-  memory.clear();
+  const std::size_t first = memory.size();
   RecordingSpec spec;
   spec.id = "motion";
   spec.rate_hz = kRateHz;
@@ -50,8 +50,8 @@ StudyRecording recording_in_motion() {
   add("fz", Quantity::SpecificForce, "z", "m/s^2", motion::force);
   add("rz", Quantity::ReferenceAngularRate, "z", "deg/s", motion::rate);
   add("temp", Quantity::Temperature, "", "degC", motion::temperature);
-  auto recording =
-      make_study_recording(spec, names, kSamples, [&](std::size_t i) { return std::span<const double>(memory[i]); });
+  auto recording = make_study_recording(spec, names, kSamples,
+                                        [&](std::size_t i) { return std::span<const double>(memory[first + i]); });
   EXPECT_TRUE(recording);
   return recording ? std::move(*recording) : StudyRecording{};
 }

@@ -24,7 +24,7 @@ Thinning look(const StudyRecording& recording) {
     }
     const Lattice lattice = find_lattice(channel.rows);
     const double step = std::max(lattice.step, lattice.decimals) * std::fabs(channel.unit.factor);
-    const auto part = std::span(channel.error).subspan(recording.begin, std::min(recording.count(), kMost));
+    const std::vector<double> part = channel.error.part(recording.begin, std::min(recording.count(), kMost)).values();
     const std::size_t every = find_running_mean(part, step);
     if (every == 0 || (common.every != 0 && common.every != every)) {
       return {};

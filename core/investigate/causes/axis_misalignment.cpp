@@ -14,7 +14,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double ot
   if (group.role.quantity != Quantity::AngularRate || recording.rate[axis].empty()) {
     return false;
   }
-  columns.assign(1, recording.rate[axis]);
+  columns.assign(1, recording.rate[axis].values());
   return true;
 }
 

@@ -25,7 +25,7 @@ struct Frames {
 };
 
 Frames frames_of(const FullRate& data, std::size_t r) {
-  const std::vector<double>& e = data.innovation[r];
+  const Series& e = data.innovation[r];
   Frames frames;
   frames.samples = fast_length(static_cast<std::size_t>(std::max(16.0, std::round(kFrame / data.dt_s))));
   frames.df_hz = 1.0 / (static_cast<double>(frames.samples) * data.dt_s);
@@ -36,7 +36,7 @@ Frames frames_of(const FullRate& data, std::size_t r) {
     if (std::find(used.begin(), used.end(), 0) != used.end()) {
       continue;  // the ordinates of a frame with holes are not independent
     }
-    const auto z = transform(std::span(e).subspan(from, frames.samples), 0);
+    const auto z = transform(e.part(from, frames.samples));
     std::vector<double> sums(frames.top + 1, 0.0);
     for (std::size_t k = 0; k < frames.top; ++k) {
       sums[k + 1] = sums[k] + std::norm(z[k]) / static_cast<double>(frames.samples);
@@ -257,7 +257,7 @@ double burst_gain(const FullRate& data, const std::vector<std::size_t>& scope, d
 
 std::vector<double> burst_values(const FullRate& data, std::size_t r, double centre_hz, double amplitude,
                                  double fraction) {
-  const std::vector<double>& y = data.residual[r];
+  const Series& y = data.residual[r];
   std::vector<double> values(y.size(), 0.0);
   const Frames frames = frames_of(data, r);
   const Ordinates band = ordinates_of(frames, centre_hz);
@@ -274,7 +274,7 @@ std::vector<double> burst_values(const FullRate& data, std::size_t r, double cen
     // What the band holds beyond its noise, by the share of the loud power that is not noise.
     const double kept = 1.0 - 1.0 / ratio;
     const std::size_t from = frames.from[f];
-    const auto z = transform(std::span(y).subspan(from, frames.samples), 0);
+    const auto z = transform(y.part(from, frames.samples));
     const auto n = static_cast<double>(frames.samples);
     for (std::size_t k = band.first; k < band.first + band.count; ++k) {
       const std::complex<double> turn = std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(k) / n);

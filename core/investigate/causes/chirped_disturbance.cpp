@@ -41,7 +41,7 @@ struct Map {
 };
 
 Map map_of(const FullRate& data, std::size_t r) {
-  const std::vector<double>& e = data.innovation[r];
+  const Series& e = data.innovation[r];
   const std::size_t piece = piece_of(data);
   Map map;
   map.df_hz = 1.0 / (static_cast<double>(piece) * data.dt_s);
@@ -49,7 +49,7 @@ Map map_of(const FullRate& data, std::size_t r) {
   const std::size_t together = pieces / kMostPieces + 1;
   map.pieces = static_cast<double>(pieces);
   for (std::size_t p = 0; p < pieces; ++p) {
-    const auto z = transform(std::span(e).subspan(p * piece, piece), 0);
+    const auto z = transform(e.part(p * piece, piece));
     if (p % together == 0) {
       map.power.emplace_back(z.size(), 0.0);
     }

@@ -45,7 +45,7 @@ std::vector<FaultyRecordings> clock_faults(const Study& study, ClockBreak kind, 
 
 void inject_clock_break(Draft& draft, ClockBreak kind, std::span<const double> values) {
   const StudyRecording& recording = *draft.recording;
-  const std::vector<double>& rate = recording.rate[draft.group->axis()];
+  const std::vector<double> rate = recording.rate[draft.group->axis()].values();
   if (rate.empty()) {
     return;
   }

@@ -42,7 +42,7 @@ std::vector<Evidence> examine_driven(const FullRate& data, Driver driver, LabUni
 void driven_deviation(const FullRate& data, const Evidence& found, std::size_t r, Driver driver,
                       std::vector<double>& sd) {
   const StudyRecording& recording = *data.group->members[r].recording;
-  const std::vector<double>& u = (recording.*driver)[axis_of(*data.group)];
+  const Series& u = (recording.*driver)[axis_of(*data.group)];
   sd.assign(data.innovation[r].size(), 1.0);
   for (std::size_t i = 0; i < sd.size() && !u.empty(); ++i) {
     const double factor = 1.0 + found.shape * std::fabs(u[recording.begin + i]);
@@ -51,7 +51,7 @@ void driven_deviation(const FullRate& data, const Evidence& found, std::size_t r
 }
 
 void inject_driven(Draft& draft, double k, Driver driver) {
-  const std::vector<double>& u = (draft.recording->*driver)[axis_of(*draft.group)];
+  const Series& u = (draft.recording->*driver)[axis_of(*draft.group)];
   for (std::size_t i = 0; i < u.size(); ++i) {
     draft.white[i] *= 1.0 + k * std::fabs(u[i]);
   }

@@ -11,7 +11,7 @@
 namespace driftlab::investigate {
 
 /// The driver: `&StudyRecording::rate` or `&StudyRecording::acceleration`.
-using Driver = std::array<std::vector<double>, 3> StudyRecording::*;
+using Driver = std::array<Series, 3> StudyRecording::*;
 
 /// k by maximum likelihood over levels of |u|; nothing where there are fewer than two, or where noise does not grow.
 [[nodiscard]] std::vector<Evidence> examine_driven(const FullRate& data, Driver driver, LabUnit (*unit)(const Unit&));

@@ -31,7 +31,7 @@ std::vector<CopiedBlock> blocks_of(const StudyRecording& recording) {
 
 /// The grid places of the copies.
 std::vector<unsigned char> places_of(const StudyRecording& recording, const std::vector<CopiedBlock>& blocks) {
-  const std::vector<unsigned char>& valid = recording.channels.front().valid;
+  const Presence& valid = recording.channels.front().valid;
   std::vector<unsigned char> gone(valid.size(), 0);
   std::size_t row = 0;
   std::size_t next = 0;  // block

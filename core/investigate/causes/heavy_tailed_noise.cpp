@@ -51,6 +51,11 @@ double log_gain(const FullRate& data, const Evidence& found) {
 /// The scale by the median of |e|, which no tail moves.
 std::function<double(double)> tail(const FullRate& data, const Evidence& found) {
   std::vector<double> modulus;
+  std::size_t samples = 0;
+  for (const Series& e : data.innovation) {
+    samples += e.size();
+  }
+  modulus.reserve(samples);
   for (std::size_t r = 0; r < data.members(); ++r) {
     for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
       if (data.used[r][i] != 0) {

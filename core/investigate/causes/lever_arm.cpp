@@ -8,7 +8,7 @@ namespace {
 
 bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
            std::vector<std::vector<double>>& columns) {
-  const std::vector<double>& w = recording.rate[2];
+  const Series& w = recording.rate[2];
   if (w.empty() || group.axis() > 1) {
     return false;
   }

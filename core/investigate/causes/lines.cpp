@@ -1,12 +1,15 @@
 #include "core/investigate/causes/lines.hpp"
 
 #include "core/investigate/causes/units.hpp"
+#include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/slow/profile.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace driftlab::investigate {
 namespace {
@@ -16,18 +19,21 @@ constexpr double kPi = std::numbers::pi;
 /// X on a common grid of frequencies for every recording.
 struct LineSpectra {
   double df_hz = 0.0;
-  std::vector<std::vector<double>> x;  ///< per recording
-  std::vector<double> samples;         ///< n_r
+  std::vector<std::span<const double>> x;  ///< per recording
+  std::vector<double> samples;             ///< n_r
   std::size_t bins = 0;
+  std::vector<std::vector<double>> memory;  ///< of all x but the last
+  std::vector<std::complex<double>> last;   ///< the transform that holds the last one
 };
 
-/// Values divided by the larger of two running means that leave out the centre.
-std::vector<double> against_neighbours(const std::vector<double>& power, double per_hz, double oversampling) {
+/// Divides values by the larger of two running means that leave out the centre.
+void put_against_neighbours(std::span<double> power, double per_hz, double oversampling) {
   const std::size_t n = power.size();
-  std::vector<double> sum(n + 1, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    sum[i + 1] = sum[i] + power[i];
-  }
+  const auto narrow = static_cast<std::ptrdiff_t>(std::max(24.0 * oversampling, 0.15 * per_hz));
+  const auto wide = std::max<std::ptrdiff_t>(4 * narrow, static_cast<std::ptrdiff_t>(2.0 * per_hz));
+  // Running sums up to each value, of which those within the wider mean are kept.
+  const std::size_t kept = std::min(2 * static_cast<std::size_t>(wide) + 3, n + 1);
+  std::vector<double> sum(kept, 0.0);
   const auto gap = static_cast<std::ptrdiff_t>(std::lround(4.0 * oversampling));
   const auto mean_over = [&](std::size_t i, std::ptrdiff_t half) {
     const auto at = static_cast<std::ptrdiff_t>(i);
@@ -39,15 +45,25 @@ std::vector<double> against_neighbours(const std::vector<double>& power, double 
     const std::size_t c = clamp(at + gap + 1);
     const std::size_t d = clamp(at + half + 1);
     const auto count = static_cast<double>((b - a) + (d - c));
-    return count > 0.0 ? (sum[b] - sum[a] + sum[d] - sum[c]) / count : 1.0;
+    return count > 0.0 ? (sum[b % kept] - sum[a % kept] + sum[d % kept] - sum[c % kept]) / count : 1.0;
   };
-  const auto narrow = static_cast<std::ptrdiff_t>(std::max(24.0 * oversampling, 0.15 * per_hz));
-  const auto wide = std::max<std::ptrdiff_t>(4 * narrow, static_cast<std::ptrdiff_t>(2.0 * per_hz));
-  std::vector<double> x(n);
+  std::size_t summed = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    x[i] = power[i] / std::max(mean_over(i, narrow), mean_over(i, wide));
+    for (; summed < std::min(n, i + static_cast<std::size_t>(wide) + 1); ++summed) {
+      sum[(summed + 1) % kept] = sum[summed % kept] + power[summed];
+    }
+    power[i] /= std::max(mean_over(i, narrow), mean_over(i, wide));
   }
-  return x;
+}
+
+/// The factor times the squared moduli of complex values, in the front half of their own memory: of the padded
+/// transform of a day that is a quarter of a gigabyte.
+std::span<double> moduli_in_place(std::vector<std::complex<double>>& z, double numerator, double denominator) {
+  auto* const parts = reinterpret_cast<double*>(z.data());  // [complex.numbers.general]: real part, imaginary part
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    parts[i] = numerator * std::norm(z[i]) / denominator;
+  }
+  return {parts, z.size()};
 }
 
 LineSpectra line_spectra(const FullRate& data) {
@@ -62,22 +78,20 @@ LineSpectra line_spectra(const FullRate& data) {
   }
   spectra.df_hz = 1.0 / (static_cast<double>(length) * data.dt_s);
   spectra.bins = length / 2 + 1;
-  for (const auto& e : data.innovation) {
-    std::vector<double> clipped(e.size());
-    for (std::size_t i = 0; i < e.size(); ++i) {
-      clipped[i] = std::clamp(e[i], -6.0, 6.0);
+  for (const Series& e : data.innovation) {
+    if (!spectra.x.empty()) {
+      spectra.x.back() = spectra.memory.emplace_back(spectra.x.back().begin(), spectra.x.back().end());
+      spectra.last = {};
     }
-    const auto z = transform(clipped, length);
-    std::vector<double> power(z.size());
+    spectra.last =
+        half_spectrum(length, [&](std::size_t i) { return i < e.size() ? std::clamp(e[i], -6.0, 6.0) : 0.0; });
     const auto n = static_cast<double>(e.size());
-    for (std::size_t i = 0; i < z.size(); ++i) {
-      power[i] = 2.0 * std::norm(z[i]) / n;
-    }
-    auto x = against_neighbours(power, 1.0 / spectra.df_hz, static_cast<double>(length) / n);
+    const std::span<double> x = moduli_in_place(spectra.last, 2.0, n);
+    put_against_neighbours(x, 1.0 / spectra.df_hz, static_cast<double>(length) / n);
     for (double& v : x) {
       v *= 2.0;
     }
-    spectra.x.push_back(std::move(x));
+    spectra.x.push_back(x);
     spectra.samples.push_back(n);
   }
   return spectra;
@@ -112,21 +126,13 @@ struct Phasor {
   double a = 0.0, b = 0.0, variance = 1.0;
 };
 
-struct WhitenedLine {
-  Phasor phasor;
-  std::vector<double> sine, cosine;
-};
+/// The angle of a line at sample i.
+double angle_at(const FullRate& data, double f_hz, std::size_t i) {
+  return 2.0 * kPi * f_hz * static_cast<double>(i) * data.dt_s;
+}
 
-WhitenedLine measure(const FullRate& data, std::size_t r, double f_hz, double level) {
+Phasor measure(const FullRate& data, std::size_t r, double f_hz, double level) {
   const std::size_t n = data.residual[r].size();
-  WhitenedLine line;
-  line.sine.resize(n);
-  line.cosine.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double angle = 2.0 * kPi * f_hz * static_cast<double>(i) * data.dt_s;
-    line.sine[i] = std::sin(angle);
-    line.cosine[i] = std::cos(angle);
-  }
   double ss = 0.0;
   double cc = 0.0;
   double sc = 0.0;
@@ -141,25 +147,26 @@ WhitenedLine measure(const FullRate& data, std::size_t r, double f_hz, double le
       continue;
     }
     const double y = data.residual[r][i] - mean;
-    ss += line.sine[i] * line.sine[i];
-    cc += line.cosine[i] * line.cosine[i];
-    sc += line.sine[i] * line.cosine[i];
-    ys += y * line.sine[i];
-    yc += y * line.cosine[i];
+    const double angle = angle_at(data, f_hz, i);
+    const double sine = std::sin(angle);
+    const double cosine = std::cos(angle);
+    ss += sine * sine;
+    cc += cosine * cosine;
+    sc += sine * cosine;
+    ys += y * sine;
+    yc += y * cosine;
   }
   const double det = ss * cc - sc * sc;
   if (!(det > 0.0)) {  // no sample in use, as in the half of a recording that froze: nothing is known of a line
-    line.phasor = {0.0, 0.0, std::numeric_limits<double>::infinity()};
-    return line;
+    return {0.0, 0.0, std::numeric_limits<double>::infinity()};
   }
-  line.phasor = {(ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det, level / (0.5 * (ss + cc)) / data.dt_s};
-  return line;
+  return {(ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det, level / (0.5 * (ss + cc)) / data.dt_s};
 }
 
 /// Density of the residual around f, without the line itself [SI^2 s].
 double density_near(const FullRate& data, std::size_t r, double f_hz) {
   const std::size_t n = fast_length(data.residual[r].size());
-  const auto z = transform(std::span(data.residual[r]).first(n), 0);
+  const auto z = transform(data.residual[r].part(0, n));
   const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
   const auto centre = static_cast<std::ptrdiff_t>(std::lround(f_hz / df));
   const auto half = static_cast<std::ptrdiff_t>(std::max(30.0, 0.2 / df));
@@ -199,7 +206,7 @@ Evidence describe(const FullRate& data, const LineSpectra& spectra, const std::v
   const auto strength = [&](double freq) {
     double sum = 0.0;
     for (std::size_t k = 0; k < scope.size(); ++k) {
-      const Phasor p = measure(data, scope[k], freq, level[k]).phasor;
+      const Phasor p = measure(data, scope[k], freq, level[k]);
       sum += (p.a * p.a + p.b * p.b) / p.variance;
     }
     return sum;
@@ -220,7 +227,7 @@ Evidence describe(const FullRate& data, const LineSpectra& spectra, const std::v
   double bias = 0.0;
   double information = 0.0;  // of the frequency
   for (std::size_t k = 0; k < scope.size(); ++k) {
-    const Phasor p = measure(data, scope[k], f, level[k]).phasor;
+    const Phasor p = measure(data, scope[k], f, level[k]);
     const double modulus = std::hypot(p.a, p.b);
     weight += 1.0 / p.variance;
     mean += modulus / p.variance;
@@ -269,11 +276,13 @@ std::size_t company(const LineSpectra& spectra, const std::vector<std::size_t>& 
 }  // namespace
 
 std::vector<double> fitted_line(const FullRate& data, std::size_t r, double f_hz) {
-  WhitenedLine line = measure(data, r, f_hz, 1.0);
-  for (std::size_t i = 0; i < line.sine.size(); ++i) {
-    line.sine[i] = line.phasor.a * line.sine[i] + line.phasor.b * line.cosine[i];
+  const Phasor phasor = measure(data, r, f_hz, 1.0);
+  std::vector<double> line(data.residual[r].size());
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double angle = angle_at(data, f_hz, i);
+    line[i] = phasor.a * std::sin(angle) + phasor.b * std::cos(angle);
   }
-  return std::move(line.sine);
+  return line;
 }
 
 std::vector<Evidence> find_lines(const FullRate& data) {
@@ -343,7 +352,7 @@ Evidence line_near(const FullRate& data, const std::vector<std::size_t>& scope, 
 double line_gain(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz, double amplitude) {
   double gain = 0.0;
   for (const std::size_t r : scope) {
-    const Phasor p = measure(data, r, f_hz, density_near(data, r, f_hz)).phasor;
+    const Phasor p = measure(data, r, f_hz, density_near(data, r, f_hz));
     const double x = amplitude * std::hypot(p.a, p.b) / p.variance;
     const double log_bessel = x < 50.0 ? std::log(std::cyl_bessel_i(0.0, x)) : x - 0.5 * std::log(2.0 * kPi * x);
     gain += log_bessel - 0.5 * amplitude * amplitude / p.variance;

@@ -36,8 +36,9 @@ std::vector<Evidence> find(const ChannelGroup& group) {
 }
 
 void events(const Channel& channel, std::vector<unsigned char>& mask) {
-  std::transform(channel.valid.begin(), channel.valid.end(), mask.begin(),
-                 [](unsigned char valid) { return static_cast<unsigned char>(valid == 0 ? 1 : 0); });
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    mask[i] = channel.valid[i] == 0 ? 1 : 0;
+  }
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {

@@ -18,7 +18,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 double Sweep::phase(double t) const { return kTurn * (f_hz * t + 0.5 * slope_hz_s * t * t); }
 
 Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block) {
-  const std::vector<double>& e = data.innovation[r];
+  const Series& e = data.innovation[r];
   Beaten beaten;
   beaten.step_s = static_cast<double>(block) * data.dt_s;
   beaten.sums.resize(e.size() / block + (e.size() % block != 0 ? 1 : 0));
@@ -34,7 +34,7 @@ Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t
 
 double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz) {
   const std::size_t n = fast_length(data.innovation[r].size());
-  const auto z = transform(std::span(data.innovation[r]).first(n), 0);
+  const auto z = transform(data.innovation[r].part(0, n));
   const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
   const auto width = static_cast<std::size_t>(std::max(24.0, 0.25 / df));
   const auto from = static_cast<std::size_t>(std::max(1.0, std::min(low_hz, high_hz) / df));
@@ -67,7 +67,7 @@ double log_tail(double x, double k) {
 }
 
 PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep>& sweeps) {
-  const std::vector<double>& y = data.residual[r];
+  const Series& y = data.residual[r];
   const auto width = static_cast<Eigen::Index>(2 * sweeps.size());
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(width);

@@ -22,14 +22,14 @@ std::string list_of_names(const std::vector<std::string>& names) {
   return shown < names.size() ? text.append(" and others") : text;
 }
 
-void renew_error(Channel& channel) {
-  if (channel.error.empty()) {
-    return;
+void renew_error(Channel& channel) { channel.error = channel.error.empty() ? Series() : channel.against_reference(); }
+
+void turn_sign(Channel& channel) {
+  std::vector<double> turned = channel.measured.values();
+  for (double& v : turned) {
+    v = -v;
   }
-  channel.error = channel.measured;
-  for (std::size_t i = 0; i < channel.reference.size(); ++i) {
-    channel.error[i] -= channel.reference[i];
-  }
+  channel.measured = std::move(turned);
 }
 
 std::string in_digits(double value) {
@@ -39,13 +39,7 @@ std::string in_digits(double value) {
 }
 
 void thin_out(StudyRecording& recording, std::size_t every, std::size_t phase, std::deque<std::vector<double>>& rows) {
-  const auto thin = [&](auto& values) {
-    std::size_t kept = 0;
-    for (std::size_t i = phase; i < values.size(); i += every) {
-      values[kept++] = values[i];
-    }
-    values.resize(kept);
-  };
+  const auto thin = [&](auto& values) { values = values.thinned(every, phase); };
   const auto place = [&](std::size_t i) { return i > phase ? (i - phase + every - 1) / every : 0; };
   for (Channel& channel : recording.channels) {
     std::vector<double> kept;
@@ -61,7 +55,7 @@ void thin_out(StudyRecording& recording, std::size_t every, std::size_t phase, s
     }
     rows.push_back(std::move(kept));
     channel.rows = rows.back();
-    for (std::vector<double>* const values : {&channel.measured, &channel.error, &channel.reference}) {
+    for (Series* const values : {&channel.measured, &channel.error, &channel.reference}) {
       thin(*values);
     }
     thin(channel.valid);
@@ -80,8 +74,7 @@ void thin_out(StudyRecording& recording, std::size_t every, std::size_t phase, s
   recording.dt_s *= static_cast<double>(every);
   recording.stamps.missing = 0;
   if (!recording.channels.empty()) {
-    const auto& valid = recording.channels.front().valid;
-    recording.stamps.missing = static_cast<std::size_t>(std::count(valid.begin(), valid.end(), 0));
+    recording.stamps.missing = recording.channels.front().valid.absent();
   }
 }
 
@@ -90,17 +83,19 @@ void leave_out(StudyRecording& recording, const std::vector<unsigned char>& gone
   for (Channel& channel : recording.channels) {
     std::vector<double> kept;
     std::size_t row = 0;
-    for (std::size_t i = 0; i < channel.valid.size(); ++i) {
-      if (channel.valid[i] == 0) {
+    std::vector<unsigned char> places = channel.valid.places();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (places[i] == 0) {
         continue;
       }
       if (gone[i] != 0) {
-        channel.valid[i] = 0;
+        places[i] = 0;
       } else {
         kept.push_back(channel.rows[row]);
       }
       ++row;
     }
+    channel.valid = Presence(std::move(places));
     rows.push_back(std::move(kept));
     channel.rows = rows.back();
   }

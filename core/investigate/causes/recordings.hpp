@@ -20,6 +20,9 @@ namespace driftlab::investigate {
 /// error = measured - reference, where the channel had one.
 void renew_error(Channel& channel);
 
+/// The readings with their sign turned; their error is not renewed.
+void turn_sign(Channel& channel);
+
 /// A number for a sentence, four digits.
 [[nodiscard]] std::string in_digits(double value);
 

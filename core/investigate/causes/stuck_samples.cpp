@@ -29,6 +29,7 @@ struct Runs {
 std::vector<double> without_freezes(std::span<const double> v, Runs& runs) {
   const double least = std::max(100.0, 0.01 * static_cast<double>(v.size()));
   std::vector<double> rest;
+  rest.reserve(v.size());
   for (std::size_t from = 0; from < v.size();) {
     std::size_t to = from + 1;
     while (to < v.size() && v[to] == v[from]) {

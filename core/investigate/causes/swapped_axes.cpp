@@ -18,12 +18,10 @@ void put_right(StudyRecording& recording, const DoubtfulRecording& doubt) {
   Channel& other = recording.channels[doubt.other];
   std::swap(own.rows, other.rows);
   std::swap(own.unit, other.unit);
-  own.measured.swap(other.measured);
-  own.valid.swap(other.valid);
+  std::swap(own.measured, other.measured);
+  std::swap(own.valid, other.valid);
   if (doubt.turned) {
-    for (double& v : own.measured) {
-      v = -v;
-    }
+    turn_sign(own);
   }
   renew_error(own);
   renew_error(other);
@@ -81,7 +79,7 @@ void inject_effect(Draft& draft, std::span<const double> /*values*/, Random& /*r
     return;
   }
   const std::size_t second = *other;
-  const std::vector<double>& seen = recording.rate[own == main ? second : main];
+  const Series& seen = recording.rate[own == main ? second : main];
   for (std::size_t i = 0; i < draft.mean.size(); ++i) {
     draft.mean[i] += (seen.empty() ? 0.0 : seen[i]) - (recording.rate[own].empty() ? 0.0 : recording.rate[own][i]);
   }

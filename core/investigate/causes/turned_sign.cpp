@@ -27,9 +27,7 @@ std::vector<FaultyRecordings> find(const Study& study) {
   fault.mend = [turned](Study& mended, std::deque<std::vector<double>>& /*rows*/) {
     for (const DoubtfulRecording& doubt : turned) {
       Channel& channel = mended.recordings[doubt.recording].channels[doubt.channel];
-      for (double& v : channel.measured) {
-        v = -v;
-      }
+      turn_sign(channel);
       renew_error(channel);
     }
   };

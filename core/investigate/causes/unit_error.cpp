@@ -24,9 +24,11 @@ Unit true_unit(const Unit& declared, double factor) {
 }
 
 void put_right(StudyRecording& recording, Channel& channel, double factor) {
-  for (double& v : channel.measured) {
+  std::vector<double> right = channel.measured.values();
+  for (double& v : right) {
     v /= factor;
   }
+  channel.measured = std::move(right);
   channel.unit = true_unit(channel.unit, factor);
   renew_error(channel);
   const auto axis = axis_index(channel.role.axis);

@@ -8,7 +8,7 @@ namespace {
 
 bool build(const StudyRecording& recording, const ChannelGroup& group, double /*shape*/,
            std::vector<std::vector<double>>& columns) {
-  const std::vector<double>& force = recording.force[group.axis()];
+  const Series& force = recording.force[group.axis()];
   if (force.empty()) {
     return false;
   }

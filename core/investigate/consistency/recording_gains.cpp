@@ -68,7 +68,7 @@ double noise_density(const StudyRecording& recording, const Channel& channel) {
   constexpr std::size_t kMost = 200000;  // tell it to 0.3 %
   const std::size_t stride = recording.count() / kMost + 1;
   std::vector<double> third;
-  const std::vector<double>& y = channel.measured;
+  const Series& y = channel.measured;
   for (std::size_t i = recording.begin + 3; i < recording.end; i += stride) {
     if (channel.valid[i] != 0 && channel.valid[i - 1] != 0 && channel.valid[i - 2] != 0 && channel.valid[i - 3] != 0) {
       third.push_back(std::fabs(y[i] - 3.0 * y[i - 1] + 3.0 * y[i - 2] - y[i - 3]));
@@ -78,8 +78,8 @@ double noise_density(const StudyRecording& recording, const Channel& channel) {
 }
 
 /// What drives the axis `k` of a quantity over the grid; empty: not known.
-const std::vector<double>& drive_of(const StudyRecording& recording, Quantity quantity, std::size_t k) {
-  static const std::vector<double> none;
+const Series& drive_of(const StudyRecording& recording, Quantity quantity, std::size_t k) {
+  static const Series none;
   if (quantity == Quantity::AngularRate) {
     return recording.rate[k];
   }

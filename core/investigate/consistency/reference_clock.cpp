@@ -41,7 +41,7 @@ Blocks blocks_of(const StudyRecording& recording, std::size_t c) {
   const Channel& channel = recording.channels[c];
   const auto length = static_cast<std::size_t>(std::max(1.0, std::round(kBlock / recording.dt_s)));
   const std::size_t count = recording.count() / length;
-  const std::vector<double> slopes = slope(channel.reference, recording.dt_s);
+  const std::vector<double> slopes = slope(channel.reference.values(), recording.dt_s);
   const double limit = clipped_at(channel) * std::fabs(channel.unit.factor);
   Blocks blocks;
   blocks.channel = c;
@@ -387,22 +387,25 @@ void move_reference(StudyRecording& recording, const std::vector<double>& times_
   std::size_t main = 0;
   double most = -1.0;
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double>& rate = recording.rate[k];
-    if (rate.empty()) {
+    if (recording.rate[k].empty()) {
       continue;
     }
-    rate = read_at(rate, recording.dt_s, times_s);
+    std::vector<double> rate = read_at(recording.rate[k].values(), recording.dt_s, times_s);
     recording.acceleration[k] = slope(rate, recording.dt_s);
     double sum = 0.0;
     for (const double w : rate) {
       sum += std::fabs(w);
     }
+    recording.rate[k] = std::move(rate);
     main = sum > most ? k : main;
     most = std::max(most, sum);
   }
-  for (std::size_t i = 1; i < recording.angle.size(); ++i) {
-    recording.angle[i] =
-        recording.angle[i - 1] + 0.5 * recording.dt_s * (recording.rate[main][i - 1] + recording.rate[main][i]);
+  if (!recording.angle.empty()) {  // from where it began
+    std::vector<double> angle(recording.angle.size(), recording.angle[0]);
+    for (std::size_t i = 1; i < angle.size(); ++i) {
+      angle[i] = angle[i - 1] + 0.5 * recording.dt_s * (recording.rate[main][i - 1] + recording.rate[main][i]);
+    }
+    recording.angle = std::move(angle);
   }
   for (Channel& channel : recording.channels) {
     const auto axis = axis_index(channel.role.axis);
@@ -410,9 +413,7 @@ void move_reference(StudyRecording& recording, const std::vector<double>& times_
       continue;
     }
     channel.reference = recording.rate[*axis];
-    for (std::size_t i = 0; i < channel.error.size(); ++i) {
-      channel.error[i] = channel.measured[i] - channel.reference[i];
-    }
+    channel.error = channel.error.empty() ? Series() : channel.against_reference();
   }
 }
 

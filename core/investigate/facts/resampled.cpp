@@ -58,7 +58,7 @@ std::vector<double> mean_periodogram(std::span<const double> x, std::size_t leng
     for (std::size_t i = 0; i < length; ++i) {
       piece[i] = (piece[i] - mean) * window[i];
     }
-    const auto z = transform(piece, 0);
+    const auto z = transform(Series::view(piece));
     for (std::size_t k = 0; k < power.size(); ++k) {
       power[k] += std::norm(z[k]) / square;
     }

@@ -1,8 +1,10 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 
+#include "core/investigate/slow/whitening_walk.hpp"
 #include "core/investigate/study/measured_constants.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -11,24 +13,44 @@ namespace {
 
 constexpr std::size_t kOrder = 24;
 
+using Innovations = std::vector<std::vector<double>>;
+
+/// The last kOrder values of a walk through a series.
+class Recent {
+ public:
+  /// The value `lag` places before the present one, 1 to kOrder.
+  [[nodiscard]] double operator[](std::size_t lag) const {
+    return values_[(at_ + values_.size() - lag) % values_.size()];
+  }
+  void push(double value) {
+    values_[at_] = value;
+    at_ = (at_ + 1) % values_.size();
+  }
+
+ private:
+  std::array<double, 32> values_{};
+  std::size_t at_ = 0;
+};
+
 /// Coefficients of an autoregression by Levinson's recursion on the pooled autocovariance of all recordings.
-std::vector<double> fit_autoregression(const std::vector<std::vector<double>>& series,
-                                       const std::vector<std::vector<unsigned char>>& used) {
+std::vector<double> fit_autoregression(const Innovations& series, const std::vector<std::vector<unsigned char>>& used) {
   std::vector<double> covariance(kOrder + 1, 0.0);
   double samples = 0.0;
   for (std::size_t r = 0; r < series.size(); ++r) {
     // Gross values would stretch the covariance; clipping at 4 changes a Gaussian one by 1e-4.
-    std::vector<double> x(series[r].size());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = used[r][i] != 0 ? std::clamp(series[r][i], -4.0, 4.0) : 0.0;
+    std::array<double, kOrder + 1> sum{};
+    Recent recent;
+    for (std::size_t i = 0; i < series[r].size(); ++i) {
+      const double x = used[r][i] != 0 ? std::clamp(series[r][i], -4.0, 4.0) : 0.0;
       samples += used[r][i] != 0 ? 1.0 : 0.0;
+      sum[0] += x * x;
+      for (std::size_t lag = 1; lag <= std::min(i, kOrder); ++lag) {
+        sum[lag] += x * recent[lag];
+      }
+      recent.push(x);
     }
     for (std::size_t lag = 0; lag <= kOrder; ++lag) {
-      double sum = 0.0;
-      for (std::size_t i = lag; i < x.size(); ++i) {
-        sum += x[i] * x[i - lag];
-      }
-      covariance[lag] += sum;
+      covariance[lag] += sum[lag];
     }
   }
   std::vector<double> a(kOrder, 0.0);
@@ -63,8 +85,8 @@ void leave_out_starts(std::vector<unsigned char>& used, bool strong) {
   }
 }
 
-void whiten_further(FullRate& data) {
-  const std::vector<double> a = fit_autoregression(data.innovation, data.used);
+void whiten_further(FullRate& data, Innovations& innovation) {
+  const std::vector<double> a = fit_autoregression(innovation, data.used);
   if (a.empty()) {
     return;
   }
@@ -75,27 +97,27 @@ void whiten_further(FullRate& data) {
   }
   double square = 0.0;
   double count = 0.0;
-  for (std::size_t r = 0; r < data.innovation.size(); ++r) {
-    std::vector<double>& x = data.innovation[r];
-    std::vector<double> e(x.size());
+  for (std::size_t r = 0; r < innovation.size(); ++r) {
     leave_out_starts(data.used[r], squares > 0.1);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      double value = x[i];
+    Recent recent;
+    for (std::size_t i = 0; i < innovation[r].size(); ++i) {
+      const double x = innovation[r][i];
+      double value = x;
       for (std::size_t k = 0; k < std::min(i, a.size()); ++k) {
-        value -= a[k] * x[i - 1 - k];
+        value -= a[k] * recent[k + 1];
       }
-      e[i] = data.used[r][i] != 0 ? value : 0.0;
-      if (data.used[r][i] != 0 && std::fabs(e[i]) < 4.0) {
-        square += e[i] * e[i];
+      recent.push(x);
+      innovation[r][i] = data.used[r][i] != 0 ? value : 0.0;
+      if (data.used[r][i] != 0 && std::fabs(value) < 4.0) {
+        square += value * value;
         count += 1.0;
       }
     }
-    x = std::move(e);
   }
   if (!data.given && count > 0.0) {
     const double scale = 1.0 / std::sqrt(square / count);
     data.innovation_sd /= scale;
-    for (auto& x : data.innovation) {
+    for (auto& x : innovation) {
       for (double& value : x) {
         value *= scale;
       }
@@ -133,8 +155,11 @@ bool spectra_fit(const FullRate& data) {
 }
 
 /// Samples that are left out, on a straight line between their neighbours: a spectrum needs them all.
-std::vector<double> bridged(const std::vector<double>& values, const std::vector<unsigned char>& used) {
-  std::vector<double> whole = values;
+Series bridged(const Series& values, const std::vector<unsigned char>& used) {
+  if (std::find(used.begin(), used.end(), 0) == used.end()) {
+    return values;
+  }
+  std::vector<double> whole = values.values();
   for (std::size_t i = 0; i < whole.size();) {
     if (used[i] != 0) {
       ++i;
@@ -153,6 +178,73 @@ std::vector<double> bridged(const std::vector<double>& values, const std::vector
     i = end;
   }
   return whole;
+}
+
+/// Which samples of each member's analysed part are there and not masked.
+std::vector<std::vector<unsigned char>> samples_in_use(const ChannelGroup& group,
+                                                       const std::vector<std::vector<unsigned char>>& mask) {
+  std::vector<std::vector<unsigned char>> all;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    const StudyRecording& recording = *group.members[r].recording;
+    const Presence& valid = group.members[r].channel->valid;
+    const bool masked = r < mask.size() && !mask[r].empty();
+    std::vector<unsigned char>& used = all.emplace_back(recording.count());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      const std::size_t place = recording.begin + i;
+      used[i] = valid[place] != 0 && !(masked && mask[r][place] != 0) ? 1 : 0;
+    }
+  }
+  return all;
+}
+
+/// Sum over samples in use of the variances of their innovations.
+struct Spread {
+  double variances = 0.0;
+  double samples = 0.0;
+};
+
+/// The innovations of one member under the filter of `states`, each divided by its deviation.
+std::vector<double> innovations_of(const Series& residual, const std::vector<unsigned char>& used,
+                                   const BlockStates& states, Spread& spread) {
+  const bool uniform = std::all_of(used.begin(), used.end(), [&](unsigned char u) { return u == used[0]; });
+  WhiteningWalk walk(states, uniform, 1);
+  std::vector<double> innovation(residual.size());
+  double last = -1.0;
+  double variance = 0.0;
+  for (std::size_t i = 0; i < innovation.size(); ++i) {
+    walk.next(used[i] != 0 ? 1.0 : 0.0);
+    innovation[i] = walk.whitened(0, residual[i]);
+    if (used[i] != 0) {
+      if (walk.variance() != last) {
+        last = walk.variance();
+        variance = std::exp(walk.inv_sd() > 0.0 ? std::log(last) : 0.0);
+      }
+      spread.variances += variance;
+      spread.samples += 1.0;
+    }
+  }
+  return innovation;
+}
+
+/// Innovations of all members, and what their variances say.
+Innovations whitened(FullRate& data, const FullRateOptions& options) {
+  SlowModel filter = data.model;  // differenced noise counts as white here; the autoregression finds its colour
+  filter.white += 2.0 * options.quantization / data.dt_s;
+  double longest_s = 0.0;
+  for (const Series& residual : data.residual) {
+    longest_s = std::max(longest_s, data.dt_s * static_cast<double>(residual.size()));
+  }
+  Innovations innovation;
+  Spread spread;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    const StudyRecording& recording = *data.group->members[r].recording;
+    const Blocks blocks{data.dt_s, 1, recording.time_s(recording.begin), longest_s};
+    innovation.push_back(innovations_of(data.residual[r], data.used[r], block_states(filter, blocks, r), spread));
+  }
+  const double mean = spread.variances / std::max(1.0, spread.samples);
+  data.white_share = std::clamp(data.model.white / data.dt_s / mean, 0.05, 1.0);
+  data.innovation_sd = std::sqrt(mean);
+  return innovation;
 }
 
 }  // namespace
@@ -201,7 +293,7 @@ void set_spectrum(FullRate& data, std::size_t r) {
   slow.clear();
   for (std::size_t j = 0; j < s.power.size(); ++j) {
     const double f = s.f_hz[j];
-    slow.push_back(slow_density(data.model, data.samples, r, f, data.dt_s, static_cast<double>(s.samples)) +
+    slow.push_back(slow_density(data.model, r, f, data.dt_s, static_cast<double>(s.samples)) +
                    data.quantization * quantization_shape(f, data.dt_s));
     const double base = data.model.white + slow[j];
     s.power[j] *= base / std::max(0.05 * base, base + data.raised[r]);
@@ -215,8 +307,8 @@ void renew_spectrum(FullRate& data, std::size_t r) {
 }
 
 FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const SlowModel& model,
-                           std::vector<std::vector<double>> residual,
-                           const std::vector<std::vector<unsigned char>>& mask, const FullRateOptions& options) {
+                           std::vector<Series> residual, const std::vector<std::vector<unsigned char>>& mask,
+                           const FullRateOptions& options) {
   FullRate data;
   data.study = &study;
   data.group = &group;
@@ -226,46 +318,32 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   data.dt_s = group.members.front().recording->dt_s;
   data.model = model;
   data.residual = std::move(residual);
-  data.samples = average_blocks(group, mask, true);
-  BlockColumns columns;
-  columns.width = 1;
-  columns.rows = data.residual;
-  SlowModel filter = model;  // differenced noise counts as white here; the autoregression finds its colour
-  filter.white += 2.0 * options.quantization / data.dt_s;
-  const Whitened whitened = whiten(data.samples, filter, columns);
-  double sum_s = 0.0;
-  double steady = 0.0;
-  std::size_t row = 0;
-  for (std::size_t r = 0; r < data.members(); ++r) {
-    data.innovation.push_back(whitened.columns.rows[r]);
-    std::vector<unsigned char> used(data.residual[r].size());
-    for (std::size_t i = 0; i < used.size(); ++i, ++row) {
-      used[i] = data.samples.recordings[r].filled[i] > 0.0 ? 1 : 0;
-      if (used[i] != 0) {
-        sum_s += std::exp(whitened.log_var[row]);
-        steady += 1.0;
-      }
-    }
-    data.used.push_back(std::move(used));
-  }
-  data.white_share = std::clamp(model.white / data.dt_s / (sum_s / std::max(1.0, steady)), 0.05, 1.0);
-  data.innovation_sd = std::sqrt(sum_s / std::max(1.0, steady));
+  data.used = samples_in_use(group, mask);
   data.raised.assign(data.members(), 0.0);
   data.spectrum.resize(data.members());
   data.slow.resize(data.members());
   constexpr double kMostMissing = 0.005;
+  double samples = 0.0;
   for (std::size_t r = 0; r < data.members(); ++r) {
     const auto present = std::count(data.used[r].begin(), data.used[r].end(), 1);
+    samples += static_cast<double>(present);
     if (static_cast<double>(present) > (1.0 - kMostMissing) * static_cast<double>(data.used[r].size())) {
       set_spectrum(data, r);
     }
   }
   data.flat = spectra_fit(data);
   if (!data.flat && !data.given) {
-    data.repeatability = 1.0 + 2.0 * steady / static_cast<double>(data.members()) * kLevelRepeats * kLevelRepeats;
+    data.repeatability = 1.0 + 2.0 * samples / static_cast<double>(data.members()) * kLevelRepeats * kLevelRepeats;
   }
+  if (!options.innovations) {
+    return data;
+  }
+  Innovations innovation = whitened(data, options);
   if (options.whiten_further) {
-    whiten_further(data);
+    whiten_further(data, innovation);
+  }
+  for (std::vector<double>& own : innovation) {
+    data.innovation.emplace_back(std::move(own));
   }
   return data;
 }

@@ -39,13 +39,12 @@ Value evaluate(const Modulation& levels, bool scale_known, double x,
 
 }  // namespace
 
-Modulation modulation_of(
-    const FullRate& data,
-    const std::function<const std::vector<double>*(const StudyRecording&, std::size_t axis)>& driver) {
+Modulation modulation_of(const FullRate& data,
+                         const std::function<const Series*(const StudyRecording&, std::size_t axis)>& driver) {
   const std::size_t axis = data.group->role.quantity == Quantity::AngularRate ? data.group->axis() : 2;
   Modulation levels;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    const std::vector<double>* const values = driver(*data.group->members[r].recording, axis);
+    const Series* const values = driver(*data.group->members[r].recording, axis);
     for (const double v : *values) {
       levels.largest = std::max(levels.largest, std::fabs(v));
     }
@@ -58,7 +57,7 @@ Modulation modulation_of(
   }
   for (std::size_t r = 0; r < data.members(); ++r) {
     const StudyRecording& recording = *data.group->members[r].recording;
-    const std::vector<double>& values = *driver(recording, axis);
+    const Series& values = *driver(recording, axis);
     for (std::size_t i = 0; i < data.innovation[r].size(); ++i) {
       if (data.used[r][i] == 0) {
         continue;

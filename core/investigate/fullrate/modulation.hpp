@@ -19,8 +19,7 @@ struct Modulation {
 /// Levels of |driver| (60 between 0 and its largest). `driver` picks a grid vector of a recording for the group's axis
 /// (z for accelerometers); recordings without it count as 0.
 [[nodiscard]] Modulation modulation_of(
-    const FullRate& data,
-    const std::function<const std::vector<double>*(const StudyRecording&, std::size_t axis)>& driver);
+    const FullRate& data, const std::function<const Series*(const StudyRecording&, std::size_t axis)>& driver);
 
 /// Two levels: 1 in the recordings of the scope, 0 outside.
 [[nodiscard]] Modulation modulation_of_scope(const FullRate& data, const std::vector<std::size_t>& scope);

@@ -1,6 +1,6 @@
 #include "core/investigate/fullrate/spectrum.hpp"
 
-#include <unsupported/Eigen/FFT>
+#include "core/investigate/fullrate/fourier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,32 +28,22 @@ std::size_t fast_length(std::size_t n) {
   return n;
 }
 
-std::vector<std::complex<double>> transform(std::span<const double> values, std::size_t length) {
-  length = length == 0 ? values.size() : length;
-  std::vector<double> padded(length, 0.0);
-  std::copy_n(values.begin(), std::min(length, values.size()), padded.begin());
-  std::vector<std::complex<double>> spectrum(length / 2 + 1);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  fft.fwd(spectrum.data(), padded.data(), static_cast<Eigen::Index>(length));
-  return spectrum;
+std::vector<std::complex<double>> transform(const Series& values, std::size_t length) {
+  const std::size_t count = values.size();
+  return half_spectrum(length == 0 ? count : length, [&](std::size_t i) { return i < count ? values[i] : 0.0; });
 }
 
-Spectrum estimate_spectrum(std::span<const double> error, double dt_s, double f_low_hz) {
+Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz) {
   Spectrum result;
   result.dt_s = dt_s;
   result.samples = fast_length(error.size());
-  std::vector<double> centred(error.begin(), error.begin() + static_cast<std::ptrdiff_t>(result.samples));
   double mean = 0.0;
-  for (const double e : centred) {
-    mean += e;
+  for (std::size_t i = 0; i < result.samples; ++i) {
+    mean += error[i];
   }
-  mean /= static_cast<double>(centred.size());
-  for (double& e : centred) {
-    e -= mean;
-  }
+  mean /= static_cast<double>(result.samples);
   const auto n = static_cast<double>(result.samples);
-  const auto values = transform(centred, 0);
+  const auto values = half_spectrum(result.samples, [&](std::size_t i) { return error[i] - mean; });
   const double df = 1.0 / (n * dt_s);
   auto k = static_cast<std::size_t>(std::max(1.0, std::ceil(f_low_hz / df)));
   while (k < result.samples / 2) {
@@ -72,15 +62,13 @@ Spectrum estimate_spectrum(std::span<const double> error, double dt_s, double f_
   return result;
 }
 
-double slow_density(const SlowModel& model, const BlockSeries& series, std::size_t r, double f_hz, double dt_s,
-                    double samples) {
+double slow_density(const SlowModel& model, std::size_t r, double f_hz, double dt_s, double samples) {
   double sum = 0.0;
   for (const SlowComponent& component : model.components) {
     if (component.acts_in(r) && component.kind->expected_periodogram != nullptr) {
       sum += component.kind->expected_periodogram(component.level, component.beta, f_hz, dt_s, samples);
     }
   }
-  (void)series;
   return sum;
 }
 

@@ -8,7 +8,6 @@
 #include "core/investigate/slow/slow_model.hpp"
 
 #include <complex>
-#include <span>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -25,14 +24,13 @@ struct Spectrum {
 [[nodiscard]] std::size_t fast_length(std::size_t n);
 
 /// Discrete Fourier transform of a real series zero-padded to `length` (0: its own): length/2 + 1 values.
-[[nodiscard]] std::vector<std::complex<double>> transform(std::span<const double> values, std::size_t length);
+[[nodiscard]] std::vector<std::complex<double>> transform(const Series& values, std::size_t length = 0);
 
 /// Spectrum of `error` from `f_low_hz` up to, not including, the Nyquist frequency; its mean is removed.
-[[nodiscard]] Spectrum estimate_spectrum(std::span<const double> error, double dt_s, double f_low_hz);
+[[nodiscard]] Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz);
 
 /// Expected periodogram of the slow components of recording r (without the white part).
-[[nodiscard]] double slow_density(const SlowModel& model, const BlockSeries& series, std::size_t r, double f_hz,
-                                  double dt_s, double samples);
+[[nodiscard]] double slow_density(const SlowModel& model, std::size_t r, double f_hz, double dt_s, double samples);
 
 /// Squared gain of the second-order Butterworth low-pass in its bilinear form: 1/(1 + (tan(pi f dt)/tan(pi fc dt))^4).
 [[nodiscard]] double butterworth_gain(double f_hz, double corner_hz, double dt_s);

@@ -233,8 +233,9 @@ void to_normal_scores(FullRate& data, const std::function<double(double)>& tail)
   for (double e = 0.0; e < kTop + 2.0 * kWidth; e += kWidth) {
     table.push_back(score(e));
   }
-  for (auto& series : data.innovation) {
-    for (double& e : series) {
+  for (Series& series : data.innovation) {
+    std::vector<double> scores = series.values();
+    for (double& e : scores) {
       const double modulus = std::fabs(e);
       double value = 0.0;
       if (modulus < kTop) {
@@ -246,6 +247,7 @@ void to_normal_scores(FullRate& data, const std::function<double(double)>& tail)
       }
       e = std::copysign(value, e);
     }
+    series = std::move(scores);
   }
 }
 

@@ -1,7 +1,6 @@
 #include "core/investigate/report/checks.hpp"
 
 #include "core/investigate/causes/cause.hpp"
-#include "core/investigate/report/general_checks.hpp"
 #include "core/investigate/search/thresholds.hpp"
 #include "core/process/distributions.hpp"
 
@@ -123,21 +122,29 @@ void list_unexplained(const std::vector<ChannelGroup>& groups, Report& report) {
 
 }  // namespace
 
+ChannelChecks check_channel(const ChannelGroup& group, const GroupOutcome& outcome) {
+  ChannelChecks channel;
+  if (!outcome.usable) {
+    return channel;
+  }
+  channel.checks = before_and_after(group, outcome);
+  for (std::size_t r = 0; r < outcome.after.members(); ++r) {
+    channel.after.push_back(moments_of(outcome.after.innovation[r], outcome.after.used[r]));
+  }
+  return channel;
+}
+
 void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
-                 const std::vector<Evidence>& examined, Report& report) {
+                 const std::vector<ChannelChecks>& channels, const std::vector<Evidence>& examined, Report& report) {
   std::vector<Check>& checks = report.checks;
   double misfit = 0.0;
   double samples = 0.0;
   std::vector<unsigned char> twice;  // tested again under the extended model
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (!outcomes[g].usable) {
-      continue;
-    }
-    std::vector<Check> own = before_and_after(groups[g], outcomes[g]);
+    const std::vector<Check>& own = channels[g].checks;
     twice.insert(twice.end(), own.size(), outcomes[g].found.empty() ? 0 : 1);
-    checks.insert(checks.end(), std::make_move_iterator(own.begin()), std::make_move_iterator(own.end()));
-    for (std::size_t r = 0; r < outcomes[g].after.members(); ++r) {
-      const InnovationMoments m = moments_of(outcomes[g].after.innovation[r], outcomes[g].after.used[r]);
+    checks.insert(checks.end(), own.begin(), own.end());
+    for (const InnovationMoments& m : channels[g].after) {
       misfit += 0.5 * m.count * (m.mean_square - 1.0);
       samples += m.count;
     }

@@ -16,6 +16,7 @@
 /// every recording and channel, before and after. The probability that any of them fails without reason is at most 5 %.
 /// A finding is reported by its score, so one that only just passes the threshold may stand beside a check that does
 /// not fail. A check that fails ends in a finding, or is mended by the extended model, or is unexplained.
+#include "core/investigate/report/general_checks.hpp"
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/group_search.hpp"
 
@@ -24,9 +25,19 @@
 
 namespace driftlab::investigate {
 
-/// Fills `checks`, `failed_before`, `failed_after`, `misfit_after` and `unexplained` of the report.
+/// What the samples of one channel say by themselves.
+struct ChannelChecks {
+  std::vector<Check> checks;             ///< the general ones, before and after; `p` is not adjusted
+  std::vector<InnovationMoments> after;  ///< of each recording under the extended model
+};
+
+/// Of a channel that has been searched; empty where it could not be. O(samples log samples).
+[[nodiscard]] ChannelChecks check_channel(const ChannelGroup& group, const GroupOutcome& outcome);
+
+/// Fills `checks`, `failed_before`, `failed_after`, `misfit_after` and `unexplained` of the report. `channels`: of
+/// every group; of the outcomes no sample is looked at.
 void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
-                 const std::vector<Evidence>& examined, Report& report);
+                 const std::vector<ChannelChecks>& channels, const std::vector<Evidence>& examined, Report& report);
 
 /// Ids of the checks that speak for a finding: its own first, then failed general ones of its recordings and channels.
 [[nodiscard]] std::vector<std::string> checks_behind(const Evidence& evidence, const std::vector<ChannelGroup>& groups,

@@ -35,20 +35,12 @@ bool at_bound(const Evidence& evidence, const ChannelGroup& group) {
 }
 
 /// The recording that alone carries a bias said to differ among all; empty where several do.
-std::string carried_by(const Evidence& evidence, const ChannelGroup& group, const FullRate& before) {
+std::string carried_by(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& mean) {
   const SlowNoise* const slow = evidence.cause->as<SlowNoise>();
   constexpr std::size_t kFewest = 4;
   constexpr double kAlone = 0.95;
-  if (slow == nullptr || slow->kind != &constant_offset() || before.members() < kFewest) {
+  if (slow == nullptr || slow->kind != &constant_offset() || mean.size() < kFewest) {
     return "";
-  }
-  std::vector<double> mean;
-  for (const auto& y : before.residual) {
-    double sum = 0.0;
-    for (const double v : y) {
-      sum += v;
-    }
-    mean.push_back(sum / std::max(1.0, static_cast<double>(y.size())));
   }
   std::vector<double> sorted = mean;
   std::sort(sorted.begin(), sorted.end());
@@ -65,14 +57,14 @@ std::string carried_by(const Evidence& evidence, const ChannelGroup& group, cons
 }
 
 /// Why one finding is not earned; empty: it is.
-std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const GroupOutcome& outcome,
+std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& means,
                      const std::vector<Remainder>& remains, const Report& report) {
   constexpr std::size_t kFewest = 3;
   constexpr double kClear = 0.001;
   if (at_bound(evidence, group)) {
     return "a parameter is at the bound of its search";
   }
-  if (const std::string alone = carried_by(evidence, group, outcome.before); !alone.empty()) {
+  if (const std::string alone = carried_by(evidence, group, means); !alone.empty()) {
     return "it is carried by " + alone + " alone";
   }
   if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
@@ -86,14 +78,26 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
 
 }  // namespace
 
-void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
+std::vector<double> means_of(const FullRate& before) {
+  std::vector<double> means;
+  for (const Series& residual : before.residual) {
+    double sum = 0.0;
+    for (const double v : residual) {
+      sum += v;
+    }
+    means.push_back(sum / std::max(1.0, static_cast<double>(residual.size())));
+  }
+  return means;
+}
+
+void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
                               const std::vector<Remainder>& remains, const Report& report,
                               std::vector<Evidence>& found) {
   for (Evidence& evidence : found) {
     if (is_fact(*evidence.cause)) {
       continue;
     }
-    evidence.doubt = doubt_of(evidence, groups[evidence.group], outcomes[evidence.group], remains, report);
+    evidence.doubt = doubt_of(evidence, groups[evidence.group], means[evidence.group], remains, report);
     evidence.ambiguous = evidence.ambiguous || !evidence.doubt.empty();
   }
 }

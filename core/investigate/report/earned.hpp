@@ -16,8 +16,12 @@
 
 namespace driftlab::investigate {
 
-/// Sets `doubt` and `ambiguous` of what was found. `report` holds the counts of failed checks.
-void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
+/// Mean of each recording of a channel under the base alone.
+[[nodiscard]] std::vector<double> means_of(const FullRate& before);
+
+/// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of
+/// failed checks.
+void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
                               const std::vector<Remainder>& remains, const Report& report,
                               std::vector<Evidence>& found);
 

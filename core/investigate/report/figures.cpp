@@ -40,7 +40,7 @@ struct Sum {
 };
 
 /// Squares of the Haar coefficients of half length `half`, end to end.
-void add_haar(const std::vector<double>& x, std::size_t half, Sum& sum) {
+void add_haar(const Series& x, std::size_t half, Sum& sum) {
   for (std::size_t k = 0; k < x.size() / (2 * half); ++k) {
     double difference = 0.0;
     for (std::size_t i = 2 * k * half; i < (2 * k + 1) * half; ++i) {
@@ -85,13 +85,12 @@ MeanPeriodogram mean_periodogram(const FullRate& data, std::size_t length) {
   const double scale = data.dt_s / static_cast<double>(length);
   for (const auto& residual : data.residual) {
     for (std::size_t from = 0; from + length <= residual.size(); from += length) {
-      std::vector<double> part(residual.begin() + static_cast<std::ptrdiff_t>(from),
-                               residual.begin() + static_cast<std::ptrdiff_t>(from + length));
+      std::vector<double> part = residual.part(from, length).values();
       const double level = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(length);
       for (double& v : part) {
         v -= level;
       }
-      const auto z = transform(part, 0);
+      const auto z = transform(Series::view(part));
       for (std::size_t k = 0; k < mean.power.size(); ++k) {
         mean.power[k] += std::norm(z[k]) * scale;
       }
@@ -133,10 +132,9 @@ void add_spectrum(const GroupOutcome& outcome, ChannelFigures& figures) {
     }
     const auto m = static_cast<double>(to - from);
     const double f = 0.5 * static_cast<double>(from + to - 1) / static_cast<double>(length) / dt_s;
-    const double base =
-        outcome.before.model.white +
-        slow_density(outcome.before.model, outcome.before.samples, 0, f, dt_s, static_cast<double>(length)) +
-        outcome.before.quantization * quantization_shape(f, dt_s);
+    const double base = outcome.before.model.white +
+                        slow_density(outcome.before.model, 0, f, dt_s, static_cast<double>(length)) +
+                        outcome.before.quantization * quantization_shape(f, dt_s);
     const double dof = 2.0 * m * before.stretches;
     figures.f_hz.push_back(f);
     figures.density_before.push_back(sum[0] / m);
@@ -150,12 +148,10 @@ void add_spectrum(const GroupOutcome& outcome, ChannelFigures& figures) {
   }
 }
 
-void add_course(const ChannelGroup& group, const GroupOutcome& outcome, std::size_t r, ChannelFigures& figures) {
-  const std::vector<double>& before = outcome.before.residual[r];
-  const std::vector<double>& after = outcome.after.residual[r];
-  const StudyRecording& recording = *group.members[r].recording;
+MeasuredFigures::Course course_of(const StudyRecording& recording, const Series& before, const Series& after) {
   const std::size_t stretches = std::min(kStretches, before.size());
-  figures.recording = recording.id;
+  MeasuredFigures::Course course;
+  course.recording = recording.id;
   for (std::size_t s = 0; s < stretches; ++s) {
     const std::size_t from = s * before.size() / stretches;
     const std::size_t to = (s + 1) * before.size() / stretches;
@@ -166,28 +162,41 @@ void add_course(const ChannelGroup& group, const GroupOutcome& outcome, std::siz
       left += after[i];
     }
     const auto count = static_cast<double>(to - from);
-    figures.time_s.push_back(0.5 * (recording.time_s(recording.begin + from) + recording.time_s(recording.begin + to)));
-    figures.error.push_back(error / count);
-    figures.effect.push_back((error - left) / count);
+    course.time_s.push_back(0.5 * (recording.time_s(recording.begin + from) + recording.time_s(recording.begin + to)));
+    course.error.push_back(error / count);
+    course.effect.push_back((error - left) / count);
   }
+  return course;
 }
 
 }  // namespace
 
-ChannelFigures figures_of(const ChannelGroup& group, const GroupOutcome& outcome, std::size_t shown,
-                          const std::vector<Check>& checks) {
-  ChannelFigures figures;
-  figures.channel = group.column;
-  figures.unit = group.unit;
+MeasuredFigures measure_figures(const ChannelGroup& group, const GroupOutcome& outcome) {
+  MeasuredFigures measured;
+  measured.figures.channel = group.column;
+  measured.figures.unit = group.unit;
+  add_scales(outcome, measured.figures);
+  add_spectrum(outcome, measured.figures);
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    measured.courses.push_back(
+        course_of(*group.members[r].recording, outcome.before.residual[r], outcome.after.residual[r]));
+  }
+  return measured;
+}
+
+ChannelFigures figures_of(const MeasuredFigures& measured, std::size_t shown, const std::vector<Check>& checks) {
+  ChannelFigures figures = measured.figures;
+  const MeasuredFigures::Course& course = measured.courses[shown];
+  figures.recording = course.recording;
+  figures.time_s = course.time_s;
+  figures.error = course.error;
+  figures.effect = course.effect;
   for (const Check& check : checks) {
-    if (check.channel == group.column && check.scale_s > 0.0) {
+    if (check.channel == figures.channel && check.scale_s > 0.0) {
       figures.ratios.push_back(
           {check.recording, check.scale_s, check.observed, check.observed_after, check.q025, check.q975});
     }
   }
-  add_scales(outcome, figures);
-  add_spectrum(outcome, figures);
-  add_course(group, outcome, shown, figures);
   return figures;
 }
 

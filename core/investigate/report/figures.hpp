@@ -17,9 +17,21 @@
 
 namespace driftlab::investigate {
 
+/// What the figures of a channel take from its samples.
+struct MeasuredFigures {
+  struct Course {
+    std::string recording;
+    std::vector<double> time_s, error, effect;
+  };
+  ChannelFigures figures;       ///< without ratios and course
+  std::vector<Course> courses;  ///< one per member
+};
+
+/// Of a usable channel. O(samples log samples).
+[[nodiscard]] MeasuredFigures measure_figures(const ChannelGroup& group, const GroupOutcome& outcome);
+
 /// `shown`: the member whose course is drawn. The checks of the channel give the ratios.
-/// O(samples log samples).
-[[nodiscard]] ChannelFigures figures_of(const ChannelGroup& group, const GroupOutcome& outcome, std::size_t shown,
+[[nodiscard]] ChannelFigures figures_of(const MeasuredFigures& measured, std::size_t shown,
                                         const std::vector<Check>& checks);
 
 /// The Allan deviation of a channel at the scales of its figures: as measured, as the baseline has it, and as the

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 namespace driftlab::investigate {
 namespace {
@@ -29,12 +28,13 @@ using Moments = InnovationMoments;
 
 }  // namespace
 
-InnovationMoments moments_of(const std::vector<double>& e, const std::vector<unsigned char>& used) {
+InnovationMoments moments_of(const Series& e, const std::vector<unsigned char>& used, double cut) {
   Moments m;
   double fourth = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {
     if (used[i] != 0) {
-      const double square = e[i] * e[i];
+      const double value = std::clamp(e[i], -cut, cut);
+      const double square = value * value;
       m.count += 1.0;
       m.mean_square += square;
       fourth += square * square;
@@ -57,7 +57,7 @@ struct ChiSquare {
 
 /// Variance over sixteen segments about their common level; a heavy tail widens the scatter by 1 + kurtosis/2. A
 /// segment with 20 samples in use or fewer has no say, and no degree of freedom.
-ChiSquare segment_statistic(const std::vector<double>& e, const std::vector<unsigned char>& used, const Moments& all) {
+ChiSquare segment_statistic(const Series& e, const std::vector<unsigned char>& used, const Moments& all) {
   constexpr std::size_t kSegments = 16;
   double sum = 0.0;
   double segments = 0.0;
@@ -78,12 +78,13 @@ ChiSquare segment_statistic(const std::vector<double>& e, const std::vector<unsi
 }
 
 /// Correlations of one-second means of the innovations at lags 1 to 10, or as many as there are (Ljung and Box).
-ChiSquare whiteness_statistic(const std::vector<double>& e, double dt_s) {
+ChiSquare whiteness_statistic(const Series& e, double dt_s) {
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / dt_s)));
   std::vector<double> mean(e.size() / block, 0.0);
   for (std::size_t b = 0; b < mean.size(); ++b) {
-    mean[b] = std::accumulate(e.begin() + static_cast<std::ptrdiff_t>(b * block),
-                              e.begin() + static_cast<std::ptrdiff_t>((b + 1) * block), 0.0);
+    for (std::size_t i = b * block; i < (b + 1) * block; ++i) {
+      mean[b] += e[i];
+    }
   }
   double zero = 0.0;
   for (const double m : mean) {
@@ -105,10 +106,10 @@ ChiSquare whiteness_statistic(const std::vector<double>& e, double dt_s) {
 
 /// Spectrum of the innovations in sixteen bands of equal width up to a share of the Nyquist frequency, against their
 /// mean.
-double band_statistic(const std::vector<double>& e, double share) {
+double band_statistic(const Series& e, double share) {
   constexpr std::size_t kBands = 16;
   const std::size_t length = fast_length(e.size());
-  const auto z = transform(std::span(e).first(length), 0);
+  const auto z = transform(e.part(0, length));
   std::vector<double> band(kBands, 0.0);
   std::vector<double> count(kBands, 0.0);
   double total = 0.0;
@@ -131,9 +132,8 @@ double band_statistic(const std::vector<double>& e, double share) {
 
 /// Wavelet variance of the innovations per scale: under a right model Haar coefficients of 2^j innovations are standard
 /// normal and independent, so that their sum of squares is chi-square; too much and too little both count.
-void wavelet_checks(const ChannelGroup::Member& member, const std::vector<double>& e,
-                    const std::vector<unsigned char>& used, double dt_s, double mean_square,
-                    std::vector<Check>& checks) {
+void wavelet_checks(const ChannelGroup::Member& member, const Series& e, const std::vector<unsigned char>& used,
+                    double dt_s, double mean_square, std::vector<Check>& checks) {
   std::vector<double> sum(e.size());
   std::vector<double> kept(e.size());
   for (std::size_t i = 0; i < e.size(); ++i) {
@@ -204,11 +204,7 @@ void add_level_check(const ChannelGroup& group, const FullRate& data, std::vecto
   double square = 0.0;
   double count = 0.0;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    std::vector<double> cut = data.innovation[r];
-    for (double& e : cut) {
-      e = std::clamp(e, -5.0, 5.0);
-    }
-    each.push_back(moments_of(cut, data.used[r]));
+    each.push_back(moments_of(data.innovation[r], data.used[r], 5.0));
     square += each.back().mean_square * each.back().count;
     count += each.back().count;
   }

@@ -9,6 +9,7 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/report/report.hpp"
 
+#include <limits>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -17,9 +18,9 @@ struct InnovationMoments {
   double count = 0.0, mean_square = 0.0, kurtosis = 0.0;  ///< kurtosis: the excess over 3
 };
 
-/// Moments about zero of the samples in use.
-[[nodiscard]] InnovationMoments moments_of(const std::vector<double>& innovations,
-                                           const std::vector<unsigned char>& used);
+/// Moments about zero of the samples in use; gross values are cut at `cut`.
+[[nodiscard]] InnovationMoments moments_of(const Series& innovations, const std::vector<unsigned char>& used,
+                                           double cut = std::numeric_limits<double>::infinity());
 
 /// Adds the checks of one channel; a recording with fewer than 500 samples in use has none. `p` is not adjusted.
 void general_checks(const ChannelGroup& group, const FullRate& data, std::vector<Check>& checks);

@@ -1,5 +1,6 @@
 #include "core/investigate/report/remains.hpp"
 
+#include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/process/distributions.hpp"
 #include "core/process/random.hpp"
@@ -14,6 +15,8 @@
 
 namespace driftlab::investigate {
 namespace {
+
+constexpr std::size_t kFewest = 500;  ///< samples of a recording that is looked at
 
 std::string digits(double value) {
   char buffer[32];
@@ -34,7 +37,12 @@ std::vector<std::vector<double>> normal_scores(const FullRate& data) {
       }
     }
   };
+  std::size_t samples = 0;
+  for (const Series& e : data.innovation) {
+    samples += e.size();
+  }
   std::vector<double> all;
+  all.reserve(samples);
   walk([&](std::size_t, std::size_t, double value) { all.push_back(value); });
   std::sort(all.begin(), all.end());
   std::vector<std::vector<double>> scores;
@@ -65,7 +73,7 @@ class Tiles {
       if (present < 0.9 * static_cast<double>(samples_)) {
         continue;
       }
-      const auto z = transform(std::span(score).subspan(from, samples_), 0);
+      const auto z = transform(Series::view(std::span(score).subspan(from, samples_)));
       std::vector<double> row(bins);
       for (std::size_t k = 0; k < bins; ++k) {
         row[k] = std::norm(z[k + 1]) / present;
@@ -166,18 +174,17 @@ Remainder mean_over_time(const std::vector<double>& score, double dt_s, const st
 /// Periodogram of the squared scores less one.
 Remainder line_in_variance(const std::vector<double>& score, double dt_s, const std::string& name) {
   const std::size_t n = fast_length(score.size());
-  std::vector<double> square(n);
   double mean = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    square[i] = score[i] * score[i];
-    mean += square[i] / static_cast<double>(n);
+    mean += score[i] * score[i] / static_cast<double>(n);
   }
+  const auto beyond = [&](std::size_t i) { return score[i] * score[i] - mean; };
   double variance = 0.0;
-  for (double& v : square) {
-    v -= mean;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double v = beyond(i);
     variance += v * v / static_cast<double>(n);
   }
-  const auto z = transform(square, 0);
+  const auto z = half_spectrum(n, beyond);
   constexpr std::size_t kFirst = 8;
   Remainder best;
   best.places = static_cast<double>(z.size());
@@ -223,13 +230,10 @@ Remainder skewness(const FullRate& data, const std::string& name) {
 }
 
 /// Coherence of two series, cut at four deviations, in dyadic bands.
-Remainder between(const std::vector<double>& a, const std::vector<double>& b, double dt_s, const std::string& name) {
+Remainder between(const Series& a, const Series& b, double dt_s, const std::string& name) {
   const std::size_t n = fast_length(std::min(a.size(), b.size()));
-  const auto cut = [n](const std::vector<double>& values) {
-    std::vector<double> within(n);
-    std::transform(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), within.begin(),
-                   [](double v) { return std::min(4.0, std::max(-4.0, v)); });
-    return transform(within, 0);
+  const auto cut = [n](const Series& values) {
+    return half_spectrum(n, [&](std::size_t i) { return std::min(4.0, std::max(-4.0, values[i])); });
   };
   const auto x = cut(a);
   const auto y = cut(b);
@@ -275,28 +279,32 @@ void keep(std::vector<Remainder>& list, Remainder remainder, const ChannelGroup:
 
 }  // namespace
 
-std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
-                                    const std::vector<GroupOutcome>& outcomes) {
+std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data) {
   std::vector<Remainder> list;
-  std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> by_recording;  // group and member
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const ChannelGroup& group = groups[g];
-    const FullRate& data = outcomes[g].after;
-    if (!outcomes[g].usable) {
+  const std::vector<std::vector<double>> scores = normal_scores(data);
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    const ChannelGroup::Member& member = group.members[r];
+    if (scores[r].size() < kFewest) {
       continue;
     }
-    const std::vector<std::vector<double>> scores = normal_scores(data);
-    for (std::size_t r = 0; r < data.members(); ++r) {
-      const ChannelGroup::Member& member = group.members[r];
-      if (scores[r].size() < 500) {
-        continue;
+    keep(list, Tiles(scores[r], data.used[r], data.dt_s).strongest(member.name()), &member, group, "tiles", true);
+    keep(list, mean_over_time(scores[r], data.dt_s, member.name()), &member, group, "mean_over_time", false);
+    keep(list, line_in_variance(scores[r], data.dt_s, member.name()), &member, group, "line_in_variance", true);
+  }
+  keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
+  return list;
+}
+
+std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
+                                    std::vector<Remainder> of_channels) {
+  std::vector<Remainder> list = std::move(of_channels);
+  std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> by_recording;  // group and member
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (std::size_t r = 0; outcomes[g].usable && r < groups[g].members.size(); ++r) {
+      if (outcomes[g].after.innovation[r].size() >= kFewest) {
+        by_recording[groups[g].members[r].recording->id].emplace_back(g, r);
       }
-      keep(list, Tiles(scores[r], data.used[r], data.dt_s).strongest(member.name()), &member, group, "tiles", true);
-      keep(list, mean_over_time(scores[r], data.dt_s, member.name()), &member, group, "mean_over_time", false);
-      keep(list, line_in_variance(scores[r], data.dt_s, member.name()), &member, group, "line_in_variance", true);
-      by_recording[member.recording->id].emplace_back(g, r);
     }
-    keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
   }
   for (const auto& [recording, axes] : by_recording) {
     for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -304,8 +312,8 @@ std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
         const ChannelGroup& first = groups[axes[a].first];
         const ChannelGroup& second = groups[axes[b].first];
         const double dt_s = outcomes[axes[a].first].after.dt_s;
-        const std::vector<double>& one = outcomes[axes[a].first].after.innovation[axes[a].second];
-        const std::vector<double>& other = outcomes[axes[b].first].after.innovation[axes[b].second];
+        const Series& one = outcomes[axes[a].first].after.innovation[axes[a].second];
+        const Series& other = outcomes[axes[b].first].after.innovation[axes[b].second];
         if (first.role.quantity != second.role.quantity || one.size() != other.size()) {
           continue;
         }

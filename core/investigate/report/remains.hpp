@@ -36,10 +36,16 @@ struct Remainder {
   std::string sentence;               ///< where it is, in words
 };
 
-/// The strongest departure of each test, most surprising first; those with p_study below kShown are findings of their
-/// own. O(samples log samples). Deterministic.
+/// The strongest departure of each test within one channel that has been searched, `p_study` still to be told.
+/// O(samples log samples). Deterministic.
+[[nodiscard]] std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data);
+
+/// Those of the channels, with the strongest between two channels, most surprising first; those with p_study below
+/// kShown are findings of their own. Of the outcomes it looks at the innovations of usable ones. O(samples log samples)
+/// a pair. Deterministic.
 [[nodiscard]] std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
-                                                  const std::vector<GroupOutcome>& outcomes);
+                                                  const std::vector<GroupOutcome>& outcomes,
+                                                  std::vector<Remainder> of_channels);
 
 /// Adds a check and an entry of `unexplained` for each departure below kShown, at most three of a channel.
 void report_remains(const std::vector<Remainder>& remains, Report& report);

@@ -123,7 +123,7 @@ double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
   return sum;
 }
 
-void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error) {
+void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<Series>& error) {
   double drift = 0.0;
   for (const Process& process : processes_of(baseline, group)) {
     const auto law = process.kind->slope;
@@ -132,9 +132,11 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
   const auto own = baseline.drift.find(group.column);
   drift += own != baseline.drift.end() ? own->second : 0.0;
   for (std::size_t r = 0; r < error.size() && drift != 0.0; ++r) {
-    for (std::size_t i = 0; i < error[r].size(); ++i) {
-      error[r][i] -= drift * group.members[r].recording->time_s(i);
+    std::vector<double> rest = error[r].values();
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      rest[i] -= drift * group.members[r].recording->time_s(i);
     }
+    error[r] = std::move(rest);
   }
   for (const GivenEffect* const effect : effects_on(baseline, group)) {
     const MeanEffect* const mean = find_cause(effect->cause)->as<MeanEffect>();
@@ -148,9 +150,11 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
       if (!holds(effect->recordings, recording.id) || !mean->build(recording, group, shape, columns)) {
         continue;
       }
-      for (std::size_t i = 0; i < error[r].size(); ++i) {
-        error[r][i] -= effect->values[0] * columns[0][i];
+      std::vector<double> rest = error[r].values();
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        rest[i] -= effect->values[0] * columns[0][i];
       }
+      error[r] = std::move(rest);
     }
   }
 }

@@ -37,7 +37,7 @@ namespace driftlab::investigate {
 [[nodiscard]] double given_quantization(const Baseline& baseline, const ChannelGroup& group);
 
 /// Takes drifts and mean effects off `error[r]`, over the grid of member r.
-void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<std::vector<double>>& error);
+void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<Series>& error);
 
 /// True where the baseline says what was found: an effect of the same cause in a recording of the finding, or a process
 /// that no law takes out (a sinusoid) and is what the cause adds, every value within its interval.

@@ -132,7 +132,7 @@ class GroupSearch {
   }
 
   /// `error[r]`, over the grid of member r, less what the search has accepted, under the null of the search.
-  [[nodiscard]] FullRate full_rate(const SlowSearch& search, const std::vector<std::vector<double>>& error,
+  [[nodiscard]] FullRate full_rate(const SlowSearch& search, const std::vector<Series>& error,
                                    bool whiten_further) const {
     FullRateOptions options;
     options.given = given_.has_value();
@@ -149,10 +149,11 @@ class GroupSearch {
       }
       return look_at_full_rate(study_, group_, model, search.residuals(error), mask_, options);
     }
-    options.whiten_further = false;
+    options.innovations = false;
     options.quantization = quantization_;
     FullRate data = look_at_full_rate(study_, group_, model, search.residuals(error), mask_, options);
     model.white = white_at_full_rate(data);
+    options.innovations = true;
     options.whiten_further = whiten_further || quantization_ > 0.0;
     return look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }
@@ -217,9 +218,11 @@ class GroupSearch {
         for (const std::size_t r : winner->members) {
           const std::vector<double> line = found_line->values(data, r, *winner);
           const std::size_t begin = group_.members[r].recording->begin;
+          std::vector<double> rest = error_[r].values();
           for (std::size_t i = 0; i < line.size(); ++i) {
-            error_[r][begin + i] -= line[i];
+            rest[begin + i] -= line[i];
           }
+          error_[r] = std::move(rest);
         }
         search.set_data(error_, mask_);
         search.fit_null();
@@ -288,7 +291,7 @@ class GroupSearch {
       outcome_.before = outcome_.after;
       return;
     }
-    std::vector<std::vector<double>> whole;
+    std::vector<Series> whole;
     for (const auto& member : group_.members) {
       whole.push_back(member.channel->error);
     }
@@ -469,7 +472,7 @@ class GroupSearch {
   std::size_t index_;
   const RunControl& control_;
   std::optional<SlowModel> given_;
-  std::vector<std::vector<double>> error_;
+  std::vector<Series> error_;
   std::vector<std::vector<unsigned char>> mask_;
   double lattice_step_ = 0.0;
   double given_white_ = 0.0;

@@ -26,27 +26,26 @@ FullRate fold_of(const FullRate& data, std::size_t fold) {
 }
 
 /// Where half of the samples in use have passed.
-std::ptrdiff_t middle_of(const std::vector<unsigned char>& used) {
+std::size_t middle_of(const std::vector<unsigned char>& used) {
   const auto count = std::count_if(used.begin(), used.end(), [](unsigned char u) { return u != 0; });
   auto at = used.begin();
   for (std::ptrdiff_t passed = 0; at != used.end() && passed < count / 2; ++at) {
     passed += *at != 0 ? 1 : 0;
   }
-  return at - used.begin();
+  return static_cast<std::size_t>(at - used.begin());
 }
 
 /// Half of the samples in use of every recording, with its own spectra.
 FullRate half_of(const FullRate& data, std::size_t half) {
   FullRate part = data;
   for (std::size_t r = 0; r < data.members(); ++r) {
-    const std::ptrdiff_t middle = middle_of(data.used[r]);
-    const auto cut = [&](auto& v) {
-      v = half == 0 ? std::decay_t<decltype(v)>(v.begin(), v.begin() + middle)
-                    : std::decay_t<decltype(v)>(v.begin() + middle, v.end());
-    };
-    cut(part.residual[r]);
-    cut(part.innovation[r]);
-    cut(part.used[r]);
+    const std::size_t middle = middle_of(data.used[r]);
+    const std::size_t from = half == 0 ? 0 : middle;
+    const std::size_t count = half == 0 ? middle : data.used[r].size() - middle;
+    part.residual[r] = data.residual[r].part(from, count);
+    part.innovation[r] = data.innovation[r].part(from, count);
+    const auto first = data.used[r].begin() + static_cast<std::ptrdiff_t>(from);
+    part.used[r].assign(first, first + static_cast<std::ptrdiff_t>(count));
     renew_spectrum(part, r);
   }
   return part;

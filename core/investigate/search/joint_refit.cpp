@@ -82,7 +82,7 @@ PerSample white_factors(const FullRate& data, const std::vector<Evidence>& found
 
 /// Block means of the residuals; a block counts for as many samples as its white variance is worth.
 BlockSeries weighted_blocks(const FullRate& data, const std::vector<std::vector<unsigned char>>& mask,
-                            const PerSample& residual, const PerSample& factors, BlockColumns& columns) {
+                            const std::vector<Series>& residual, const PerSample& factors, BlockColumns& columns) {
   BlockSeries series = average_blocks(*data.group, mask, false);
   columns = BlockColumns::zeros(series, 2);
   for (std::size_t r = 0; r < series.recordings.size(); ++r) {
@@ -151,9 +151,9 @@ void renew_levels(const FullRate& data, std::vector<Evidence>& found) {
     FullRate rest = data;
     for (std::size_t r = 0; r < rest.members(); ++r) {
       const std::vector<double> others = deviation_of(data, found, r, &evidence);
-      for (std::size_t i = 0; i < others.size(); ++i) {
-        rest.innovation[r][i] /= others[i];
-      }
+      std::vector<double> divided = rest.innovation[r].values();
+      std::transform(divided.begin(), divided.end(), others.begin(), divided.begin(), std::divides<>());
+      rest.innovation[r] = std::move(divided);
     }
     for (const Evidence& fresh : examine_of (*evidence.cause)(rest)) {
       if (fresh.members == evidence.members && !fresh.parameters.empty()) {
@@ -177,12 +177,14 @@ bool shares_in_noise(const std::vector<Evidence>& found) {
 
 SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsigned char>>& mask, double quantization,
                         std::vector<Evidence>& found, const std::stop_token& stop) {
-  PerSample residual = data.residual;
+  std::vector<Series> residual = data.residual;
   std::vector<double> sd;
   for (const Evidence& evidence : found) {
     for (std::size_t r = 0; scales_everything(evidence) && r < residual.size(); ++r) {
       evidence.cause->as<NoiseLevel>()->deviation(data, evidence, r, sd);
-      std::transform(residual[r].begin(), residual[r].end(), sd.begin(), residual[r].begin(), std::divides<>());
+      std::vector<double> divided = residual[r].values();
+      std::transform(divided.begin(), divided.end(), sd.begin(), divided.begin(), std::divides<>());
+      residual[r] = std::move(divided);
     }
   }
   FullRateOptions options;

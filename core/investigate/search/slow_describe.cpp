@@ -127,15 +127,29 @@ void SlowSearch::place_step(Evidence& evidence) const {
   const std::size_t r = evidence.members.front();
   const StudyRecording& recording = *group_.members[r].recording;
   const auto position = regressor_of(evidence);
-  const BlockSeries samples = average_blocks(group_, mask_, true);
-  std::vector<std::vector<double>> rest = residuals(error_);
   const double amplitude = null_.amplitude[static_cast<Eigen::Index>(position.value_or(0))];
-  const SlowModel& model = null_.model;
-  const SingleRecording single = take_recording(samples, model, r);
-  BlockColumns columns = BlockColumns::zeros(single.series, 2);
   const auto start = static_cast<std::size_t>(std::max(0.0, std::ceil(evidence.shape / recording.dt_s - 1e-6)));
-  for (std::size_t i = 0; i < rest[r].size(); ++i) {
-    columns.rows[0][2 * i] = rest[r][i] + (recording.begin + i >= start ? amplitude : 0.0);
+  // What lies hours away from the step says nothing of its time.
+  constexpr std::size_t kMost = std::size_t{1} << 21U;
+  const std::size_t count = std::min(recording.count(), kMost);
+  const std::size_t middle = std::clamp(start, recording.begin + count / 2, recording.end - (count - count / 2));
+  const std::size_t begin = middle - count / 2;
+  const Series rest = residuals(error_)[r].part(begin - recording.begin, count);
+  SingleRecording single = take_recording(series_, null_.model, r);
+  single.series.block = 1;
+  BlockRecording& samples = single.series.recordings[0];
+  samples.first = begin;
+  samples.start_s = recording.time_s(begin);
+  samples.mean.assign(count, 0.0);
+  samples.filled.resize(count);
+  const Presence& valid = group_.members[r].channel->valid;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool masked = !mask_[r].empty() && mask_[r][begin + i] != 0;
+    samples.filled[i] = valid[begin + i] != 0 && !masked ? 1.0 : 0.0;
+  }
+  BlockColumns columns = BlockColumns::zeros(single.series, 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    columns.rows[0][2 * i] = rest[i] + (begin + i >= start ? amplitude : 0.0);
     columns.rows[0][2 * i + 1] = 1e-9;  // the bias is known from all recordings
   }
   const StepScan scan(single.series, single.model, columns);
@@ -144,7 +158,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
   const double reach = 40.0 / recording.dt_s;
   double top = 0.0;
   for (std::size_t i = 0; i < gain.size(); ++i) {
-    if (std::fabs(static_cast<double>(recording.begin + i) - static_cast<double>(start)) > reach) {
+    if (std::fabs(static_cast<double>(begin + i) - static_cast<double>(start)) > reach) {
       gain[i] = 0.0;
     }
     top = std::max(top, gain[i]);
@@ -163,7 +177,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
     high = run < 0.975 * total ? i + 1 : high;
     best = gain[i] >= top ? i : best;
   }
-  const auto time = [&](std::size_t i) { return recording.time_s(recording.begin + i); };
+  const auto time = [&](std::size_t i) { return recording.time_s(begin + i); };
   // A step between two samples is seen at the later one.
   evidence.parameters.push_back({"t0_s",
                                  {time(best) - 0.5 * recording.dt_s, {time(low) - 1.01 * recording.dt_s, time(high)}},

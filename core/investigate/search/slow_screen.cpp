@@ -156,7 +156,7 @@ double SlowSearch::share_of_rate(const std::vector<Regressor>& regressors, const
   }
   double rate = 0.0;
   for (const auto& member : group_.members) {
-    for (const std::vector<double>& axis : member.recording->rate) {
+    for (const Series& axis : member.recording->rate) {
       for (const double w : axis) {
         rate = std::max(rate, std::fabs(w));
       }

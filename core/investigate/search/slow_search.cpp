@@ -13,13 +13,19 @@ namespace driftlab::investigate {
 namespace {
 
 /// Does vibration matter? Specific force along a gyro's axis whose fast part exceeds its slow part needs single
-/// samples.
+/// samples. Of very many, means over blocks tell enough, for what follows the vibration follows its power over a
+/// second; single ones take up to 480 bytes each.
 bool needs_full_rate(const ChannelGroup& group) {
-  if (group.role.quantity != Quantity::AngularRate) {
+  constexpr std::size_t kMost = std::size_t{1} << 20U;
+  std::size_t samples = 0;
+  for (const auto& member : group.members) {
+    samples += member.recording->count();
+  }
+  if (group.role.quantity != Quantity::AngularRate || samples > kMost) {
     return false;
   }
   for (const auto& member : group.members) {
-    const std::vector<double>& f = member.recording->force[group.axis()];
+    const Series& f = member.recording->force[group.axis()];
     if (f.empty()) {
       continue;
     }
@@ -45,8 +51,7 @@ SlowSearch::SlowSearch(const Study& study, const ChannelGroup& group, std::optio
   accepted_.push_back({nullptr, all_members(group), 0.0, 1});
 }
 
-void SlowSearch::set_data(const std::vector<std::vector<double>>& error,
-                          const std::vector<std::vector<unsigned char>>& mask) {
+void SlowSearch::set_data(const std::vector<Series>& error, const std::vector<std::vector<unsigned char>>& mask) {
   error_ = error;
   mask_ = mask;
   const bool full = needs_full_rate(group_);
@@ -353,34 +358,33 @@ SlowModel SlowSearch::base() const {
   return model;
 }
 
-std::vector<std::vector<double>> SlowSearch::residuals(const std::vector<std::vector<double>>& error) const {
-  std::vector<std::vector<double>> result;
-  std::vector<std::vector<double>> columns;
+std::vector<Series> SlowSearch::residuals(const std::vector<Series>& error) const {
+  std::vector<Series> result;
   for (std::size_t r = 0; r < group_.members.size(); ++r) {
     const StudyRecording& recording = *group_.members[r].recording;
-    std::vector<double> e = error[r];
+    Series rest = error[r];
     std::size_t at = 0;
     for (const Regressor& regressor : accepted_) {
       const bool acts = std::find(regressor.members.begin(), regressor.members.end(), r) != regressor.members.end();
+      std::vector<std::vector<double>> columns;
       if (regressor.cause == nullptr) {
-        for (double& v : e) {
-          v -= null_.amplitude[static_cast<Eigen::Index>(at)];
-        }
+        rest = rest.minus(null_.amplitude[static_cast<Eigen::Index>(at)]);
       } else if (acts && regressor.cause->as<MeanEffect>()->build(recording, group_, regressor.shape, columns)) {
         const auto k = static_cast<std::size_t>(std::find(regressor.members.begin(), regressor.members.end(), r) -
                                                 regressor.members.begin());
         const std::size_t first = at + (regressor.cause->as<MeanEffect>()->free_phase ? k * columns.size() : 0);
+        std::vector<double> e = rest.values();
         for (std::size_t c = 0; c < columns.size(); ++c) {
           const double a = null_.amplitude[static_cast<Eigen::Index>(first + c)];
           for (std::size_t i = 0; i < e.size(); ++i) {
             e[i] -= a * columns[c][i];
           }
         }
+        rest = std::move(e);
       }
       at += static_cast<std::size_t>(regressor.columns);
     }
-    result.emplace_back(e.begin() + static_cast<std::ptrdiff_t>(recording.begin),
-                        e.begin() + static_cast<std::ptrdiff_t>(recording.end));
+    result.push_back(rest.part(recording.begin, recording.count()));
   }
   return result;
 }

@@ -44,7 +44,7 @@ class SlowSearch {
              const RunControl& control = {});
 
   /// (Re)reads the error of the group: `error[r]` over the grid of member r; `mask[r]` removes samples.
-  void set_data(const std::vector<std::vector<double>>& error, const std::vector<std::vector<unsigned char>>& mask);
+  void set_data(const std::vector<Series>& error, const std::vector<std::vector<unsigned char>>& mask);
 
   /// Level of the white part per recording relative to the common one (nuisance), estimated at higher frequencies.
   void set_white_scale(std::vector<double> scale);
@@ -72,7 +72,7 @@ class SlowSearch {
   /// The null's model without the accepted slow processes.
   [[nodiscard]] SlowModel base() const;
   /// Error minus the accepted mean effects and the bias over the analysed part, at full rate.
-  [[nodiscard]] std::vector<std::vector<double>> residuals(const std::vector<std::vector<double>>& error) const;
+  [[nodiscard]] std::vector<Series> residuals(const std::vector<Series>& error) const;
   [[nodiscard]] const BlockSeries& series() const { return series_; }
   /// Amplitude columns of an accepted effect in the null's fit: index of its first regressor.
   [[nodiscard]] std::optional<std::size_t> regressor_of(const Evidence& evidence) const;
@@ -139,7 +139,7 @@ class SlowSearch {
   ThreadShare threads_;
   std::stop_token stop_;
   BlockSeries series_;
-  std::vector<std::vector<double>> error_;
+  std::vector<Series> error_;
   std::vector<std::vector<unsigned char>> mask_;
   std::vector<double> white_scale_;
   std::vector<Templates> templates_;

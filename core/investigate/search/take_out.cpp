@@ -43,10 +43,12 @@ void take_out_deviation(FullRate& data, const Evidence& found) {
     const bool free = effect.within_recording && !data.given && found.members.front() == r;
     const double level = free ? level_left(data, r, sd) : 1.0;
     double square = 0.0;
+    std::vector<double> divided = data.innovation[r].values();
     for (std::size_t i = 0; i < sd.size(); ++i) {
-      data.innovation[r][i] /= sd[i] * level;
+      divided[i] /= sd[i] * level;
       square += sd[i] * sd[i] * level * level;
     }
+    data.innovation[r] = std::move(divided);
     const double excess = square / static_cast<double>(std::max<std::size_t>(1, sd.size())) - 1.0;
     raise_density(data, r, excess);
   }

@@ -1,5 +1,7 @@
 #include "core/investigate/slow/slow_model.hpp"
 
+#include "core/investigate/slow/whitening_walk.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -17,59 +19,18 @@ struct Gains {
 };
 
 Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
-  const std::size_t m = states.phi.size();
   Gains gains;
-  gains.states = m;
-  std::vector<double> covariance(m * m, 0.0);
-  const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance[i * m + j]; };
-  for (std::size_t i = 0; i < m; ++i) {
-    p(i, i) = states.p0[i];
-  }
-  std::vector<double> k(m);
+  gains.states = states.phi.size();
   const std::size_t count = blocks.filled.size();
-  gains.gain.reserve(std::min<std::size_t>(count, 1024) * m);
-  std::size_t same = 0;
+  gains.gain.reserve(std::min<std::size_t>(count, 1024) * gains.states);
   const bool uniform =
       std::all_of(blocks.filled.begin(), blocks.filled.end(), [&](double f) { return f == blocks.filled[0]; });
-  for (std::size_t b = 0; b < count; ++b) {
-    std::fill(k.begin(), k.end(), 0.0);
-    double s = 0.0;
-    const double filled = blocks.filled[b];
-    if (filled > 0.0) {
-      for (std::size_t i = 0; i < m; ++i) {
-        for (std::size_t j = 0; j < m; ++j) {
-          k[i] += p(i, j);
-        }
-        s += k[i];
-      }
-      // A remainder more negative than the white part would be no variance at all; the floor keeps S positive.
-      s += std::max(states.white / filled + states.remainder, 1e-6 * states.white);
-      for (std::size_t i = 0; i < m; ++i) {
-        for (std::size_t j = 0; j < m; ++j) {
-          p(i, j) -= k[i] * k[j] / s;
-        }
-      }
-    }
-    double change = 0.0;
-    for (std::size_t i = 0; i < m; ++i) {
-      const double gain = s > 0.0 ? k[i] / s : 0.0;
-      if (b > 0) {
-        change = std::max(change, std::fabs(gain - gains.gain[(b - 1) * m + i]));
-      }
-      gains.gain.push_back(gain);
-    }
-    gains.variance.push_back(s);
-    gains.inv_sd.push_back(s > 0.0 ? 1.0 / std::sqrt(s) : 0.0);
-    for (std::size_t i = 0; i < m; ++i) {
-      for (std::size_t j = 0; j < m; ++j) {
-        p(i, j) *= states.phi[i] * states.phi[j];
-      }
-      p(i, i) += states.q[i];
-    }
-    same = b > 0 && change < 1e-9 ? same + 1 : 0;
-    if (uniform && same > 8) {
-      break;
-    }
+  WhiteningWalk walk(states, uniform, 0);
+  for (std::size_t b = 0; b < count && !walk.settled(); ++b) {
+    walk.next(blocks.filled[b]);
+    gains.gain.insert(gains.gain.end(), walk.gain().begin(), walk.gain().end());
+    gains.variance.push_back(walk.variance());
+    gains.inv_sd.push_back(walk.inv_sd());
   }
   return gains;
 }
@@ -114,16 +75,19 @@ Eigen::MatrixXd gram_of(const BlockColumns& columns, std::size_t r) {
   return m.transpose() * m;
 }
 
-BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r) {
+BlockStates block_states(const SlowModel& model, const Blocks& blocks, std::size_t r) {
   BlockStates states;
-  states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / series.block_s();
-  const Blocks blocks{series.dt_s, series.block, series.recordings[r].start_s, series.longest_s()};
+  states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / blocks.block_s();
   for (const SlowComponent& component : model.components) {
     if (component.acts_in(r) && component.level > 0.0) {
       component.kind->add_block_states(component.level, component.beta, blocks, states);
     }
   }
   return states;
+}
+
+BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r) {
+  return block_states(model, Blocks{series.dt_s, series.block, series.recordings[r].start_s, series.longest_s()}, r);
 }
 
 Whitened whiten(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns) {

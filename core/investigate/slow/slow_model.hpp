@@ -70,5 +70,6 @@ struct Whitened {
 
 /// The states of recording r at block length.
 [[nodiscard]] BlockStates block_states(const SlowModel& model, const BlockSeries& series, std::size_t r);
+[[nodiscard]] BlockStates block_states(const SlowModel& model, const Blocks& blocks, std::size_t r);
 
 }  // namespace driftlab::investigate

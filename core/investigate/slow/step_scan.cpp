@@ -1,5 +1,6 @@
 #include "core/investigate/slow/step_scan.hpp"
 
+#include "core/investigate/slow/whitening_walk.hpp"
 #include "core/process/dense.hpp"
 
 #include <algorithm>
@@ -20,27 +21,26 @@ class Norms {
   explicit Norms(const SingleRecording& single) {
     const std::vector<double>& filled = single.series.recordings[0].filled;
     const std::size_t blocks = filled.size();
-    BlockColumns columns = BlockColumns::zeros(single.series, 2 * kPlaces);
+    std::array<std::size_t, kPlaces> from{};
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double share = static_cast<double>(k) / (kPlaces - 1.0);
       // Denser towards both ends, where the norm changes fastest.
       const double wanted = (0.5 - 0.5 * std::cos(share * std::numbers::pi)) * static_cast<double>(blocks - 1);
-      auto at = static_cast<std::size_t>(std::round(wanted));
-      while (at + 1 < blocks && filled[at] == 0.0) {
-        ++at;
+      from[k] = static_cast<std::size_t>(std::round(wanted));
+      while (from[k] + 1 < blocks && filled[from[k]] == 0.0) {
+        ++from[k];
       }
-      place_[k] = static_cast<double>(at);
-      for (std::size_t i = at; i < blocks; ++i) {
-        columns.rows[0][i * columns.width + k] = 1.0;
-      }
-      columns.rows[0][at * columns.width + kPlaces + k] = 1.0;
+      place_[k] = static_cast<double>(from[k]);
     }
-    const Whitened whitened = whiten(single.series, single.model, columns);
+    const BlockStates states = block_states(single.model, single.series, 0);
+    WhiteningWalk walk(states, std::equal(filled.begin() + 1, filled.end(), filled.begin()), 2 * kPlaces);
     for (std::size_t i = 0; i < blocks; ++i) {
+      walk.next(filled[i]);
       for (std::size_t k = 0; k < kPlaces; ++k) {
-        const double* const row = &whitened.columns.rows[0][i * columns.width];
-        step_[k] += row[k] * row[k];
-        impulse_[k] += row[kPlaces + k] * row[kPlaces + k];
+        const double step = walk.whitened(k, i >= from[k] ? 1.0 : 0.0);
+        const double impulse = walk.whitened(kPlaces + k, i == from[k] ? 1.0 : 0.0);
+        step_[k] += step * step;
+        impulse_[k] += impulse * impulse;
       }
     }
   }

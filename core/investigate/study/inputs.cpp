@@ -28,7 +28,7 @@ bool turns_about(const ChannelGroup& group, std::size_t k) {
 
 bool follow_rate(const StudyRecording& recording, const ChannelGroup& group, std::vector<std::vector<double>>& columns,
                  const std::function<double(double)>& f) {
-  const std::vector<double>& rate = recording.rate[group.axis()];
+  const Series& rate = recording.rate[group.axis()];
   if (rate.empty() || group.role.quantity != Quantity::AngularRate || group.role.axis.empty()) {
     return false;
   }
@@ -39,7 +39,7 @@ bool follow_rate(const StudyRecording& recording, const ChannelGroup& group, std
 
 bool follow_slope(const StudyRecording& recording, const ChannelGroup& group, std::vector<std::vector<double>>& columns,
                   const std::function<double(double, double)>& f) {
-  const std::vector<double>& slope = recording.acceleration[group.axis()];
+  const Series& slope = recording.acceleration[group.axis()];
   if (slope.empty() || group.role.quantity != Quantity::AngularRate || group.role.axis.empty()) {
     return false;
   }
@@ -52,7 +52,7 @@ bool follow_slope(const StudyRecording& recording, const ChannelGroup& group, st
   return true;
 }
 
-std::vector<double> running_variance(const std::vector<double>& values, double window) {
+std::vector<double> running_variance(const Series& values, double window) {
   const std::size_t n = values.size();
   const auto half = static_cast<std::size_t>(std::max(1.0, std::round(0.5 * window)));
   double mean = 0.0;
@@ -60,20 +60,23 @@ std::vector<double> running_variance(const std::vector<double>& values, double w
     mean += v;
   }
   mean /= static_cast<double>(n);
-  std::vector<double> sum(n + 1, 0.0);
-  std::vector<double> square(n + 1, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double v = values[i] - mean;
-    sum[i + 1] = sum[i] + v;
-    square[i + 1] = square[i] + v * v;
-  }
+  // Running sums up to each place, of which those of a window are kept.
+  const std::size_t kept = std::min(2 * half, n) + 1;
+  std::vector<double> sum(kept, 0.0);
+  std::vector<double> square(kept, 0.0);
+  std::size_t summed = 0;
   std::vector<double> variance(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t from = i > half ? i - half : 0;
     const std::size_t to = std::min(n, i + half);
+    for (; summed < to; ++summed) {
+      const double v = values[summed] - mean;
+      sum[(summed + 1) % kept] = sum[summed % kept] + v;
+      square[(summed + 1) % kept] = square[summed % kept] + v * v;
+    }
     const auto count = static_cast<double>(to - from);
-    const double m = (sum[to] - sum[from]) / count;
-    variance[i] = std::max(0.0, (square[to] - square[from]) / count - m * m);
+    const double m = (sum[to % kept] - sum[from % kept]) / count;
+    variance[i] = std::max(0.0, (square[to % kept] - square[from % kept]) / count - m * m);
   }
   return variance;
 }

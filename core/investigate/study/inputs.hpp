@@ -23,7 +23,7 @@ bool follow_slope(const StudyRecording& recording, const ChannelGroup& group, st
                   const std::function<double(double, double)>& f);
 
 /// Variance in a centred window of `window` samples, shorter at the ends.
-[[nodiscard]] std::vector<double> running_variance(const std::vector<double>& values, double window);
+[[nodiscard]] std::vector<double> running_variance(const Series& values, double window);
 
 [[nodiscard]] std::string lacks_rotation(const Study& study, const ChannelGroup& group);
 [[nodiscard]] std::string lacks_profile(const Study& study, const ChannelGroup& group);

@@ -85,7 +85,7 @@ Lattice find_lattice(std::span<const double> rows) {
 }
 
 double noise_of_differences(const StudyRecording& recording, const Channel& channel) {
-  const std::vector<double>& e = channel.error.empty() ? channel.measured : channel.error;
+  const Series& e = channel.error.empty() ? channel.measured : channel.error;
   std::vector<double> d;
   d.reserve(recording.count());
   for (std::size_t i = recording.begin + 1; i < recording.end; ++i) {
@@ -125,6 +125,7 @@ constexpr double kCoarse = 0.3;  ///< step over noise
 /// From differences of the samples as they are: motion changes little from one to the next.
 double spread_of_differences(const Channel& channel) {
   std::vector<double> d;
+  d.reserve(channel.rows.size());
   for (std::size_t i = 1; i < channel.rows.size(); ++i) {
     d.push_back(std::fabs(channel.rows[i] - channel.rows[i - 1]));
   }

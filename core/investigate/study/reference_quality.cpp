@@ -49,7 +49,7 @@ double centred_product(const std::vector<double>& a, const std::vector<double>& 
 
 }  // namespace
 
-double noise_of_third_differences(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+double noise_of_third_differences(const Series& values, std::size_t begin, std::size_t end) {
   constexpr double kGain = 1.0 + 9.0 + 9.0 + 1.0;
   if (end < begin + 8) {
     return 0.0;

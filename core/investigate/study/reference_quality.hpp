@@ -14,7 +14,7 @@ namespace driftlab::investigate {
 
 /// Standard deviation of the white noise of a series on its grid [SI], from its third differences: (1, -3, 3, -1) takes
 /// motion out up to its third derivative and multiplies white variance by 20. 0 below eight samples.
-[[nodiscard]] double noise_of_third_differences(const std::vector<double>& values, std::size_t begin, std::size_t end);
+[[nodiscard]] double noise_of_third_differences(const Series& values, std::size_t begin, std::size_t end);
 
 /// Time stamps of some recording with a reference scatter by more than kLooseStamps samples (measured_constants.hpp):
 /// the reference is read at other times than the channel's.

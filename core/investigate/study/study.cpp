@@ -33,14 +33,27 @@ std::vector<double> on_grid(std::vector<double> rows, const TimeGrid& grid) {
   return values;
 }
 
+/// A column on the grid [SI]. Where every row has its place it stays in the file.
+Series column_on_grid(const RecordingColumns& columns, std::size_t index, const TimeGrid& grid) {
+  return grid.place.empty() ? Series::column(columns.samples(index), columns.unit(index))
+                            : Series(on_grid(columns.si(index), grid));
+}
+
 /// A reference column on the grid [SI]; of an angle the rate behind it.
-std::vector<double> reference_on_grid(const RecordingColumns& columns, const ReferenceColumn& source,
-                                      const TimeGrid& grid) {
-  std::vector<double> rows = columns.si(source.index);
+Series reference_on_grid(const RecordingColumns& columns, const ReferenceColumn& source, const TimeGrid& grid) {
   if (!source.angle) {
-    return on_grid(std::move(rows), grid);
+    return column_on_grid(columns, source.index, grid);
   }
-  return rate_of_angle(on_grid(continuous_angle(rows, grid.place), grid), grid.dt_s);
+  return rate_of_angle(on_grid(continuous_angle(columns.si(source.index), grid.place), grid), grid.dt_s);
+}
+
+/// Integral of a rate by trapezia.
+std::vector<double> integral_of(const Series& rate, double dt_s) {
+  std::vector<double> angle(rate.size(), 0.0);
+  for (std::size_t i = 1; i < angle.size(); ++i) {
+    angle[i] = angle[i - 1] + 0.5 * dt_s * (rate[i - 1] + rate[i]);
+  }
+  return angle;
 }
 
 /// The reference rate about each axis, from columns or from the condition; nothing for free motion without a column.
@@ -59,21 +72,23 @@ void set_rotation(StudyRecording& recording, const RecordingColumns& columns, co
   }
   const auto turning = axis_index(condition.axis);
   for (std::size_t k = 0; k < 3; ++k) {
-    std::vector<double>& rate = recording.rate[k];
+    Series& rate = recording.rate[k];
     if (!rate.empty()) {
-      recording.acceleration[k] = slope(rate, recording.dt_s);
+      recording.acceleration[k] = slope(rate.values(), recording.dt_s);
       continue;
     }
-    rate.assign(recording.length, 0.0);
-    recording.acceleration[k].assign(recording.length, 0.0);
+    rate = recording.acceleration[k] = Series::constant(0.0, recording.length);
     if (turning != k || !condition.value) {
       continue;
     }
-    for (std::size_t i = 0; i < rate.size(); ++i) {
-      rate[i] = stated_rate(condition, condition.axis, recording.time_s(i));
-    }
+    rate = Series::constant(stated_rate(condition, condition.axis, 0.0), recording.length);
     if (condition.kind == ConditionKind::ConstantAngularAcceleration) {
-      std::fill(recording.acceleration[k].begin(), recording.acceleration[k].end(), *condition.value);
+      std::vector<double> ramp(recording.length);
+      for (std::size_t i = 0; i < ramp.size(); ++i) {
+        ramp[i] = stated_rate(condition, condition.axis, recording.time_s(i));
+      }
+      rate = std::move(ramp);
+      recording.acceleration[k] = Series::constant(*condition.value, recording.length);
     }
   }
   // The angle is that about the axis that turns most.
@@ -90,11 +105,7 @@ void set_rotation(StudyRecording& recording, const RecordingColumns& columns, co
     }
   }
   if (most > 0.0) {
-    recording.angle.assign(recording.length, 0.0);
-    for (std::size_t i = 1; i < recording.length; ++i) {
-      recording.angle[i] =
-          recording.angle[i - 1] + 0.5 * recording.dt_s * (recording.rate[main][i - 1] + recording.rate[main][i]);
-    }
+    recording.angle = integral_of(recording.rate[main], recording.dt_s);
   }
 }
 
@@ -105,7 +116,7 @@ void set_error(StudyRecording& recording, Channel& channel, const RecordingColum
   channel.error = channel.measured;
   if (channel.role.quantity == Quantity::AngularRate && axis && channel.unit.dimension == Dimension::AngularRate) {
     if (recording.rate[*axis].empty()) {
-      channel.error.clear();
+      channel.error = {};
       return;
     }
     channel.reference = recording.rate[*axis];
@@ -113,19 +124,29 @@ void set_error(StudyRecording& recording, Channel& channel, const RecordingColum
     if (const auto source = columns.reference_of(channel.role.quantity, channel.role.axis)) {
       channel.reference = reference_on_grid(columns, *source, grid);
     } else if (condition.kind == ConditionKind::SixPosition && condition.up && condition.axis == channel.role.axis) {
-      channel.reference.assign(recording.length, *condition.up ? kStandardGravity : -kStandardGravity);
+      channel.reference = Series::constant(*condition.up ? kStandardGravity : -kStandardGravity, recording.length);
       channel.input_only = true;  // until settle_channels knows whether a gyro is there
     } else {
       channel.input_only = true;
       if (condition.kind == ConditionKind::Drive || condition.kind == ConditionKind::Profile) {
-        channel.error.clear();
+        channel.error = {};
       }
       return;
     }
   }
-  for (std::size_t i = 0; i < channel.reference.size(); ++i) {
-    channel.error[i] -= channel.reference[i];
+  channel.error = channel.against_reference();
+}
+
+/// Which places of the grid hold a row.
+Presence presence_of(const TimeGrid& grid) {
+  if (grid.place.empty()) {
+    return Presence(grid.length);
   }
+  std::vector<unsigned char> places(grid.length, 0);
+  for (const std::size_t place : grid.place) {
+    places[place] = 1;
+  }
+  return Presence(std::move(places));
 }
 
 Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const RecordingColumns& columns) {
@@ -204,8 +225,9 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   }
   set_rotation(recording, columns, *grid);
   if (const auto index = columns.find(Quantity::Temperature)) {
-    recording.temperature = on_grid(columns.si(*index), *grid);
+    recording.temperature = column_on_grid(columns, *index, *grid);
   }
+  const Presence present = presence_of(*grid);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& role = columns.role(i);
     if (!role) {
@@ -229,11 +251,8 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
                     {{"column", names[i]}, {"row", std::to_string(row + 1)}});
       }
     }
-    channel.measured = on_grid(columns.si(i), *grid);
-    channel.valid.assign(grid->length, grid->place.empty() ? 1 : 0);
-    for (const std::size_t place : grid->place) {
-      channel.valid[place] = 1;
-    }
+    channel.measured = column_on_grid(columns, i, *grid);
+    channel.valid = present;
     const auto axis = axis_index(role->axis);
     if (role->quantity == Quantity::SpecificForce && axis) {
       recording.force[*axis] = channel.measured;

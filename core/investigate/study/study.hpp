@@ -1,6 +1,7 @@
 #pragma once
 /// A study in numbers: recordings on their time grids, the inputs that acted on each, and the error of every examined
 /// channel (spec/study.md). Everything is SI; only `Channel::rows` keeps the file's own numbers, for its lattice.
+#include "core/investigate/study/series.hpp"
 #include "core/process/model.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/result.hpp"
@@ -16,18 +17,22 @@
 
 namespace driftlab::investigate {
 
-/// One sensor column of one recording. Grid vectors span the whole file, before trims; a grid place without a sample
-/// has `valid` 0 and holds an interpolated value.
+/// One sensor column of one recording. Grid series span the whole file, before trims; a grid place without a sample
+/// has `valid` 0 and holds an interpolated value. Where every row has its place they read the file's column, which must
+/// outlive them.
 struct Channel {
   std::string column;
   ColumnRole role;
   Unit unit;
-  std::span<const double> rows;      ///< as in the file, in `unit`; the caller's memory
-  std::vector<double> measured;      ///< grid, SI
-  std::vector<double> error;         ///< grid, measured minus reference, SI; empty where there is no reference
-  std::vector<double> reference;     ///< grid, SI; empty where it is constant
-  std::vector<unsigned char> valid;  ///< grid
-  bool input_only = false;           ///< drives effects of other channels; not criticised itself
+  std::span<const double> rows;  ///< as in the file, in `unit`; the caller's memory
+  Series measured;               ///< grid, SI
+  Series error;                  ///< grid, measured minus reference, SI; empty where there is no reference
+  Series reference;              ///< grid, SI; empty where it is constant
+  Presence valid;                ///< grid
+  bool input_only = false;       ///< drives effects of other channels; not criticised itself
+
+  /// Measured minus reference; as measured where there is none.
+  [[nodiscard]] Series against_reference() const { return reference.empty() ? measured : measured.minus(reference); }
 };
 
 /// Samples that arrive several at a time: time_grid.hpp says when.
@@ -47,7 +52,7 @@ struct Stamps {
   Bursts bursts;
 };
 
-/// One recording. Vectors over the grid of the whole file; empty where the quantity is not known.
+/// One recording. Series over the grid of the whole file; empty where the quantity is not known.
 struct StudyRecording {
   std::string id;
   Condition condition;
@@ -56,11 +61,11 @@ struct StudyRecording {
   std::size_t begin = 0;   ///< analysed part [begin, end)
   std::size_t end = 0;
   Stamps stamps;
-  std::array<std::vector<double>, 3> rate;          ///< reference angular rate about x, y, z [rad/s]
-  std::array<std::vector<double>, 3> acceleration;  ///< its derivative [rad/s^2]
-  std::array<std::vector<double>, 3> force;         ///< measured specific force [m/s^2]
-  std::vector<double> temperature;                  ///< [K]
-  std::vector<double> angle;                        ///< integral of the rate about the rotation axis [rad]
+  std::array<Series, 3> rate;          ///< reference angular rate about x, y, z [rad/s]
+  std::array<Series, 3> acceleration;  ///< its derivative [rad/s^2]
+  std::array<Series, 3> force;         ///< measured specific force [m/s^2]
+  Series temperature;                  ///< [K]
+  Series angle;                        ///< integral of the rate about the rotation axis [rad]
   std::vector<Channel> channels;
   std::vector<std::string> notes;
 

@@ -24,7 +24,7 @@ Report checks_of(std::vector<std::vector<double>> innovations, const std::vector
   outcome.before = noise.data;
   outcome.after = noise.data;
   Report report;
-  make_checks({noise.group}, {outcome}, examined, report);
+  make_checks({noise.group}, {outcome}, {check_channel(noise.group, outcome)}, examined, report);
   return report;
 }
 
@@ -126,7 +126,7 @@ TEST(CheckStatistics, AFindingNamesItsOwnCheckFirstAndThenWhatFailedInItsRecordi
   outcome.before = noise.data;
   outcome.after = noise.data;
   Report report;
-  make_checks({noise.group}, {outcome}, {evidence}, report);
+  make_checks({noise.group}, {outcome}, {check_channel(noise.group, outcome)}, {evidence}, report);
   const std::vector<std::string> ids = checks_behind(evidence, {noise.group}, report);
   ASSERT_GE(ids.size(), 2U);
   EXPECT_EQ(ids.front(), "gz." + std::string(evidence.cause->name));

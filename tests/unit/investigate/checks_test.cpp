@@ -49,9 +49,18 @@ struct World {
     outcomes[0].after = data;
   }
 
+  /// Makes the innovations [from, to) of a recording louder, as they were before the search.
+  void raise(std::size_t recording, std::size_t from, std::size_t to, double factor) {
+    Series& innovation = outcomes[0].before.innovation[recording];
+    std::vector<double> e = innovation.values();
+    std::for_each(e.begin() + static_cast<std::ptrdiff_t>(from), e.begin() + static_cast<std::ptrdiff_t>(to),
+                  [&](double& v) { v *= factor; });
+    innovation = std::move(e);
+  }
+
   [[nodiscard]] Report report(const std::vector<Evidence>& examined = {}) const {
     Report report;
-    make_checks(groups, outcomes, examined, report);
+    make_checks(groups, outcomes, {check_channel(groups[0], outcomes[0])}, examined, report);
     return report;
   }
 };
@@ -86,8 +95,7 @@ TEST(Checks, SegmentsWithoutSamplesAreNoDegreesOfFreedom) {
   EXPECT_DOUBLE_EQ(check_called(quarter, "run-0/gz.variance_over_time").median, chi_squared_quantile(0.5, 3.0));
   // 500 samples each; three of variance 1 and one of 1.21: 0.5 * 500 * (3 * 0.05^2 + 0.15^2) is about 7.5, which is
   // little for fifteen degrees of freedom and 0.06 for three.
-  auto& e = world.outcomes[0].before.innovation[0];
-  std::for_each(e.begin() + 1500, e.begin() + 2000, [](double& v) { v *= 1.3; });
+  world.raise(0, 1500, 2000, 1.3);
   EXPECT_LT(check_called(world.report(), "run-0/gz.variance_over_time").p, 0.01);
   const Report whole = World(1, 8000).report();
   EXPECT_DOUBLE_EQ(check_called(whole, "run-0/gz.variance_over_time").median, chi_squared_quantile(0.5, 15.0));
@@ -113,8 +121,7 @@ TEST(Checks, LagsThatDoNotExistAreNoDegreesOfFreedom) {
 /// of causes by themselves, each with its own rule.
 TEST(Checks, HolmRunsOverAllChecksOfTheStudyTogether) {
   World world(3, 4000);
-  auto& e = world.outcomes[0].before.innovation[1];
-  std::for_each(e.begin(), e.begin() + 250, [](double& v) { v *= 1.5; });
+  world.raise(1, 0, 250, 1.5);
   const Report report = world.report(examined_with({30.0, 12.0, 8.0, 1.0, -2.0}));
   std::vector<Check> sorted = report.checks;
   std::sort(sorted.begin(), sorted.end(), [](const Check& a, const Check& b) { return a.p < b.p; });
@@ -137,9 +144,10 @@ TEST(Checks, HolmRunsOverAllChecksOfTheStudyTogether) {
 /// counted, and what failed at 1 % was told.
 TEST(Checks, EachThatFailsComesToRestSomewhere) {
   World world(3, 4000);
-  auto& e = world.outcomes[0].before.innovation[1];
-  std::for_each(e.begin(), e.begin() + 250, [](double& v) { v *= 1.5; });
-  world.outcomes[0].after.innovation[2][100] = 12.0;  // kurtosis, just after the search
+  world.raise(1, 0, 250, 1.5);
+  std::vector<double> after = world.outcomes[0].after.innovation[2].values();
+  after[100] = 12.0;  // kurtosis, just after the search
+  world.outcomes[0].after.innovation[2] = after;
   Evidence found;
   found.cause = &cause_registry().front();
   found.members = {0};
@@ -167,9 +175,7 @@ TEST(Checks, EachThatFailsComesToRestSomewhere) {
 TEST(Checks, ALevelThatDiffersBetweenRecordingsFails) {
   World world(3, 4000);
   EXPECT_FALSE(check_called(world.report(), "gz.level").failed);
-  for (double& v : world.outcomes[0].before.innovation[1]) {
-    v *= 1.15;
-  }
+  world.raise(1, 0, 4000, 1.15);
   EXPECT_TRUE(check_called(world.report(), "gz.level").failed);
 }
 

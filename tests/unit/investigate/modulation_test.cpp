@@ -27,9 +27,11 @@ TEST(Modulation, ADriverIsSortedIntoLevelsByItsModulus) {
   NoiseAtFullRate noise({std::vector<double>(500, 2.0), std::vector<double>(100, 1.0)});
   noise.recordings[0].begin = 100;  // the driver spans the file, the innovations its analysed part
   noise.recordings[0].end = 600;
+  std::vector<double> rate;
   for (int i = 0; i < 600; ++i) {
-    noise.recordings[0].rate[2].push_back((i % 2 == 0 ? 1.0 : -1.0) * i / 599.0);
+    rate.push_back((i % 2 == 0 ? 1.0 : -1.0) * i / 599.0);
   }
+  noise.recordings[0].rate[2] = rate;
   const Modulation levels = modulation_of(
       noise.data, [](const StudyRecording& recording, std::size_t axis) { return &recording.rate.at(axis); });
   EXPECT_EQ(levels.largest, 1.0);
@@ -84,12 +86,13 @@ TEST(Modulation, IntervalsHoldTheTruthAndGainsOfNothingAreChiSquare) {
     int seen = 0;
     for (std::uint64_t i = 0; i < 200; ++i) {
       std::vector<double> values = white(3000, 47, i);
-      NoiseAtFullRate noise({values});
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        const double u = static_cast<double>(k) / 2999.0;
-        noise.recordings[0].rate[2].push_back(u);
-        noise.data.innovation[0][k] = 0.9 * std::sqrt(1.0 + truth * u) * values[k];
+      std::vector<double> rate;
+      for (double& value : values) {
+        rate.push_back(static_cast<double>(rate.size()) / 2999.0);
+        value *= 0.9 * std::sqrt(1.0 + truth * rate.back());
       }
+      NoiseAtFullRate noise({values});
+      noise.recordings[0].rate[2] = rate;
       const Modulation levels = modulation_of(
           noise.data, [](const StudyRecording& recording, std::size_t axis) { return &recording.rate.at(axis); });
       const ModulationFit fit = fit_modulation(levels, false, 1.0, raised);

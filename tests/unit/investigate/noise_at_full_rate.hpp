@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <deque>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -35,8 +34,8 @@ struct NoiseAtFullRate {
       data.used.emplace_back(values[r].size(), static_cast<unsigned char>(1));
       data.spectrum.push_back(estimate_spectrum(values[r], dt_s, 0.3));
     }
-    data.residual = values;
-    data.innovation = std::move(values);
+    data.residual.assign(values.begin(), values.end());
+    data.innovation = data.residual;
   }
   NoiseAtFullRate(const NoiseAtFullRate&) = delete;
   NoiseAtFullRate& operator=(const NoiseAtFullRate&) = delete;

@@ -124,16 +124,17 @@ TEST(TimeGrid, SessionsWithGapsBetweenThemAreNoBursts) {
 /// A coarse lattice was read as an output that is clipped: its largest value comes many times without that.
 TEST(Lattice, ManyEqualValuesAtTheTopOfACoarseLatticeAreNotClipped) {
   Random random(7);
-  std::vector<double> rows;
+  std::vector<double> rows(15000);
+  for (double& row : rows) {
+    row = 0.3 * std::round((72.0 + 0.3 * random.normal()) / 0.3);
+  }
   Channel channel;
   channel.unit = *parse_unit("deg/s");
-  for (int i = 0; i < 15000; ++i) {
-    rows.push_back(0.3 * std::round((72.0 + 0.3 * random.normal()) / 0.3));
-    channel.reference.push_back(72.0 * kDegree);
-    channel.error.push_back(rows.back() * kDegree - channel.reference.back());
-    channel.valid.push_back(1);
-  }
   channel.rows = rows;
+  channel.measured = Series::column(rows, channel.unit);
+  channel.reference = Series::constant(72.0 * kDegree, rows.size());
+  channel.error = channel.against_reference();
+  channel.valid = Presence(rows.size());
   EXPECT_EQ(clipped_at(channel), 0.0);
 }
 

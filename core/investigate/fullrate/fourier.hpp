@@ -1,0 +1,26 @@
+#pragma once
+/// Discrete Fourier transforms of whole recordings, in little more memory than their results take.
+///
+/// A transform of n values by a library keeps them, as many complex factors and half as many results again: of a day at
+/// 100 Hz a third of a gigabyte, padded to a power of two a whole one. Here the values are asked for one by one, and a
+/// long transform is divided into four of a quarter of its length (decimation in time, Cooley and Tukey 1965), each of
+/// the next into four, until a library's factors for the rest are small. The factors of the joins are worked out where
+/// they are used. Every value is that of Eigen's transform to the bit, for the joins are its own, in its order.
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace driftlab::investigate {
+
+/// Complex length up to which a transform is left to the library: 16 MiB of values and of factors.
+inline constexpr std::size_t kWholeTransform = std::size_t{1} << 20U;
+
+/// Transform of the real values at(0) ... at(length - 1): length/2 + 1 complex ones. Memory: 8 bytes a value for the
+/// result, 32 bytes for each of the `whole` (a quarter of a longer part at most); 48 bytes a value where `length` is no
+/// multiple of 4. O(length log length).
+[[nodiscard]] std::vector<std::complex<double>> half_spectrum(std::size_t length,
+                                                              const std::function<double(std::size_t)>& at,
+                                                              std::size_t whole = kWholeTransform);
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,62 @@
+#include "core/investigate/slow/whitening_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftlab::investigate {
+
+WhiteningWalk::WhiteningWalk(const BlockStates& states, bool uniform, std::size_t width)
+    : states_(states), uniform_(uniform), width_(width) {
+  const std::size_t m = states.phi.size();
+  covariance_.assign(m * m, 0.0);
+  for (std::size_t i = 0; i < m; ++i) {
+    covariance_[i * m + i] = states.p0[i];
+  }
+  sum_.resize(m);
+  gain_.resize(m);
+  state_.assign(m * width, 0.0);
+}
+
+void WhiteningWalk::next(double filled) {
+  if (settled_) {
+    return;
+  }
+  const std::size_t m = gain_.size();
+  const auto p = [&](std::size_t i, std::size_t j) -> double& { return covariance_[i * m + j]; };
+  std::fill(sum_.begin(), sum_.end(), 0.0);
+  double s = 0.0;
+  if (filled > 0.0) {
+    for (std::size_t i = 0; i < m; ++i) {
+      for (std::size_t j = 0; j < m; ++j) {
+        sum_[i] += p(i, j);
+      }
+      s += sum_[i];
+    }
+    // A remainder more negative than the white part would be no variance at all; the floor keeps S positive.
+    s += std::max(states_.white / filled + states_.remainder, 1e-6 * states_.white);
+    for (std::size_t i = 0; i < m; ++i) {
+      for (std::size_t j = 0; j < m; ++j) {
+        p(i, j) -= sum_[i] * sum_[j] / s;
+      }
+    }
+  }
+  double change = 0.0;
+  for (std::size_t i = 0; i < m; ++i) {
+    const double gain = s > 0.0 ? sum_[i] / s : 0.0;
+    change = std::max(change, std::fabs(gain - gain_[i]));
+    gain_[i] = gain;
+  }
+  variance_ = s;
+  inv_sd_ = s > 0.0 ? 1.0 / std::sqrt(s) : 0.0;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j < m; ++j) {
+      p(i, j) *= states_.phi[i] * states_.phi[j];
+    }
+    p(i, i) += states_.q[i];
+  }
+  same_ = !first_ && change < 1e-9 ? same_ + 1 : 0;
+  first_ = false;
+  settled_ = uniform_ && same_ > 8;
+}
+
+}  // namespace driftlab::investigate

@@ -1,0 +1,52 @@
+#pragma once
+/// The Kalman filter of one recording, walked from block to block: what `whiten` (slow_model.hpp) does, for series that
+/// are made or used as the walk goes on and need not be kept.
+#include "core/process/slow_law.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace driftlab::investigate {
+
+class WhiteningWalk {
+ public:
+  /// Of `width` series alike; `states` must outlive the walk. `uniform`: every block is as full as the first, so that
+  /// gains that no longer change are those of all blocks after.
+  WhiteningWalk(const BlockStates& states, bool uniform, std::size_t width);
+
+  /// Goes on to the next block, of which the share `filled` holds samples. O(states^2).
+  void next(double filled);
+  /// The innovation of one series in this block over its deviation, 0 in an empty block; once per block and series.
+  [[nodiscard]] double whitened(std::size_t series, double value) {
+    const std::size_t m = gain_.size();
+    double v = value;
+    for (std::size_t i = 0; i < m; ++i) {
+      v -= state_[i * width_ + series];
+    }
+    v = inv_sd_ > 0.0 ? v : 0.0;
+    for (std::size_t i = 0; i < m; ++i) {
+      double& state = state_[i * width_ + series];
+      state = states_.phi[i] * (state + gain_[i] * v);
+    }
+    return v * inv_sd_;
+  }
+
+  /// Gains do not change any more.
+  [[nodiscard]] bool settled() const { return settled_; }
+  [[nodiscard]] const std::vector<double>& gain() const { return gain_; }  ///< one per state
+  [[nodiscard]] double variance() const { return variance_; }              ///< S; 0 for an empty block
+  [[nodiscard]] double inv_sd() const { return inv_sd_; }                  ///< 1/sqrt(S); 0 for an empty block
+
+ private:
+  const BlockStates& states_;
+  bool uniform_;
+  std::size_t width_;
+  std::vector<double> covariance_, sum_, gain_, state_;
+  double variance_ = 0.0;
+  double inv_sd_ = 0.0;
+  std::size_t same_ = 0;
+  bool first_ = true;
+  bool settled_ = false;
+};
+
+}  // namespace driftlab::investigate
