@@ -5,6 +5,7 @@
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
 #include "schema/json/calibration.hpp"
+#include "schema/text/calibration.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -39,7 +40,7 @@ Exit run(const Flags& flags) {
   if (!report) {
     return complain_of_work(report.error());
   }
-  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : to_text(*report);
+  const std::string text = flags.json ? to_json(*report).dump(2) + "\n" : calibration_to_text(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }

@@ -82,6 +82,29 @@ struct Solution {
   double condition = 0.0;
 };
 
+/// Condition and deviations from the normal matrix. Directions along which the residuals do not change leave every
+/// number that they move without bound.
+void measure_spread(const Eigen::MatrixXd& normal, Solution& found) {
+  constexpr double kRounding = 1e-14;  // of the largest eigenvalue: below it, an eigenvalue is rounding
+  constexpr double kMoved = 1e-10;     // square of a direction's part along a number
+  const SymmetricEigen eigen = symmetric_eigen(normal);
+  const double largest = eigen.values[kNumbers - 1];
+  found.condition = eigen.values[0] > 0.0 ? largest / eigen.values[0] : std::numeric_limits<double>::infinity();
+  Parameters variance = Parameters::Zero();
+  for (Eigen::Index k = 0; k < kNumbers; ++k) {
+    const Parameters square = eigen.vectors.col(k).cwiseAbs2();
+    const bool seen = eigen.values[k] > kRounding * largest;
+    for (Eigen::Index i = 0; i < kNumbers; ++i) {
+      if (seen) {
+        variance[i] += square[i] / eigen.values[k];
+      } else if (square[i] > kMoved) {
+        variance[i] = std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  found.deviation = variance.cwiseSqrt();
+}
+
 Solution solve(const Scaled& scaled) {
   Solution found;
   found.p << 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0;
@@ -106,11 +129,7 @@ Solution solve(const Scaled& scaled) {
       found.converged = damping > 1e12 && step.norm() < 1e-9;
     }
   }
-  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-  const Eigen::VectorXd eigenvalues = symmetric_eigen(normal).values;
-  const double smallest = eigenvalues[0];
-  found.condition = smallest > 0.0 ? eigenvalues[kNumbers - 1] / smallest : std::numeric_limits<double>::infinity();
-  found.deviation = inverse(normal).diagonal().cwiseMax(0.0).cwiseSqrt();
+  measure_spread(jacobian.transpose() * jacobian, found);
   return found;
 }
 
@@ -142,17 +161,16 @@ Triple MultiPositionCalibration::correct(const Triple& reading) const {
   return corrected;
 }
 
-std::array<std::array<Estimate, 3>, 3> MultiPositionCalibration::misalignment() const {
+AxisAngles MultiPositionCalibration::misalignment() const {
   const auto& a = correction;
   const std::array<double, 3> diagonal{a[0][0].value, a[1][1].value, a[2][2].value};
-  std::array<std::array<Estimate, 3>, 3> angles{};
+  AxisAngles angles{};
   const double between = a[0][1].value * a[1][2].value / (diagonal[1] * diagonal[2]);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i + 1; j < 3; ++j) {
-      Estimate& angle = angles[i][j];
-      angle.value = -a[i][j].value / diagonal[j] + (j == i + 2 ? between : 0.0);
+      const double angle = -a[i][j].value / diagonal[j] + (j == i + 2 ? between : 0.0);
       const double half = 0.5 * (a[i][j].ci95.high - a[i][j].ci95.low) / std::abs(diagonal[j]);
-      angle.ci95 = {angle.value - half, angle.value + half};
+      angles[i][j] = Estimate{angle, {angle - half, angle + half}};
     }
   }
   return angles;
@@ -173,6 +191,10 @@ Result<MultiPositionCalibration> calibrate_multi_position(std::span<const Triple
   const Solution found = solve(*scaled);
   const double dof = static_cast<double>(readings.size()) - static_cast<double>(kNumbers);
   const double half = student_quantile(0.975, dof) * std::sqrt(found.square / dof);
+  const auto spread_of = [&](Eigen::Index number, double factor) {
+    const double deviation = found.deviation[number];
+    return std::isfinite(deviation) ? factor * half * deviation : deviation;
+  };
   MultiPositionCalibration result;
   result.positions = readings.size();
   result.iterations = found.iterations;
@@ -184,14 +206,14 @@ Result<MultiPositionCalibration> calibrate_multi_position(std::span<const Triple
     for (std::size_t j = i; j < 3; ++j, ++index) {
       const double factor = gravity_m_s2 / scaled->width[static_cast<Eigen::Index>(j)];
       const double value = factor * found.p[index];
-      const double spread = factor * half * found.deviation[index];
+      const double spread = spread_of(index, factor);
       result.correction[i][j] = {value, {value - spread, value + spread}};
     }
   }
   for (std::size_t j = 0; j < 3; ++j, ++index) {
     const double width = scaled->width[static_cast<Eigen::Index>(j)];
     const double value = scaled->middle[static_cast<Eigen::Index>(j)] + width * found.p[index];
-    const double spread = width * half * found.deviation[index];
+    const double spread = spread_of(index, width);
     result.bias[j] = {value, {value - spread, value + spread}};
   }
   result.residual_after = gravity_m_s2 * std::sqrt(found.square / static_cast<double>(readings.size()));

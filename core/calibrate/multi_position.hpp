@@ -10,7 +10,8 @@
 ///
 /// The estimate minimises the sum of squares of |x_k| - g over the positions k with equal weights (Levenberg-Marquardt,
 /// started from the middle and half width of the readings). Intervals are linearised, with the scatter of the residuals
-/// and Student's t with n - 9 degrees of freedom. A constant error of g acts as a common scale of A and cannot be
+/// and Student's t with n - 9 degrees of freedom; a number that the positions do not determine at all has an open
+/// interval. A constant error of g acts as a common scale of A and cannot be
 /// detected.
 #include "core/calibrate/triad.hpp"
 
@@ -32,9 +33,9 @@ struct MultiPositionCalibration {
   std::vector<std::string> warnings;
 
   [[nodiscard]] Triple correct(const Triple& reading) const;
-  /// What sensor i reads of the true value along axis j [rad], j > i; zeros elsewhere, for the frame is that of the
-  /// sensors themselves. A_ii (A^-1)_ij, with the interval of A_ij: that of the diagonal is of second order.
-  [[nodiscard]] std::array<std::array<Estimate, 3>, 3> misalignment() const;
+  /// j > i; nothing elsewhere, for the frame is that of the sensors themselves. A_ii (A^-1)_ij, with the interval of
+  /// A_ij: that of the diagonal is of second order.
+  [[nodiscard]] AxisAngles misalignment() const;
 };
 
 /// Errors: TooFewSamples (below 10 positions, or all in one half of an axis), InvalidArgument (g not positive),

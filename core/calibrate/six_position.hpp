@@ -37,14 +37,14 @@ struct SixPositionOptions {
 };
 
 struct TriadCalibration {
-  std::array<Estimate, 3> bias;                           ///< [SI]
-  std::array<Estimate, 3> scale_factor;                   ///< S, a ratio: 1e-3 is 1000 ppm
-  std::array<std::array<Estimate, 3>, 3> misalignment{};  ///< [rad] off the diagonal; zeros where it is not estimated
-  TriadLaw law;                                           ///< the same numbers, to correct readings with
-  std::size_t readings = 0;                               ///< used, of one axis in one position
-  double chi_square_per_dof = 0.0;                        ///< 0 where no degree of freedom is left
-  double residual_before = 0.0;  ///< rms of reading minus truth over all positions and axes [SI]
-  double residual_after = 0.0;   ///< the same of corrected readings
+  std::array<Estimate, 3> bias;          ///< [SI]
+  std::array<Estimate, 3> scale_factor;  ///< S, a ratio: 1e-3 is 1000 ppm
+  AxisAngles misalignment{};             ///< nothing anywhere without `SixPositionOptions::misalignment`
+  TriadLaw law;                          ///< the same numbers, to correct readings with
+  std::size_t readings = 0;              ///< used, of one axis in one position
+  double chi_square_per_dof = 0.0;       ///< 0 where no degree of freedom is left
+  double residual_before = 0.0;          ///< rms of reading minus truth over all positions and axes [SI]
+  double residual_after = 0.0;           ///< the same of corrected readings
 };
 
 /// If some uncertainty of an axis is 0 (unknown), its readings are weighted evenly and its interval comes from their

@@ -14,12 +14,17 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace driftlab {
 
 using Triple = std::array<double, 3>;
+
+/// What sensor i reads of the true value along axis j [rad]; nothing on the diagonal, and where the angle is not
+/// estimated: taken as 0, or 0 by the choice of the frame.
+using AxisAngles = std::array<std::array<std::optional<Estimate>, 3>, 3>;
 
 /// The mean of three channels over one recording or stretch, SI.
 struct TriadMean {

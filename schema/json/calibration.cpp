@@ -1,8 +1,6 @@
 #include "schema/json/calibration.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace driftlab {
 namespace {
@@ -57,23 +55,15 @@ std::optional<SensorCalibration> sensor_from_json(const Json& sensor, const std:
   return calibration;
 }
 
-double half_width(const Estimate& estimate) { return 0.5 * (estimate.ci95.high - estimate.ci95.low); }
-
-/// A line for each pair of axes whose angle was estimated.
-std::string misalignment_lines(const std::array<std::array<Estimate, 3>, 3>& angles) {
-  std::string text;
-  std::array<char, 200> line{};
+/// By pair of axes, those that were estimated.
+void add_misalignment(const AxisAngles& angles, Json& document) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const Estimate& angle = angles[i][j];
-      if (i != j && angle.ci95.high > angle.ci95.low) {
-        std::snprintf(line.data(), line.size(), "  %c reads %+.3f +- %.3f mrad of %c\n", "xyz"[i], 1e3 * angle.value,
-                      1e3 * half_width(angle), "xyz"[j]);
-        text += line.data();
+      if (const auto& angle = angles[i][j]) {
+        document["misalignment"][std::string(1, "xyz"[i]) + "xyz"[j]] = quantity(*angle, 1e3, "mrad");
       }
     }
   }
-  return text;
 }
 
 }  // namespace
@@ -85,12 +75,8 @@ Json to_json(const TriadCalibration& calibration, const Unit& si) {
     const std::string axis(1, "xyz"[i]);
     document["bias"][axis] = quantity(calibration.bias[i], 1.0, unit);
     document["scale_factor"][axis] = quantity(calibration.scale_factor[i], 1e6, "ppm");
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (i != j && calibration.misalignment[i][j].ci95.high > calibration.misalignment[i][j].ci95.low) {
-        document["misalignment"][axis + "xyz"[j]] = quantity(calibration.misalignment[i][j], 1e3, "mrad");
-      }
-    }
   }
+  add_misalignment(calibration.misalignment, document);
   document["matrix"] =
       Json{numbers(calibration.law.matrix[0]), numbers(calibration.law.matrix[1]), numbers(calibration.law.matrix[2])};
   document["readings"] = calibration.readings;
@@ -110,12 +96,7 @@ Json to_json(const MultiPositionCalibration& calibration, const Unit& reading) {
       document["correction"][axis + "xyz"[j]] = quantity(calibration.correction[i][j], 1.0, "m/s^2");
     }
   }
-  const auto angles = calibration.misalignment();
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = i + 1; j < 3; ++j) {
-      document["misalignment"][std::string(1, "xyz"[i]) + "xyz"[j]] = quantity(angles[i][j], 1e3, "mrad");
-    }
-  }
+  add_misalignment(calibration.misalignment(), document);
   document["positions"] = calibration.positions;
   document["converged"] = calibration.converged;
   document["condition_number"] = number(calibration.condition);
@@ -157,61 +138,6 @@ Calibration calibration_from_json(const Json& document, const std::string& point
     calibration.gyroscope = sensor_from_json(*sensor, pointer + "/gyroscope", faults);
   }
   return calibration;
-}
-
-std::string to_text(const TriadCalibration& calibration, std::string_view unit) {
-  std::string text;
-  std::array<char, 200> line{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::snprintf(line.data(), line.size(), "  %c  bias %+.6g +- %.2g %.*s   scale factor %+.1f +- %.1f ppm\n",
-                  "xyz"[i], calibration.bias[i].value, half_width(calibration.bias[i]), static_cast<int>(unit.size()),
-                  unit.data(), 1e6 * calibration.scale_factor[i].value, 1e6 * half_width(calibration.scale_factor[i]));
-    text += line.data();
-  }
-  text += misalignment_lines(calibration.misalignment);
-  std::snprintf(line.data(), line.size(), "  residual %.4g -> %.4g %.*s over %zu readings\n",
-                calibration.residual_before, calibration.residual_after, static_cast<int>(unit.size()), unit.data(),
-                calibration.readings);
-  return text + line.data();
-}
-
-std::string to_text(const MultiPositionCalibration& calibration) {
-  std::string text;
-  std::array<char, 200> line{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::snprintf(line.data(), line.size(), "  %c  bias %+.6g +- %.2g   m/s^2 a unit %.7g +- %.2g\n", "xyz"[i],
-                  calibration.bias[i].value, half_width(calibration.bias[i]), calibration.correction[i][i].value,
-                  half_width(calibration.correction[i][i]));
-    text += line.data();
-  }
-  text += misalignment_lines(calibration.misalignment());
-  std::snprintf(line.data(), line.size(), "  length of the reading beside gravity, rms %.4g -> %.4g m/s^2\n",
-                calibration.residual_before, calibration.residual_after);
-  text += line.data();
-  for (const std::string& warning : calibration.warnings) {
-    text += "  " + warning + "\n";
-  }
-  return text;
-}
-
-std::string to_text(const CalibrationReport& report) {
-  std::string text;
-  if (report.rests) {
-    text += "accelerometer, from " + std::to_string(report.rests->found.positions) + " positions at rest\n" +
-            to_text(report.rests->found);
-  }
-  const auto add = [&](const char* sensor, const std::optional<PositionCalibration>& one, std::string_view unit) {
-    if (one) {
-      text +=
-          std::string(sensor) + ", from " + std::to_string(one->positions) + " positions\n" + to_text(one->found, unit);
-    }
-  };
-  add("accelerometer", report.accelerometer, "m/s^2");
-  add("gyroscope", report.gyroscope, "rad/s");
-  for (const std::string& note : report.notes) {
-    text += note + "\n";
-  }
-  return text;
 }
 
 }  // namespace driftlab

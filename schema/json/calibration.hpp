@@ -1,5 +1,5 @@
 #pragma once
-/// The calibration of a triad as JSON, and as lines for people.
+/// The calibration of a triad as JSON.
 #include "core/analysis/calibrate.hpp"
 #include "core/calibrate/multi_position.hpp"
 #include "core/calibrate/sensor_calibration.hpp"
@@ -23,11 +23,5 @@ namespace driftlab {
 /// The `apply` of `accelerometer` and `gyroscope` of a calibration document; other members are not read. A document
 /// with neither is a fault.
 [[nodiscard]] Calibration calibration_from_json(const Json& document, const std::string& pointer, Faults& faults);
-
-/// A few lines for people: each axis with bias and scale factor, +- half the interval.
-[[nodiscard]] std::string to_text(const TriadCalibration& calibration, std::string_view unit);
-[[nodiscard]] std::string to_text(const MultiPositionCalibration& calibration);
-/// Every sensor under a line that says what it was calibrated from, then the notes.
-[[nodiscard]] std::string to_text(const CalibrationReport& report);
 
 }  // namespace driftlab

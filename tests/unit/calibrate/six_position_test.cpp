@@ -52,7 +52,7 @@ TEST(SixPosition, GivesBiasAndScaleOfEquationsNineAndTen) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(found->bias[i].value, kTruth.bias[i], 1e-13);
     EXPECT_NEAR(found->scale_factor[i].value, kTruth.matrix[i][i] - 1.0, 1e-14);
-    EXPECT_EQ(found->misalignment[i][(i + 1) % 3].value, 0.0);
+    EXPECT_FALSE(found->misalignment[i][(i + 1) % 3]);
   }
   EXPECT_EQ(found->readings, 6U);
   EXPECT_TRUE(std::isinf(found->bias[0].ci95.high));  // no uncertainty is stated and none is left to scatter
@@ -108,8 +108,10 @@ TEST(SixPosition, IntervalsHoldTheTruthInNinetyFivePercent) {
         inside += found->scale_factor[i].ci95.contains(kTruth.matrix[i][i] - 1.0) ? 1 : 0;
         all += 2;
         for (std::size_t j = 0; j < 3 && misalignment; ++j) {
-          inside += j != i && found->misalignment[i][j].ci95.contains(kTruth.matrix[i][j]) ? 1 : 0;
-          all += j != i ? 1 : 0;
+          const auto& angle = found->misalignment[i][j];
+          ASSERT_EQ(angle.has_value(), j != i);
+          inside += angle && angle->ci95.contains(kTruth.matrix[i][j]) ? 1 : 0;
+          all += angle ? 1 : 0;
         }
       }
     }
