@@ -3,12 +3,14 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/http_client.hpp"
 #include "clients/cli/print_answer.hpp"
+#include "core/export/exportable_columns.hpp"
 #include "core/export/imu_noise.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -44,6 +46,29 @@ std::optional<Json> as_characterisation(const std::vector<std::string>& files) {
   return characterised ? std::optional(std::move(*document)) : std::nullopt;
 }
 
+/// Whether something of a recording can be exported, before minutes are spent on its columns. A calibration gives
+/// readings the unit that their columns lack: such files are not asked.
+Status check_columns(const RecordingSpec& spec, const ColumnNames& names) {
+  const auto roles = assign_roles(spec, names);
+  if (!roles) {
+    return fail(roles.error());
+  }
+  std::vector<ExportColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (const auto& role = (*roles)[i]) {
+      columns.push_back({names[i], role->quantity, role->axis, role->unit.value_or(Unit{}).dimension});
+    }
+  }
+  return check_exportable(columns);
+}
+
+/// Why there is nothing to export though there are axes.
+std::string why_no_density(const ImuNoise& imu) {
+  const AxisNoise& axis = (imu.gyroscope.axes.empty() ? imu.accelerometer : imu.gyroscope).axes.front();
+  return "There is nothing to export, for no axis has a noise density, column " + axis.channel + ": " +
+         axis.density.remark;
+}
+
 /// Device and document of what the user named: a characterisation as it stands, recordings characterised now.
 tl::expected<std::pair<std::string, Json>, Failure> characterised(const Flags& flags) {
   if (auto document = as_characterisation(flags.files)) {
@@ -57,7 +82,10 @@ tl::expected<std::pair<std::string, Json>, Failure> characterised(const Flags& f
   if (!inputs) {
     return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
   }
-  auto document = characterise_here(*inputs, {});
+  const bool corrected = std::any_of(inputs->files.begin(), inputs->files.end(), [](const InputFile& file) {
+    return file.calibration.accelerometer || file.calibration.gyroscope;
+  });
+  auto document = characterise_here(*inputs, {}, corrected ? ColumnCheck() : check_columns);
   if (!document) {
     return tl::unexpected(document.error());
   }
@@ -78,11 +106,11 @@ Exit run_here(const Flags& flags, const ExportTarget& target) {
   if (!imu) {
     return complain_of_work(imu.error());
   }
+  if (!has_noise(*imu)) {
+    return complain({ErrorCode::TooFewSamples, why_no_density(*imu), {}});
+  }
   for (const std::string& gap : export_gaps(target, *imu)) {
     std::fprintf(stderr, "driftlab: %s\n", gap.c_str());
-  }
-  if (!has_noise(*imu)) {
-    return complain({ErrorCode::TooFewSamples, "No axis has a noise density: there is nothing to export.", {}});
   }
   return write_text(flags.output, export_to_text(target, *imu));
 }

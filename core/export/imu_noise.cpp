@@ -2,12 +2,14 @@
 
 #include "core/campaign/replicates.hpp"
 #include "core/campaign/table_cells.hpp"
+#include "core/export/exportable_columns.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/process/model.hpp"
 #include "core/signal/condition.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace driftlab {
@@ -174,20 +176,9 @@ AxisNoise axis_noise(const SensorSources& sensor, const std::vector<const TableS
   return axis;
 }
 
-/// Why the sources cannot be used; empty where they can.
-std::string obstacle(const SensorSources& sensor, const std::vector<TableSource>& sources, Dimension wanted) {
-  const ReportedChannel& first = sources.front().channel;
-  if (first.parsed_unit().dimension != wanted) {
-    return "Column " + first.channel + " has no unit of its sensor: name it with --columns " + first.channel + "=" +
-           sensor.quantity + ":" + (first.axis.empty() ? "x" : first.axis) +
-           (wanted == Dimension::AngularRate ? ":deg/s." : ":m/s^2.");
-  }
-  return unit_conflict(sources);
-}
-
-void add_axis(const SensorSources& sensor, Dimension wanted, ImuNoise& imu, SensorNoise& noise) {
-  const std::string why = obstacle(sensor, sensor.sources, wanted);
-  if (!why.empty()) {
+/// `noise.missing`: what is left out, and why.
+void add_axis(const SensorSources& sensor, ImuNoise& imu, SensorNoise& noise) {
+  if (const std::string why = unit_conflict(sensor.sources); !why.empty()) {
     noise.missing += (noise.missing.empty() ? "" : " ") + why;
     return;
   }
@@ -201,6 +192,12 @@ void add_axis(const SensorSources& sensor, Dimension wanted, ImuNoise& imu, Sens
     }
   }
   noise.axes.push_back(axis_noise(sensor, sources));
+}
+
+ExportColumn column_of(const SensorSources& sensor) {
+  const ReportedChannel& first = sensor.sources.front().channel;
+  return {first.channel, parse_quantity(sensor.quantity).value_or(Quantity::Unspecified), first.axis,
+          first.parsed_unit().dimension};
 }
 
 void conclude(SensorNoise& noise, const char* name) {
@@ -232,27 +229,30 @@ NoiseFigure NoiseFigure::squared() const {
 
 Result<ImuNoise> imu_noise_of(const std::string& device, const std::vector<SensorSources>& sensors,
                               const RunControl& control) {
+  std::vector<ExportColumn> columns;
+  std::transform(sensors.begin(), sensors.end(), std::back_inserter(columns), column_of);
+  if (auto checked = check_exportable(columns); !checked) {
+    return fail(std::move(checked.error()));
+  }
   ImuNoise imu;
   imu.device = device;
+  imu.gyroscope.missing = missing_units(columns, Quantity::AngularRate);
+  imu.accelerometer.missing = missing_units(columns, Quantity::SpecificForce);
   std::size_t done = 0;
   for (const SensorSources& sensor : sensors) {
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The export was cancelled.");
     }
     control.report("models for export", static_cast<double>(done++) / static_cast<double>(sensors.size()));
-    const auto quantity = parse_quantity(sensor.quantity);
-    if (quantity == Quantity::AngularRate) {
-      add_axis(sensor, Dimension::AngularRate, imu, imu.gyroscope);
-    } else if (quantity == Quantity::SpecificForce) {
-      add_axis(sensor, Dimension::SpecificForce, imu, imu.accelerometer);
+    if (const ExportColumn column = column_of(sensor); column.exportable()) {
+      add_axis(sensor, imu, column.quantity == Quantity::AngularRate ? imu.gyroscope : imu.accelerometer);
     }
   }
   conclude(imu.gyroscope, "a gyroscope");
   conclude(imu.accelerometer, "an accelerometer");
   if (imu.gyroscope.axes.empty() && imu.accelerometer.axes.empty()) {
     return fail(ErrorCode::NotFound,
-                "There is nothing to export: " + imu.gyroscope.missing + " " + imu.accelerometer.missing +
-                    " Say what the columns are with --columns, e.g. --columns 0=angular_rate:z:deg/s.");
+                "There is nothing to export: " + imu.gyroscope.missing + " " + imu.accelerometer.missing);
   }
   imu.rate_hz =
       imu.gyroscope.axes.empty() ? imu.accelerometer.axes.front().rate_hz : imu.gyroscope.axes.front().rate_hz;

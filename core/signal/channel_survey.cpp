@@ -1,5 +1,6 @@
 #include "core/signal/channel_survey.hpp"
 
+#include "core/signal/full_scale.hpp"
 #include "core/signal/number.hpp"
 
 #include <algorithm>
@@ -92,39 +93,6 @@ class Runs {
   std::size_t begin_ = 0;
   std::pair<std::size_t, std::size_t> longest_{0, 0};
   std::size_t second_ = 0;
-};
-
-/// How often the extreme value is met, and the one next to it.
-struct Extreme {
-  double value = 0.0;
-  std::size_t count = 0;
-  double next = 0.0;
-  std::size_t next_count = 0;
-
-  /// `value` in units of which larger is more extreme.
-  void take(double value_in, bool first) {
-    if (first || value_in > value) {
-      if (!first) {
-        next = value;
-        next_count = count;
-      }
-      value = value_in;
-      count = 1;
-    } else if (value_in == value) {
-      ++count;
-    } else if (next_count == 0 || value_in > next) {
-      next = value_in;
-      next_count = 1;
-    } else if (value_in == next) {
-      ++next_count;
-    }
-  }
-  [[nodiscard]] std::size_t saturated(bool varied) const {
-    const double magnitude = std::abs(value);
-    const bool counter_end = magnitude == 32768.0 || magnitude == 32767.0 || value == 65535.0;
-    const bool piled_up = varied && count >= 8 && count >= 5 * next_count;
-    return counter_end || piled_up ? count : 0;
-  }
 };
 
 bool suspicious(double value) {
@@ -225,7 +193,7 @@ void walk(std::span<const double> values, const Pieces& pieces, ChannelSurvey& s
   runs.close(values.size());
   quality.distinct = distinct.count();
   survey.frozen = runs.frozen(values.size());
-  const bool varied = !quality.distinct || *quality.distinct >= 8;
+  const bool varied = !quality.distinct || *quality.distinct >= kVaried;
   quality.saturated = high.value == -low.value ? 0 : high.saturated(varied) + low.saturated(varied);
 }
 
@@ -278,15 +246,19 @@ Status check_holes(const std::string& column, std::span<const double> values, co
     return fail(code, "Row " + row + ", column '" + column + "' " + what, {{"row", row}, {"column", column}});
   };
   const auto count = [&](Missing why) { return found[static_cast<std::size_t>(why)].count; };
-  const std::string of_all = " of " + std::to_string(values.size()) + " rows.";
+  const std::string of_all = " of " + std::to_string(values.size()) +
+                             " rows; leave the column out (name the others with "
+                             "columns), or cut these rows from the file.";
   if (count(Missing::Text) > 0) {
-    return refuse(ErrorCode::NotANumber, Missing::Text, "holds text where a number belongs.");
+    return refuse(ErrorCode::NotANumber, Missing::Text,
+                  "holds text where a number belongs; correct or delete that row.");
   }
   if (count(Missing::OutOfRange) > 0) {
-    return refuse(ErrorCode::OutOfRange, Missing::OutOfRange, "holds a number larger than a double can hold.");
+    return refuse(ErrorCode::OutOfRange, Missing::OutOfRange,
+                  "holds a number larger than a double can hold; correct or delete that row.");
   }
   if (count(Missing::Infinite) > 0) {
-    return refuse(ErrorCode::NonFinite, Missing::Infinite, "holds an infinity.");
+    return refuse(ErrorCode::NonFinite, Missing::Infinite, "holds an infinity; correct or delete that row.");
   }
   if (count(Missing::Nan) * 1000 >= values.size() && count(Missing::Nan) > 0) {
     return refuse(ErrorCode::NonFinite, Missing::Nan,

@@ -95,6 +95,29 @@ void keep_one_time_column(std::vector<std::optional<ColumnRole>>& roles) {
   }
 }
 
+/// Where neither a time column nor a rate is stated: the one column whose name says that it is time in a known unit.
+/// Naming the sensors of a file is no reason to lose the time that it has.
+void add_time_by_name(const ColumnNames& names, std::vector<std::optional<ColumnRole>>& roles) {
+  if (std::any_of(roles.begin(), roles.end(),
+                  [](const auto& role) { return role && role->quantity == Quantity::Time; })) {
+    return;
+  }
+  std::vector<std::optional<ColumnRole>> guessed(names.size());
+  std::size_t times = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    ColumnRole role = infer_role(names[i]);
+    if (!roles[i] && role.quantity == Quantity::Time && role.unit && role.unit->dimension == Dimension::Time) {
+      guessed[i] = std::move(role);
+      ++times;
+    }
+  }
+  for (std::size_t i = 0; i < names.size() && times == 1; ++i) {
+    if (guessed[i]) {
+      roles[i] = std::move(guessed[i]);
+    }
+  }
+}
+
 }  // namespace
 
 Status check_role(const std::string& column, const ColumnRole& role) {
@@ -136,6 +159,9 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
       return stated;
     }
     roles = std::move(*stated);
+    if (!spec.rate_hz) {
+      add_time_by_name(names, roles);
+    }
   }
   if (auto status = check_distinct(names, roles); !status) {
     return fail(status.error());

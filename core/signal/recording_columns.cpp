@@ -23,15 +23,21 @@ std::optional<std::size_t> axis_index(std::string_view axis) {
 }
 
 RecordingColumns::RecordingColumns(ColumnNames names, std::vector<std::optional<ColumnRole>> roles, Samples column,
-                                   bool guessed)
-    : names_(std::move(names)), roles_(std::move(roles)), column_(std::move(column)), guessed_(guessed) {}
+                                   bool guessed, bool time_stated)
+    : names_(std::move(names)),
+      roles_(std::move(roles)),
+      column_(std::move(column)),
+      guessed_(guessed),
+      time_stated_(time_stated) {}
 
 Result<RecordingColumns> RecordingColumns::read(const RecordingSpec& spec, const ColumnNames& names, Samples column) {
   auto roles = assign_roles(spec, names);
   if (!roles) {
     return fail(roles.error());
   }
-  return RecordingColumns(names, std::move(*roles), std::move(column), spec.columns.empty());
+  const bool time_stated = std::any_of(spec.columns.begin(), spec.columns.end(),
+                                       [](const auto& stated) { return stated.second.quantity == Quantity::Time; });
+  return RecordingColumns(names, std::move(*roles), std::move(column), spec.columns.empty(), time_stated);
 }
 
 Unit RecordingColumns::unit(std::size_t index, const Unit& otherwise) const {
@@ -56,7 +62,7 @@ std::optional<std::size_t> RecordingColumns::find(Quantity quantity, std::string
 
 std::optional<std::size_t> RecordingColumns::time() const {
   const auto index = find(Quantity::Time);
-  return index && guessed_ && holds_text(samples(*index)) ? std::nullopt : index;
+  return index && !time_stated_ && holds_text(samples(*index)) ? std::nullopt : index;
 }
 
 std::optional<ReferenceColumn> RecordingColumns::reference_of(Quantity sensor, std::string_view axis) const {
@@ -73,7 +79,12 @@ std::optional<ReferenceColumn> RecordingColumns::reference_of(Quantity sensor, s
 
 std::string RecordingColumns::note_of_time() const {
   const auto index = find(Quantity::Time);
-  return index && !time() ? "The column '" + name(*index) + "' holds text and is not used as time." : "";
+  if (index && !time()) {
+    return "The column '" + name(*index) + "' holds text and is not used as time.";
+  }
+  return index && !guessed_ && !time_stated_
+             ? "No column is stated to be the time; '" + name(*index) + "' is taken for it by its name."
+             : "";
 }
 
 std::string RecordingColumns::note_of_unnamed(std::size_t index) const {

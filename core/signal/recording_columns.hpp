@@ -52,18 +52,20 @@ class RecordingColumns {
   /// The reference of a sensor along an axis: its own column, else for a rate the angle's.
   [[nodiscard]] std::optional<ReferenceColumn> reference_of(Quantity sensor, std::string_view axis) const;
 
-  /// Sentences for the recording's notes: a column that would be the time but for its text (empty: none), and one that
-  /// nobody named.
+  /// Sentences for the recording's notes: a column that would be the time but for its text, or is it by its name alone
+  /// beside stated ones (empty: neither), and one that nobody named.
   [[nodiscard]] std::string note_of_time() const;
   [[nodiscard]] std::string note_of_unnamed(std::size_t index) const;
 
  private:
-  RecordingColumns(ColumnNames names, std::vector<std::optional<ColumnRole>> roles, Samples column, bool guessed);
+  RecordingColumns(ColumnNames names, std::vector<std::optional<ColumnRole>> roles, Samples column, bool guessed,
+                   bool time_stated);
 
   ColumnNames names_;
   std::vector<std::optional<ColumnRole>> roles_;
   Samples column_;
-  bool guessed_;  ///< the roles come from names
+  bool guessed_;      ///< the roles come from names
+  bool time_stated_;  ///< somebody said which column is the time
 };
 
 /// The rate about `axis` [rad/s] that a condition states at `time_s` after the first sample of the file: the constant

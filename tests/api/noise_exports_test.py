@@ -16,10 +16,10 @@ from pathlib import Path
 
 import yaml
 from daemon import PATIENCE_S
+from real_exports import export_all
 from suite import DaemonTest
 
 PROGRAM = os.environ["DRIFTLAB"]
-SHARED = Path(os.environ.get("DRIFTLAB_SHARED") or Path(__file__).resolve().parents[3] / "shared")
 
 
 class Exports(DaemonTest):
@@ -100,29 +100,8 @@ class Exports(DaemonTest):
         self.expect(406, self.daemon.get("/v1/exports/kalibr?device=six", Accept="image/png"))
 
     def test_every_small_recording_gives_a_kalibr_file_or_a_sentence(self) -> None:
-        """Of the recordings up to 1.5 MB: the larger ones take minutes and go the same way."""
-        if not (SHARED / "data").is_dir():
-            self.skipTest(f"SKIPPED, NOT PASSED: there is no data in {SHARED}; set DRIFTLAB_SHARED")
-        written, refused = [], []
-        for path in sorted((SHARED / "data").rglob("*")):
-            if not path.is_file() or path.suffix in {".json", ".md"} or path.stat().st_size > 1_500_000:
-                continue
-            done = self.driftlab("export", "--target", "kalibr", str(path))
-            if done.returncode == 2 and ("no stated rate" in done.stderr or "no time column" in done.stderr):
-                done = self.driftlab("export", "--target", "kalibr", str(path), "--rate-hz", "100")
-            with self.subTest(path=path.name):
-                self.assertIn(done.returncode, (0, 2), done.stderr)
-                if done.returncode == 0:
-                    document = yaml.safe_load(done.stdout)
-                    densities = [document.get(f"{sensor}_noise_density") for sensor in ("gyroscope", "accelerometer")]
-                    self.assertTrue(any(isinstance(value, float) and 0 < value < 1e3 for value in densities), done.stdout)
-                    written.append(path.name)
-                else:
-                    self.assertRegex(done.stderr.strip().splitlines()[-1], r"^driftlab: .{20,}\.$")
-                    self.assertEqual(done.stdout, "")
-                    refused.append(path.name)
-        print(f"{len(written)} files written, {len(refused)} refused in a sentence: {', '.join(refused)}")
-        self.assertGreater(len(written), 3)
+        """Of the recordings up to 1.5 MB: long_exports_test.py exports the larger ones."""
+        self.assertGreater(export_all(self, lambda size: size <= 1_500_000), 20)
 
 
 if __name__ == "__main__":

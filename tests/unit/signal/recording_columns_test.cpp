@@ -57,6 +57,24 @@ TEST(RecordingColumns, TimeOfTextIsNoTimeUnlessItWasStated) {
   EXPECT_EQ(stated->note_of_time(), "");
 }
 
+TEST(RecordingColumns, ATimeByItsNameServesWhereTheStatedColumnsHaveNone) {
+  // `--columns` with six axes of a MATLAB file lost the time that its stated rate had given.
+  const std::vector<double> zero{0.0};
+  const auto samples = [&](std::size_t) { return std::span<const double>(zero); };
+  RecordingSpec spec;
+  spec.columns["gz"] = {Quantity::AngularRate, "z", *parse_unit("deg/s")};
+  const auto found = RecordingColumns::read(spec, {"gz", "time (s)", "counter"}, samples);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->time(), std::optional<std::size_t>(1));
+  EXPECT_EQ(found->find(Quantity::AngularRate, "z"), std::optional<std::size_t>(0));
+  EXPECT_EQ(found->unit(0).symbol, "deg/s");
+  EXPECT_EQ(found->note_of_time(), "No column is stated to be the time; 'time (s)' is taken for it by its name.");
+  EXPECT_FALSE(RecordingColumns::read(spec, {"gz", "time (s)", "t (ms)"}, samples)->time()) << "which of the two?";
+  EXPECT_FALSE(RecordingColumns::read(spec, {"gz", "time"}, samples)->time()) << "in which unit?";
+  spec.rate_hz = 100.0;
+  EXPECT_FALSE(RecordingColumns::read(spec, {"gz", "time (s)"}, samples)->time()) << "the rate is the time base";
+}
+
 TEST(StatedRate, IsTheConditionsOwn) {
   EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
   const Condition turning = *parse_condition("constant_rate:z:9:rad/s");
