@@ -1,35 +1,17 @@
 #include "clients/cli/regress_input.hpp"
 
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
 #include "core/analysis/characterise.hpp"
 #include "schema/json/characterise.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <tuple>
 #include <utility>
 
 namespace driftlab::cli {
 namespace {
-
-Result<Json> read_json(const std::string& path) {
-  const std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return fail(ErrorCode::NotFound, "The file " + path + " cannot be opened.", {{"path", path}});
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  auto document = parse_json(text.str());
-  return document ? document : fail(document.error().code, path + ": " + document.error().message);
-}
-
-Error located(const std::string& path, const Faults& faults) {
-  const Error error = faults.error();
-  return {error.code, path + (error.fields.empty() ? "" : ", " + error.fields.front().name) + ": " + error.message,
-          error.fields};
-}
 
 /// The arm that files on the command line make.
 Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::string& label, const FileFlags& flags) {
@@ -55,7 +37,7 @@ Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::stri
 }
 
 Result<std::vector<Json>> results_in(const WrittenRecording& written) {
-  auto document = read_json(written.result);
+  auto document = read_json_file(written.result, "what `driftlab characterise --json` wrote");
   if (!document) {
     return fail(document.error());
   }
@@ -79,14 +61,14 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
   WrittenRegression run;
   std::filesystem::path folder;
   if (!flags.run.empty()) {
-    auto document = read_json(flags.run);
+    auto document = read_json_file(flags.run, "a run.json; recordings go with --baseline and --candidate");
     if (!document) {
       return fail(document.error());
     }
     Faults faults;
     run = regression_from_json(*document, faults);
     if (!faults.none()) {
-      return fail(located(flags.run, faults));
+      return fail(in_file(flags.run, faults.error()));
     }
     folder = std::filesystem::path(flags.run).parent_path();
     std::vector<WrittenArm*> arms{&run.baseline, &run.candidate};
@@ -125,14 +107,14 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
   }
   run.device = flags.file.device.empty() ? (run.device.empty() ? "device" : run.device) : flags.file.device;
   if (!flags.settings.empty()) {
-    auto document = read_json(flags.settings);
+    auto document = read_json_file(flags.settings, "the settings of a run");
     if (!document) {
       return fail(document.error());
     }
     Faults faults;
     regression_settings_from_json(*document, "", run, faults);
     if (!faults.none()) {
-      return fail(located(flags.settings, faults));
+      return fail(in_file(flags.settings, faults.error()));
     }
   }
   if (!flags.inconclusive.empty()) {
@@ -153,8 +135,7 @@ Result<std::vector<StoredRecording>> ResultReader::read(const WrittenArm& arm) {
       return fail(documents.error());
     }
     for (Json& document : *documents) {
-      stored.push_back(
-          {std::move(document), written.session, written.recorded_at, written.temperature_degc, written.causes});
+      stored.push_back({std::move(document), written.session, written.recorded_at, written.stated});
     }
   }
   return stored;

@@ -28,8 +28,7 @@ Result<regression::Recordings> compared(const std::string& label, const std::vec
       continue;
     }
     recording->session = one.session;
-    recording->temperature_degc = one.temperature_degc;
-    recording->causes = one.causes;
+    one.stated.tell(*recording);
     if (!one.recorded_at.empty()) {
       const auto began = seconds_of(one.recorded_at);
       if (!began) {
@@ -210,7 +209,9 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
   command.add_option("--rate-hz", flags.file.rate_hz, "Sampling rate; needed without a time column");
   command.add_option("--columns", flags.file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s");
   command.add_option("--condition", flags.file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
-  command.add_option("--models", flags.models, "Candidate models, e.g. WN,WN+GM")->delimiter(',');
+  command.add_option("--models", flags.models, "Candidate models, e.g. WN,WN+GM")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command.add_option("--settings", flags.settings, "JSON file with margins and other settings");
   command.add_option("--state", flags.state, "JSON file that keeps anchor, looks and earlier releases");
   command.add_option("--accept", flags.accept, "Make this label of the state the baseline from now on");

@@ -13,12 +13,7 @@ constexpr const char* kFormat = "driftlab-regress-state/1";
 
 Json to_json(const StoredRecording& recording) {
   Json stored{{"result", recording.document}, {"session", recording.session}, {"recorded_at", recording.recorded_at}};
-  if (recording.temperature_degc) {
-    stored["temperature_degc"] = *recording.temperature_degc;
-  }
-  if (!recording.causes.empty()) {
-    stored["causes"] = recording.causes;
-  }
+  add_stated_facts(recording.stated, stored);
   return stored;
 }
 
@@ -115,12 +110,7 @@ std::vector<StoredRecording> RegressState::recordings(const std::string& label) 
       recording.document = stored.value("result", Json::object());
       recording.session = stored.value("session", "");
       recording.recorded_at = stored.value("recorded_at", "");
-      if (stored.contains("temperature_degc") && stored["temperature_degc"].is_number()) {
-        recording.temperature_degc = stored["temperature_degc"].get<double>();
-      }
-      for (const Json& cause : stored.value("causes", Json::array())) {
-        recording.causes.push_back(cause.is_string() ? cause.get<std::string>() : "");
-      }
+      recording.stated = stated_facts_of(stored);
       recordings.push_back(std::move(recording));
     }
   }

@@ -14,8 +14,7 @@ struct StoredRecording {
   Json document;  ///< of the characterisation
   std::string session;
   std::string recorded_at;
-  std::optional<double> temperature_degc;
-  std::vector<std::string> causes;
+  StatedFacts stated;
 };
 
 class RegressState {

@@ -46,8 +46,7 @@ class ArmSender {
     Json recordings = Json::array();
     bool label_says_all = true;  // what was sent now has it; what the request says of a recording beside needs the list
     for (const WrittenRecording& recording : arm.recordings) {
-      label_says_all =
-          label_says_all && !recording.file.empty() && !recording.temperature_degc && recording.causes.empty();
+      label_says_all = label_says_all && !recording.file.empty() && recording.stated.empty();
       auto one = sent(recording, *labels);
       if (!one) {
         return tl::unexpected(one.error());
@@ -99,12 +98,7 @@ class ArmSender {
         document[name] = *text;
       }
     }
-    if (recording.temperature_degc) {
-      document["temperature_degc"] = *recording.temperature_degc;
-    }
-    if (!recording.causes.empty()) {
-      document["causes"] = recording.causes;
-    }
+    add_stated_facts(recording.stated, document);
     return document;
   }
 

@@ -28,6 +28,7 @@ regression::ChannelFacts regression_facts_of(const Json& quality, const Json& ch
   if (const auto mean = channel.find("mean"); mean != channel.end() && mean->is_number()) {
     facts.mean = mean->get<double>();
   }
+  facts.mean_of_error = channel.contains("reference");
   if (const auto found = channel.find("contamination"); found != channel.end() && found->is_object()) {
     facts.flagged = regression_count_member(*found, "flagged_samples");
   }
@@ -154,7 +155,10 @@ Json to_json(const regression::Settings& settings, std::size_t looks) {
                 {"slow", number(settings.margin_slow_percent)},
                 {"bias",
                  {{"gyroscope", number(settings.bias.gyroscope / kRegressionDegS)},
-                  {"accelerometer", number(settings.bias.accelerometer / kRegressionMg)}}}}},
+                  {"accelerometer", number(settings.bias.accelerometer / kRegressionMg)}}},
+                {"scale_factor",
+                 {{"gyroscope", number(settings.scale_factor.gyroscope / kRegressionPpm)},
+                  {"accelerometer", number(settings.scale_factor.accelerometer / kRegressionPpm)}}}}},
               {"through_s", number(settings.test.through_s)},
               {"min_edf", number(settings.min_edf)},
               {"design_power", number(settings.test.design_power)},

@@ -4,6 +4,7 @@
 #include "core/analysis/regress.hpp"
 #include "core/signal/recording.hpp"
 #include "schema/json/json.hpp"
+#include "schema/json/stated_facts.hpp"
 
 #include <optional>
 #include <string>
@@ -11,9 +12,10 @@
 
 namespace driftlab {
 
-/// Units in which margins of a bias are written: deg/s [rad/s] and mg [m/s^2].
+/// Units in which margins of a bias and of a scale factor are written: deg/s [rad/s], mg [m/s^2] and ppm.
 inline constexpr double kRegressionDegS = 0.017453292519943295;
 inline constexpr double kRegressionMg = 9.80665e-3;
+inline constexpr double kRegressionPpm = 1e-6;
 
 /// One recording of a request, before anything is read: a file to be characterised, a file with a characterisation, or
 /// a recording that a server has.
@@ -24,8 +26,7 @@ struct WrittenRecording {
   RecordingSpec spec;  ///< of `file`
   std::string session;
   std::string recorded_at;  ///< RFC 3339; empty: not stated
-  std::optional<double> temperature_degc;
-  std::vector<std::string> causes;
+  StatedFacts stated;
   std::string pointer;
 };
 

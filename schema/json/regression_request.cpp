@@ -45,6 +45,15 @@ void regression_read_margin(const Json& document, const std::string& pointer, re
       faults.add(reader.pointer("bias"), ErrorCode::InvalidArgument, "A margin must not be negative.");
     }
   }
+  if (const Json* const scale = reader.member("scale_factor")) {
+    ObjectReader margins(*scale, reader.pointer("scale_factor"), faults);
+    settings.scale_factor.gyroscope = kRegressionPpm * margins.real("gyroscope").value_or(0.0);
+    settings.scale_factor.accelerometer = kRegressionPpm * margins.real("accelerometer").value_or(0.0);
+    margins.reject_unknown();
+    if (settings.scale_factor.gyroscope < 0.0 || settings.scale_factor.accelerometer < 0.0) {
+      faults.add(reader.pointer("scale_factor"), ErrorCode::InvalidArgument, "A margin must not be negative.");
+    }
+  }
   reader.reject_unknown();
 }
 
@@ -72,8 +81,8 @@ WrittenRecording regression_read_recording(const Json& document, const std::stri
   Json own = Json::object();  // what is of the run; the rest is of the recording
   Json rest = Json::object();
   for (const auto& [name, value] : document.items()) {
-    const bool of_run = name == "result" || name == "recording" || name == "session" || name == "recorded_at" ||
-                        name == "temperature_degc" || name == "causes";
+    const bool of_run =
+        name == "result" || name == "recording" || name == "session" || name == "recorded_at" || is_stated_fact(name);
     (of_run ? own : rest)[name] = value;
   }
   ObjectReader reader(own, pointer, faults);
@@ -81,12 +90,7 @@ WrittenRecording regression_read_recording(const Json& document, const std::stri
   written.recording = reader.text("recording").value_or("");
   written.session = reader.text("session").value_or("");
   written.recorded_at = reader.text("recorded_at").value_or("");
-  written.temperature_degc = reader.real("temperature_degc");
-  if (const Json* const causes = reader.member("causes"); causes != nullptr && causes->is_array()) {
-    for (const Json& cause : *causes) {
-      written.causes.push_back(cause.is_string() ? cause.get<std::string>() : "");
-    }
-  }
+  written.stated = stated_facts_from_json(reader, faults);
   if (rest.contains("file") && rest["file"].is_string()) {
     written.file = rest["file"].get<std::string>();
   }

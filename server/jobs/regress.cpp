@@ -80,12 +80,7 @@ Json pinned_recording(const WrittenRecording& written, const Device& device, con
       faults.add(written.pointer + "/recorded_at", seconds.error());
     }
   }
-  if (written.temperature_degc) {
-    pinned["temperature_degc"] = *written.temperature_degc;
-  }
-  if (!written.causes.empty()) {
-    pinned["causes"] = written.causes;
-  }
+  add_stated_facts(written.stated, pinned);
   return pinned;
 }
 
@@ -143,10 +138,7 @@ Result<regression::Recordings> recordings_of(Store& store, const Json& arm, cons
         compared->began_s = *seconds;
       }
     }
-    if (pinned.contains("temperature_degc")) {
-      compared->temperature_degc = pinned["temperature_degc"].get<double>();
-    }
-    compared->causes = pinned.value("causes", std::vector<std::string>{});
+    stated_facts_of(pinned).tell(*compared);
     recordings.recordings.push_back(std::move(*compared));
   }
   return recordings;

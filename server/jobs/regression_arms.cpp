@@ -100,7 +100,7 @@ Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device
 }
 
 Result<std::string> RegressionMemory::anchor() const {
-  const auto moved = store_->anchors(device_.id, {.after = "", .limit = 1, .newest_first = true});
+  const auto moved = store_->anchors(device_.id, {.after = "", .limit = 1, .order = PageOrder::NewestFirst});
   if (!moved) {
     return fail(moved.error());
   }

@@ -1,5 +1,6 @@
 #include "core/campaign/regression/event_checks.hpp"
 
+#include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/gross_errors.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -21,7 +21,6 @@ constexpr double kMoreJitter = 2.0;
 constexpr double kJitterOfInterval = 0.05;
 constexpr double kCoarser = 1.5;
 constexpr double kRateOff = 0.005;
-constexpr double kWarmer = 5.0;
 
 template <class... Arguments>
 std::string written(const char* format, Arguments... arguments) {
@@ -149,23 +148,42 @@ EventCheck check_jitter(const std::vector<PowerUp>& baseline, const std::vector<
       });
 }
 
+/// What a full scale that somebody changed would explain: all axes of the sensor have steps larger by one factor.
+std::string full_scale_hint(const std::vector<Excess>& found) {
+  constexpr double kOneFactor = 0.02;
+  const Excess& worst = found.front();
+  const double factor = worst.candidate / worst.baseline;
+  const std::string sensor = worst.unit.substr(0, worst.unit.find(' '));
+  const auto alike = std::count_if(found.begin(), found.end(), [&](const Excess& excess) {
+    return excess.unit.starts_with(sensor) && std::abs(excess.candidate / excess.baseline / factor - 1.0) < kOneFactor;
+  });
+  return alike < 2 ? std::string()
+                   : written(
+                         "; so do the other axes, as with a full scale %.3g times as large: state full_scale of the "
+                         "recordings if it was changed on purpose",
+                         factor);
+}
+
 EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
-  const Figure step = [](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
-    return channel.facts.resolution * channel.result.parsed_unit().factor;
+  const std::set<Quantity> changed = changed_full_scales(baseline, candidate);  // their steps say nothing
+  const Figure step = [&](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
+    const auto quantity = parse_quantity(channel.result.quantity);
+    return quantity && changed.contains(*quantity) ? 0.0
+                                                   : channel.facts.resolution * channel.result.parsed_unit().factor;
   };
   const auto sentence = [](const Excess& excess) {
-    return written("%s: the step of the values went from %.3g to %.3g (SI).", excess.unit.c_str(), excess.baseline,
+    return written("%s: the step of the values went from %.3g to %.3g (SI)", excess.unit.c_str(), excess.baseline,
                    excess.candidate);
   };
-  EventCheck check = told("resolution",
-                          exceeding(baseline, candidate, step,
-                                    [](double now, double before) { return before > 0.0 && now > kCoarser * before; }),
-                          sentence);
+  const std::vector<Excess> coarser = exceeding(
+      baseline, candidate, step, [](double now, double before) { return before > 0.0 && now > kCoarser * before; });
+  EventCheck check = told("resolution", coarser,
+                          [&](const Excess& excess) { return sentence(excess) + full_scale_hint(coarser) + "."; });
   if (check.verdict == CheckVerdict::Ok) {
     const auto finer = exceeding(baseline, candidate, step,
                                  [](double now, double before) { return now > 0.0 && before > kCoarser * now; });
     if (!finer.empty()) {
-      check = {"resolution", CheckVerdict::Note, sentence(finer.front()), finer.front().sessions, std::nullopt};
+      check = {"resolution", CheckVerdict::Note, sentence(finer.front()) + ".", finer.front().sessions, std::nullopt};
     }
   }
   return check;
@@ -282,58 +300,6 @@ EventCheck check_contamination(const std::vector<PowerUp>& baseline, const std::
   return check;
 }
 
-std::set<std::string> units_of(const std::vector<PowerUp>& sessions) {
-  std::set<std::string> units;
-  for (const PowerUp& session : sessions) {
-    for (const ComparedRecording* recording : session.recordings) {
-      for (const ComparedChannel& channel : recording->channels) {
-        if (std::string name = unit_name(*recording, channel.result); !name.empty()) {
-          units.insert(std::move(name));
-        }
-      }
-    }
-  }
-  return units;
-}
-
-/// Sentences of sessions that were recorded under a condition of the arm's other sessions and lack an axis of theirs:
-/// what is broken in one session must not be left out of the comparison in silence.
-std::vector<std::string> lacking_sessions(const std::vector<PowerUp>& sessions, const std::string& arm) {
-  std::map<std::string, std::set<std::string>> units;  // by condition
-  for (const PowerUp& session : sessions) {
-    for (const ComparedRecording* recording : session.recordings) {
-      units[recording->condition].merge(units_of({PowerUp{session.name, {recording}}}));
-    }
-  }
-  std::vector<std::string> sentences;
-  for (const PowerUp& session : sessions) {
-    const std::set<std::string> own = units_of({session});
-    std::set<std::string> lacking;
-    for (const ComparedRecording* recording : session.recordings) {
-      std::set_difference(units[recording->condition].begin(), units[recording->condition].end(), own.begin(),
-                          own.end(), std::inserter(lacking, lacking.end()));
-    }
-    for (const std::string& unit : lacking) {
-      std::string sentence = "Session " + session.name + " of the ";
-      sentences.push_back(sentence.append(arm).append(" lacks ").append(unit).append(", which its others have."));
-    }
-  }
-  return sentences;
-}
-
-std::vector<double> temperatures_of(const std::vector<PowerUp>& sessions) {
-  std::vector<double> all;
-  for (const PowerUp& session : sessions) {
-    for (const ComparedRecording* recording : session.recordings) {
-      if (recording->temperature_degc) {
-        all.push_back(*recording->temperature_degc);
-      }
-    }
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
 }  // namespace
 
 std::string_view name_of(CheckVerdict verdict) {
@@ -372,38 +338,6 @@ std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline, const
           check_contamination(baseline, candidate, event_alpha),
           check_findings(baseline, candidate),
           check_rate(baseline, candidate)};
-}
-
-std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
-  std::vector<Incomparable> found;
-  const std::set<std::string> before = units_of(baseline);
-  const std::set<std::string> now = units_of(candidate);
-  for (const std::string& unit : before) {
-    if (!now.contains(unit)) {
-      found.push_back({"unit", "Candidate lacks " + unit + "."});
-    }
-  }
-  for (const std::string& unit : now) {
-    if (!before.contains(unit)) {
-      found.push_back({"unit", "Baseline lacks " + unit + "."});
-    }
-  }
-  for (const auto& [sessions, arm] : {std::pair{&baseline, "baseline"}, std::pair{&candidate, "candidate"}}) {
-    for (std::string& sentence : lacking_sessions(*sessions, arm)) {
-      found.push_back({"unit", std::move(sentence)});
-    }
-  }
-  const std::vector<double> cold = temperatures_of(baseline);
-  const std::vector<double> warm = temperatures_of(candidate);
-  if (!cold.empty() && !warm.empty()) {
-    const double apart = warm[warm.size() / 2] - cold[cold.size() / 2];
-    if (std::abs(apart) > kWarmer) {
-      found.push_back({"temperature", written("The candidate was %.1f K %s than the baseline; at most 5 K apart can be "
-                                              "compared.",
-                                              std::abs(apart), apart > 0.0 ? "warmer" : "colder")});
-    }
-  }
-  return found;
 }
 
 }  // namespace driftlab::regression

@@ -1,6 +1,6 @@
 #pragma once
-/// What is not a level of noise: facts of the candidate's sessions against those of all baseline sessions, and whether
-/// the two arms can be compared at all (spec/regression.md, section 7).
+/// What is not a level of noise: facts of the candidate's sessions against those of all baseline sessions
+/// (spec/regression.md, section 7).
 ///
 /// Saturation, missing, frozen and repeated samples, jitter of the time stamps, resolution, sampling rate and
 /// identified causes are compared as facts. Gross errors are counted (gross_errors.hpp); their p share the level of the
@@ -18,7 +18,7 @@ enum class CheckVerdict { Ok, Note, Fail };
 
 struct EventCheck {
   std::string check;  ///< full_scale, missing, frozen, repeated, timestamps, resolution, contamination, findings, rate,
-                      ///< bias (bias_check.hpp)
+                      ///< bias (bias_check.hpp), scale_factor (scale_check.hpp)
   CheckVerdict verdict = CheckVerdict::Ok;
   std::string sentence;               ///< empty where it is fine
   std::vector<std::string> sessions;  ///< the candidate's that show it
@@ -28,17 +28,6 @@ struct EventCheck {
 /// One entry per check, in the order above. `event_alpha` is the level of the family of tests in this look.
 [[nodiscard]] std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline,
                                                    const std::vector<PowerUp>& candidate, double event_alpha);
-
-/// A reason why the arms cannot be compared: inconclusive whatever the noise says.
-struct Incomparable {
-  std::string item;  ///< arms, unit, temperature, length, repeatability
-  std::string sentence;
-};
-
-/// Units that one arm lacks, or a session that its arm's others have under the same condition, and temperatures more
-/// than 5 K apart.
-[[nodiscard]] std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline,
-                                                     const std::vector<PowerUp>& candidate);
 
 /// `gyroscope z`, `accelerometer x, 9 deg/s about z`: how a channel under a condition is called; empty for a channel
 /// that is not compared, for nobody said what it measures or along which axis.

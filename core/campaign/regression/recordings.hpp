@@ -25,11 +25,18 @@ struct ChannelFacts {
   std::size_t flagged = 0;                    ///< gross errors
   double resolution = 0.0;                    ///< step of the lattice [channel unit]; 0: none
   std::optional<double> mean = std::nullopt;  ///< of the analysed samples [channel unit]
+  bool mean_of_error = false;                 ///< a reference was subtracted first
 };
 
 struct ComparedChannel {
   ReportedChannel result;
   ChannelFacts facts;
+};
+
+/// Range of a sensor as somebody stated it; nothing where nobody did.
+struct FullScales {
+  std::optional<double> gyroscope;      ///< [rad/s]
+  std::optional<double> accelerometer;  ///< [m/s^2]
 };
 
 struct ComparedRecording {
@@ -44,6 +51,7 @@ struct ComparedRecording {
   std::size_t samples = 0;
   std::size_t missing = 0;  ///< samples that the time column says are missing
   std::optional<double> temperature_degc;
+  FullScales full_scale = {};
   std::vector<std::string> causes;  ///< identified by a stored investigation
   std::vector<ComparedChannel> channels;
 };
@@ -71,6 +79,13 @@ struct BiasMargins {
   [[nodiscard]] bool any() const { return gyroscope > 0.0 || accelerometer > 0.0; }
 };
 
+/// How far a scale factor may move, as a ratio; 0: it is told and not tested.
+struct ScaleMargins {
+  double gyroscope = 0.0;
+  double accelerometer = 0.0;
+  [[nodiscard]] bool any() const { return gyroscope > 0.0 || accelerometer > 0.0; }
+};
+
 struct Settings {
   TestSettings test;
   Margins gyroscope = {};
@@ -81,6 +96,7 @@ struct Settings {
   Tau0 tau0_accelerometer = {0.015, 0.025, 0.025};
   double min_edf = 10.0;
   BiasMargins bias = {};
+  ScaleMargins scale_factor = {};
 };
 
 struct Request {

@@ -4,6 +4,7 @@
 #include "core/campaign/regression/compared_sessions.hpp"
 #include "core/campaign/regression/design_builder.hpp"
 #include "core/campaign/regression/release_order.hpp"
+#include "core/campaign/regression/scale_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -197,12 +198,15 @@ Result<Report> run_regression(const Request& request) {
          "The rig does not repeat: sessions without a change differ more than four times as much as "
          "sessions of such sensors do."});
   }
-  // Where the bias is tested too, it takes half of the level of the events.
-  const double level =
-      request.settings.test.look_share * request.settings.test.event_alpha * (request.settings.bias.any() ? 0.5 : 1.0);
-  report.checks = check_events(sessions.baseline.sessions, sessions.candidate.sessions, level);
-  report.checks.push_back(
-      check_bias(sessions.baseline.sessions, sessions.candidate.sessions, request.settings.bias, level));
+  // Gross errors, and bias and scale factor where they are tested, share the level of the events.
+  const Settings& settings = request.settings;
+  const double tests = 1.0 + (settings.bias.any() ? 1.0 : 0.0) + (settings.scale_factor.any() ? 1.0 : 0.0);
+  const double level = settings.test.look_share * settings.test.event_alpha / tests;
+  const std::vector<PowerUp>& before = sessions.baseline.sessions;
+  const std::vector<PowerUp>& candidate = sessions.candidate.sessions;
+  report.checks = check_events(before, candidate, level);
+  report.checks.push_back(check_bias(before, candidate, settings.bias, level));
+  report.checks.push_back(check_scale_factor(before, candidate, settings.scale_factor, level));
   const bool event = std::any_of(report.checks.begin(), report.checks.end(),
                                  [](const EventCheck& check) { return check.verdict == CheckVerdict::Fail; });
   report.verdict = event                           ? Verdict::Fail

@@ -1,5 +1,6 @@
 #pragma once
 /// The use of it all: a request in, a verdict in sentences out.
+#include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/event_checks.hpp"
 #include "core/campaign/regression/release_trend.hpp"
 #include "core/campaign/regression/verdict.hpp"

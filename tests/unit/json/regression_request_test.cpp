@@ -26,5 +26,43 @@ TEST(RecordedAt, RefusesWhatIsNoTimeOrHasNoZone) {
   }
 }
 
+Json parsed(const char* text) { return *parse_json(text); }
+
+TEST(RegressionRequest, ReadsFullScalesAndMarginsOfTheScaleFactor) {
+  Faults faults;
+  const WrittenRegression run = regression_from_json(
+      parsed(R"({"candidate": {"recordings": [{"file": "a.csv", "temperature_degc": 25, "causes": ["aliasing"],
+                                                "full_scale": {"gyroscope": 250, "accelerometer": 2}}]},
+                  "settings": {"margin": {"scale_factor": {"gyroscope": 500}}}})"),
+      faults);
+  ASSERT_TRUE(faults.none()) << faults.error().message;
+  EXPECT_DOUBLE_EQ(run.settings.scale_factor.gyroscope, 5e-4);
+  EXPECT_EQ(run.settings.scale_factor.accelerometer, 0.0);
+  const StatedFacts& stated = run.candidate.recordings.at(0).stated;
+  EXPECT_DOUBLE_EQ(stated.full_scale.gyroscope.value_or(0.0), 250.0 * kRegressionDegS);
+  Json kept = Json::object();  // as a state file or a job holds it
+  add_stated_facts(stated, kept);
+  regression::ComparedRecording recording;
+  stated_facts_of(kept).tell(recording);
+  EXPECT_DOUBLE_EQ(recording.full_scale.accelerometer.value_or(0.0), 2.0 * 9.80665);
+  EXPECT_EQ(recording.temperature_degc, 25.0);
+  EXPECT_EQ(recording.causes, std::vector<std::string>{"aliasing"});
+  EXPECT_TRUE(StatedFacts{}.empty());
+  EXPECT_FALSE(stated.empty());
+}
+
+TEST(RegressionRequest, RefusesFullScalesAndMarginsThatAreNone) {
+  for (
+      const char* const text :
+      {R"({"candidate": {"recordings": [{"file": "a.csv", "full_scale": {"gyroscope": 0}}]}})",
+       R"({"candidate": {"recordings": [{"file": "a.csv", "full_scale": {"gyro": 250}}]}})",
+       R"({"candidate": {"recordings": [{"file": "a.csv"}]}, "settings": {"margin": {"scale_factor": {"gyroscope": -1}}}})",
+       R"({"candidate": {"recordings": [{"file": "a.csv"}]}, "settings": {"margin": {"scale_factor": 500}}})"}) {
+    Faults faults;
+    (void)regression_from_json(parsed(text), faults);
+    EXPECT_FALSE(faults.none()) << text;
+  }
+}
+
 }  // namespace
 }  // namespace driftlab

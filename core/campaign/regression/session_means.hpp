@@ -1,0 +1,57 @@
+#pragma once
+/// Whether a figure that a session has one of (a bias, a scale factor) moved with the change by more than a margin.
+///
+/// How much such a figure moves from one power-up to the next has no prior, for that differs by orders between sensors:
+/// it is tested only with a margin and three sessions an arm, and is told otherwise. The test is Welch's (1947),
+/// Biometrika 34, 28: with d the difference of the arms' means of session figures and se^2 = s_1^2/n + s_2^2/m, more
+/// than the margin is shown where P(T > (|d| - margin)/se), T Student's with the degrees of freedom of Welch and
+/// Satterthwaite, times the number of units (Bonferroni; for the smallest p it is Holm) is at most the level.
+/// Internal to core/campaign/regression.
+#include "core/campaign/regression/event_checks.hpp"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace driftlab::regression {
+
+/// The figures of one unit, one for each session that has it [SI].
+struct ArmFigures {
+  std::vector<double> baseline;
+  std::vector<double> candidate;
+  bool gyroscope = false;
+  [[nodiscard]] double difference() const;  ///< mean of the candidate less that of the baseline
+};
+
+using FiguresByUnit = std::map<std::string, ArmFigures>;
+
+struct SessionFigure {
+  double value = 0.0;
+  bool gyroscope = false;
+};
+
+/// Of each unit that both arms have, what `of` finds in each session.
+[[nodiscard]] FiguresByUnit arm_figures(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                                        const std::function<std::map<std::string, SessionFigure>(const PowerUp&)>& of);
+
+/// What a check of such figures is called, and how it speaks.
+struct ShiftWords {
+  std::string check;        ///< `bias`
+  std::string figure;       ///< "the bias"
+  std::string no_sessions;  ///< why a set margin is not tested: fewer than three sessions an arm
+  std::string no_figures;   ///< ... no session has such a figure
+  std::function<std::string(double value, bool gyroscope)> text;  ///< with its unit, without a sign in front
+};
+
+struct ShiftMargins {
+  double gyroscope = 0.0;  ///< [SI]; 0: told and not tested
+  double accelerometer = 0.0;
+};
+
+/// Fail where more than the margin is shown; note where a margin cannot be tested; else fine, with a sentence on the
+/// largest move. `level`: of this test in this look.
+[[nodiscard]] EventCheck check_shift(const FiguresByUnit& figures, const std::vector<PowerUp>& candidate,
+                                     const ShiftMargins& margins, const ShiftWords& words, double level);
+
+}  // namespace driftlab::regression
