@@ -2,13 +2,16 @@
 /// Two ways to the same characterisation document: in this process, or through a daemon.
 #include "clients/cli/cli.hpp"
 #include "clients/cli/input.hpp"
+#include "clients/cli/local_files.hpp"
 #include "clients/cli/remote_job.hpp"
 #include "core/analysis/characterise.hpp"
 
 namespace driftlab::cli {
 
-/// Decodes, maps and characterises each file here. Cancelled by interrupt_token.
-[[nodiscard]] tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options);
+/// Decodes, maps and characterises each file here; `check`, which may be empty, is asked of each before. Cancelled by
+/// interrupt_token.
+[[nodiscard]] tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options,
+                                                            ColumnCheck check = {});
 
 /// Uploads each file, and a study as a study, queues one job for all of them, follows its events and fetches its
 /// result. Calibrations that files name are stored there first.

@@ -91,7 +91,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
   command
       ->add_option("--models", flags->models,
                    "Candidate models, e.g. WN,WN+GM; default: the nine of Radi et al. (2017)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_flag("--stepwise", flags->stepwise,
                     "Go on from the best of the models, process by process over all that are known");
   command

@@ -1,4 +1,5 @@
 // `driftlab convert`: any result for programs that read tables or MATLAB files.
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
 #include "schema/json/flat_document.hpp"
@@ -27,7 +28,7 @@ tl::expected<Json, Failure> document_of(const Flags& flags) {
     return fetch_document(flags.server, "/v1/jobs/" + percent_encode(flags.job) + "/result");
   }
   Result<Json> document = flags.file == "-" ? parse_json(std::string(std::istreambuf_iterator<char>(std::cin), {}))
-                                            : read_result(flags.file);
+                                            : read_json_file(flags.file, kWrittenByJson);
   if (!document) {
     return tl::unexpected(Failure{document.error(), Exit::BadInput});
   }

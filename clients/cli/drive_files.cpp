@@ -1,29 +1,11 @@
 #include "clients/cli/drive_files.hpp"
 
+#include "clients/cli/json_file.hpp"
 #include "core/read/format.hpp"
 #include "core/read/rtklib_tag.hpp"
 #include "schema/json/drive_document.hpp"
 
-#include <fstream>
-#include <sstream>
-
 namespace driftlab::cli {
-namespace {
-
-Result<Json> json_file(const std::string& path, const char* what) {
-  const std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return fail(ErrorCode::NotFound, "The " + std::string(what) + " " + path + " cannot be opened.");
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  auto document = parse_json(text.str());
-  return document ? std::move(document)
-                  : Result<Json>(fail(document.error().code, path + ": " + document.error().message));
-}
-
-}  // namespace
-
 Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunControl& control) {
   auto decoded = decode_file(folder_ / source.file, workspace_.file(), {}, control);
   if (!decoded) {
@@ -46,11 +28,11 @@ Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunCont
 }
 
 Result<Json> read_drive_json(const std::string& path, const std::string& model_path) {
-  auto document = json_file(path, "drive document");
+  auto document = read_json_file(path, "a drive document, as schema/docs/drives.md describes it");
   if (!document || model_path.empty()) {
     return document;
   }
-  auto model = json_file(model_path, "model");
+  auto model = read_json_file(model_path, "a model");
   if (!model) {
     return fail(model.error());
   }
@@ -67,7 +49,7 @@ Result<drive::Document> read_drive_document(const std::string& path, const std::
   }
   Faults faults;
   drive::Document made = drive_from_json(*document, faults);
-  return faults.none() ? Result<drive::Document>(std::move(made)) : fail(faults.error());
+  return faults.none() ? Result<drive::Document>(std::move(made)) : fail(in_file(path, faults.error()));
 }
 
 Result<drive::Tables> open_drive_tables(const std::string& path, const drive::Document& document,

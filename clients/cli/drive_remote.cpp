@@ -80,7 +80,7 @@ tl::expected<void, Failure> upload_files(HttpClient& client, const std::string& 
   for (const auto& [file, spec] : specs) {
     const auto done = static_cast<double>(ids.size());
     const std::string& name = file;
-    auto id = upload_recording(client, device, spec, {}, folder / file, [&](double fraction) {
+    auto id = upload_recording(client, device, spec, {}, folder / file, file, [&](double fraction) {
       bar.show("upload " + name, kUploads * (done + fraction) / static_cast<double>(specs.size()));
     });
     if (!id) {

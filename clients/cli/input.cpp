@@ -1,12 +1,10 @@
 #include "clients/cli/input.hpp"
 
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/left_out_lines.hpp"
 #include "core/signal/number.hpp"
 #include "schema/json/calibration.hpp"
 #include "schema/json/recording_spec.hpp"
-
-#include <fstream>
-#include <sstream>
 
 namespace driftlab::cli {
 namespace {
@@ -42,21 +40,6 @@ Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
   return spec;
 }
 
-/// The document in a file; `what` it is, for the sentence that says it is not there.
-Result<Json> read_document(const std::filesystem::path& path, const std::string& what) {
-  const std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return fail(ErrorCode::NotFound, "The " + what + " " + path.string() + " cannot be opened.");
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  auto document = parse_json(text.str());
-  if (!document) {
-    return fail(document.error().code, path.string() + ": " + document.error().message);
-  }
-  return document;
-}
-
 /// Reads the calibrations that the recordings name; names in a study are relative to its folder.
 Status read_calibrations(const std::filesystem::path& folder, Inputs& inputs) {
   for (InputFile& file : inputs.files) {
@@ -64,7 +47,7 @@ Status read_calibrations(const std::filesystem::path& folder, Inputs& inputs) {
       continue;
     }
     const std::filesystem::path path = folder / file.spec.calibration;
-    auto document = read_document(path, "calibration");
+    auto document = read_json_file(path, "a calibration, as `driftlab calibrate --json` writes it");
     if (!document) {
       return fail(document.error());
     }
@@ -80,7 +63,7 @@ Status read_calibrations(const std::filesystem::path& folder, Inputs& inputs) {
 }
 
 Result<Inputs> read_study(const std::filesystem::path& path) {
-  auto document = read_document(path, "study");
+  auto document = read_json_file(path, "a study (JSON), or recordings in place of it");
   if (!document) {
     return fail(document.error());
   }
@@ -118,8 +101,7 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
     }
   }
   if (!faults.none()) {
-    const Error error = faults.error();
-    return fail(error.code, path.string() + ", " + error.fields.front().name + ": " + error.message, error.fields);
+    return fail(in_file(path, faults.error()));
   }
   if (auto read = read_calibrations(path.parent_path(), inputs); !read) {
     return fail(read.error());

@@ -14,8 +14,9 @@
 
 namespace driftlab::cli {
 
-tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options) {
-  auto files = LocalFiles::of(inputs);
+tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options,
+                                              ColumnCheck check) {
+  auto files = LocalFiles::of(inputs, std::move(check));
   if (!files) {
     return tl::unexpected(Failure{files.error(), Exit::BadInput});
   }
@@ -88,8 +89,8 @@ Result<AxisTables> axis_tables(const Json& document, const std::string& device,
   const PooledSensor* const pooled = axis.pooled ? &*axis.pooled : nullptr;
   const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
-    axis.tables[m] =
-        build_parameter_table({device, quantity, sensor.axis, kMethods[m], "", hardware}, sensor.sources, pooled);
+    axis.tables[m] = build_parameter_table({device, quantity, sensor.axis, kMethods[m], "", std::nullopt, hardware},
+                                           sensor.sources, pooled);
   }
   return axis;
 }

@@ -4,12 +4,12 @@
 
 namespace driftlab::cli {
 
-Result<std::unique_ptr<LocalFiles>> LocalFiles::of(const Inputs& inputs) {
+Result<std::unique_ptr<LocalFiles>> LocalFiles::of(const Inputs& inputs, ColumnCheck check) {
   auto workspace = Workspace::make();
   if (!workspace) {
     return fail(workspace.error());
   }
-  return std::unique_ptr<LocalFiles>(new LocalFiles(inputs, std::move(*workspace)));
+  return std::unique_ptr<LocalFiles>(new LocalFiles(inputs, std::move(check), std::move(*workspace)));
 }
 
 Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& control) {
@@ -21,6 +21,11 @@ Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& co
   auto columns = ColumnFile::open(workspace_.file());
   if (!columns) {
     return fail(columns.error());
+  }
+  if (check_) {
+    if (auto checked = check_(file.spec, columns->names()); !checked) {
+      return fail(std::move(checked.error()));
+    }
   }
   return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes), inputs_.hardware};
 }

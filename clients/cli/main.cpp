@@ -5,14 +5,33 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <string_view>
 
 namespace driftlab::cli {
 
+namespace {
+
+/// The sentence with the rate called as the command line calls it, where it is what is wrong.
+std::string with_flags(const Error& error) {
+  constexpr std::string_view kName = "rate_hz";
+  std::string text = error.message;
+  const bool is_rate = std::any_of(error.fields.begin(), error.fields.end(), [&](const ErrorField& field) {
+    return field.name == "parameter" && field.value == kName;
+  });
+  if (const std::size_t at = text.find(kName); is_rate && at != std::string::npos) {
+    text.replace(at, kName.size(), "--rate-hz (rate_hz in a study)");
+  }
+  return text;
+}
+
+}  // namespace
+
 Exit complain(const Error& error, Exit exit) {
-  std::string text = "driftlab: " + error.message;
+  std::string text = "driftlab: " + with_flags(error);
   std::string where;
   for (const ErrorField& field : error.fields) {
     if (field.name.size() > 1 && field.name.starts_with('/') && where.empty()) {
@@ -37,6 +56,21 @@ Exit complain_of_work(const Error& error) {
 }
 
 namespace {
+
+/// The first word is no command: which there are. Empty where it is one, or there is no word.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') {
+    return "";
+  }
+  std::string names;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->check_name(argv[1])) {
+      return "";
+    }
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  return "There is no command '" + std::string(argv[1]) + "'; there are " + names + ".";
+}
 
 /// What stands in the file, or in DRIFTLAB_TOKEN; white space around it does not belong to it. Error: NotFound.
 Result<std::string> read_token(const std::string& path) {
@@ -75,6 +109,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // --help, --version
       return app.exit(error);
+    }
+    if (const std::string unknown = driftlab::cli::unknown_command(app, argc, argv); !unknown.empty()) {
+      return static_cast<int>(driftlab::cli::complain({driftlab::ErrorCode::InvalidArgument, unknown, {}}));
     }
     std::fprintf(stderr, "driftlab: %s (--help lists the options)\n", error.what());
     return static_cast<int>(Exit::BadInput);

@@ -1,4 +1,5 @@
 #include "clients/cli/analysis.hpp"
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
 #include "schema/json/report_page.hpp"
@@ -27,7 +28,7 @@ struct Documented {
 /// A document as it stands, or recordings characterised now, with the name of their device.
 tl::expected<Documented, Failure> document_of(const Flags& flags) {
   if (flags.files.size() == 1 && flags.files.front().ends_with(".json")) {
-    auto document = read_result(flags.files.front());
+    auto document = read_json_file(flags.files.front(), kWrittenByJson);
     if (!document) {
       return tl::unexpected(Failure{document.error(), Exit::BadInput});
     }

@@ -5,8 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 namespace driftlab::cli {
 namespace {
@@ -61,20 +59,6 @@ Status write_plots(const Json& document, const std::string& path, const std::str
     }
   }
   return {};
-}
-
-Result<Json> read_result(const std::string& path) {
-  const std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return fail(ErrorCode::NotFound, "The file " + path + " cannot be opened.");
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  auto document = parse_json(text.str());
-  if (!document) {
-    return fail(document.error().code, path + ": " + document.error().message);
-  }
-  return document;
 }
 
 }  // namespace driftlab::cli

@@ -22,7 +22,4 @@ void add_plot_flag(CLI::App& command, std::string& path);
 /// nothing to draw), Io.
 [[nodiscard]] Status write_plots(const Json& document, const std::string& path, const std::string& channel = "");
 
-/// A document that driftlab wrote, from a file. Errors: NotFound, those of parse_json with the path.
-[[nodiscard]] Result<Json> read_result(const std::string& path);
-
 }  // namespace driftlab::cli

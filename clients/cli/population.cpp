@@ -1,6 +1,7 @@
 #include "schema/json/population.hpp"
 
 #include "clients/cli/http_client.hpp"
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
 #include "schema/json/campaign_summary.hpp"
@@ -24,7 +25,7 @@ struct Flags {
 
 /// The tables by Allan variance of a document that `characterise --json` wrote; the device has the file's name.
 Status add_tables(const std::string& file, const std::string& sensor, std::vector<ParameterTable>& tables) {
-  const auto document = read_result(file);
+  const auto document = read_json_file(file, "what `driftlab characterise --json` wrote, one for each device");
   if (!document) {
     return fail(document.error());
   }

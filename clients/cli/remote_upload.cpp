@@ -19,7 +19,8 @@ std::string columns_text(const std::map<std::string, ColumnRole>& columns) {
   return text;
 }
 
-std::string upload_target(const std::string& device, const RecordingSpec& spec, const RecordingTags& tags) {
+std::string upload_target(const std::string& device, const RecordingSpec& spec, const RecordingTags& tags,
+                          const std::string& file_name) {
   std::string target = "/v1/recordings?device=" + percent_encode(device) +
                        "&condition=" + percent_encode(to_text(spec.condition)) + "&id=" + percent_encode(spec.id);
   if (spec.rate_hz) {
@@ -43,7 +44,8 @@ std::string upload_target(const std::string& device, const RecordingSpec& spec, 
   }
   for (const auto& [name, text] : {std::pair<const char*, const std::string*>{"labels", &labels},
                                    {"session", &tags.session},
-                                   {"recorded_at", &tags.recorded_at}}) {
+                                   {"recorded_at", &tags.recorded_at},
+                                   {"file_name", &file_name}}) {
     if (!text->empty()) {
       target += "&" + std::string(name) + "=" + percent_encode(*text);
     }
@@ -55,8 +57,8 @@ std::string upload_target(const std::string& device, const RecordingSpec& spec, 
 
 tl::expected<Json, Failure> upload_recording(HttpClient& client, const std::string& device, const RecordingSpec& spec,
                                              const RecordingTags& tags, const std::filesystem::path& file,
-                                             const std::function<void(double)>& sent) {
-  auto reply = client.upload(upload_target(device, spec, tags), file, sent);
+                                             const std::string& file_name, const std::function<void(double)>& sent) {
+  auto reply = client.upload(upload_target(device, spec, tags, file_name), file, sent);
   if (!reply) {
     const bool missing = reply.error().code == ErrorCode::NotFound;
     return tl::unexpected(Failure{reply.error(), missing ? Exit::BadInput : Exit::ServerOrJob});
@@ -73,7 +75,7 @@ tl::expected<Json, Failure> upload_recording(HttpClient& client, const std::stri
 
 tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& device, const InputFile& file,
                                         const RecordingTags& tags, const std::function<void(double)>& sent) {
-  auto id = upload_recording(client, device, file.spec, tags, file.bytes(), sent);
+  auto id = upload_recording(client, device, file.spec, tags, file.bytes(), file.path.filename().string(), sent);
   if (!id) {
     Failure failure = id.error();
     failure.error.message = file.path.string() + ": " + failure.error.message;

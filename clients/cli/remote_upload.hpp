@@ -10,11 +10,12 @@
 
 namespace driftlab::cli {
 
-/// The id of the recording that the daemon has of the file's bytes, uploaded now or before. `sent` is called with the
-/// fraction sent.
+/// The id of the recording that the daemon has of the file's bytes, uploaded now or before. `file_name`: what people
+/// call the file. `sent` is called with the fraction sent.
 [[nodiscard]] tl::expected<Json, Failure> upload_recording(HttpClient& client, const std::string& device,
                                                            const RecordingSpec& spec, const RecordingTags& tags,
                                                            const std::filesystem::path& file,
+                                                           const std::string& file_name,
                                                            const std::function<void(double)>& sent);
 
 /// The same of a file from the command line, whose path a refusal names.

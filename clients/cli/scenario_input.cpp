@@ -1,10 +1,11 @@
 #include "clients/cli/scenario_input.hpp"
 
+#include "clients/cli/json_file.hpp"
 #include "schema/json/outage_scenario.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
+#include <system_error>
 
 namespace driftlab::cli {
 
@@ -13,14 +14,12 @@ Result<Json> scenario_document(const std::string& name_or_path) {
   if (std::find(names.begin(), names.end(), name_or_path) != names.end()) {
     return Json(name_or_path);
   }
-  const std::ifstream file(name_or_path, std::ios::binary);
-  if (!file) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(name_or_path, unknown)) {
     return fail(ErrorCode::NotFound, "There is no scenario and no file '" + name_or_path +
                                          "'; scenarios are paper, paper-position-only, paper-nhc and paper-s-curves.");
   }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return parse_json(text.str());
+  return read_json_file(name_or_path, "a scenario");
 }
 
 Result<OutageScenario> read_scenario(const std::string& name_or_path) {
@@ -31,7 +30,7 @@ Result<OutageScenario> read_scenario(const std::string& name_or_path) {
   Faults faults;
   OutageScenario scenario = scenario_or_name(*document, "", faults);
   if (!faults.none()) {
-    return fail(faults.error());
+    return fail(in_file(name_or_path, faults.error()));
   }
   return scenario;
 }

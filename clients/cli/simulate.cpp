@@ -1,6 +1,7 @@
 #include "core/analysis/simulate.hpp"
 
 #include "clients/cli/cli.hpp"
+#include "clients/cli/json_file.hpp"
 #include "clients/cli/scenario_input.hpp"
 #include "clients/cli/table_file.hpp"
 #include "core/signal/number.hpp"
@@ -9,9 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 namespace driftlab::cli {
 namespace {
@@ -49,13 +48,7 @@ std::string provenance(const Flags& flags) {
 
 /// A model file: a model, an investigation's report (its extended model), a fit, or a list of processes.
 Result<investigate::Baseline> read_model(const std::string& path) {
-  const std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    return fail(ErrorCode::NotFound, "There is no file '" + path + "'.");
-  }
-  std::ostringstream text;
-  text << file.rdbuf();
-  auto document = parse_json(text.str());
+  auto document = read_json_file(path, "a model, an investigation's report or a fit");
   if (!document) {
     return fail(document.error());
   }
@@ -67,7 +60,7 @@ Result<investigate::Baseline> read_model(const std::string& path) {
   Faults faults;
   investigate::Baseline model = simulation_model_from_json(*document, "", faults);
   if (!faults.none()) {
-    return fail(faults.error());
+    return fail(in_file(path, faults.error()));
   }
   return model;
 }

@@ -16,6 +16,7 @@ struct Flags {
   std::string axis;
   std::string method = "gmwm";
   std::string model;
+  std::string reference;
   std::string format = "text";
   std::string plot;
 };
@@ -26,6 +27,9 @@ std::string media_type(const std::string& format) {
   }
   if (format == "markdown") {
     return "text/markdown";
+  }
+  if (format == "latex") {
+    return "text/x-latex";
   }
   return format == "json" ? "application/json" : "text/plain";
 }
@@ -38,6 +42,9 @@ Exit run(const Flags& flags) {
   }
   if (!flags.model.empty()) {
     target += "&model=" + percent_encode(flags.model);
+  }
+  if (!flags.reference.empty()) {
+    target += "&reference=" + percent_encode(flags.reference);
   }
   if (!flags.plot.empty()) {
     const auto document = fetch_document(flags.server, target);
@@ -59,11 +66,13 @@ void add_table(CLI::App& app, Command& chosen) {
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
   command->add_option("--device", flags->device, "Name or id of the device")->required();
   command->add_option("--sensor", flags->sensor, "gyroscope or accelerometer")->capture_default_str();
-  command->add_option("--axis", flags->axis, "x, y or z");
+  command->add_option("--axis", flags->axis, "x, y or z; all: a table for each axis that has results");
   command->add_option("--method", flags->method, "gmwm or av (Allan variance)")->capture_default_str();
   command->add_option("--model", flags->model, "Model of the table; default: the best over all conditions");
-  command->add_option("--format", flags->format, "text, csv, markdown or json")
-      ->check(CLI::IsMember({"text", "csv", "markdown", "json"}))
+  command->add_option("--reference", flags->reference,
+                      "Condition of the row that changes are against, for example static; default: the first row");
+  command->add_option("--format", flags->format, "text, csv, markdown, latex or json")
+      ->check(CLI::IsMember({"text", "csv", "markdown", "latex", "json"}))
       ->capture_default_str();
   add_plot_flag(*command, flags->plot);
   command->callback([flags, &chosen] { chosen = [flags] { return run(*flags); }; });

@@ -258,6 +258,8 @@ CsvDecoder::FastReader CsvDecoder::choose_fast_reader(const text::Dialect& diale
       return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<';', ','> : &CsvDecoder::take_rows_fast<';', '.'>;
     case '\t':
       return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<'\t', ','> : &CsvDecoder::take_rows_fast<'\t', '.'>;
+    case '|':
+      return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<'|', ','> : &CsvDecoder::take_rows_fast<'|', '.'>;
     case ' ':
       return dialect.decimal_comma ? &CsvDecoder::take_rows_fast<' ', ','> : &CsvDecoder::take_rows_fast<' ', '.'>;
     default:
@@ -346,7 +348,7 @@ Status CsvDecoder::take_row_carefully(std::string_view line) {
   }
   if (cells.size() != names_.size()) {
     return at_line(ErrorCode::RaggedRow, "has " + std::to_string(cells.size()) + " values; the first row has " +
-                                             std::to_string(names_.size()) + ".");
+                                             std::to_string(names_.size()) + "; correct or delete that line.");
   }
   for (std::size_t column = 0; column < cells.size(); ++column) {
     batch_[filled_ + column] = cells_.take(cells[column], column, line_);
@@ -378,7 +380,10 @@ Status CsvDecoder::finish() {
     return fail(ErrorCode::NoSamples, "The file has a header and no samples under it.");
   }
   if (!cells_.any_number()) {
-    return fail(cells_.first_fault());
+    Error none = cells_.first_fault();
+    none.message.pop_back();  // its full stop
+    none.message += ", and no other cell is; wanted are numbers between commas, semicolons, tabs, bars or blanks.";
+    return fail(std::move(none));
   }
   if (words_.count() > std::max<std::uint64_t>(3, rows_ / 10)) {
     line_ = words_.first();

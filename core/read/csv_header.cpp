@@ -32,6 +32,22 @@ Result<std::string> column_name(const std::string& cell, std::size_t column, boo
   return name;
 }
 
+/// Names between blanks with their units behind a blank too, `t [s] gx [deg/s]`: units go to their names where that
+/// makes as many names as a row has cells.
+void join_units(std::vector<std::string>& cells, std::size_t width) {
+  std::vector<std::string> joined;
+  for (const std::string& cell : cells) {
+    if (!joined.empty() && (cell.starts_with('[') || cell.starts_with('('))) {
+      joined.back() += " " + cell;
+    } else {
+      joined.push_back(cell);
+    }
+  }
+  if (joined.size() == width) {
+    cells = std::move(joined);
+  }
+}
+
 }  // namespace
 
 CsvFirstLine read_first_line(std::string_view line, const text::Dialect& dialect, ColumnSink& sink) {
@@ -47,6 +63,9 @@ CsvFirstLine read_first_line(std::string_view line, const text::Dialect& dialect
       cells = dialect.names;
     }
     return first;
+  }
+  if (dialect.separator == ' ' && cells.size() > dialect.width) {
+    join_units(cells, dialect.width);
   }
   for (std::size_t i = 0; i < std::min(cells.size(), dialect.units.size()); ++i) {
     cells[i] += dialect.units[i].empty() ? "" : " (" + dialect.units[i] + ")";

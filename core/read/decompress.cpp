@@ -65,7 +65,8 @@ class Decompressor : public ByteReader {
   Result<bool> next_member();
   [[nodiscard]] tl::unexpected<Error> over_budget() const;
   [[nodiscard]] tl::unexpected<Error> ends_early() const {
-    return fail(ErrorCode::Truncated, "The " + std::string(name_of(kind_)) + " stream ends before it is complete.");
+    return fail(ErrorCode::Truncated,
+                "The " + std::string(name_of(kind_)) + " stream ends before it is complete; copy the file again.");
   }
 
   Compression kind_;

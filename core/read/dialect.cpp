@@ -167,7 +167,7 @@ Reading read_as(const Head& head, char separator, bool decimal_comma) {
 
 std::optional<Reading> best_reading(const Head& head) {
   std::optional<Reading> best;
-  for (const char separator : {',', ';', '\t', ' '}) {
+  for (const char separator : {',', ';', '\t', '|', ' '}) {
     for (const bool decimal_comma : {false, true}) {
       if (separator == ',' && decimal_comma) {
         continue;

@@ -4,7 +4,8 @@
 ///
 /// Nothing in a text file says so; it is found from the first lines alone. Each separator is tried on each line, and
 /// the one under which most lines have the same number of cells and most cells are numbers is taken; the earlier of
-/// equals in the order comma, semicolon, tab, blanks. A decimal comma is tried wherever the comma does not separate.
+/// equals in the order comma, semicolon, tab, bar, blanks. A decimal comma is tried wherever the comma does not
+/// separate.
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -60,7 +60,7 @@ std::string binary_data() { return "binary data; send the samples as CSV or .npy
 std::string describe_text(std::string_view head) {
   const std::string_view start = text::trim(head.substr(std::min(head.find_first_not_of(" \t\r\n"), head.size())));
   if (start.starts_with("<!DOCTYPE html") || start.starts_with("<!doctype html") || start.starts_with("<html")) {
-    return "an HTML page; is this a download that needed a login?";
+    return "an HTML page, as a download that needs a login gives; fetch the file itself";
   }
   if (start.starts_with("<")) {
     return "an XML document; send the samples as CSV or .npy";

@@ -53,8 +53,9 @@ struct Zip {
     if (feed.error) {
       return *feed.error;
     }
-    return feed.ended ? Error{ErrorCode::Truncated, "The ZIP archive ends before it is complete, or is damaged."}
-                      : Error{ErrorCode::CorruptCompression, "The ZIP archive is damaged."};
+    return feed.ended ? Error{ErrorCode::Truncated,
+                              "The ZIP archive ends before it is complete, or is damaged; copy the file again."}
+                      : Error{ErrorCode::CorruptCompression, "The ZIP archive is damaged; copy the file again."};
   }
 };
 

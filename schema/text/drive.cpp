@@ -1,23 +1,12 @@
 #include "schema/text/drive.hpp"
 
 #include "core/signal/angle.hpp"
+#include "schema/text/printed.hpp"
 
 #include <array>
-#include <cstdarg>
-#include <cstdio>
 
 namespace driftlab {
 namespace {
-
-/// As printf, into a string.
-[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...) {
-  std::array<char, 1024> buffer{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer.data(), buffer.size(), format, arguments);
-  va_end(arguments);
-  return buffer.data();
-}
 
 std::string notes_of(const std::vector<std::string>& notes) {
   std::string text;

@@ -107,8 +107,9 @@ std::string populations_to_markdown(const PopulationReport& report) {
     for (const std::string& cell :
          {std::string(sensor_of(row.quantity)) + (row.axis.empty() ? "" : " " + row.axis), row.label, row.parameter,
           population.unit,
-          described && mean.value ? significant(*mean.value, mean.low, mean.high) + " " + interval_text(mean.low, mean.high)
-                    : row.reason,
+          described && mean.value
+              ? significant(*mean.value, mean.low, mean.high) + " " + interval_text(mean.low, mean.high)
+              : row.reason,
           described ? percent(population.spread) : std::string(),
           interval_text(population.predicted_low, population.predicted_high), std::to_string(population.places.size()),
           joined(outlying), names_of(population.left_out)}) {

@@ -6,7 +6,8 @@
 
 namespace driftlab {
 
-/// The verdict, then per parameter a line with mean, spread and prediction, and below it a line for every outlying device.
+/// The verdict, then per parameter a line with mean, spread and prediction, and below it a line for every outlying
+/// device.
 [[nodiscard]] std::string populations_to_text(const PopulationReport& report);
 
 /// The verdict, a pipe table with a row for each parameter, and the details of the verdict.

@@ -90,6 +90,13 @@ TEST(Csv, RefusesATableWithoutAnyNumberByItsFirstCell) {
   EXPECT_EQ(located(decode_bytes("gx\n1e999\n")), "out_of_range@2:gx");
 }
 
+TEST(Csv, SaysInOneSentenceWhatATableWithoutNumbersLacks) {
+  EXPECT_EQ(decode_bytes("gx;gy\na;b\nc;d\n").message,
+            "Line 2, column 'gx': 'a' is not a number, and no other cell is; wanted are numbers between commas, "
+            "semicolons, tabs, bars or blanks.");
+  EXPECT_THAT(decode_bytes("gx,gy\n1,2\n3,4,5\n").message, HasSubstr("; correct or delete that line."));
+}
+
 /// What the NaN in a cell says, as `kind@line`.
 std::string hole(const Outcome& outcome, std::size_t column, std::size_t row) {
   const double value = std::bit_cast<double>(outcome.bits.at(column).at(row));
@@ -195,6 +202,9 @@ TEST(Csv, ReadsEveryDialect) {
   expect_the_same_table(thrice("t\tgx\tgy\n", "0.5\t-1.25\t1e-3\n"), names);
   expect_the_same_table(thrice("t\tgx\tgy\n", "0,5\t-1,25\t1e-3\n"), names);
   expect_the_same_table(thrice("t gx  gy\n", "  0.5   -1.25 1e-3 \n"), names);
+  expect_the_same_table(thrice("t|gx|gy\n", "0.5|-1.25|1e-3\n"), names);
+  expect_the_same_table(thrice("t | gx | gy\n", "0,5 | -1,25 | 1,0E-3\n"), names);
+  expect_the_same_table(thrice("t [s] gx [deg/s] gy\n", "0.5 -1.25 1e-3\n"), {"t [s]", "gx [deg/s]", "gy"});
   expect_the_same_table(thrice("// Counter below\n// Firmware 2\nt\tgx\tgy\n", " 0.5\t-1.25\t1e-3\t\n"), names);
   expect_the_same_table(thrice("t,gx,gy,\n", "0.5,-1.25,1e-3,\n"), names);
   expect_the_same_table(thrice("Fs,100\nLogging Type,0\nt,gx,gy\n", "0.5,-1.25,1e-3\n"), names);
