@@ -61,6 +61,8 @@ void note_disagreement(TableRow& row, const std::vector<ReportedValues>& replica
   }
 }
 
+std::optional<double> p_of(const ReportedFit& fit) { return fit.j_test ? std::optional(fit.j_test->p) : std::nullopt; }
+
 void note_warnings(TableRow& row, const ReportedFit& fit) {
   for (const std::string& warning : fit.warnings) {
     note(row, warning);
@@ -83,6 +85,7 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
     }
     TableRow& shown = row->shown;
     shown.recordings.push_back(source.recording_id);
+    shown.duration_s += static_cast<double>(source.channel.samples) * source.channel.dt_s;
     row->members.push_back(source.member_id());
     shown.contamination = worse_verdict(shown.contamination, source.channel.contamination);
     row->densities.push_back(allan_cells(source.channel).front().second);
@@ -90,6 +93,7 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
       row->replicates.push_back(allan_cells(source.channel));
     } else if (const ReportedFit* const fit = find_fit(source.channel.fits, model)) {
       row->replicates.push_back(model_cells(*fit, row->channel_unit));
+      shown.j_test_p = p_of(*fit);
       shown.robust = shown.robust || fit->robust;
       note_warnings(shown, *fit);
       if (!fit->j_test || !(fit->j_test->p > kRejected)) {
@@ -153,6 +157,7 @@ void take_joint_fit(OpenRow& row, const PooledSensor* pooled, const std::string&
   }
   row.replicates = {model_cells(*fit, row.channel_unit)};
   shown.robust = fit->robust;
+  shown.j_test_p = p_of(*fit);
   shown.warnings.clear();
   note_warnings(shown, *fit);
   if (shown.recordings.size() > 1) {
@@ -188,6 +193,7 @@ void fill_cells(OpenRow& row, const std::vector<TableColumn>& columns) {
   }
   if (row.replicates.size() > 1) {
     row.shown.pooling = Pooling::Average;
+    row.shown.j_test_p.reset();
     row.shown.agreement.reset();
     if (scatter.dof > 0) {
       row.shown.agreement = RecordingAgreement{"", scatter.statistic, static_cast<double>(scatter.dof),
@@ -196,21 +202,71 @@ void fill_cells(OpenRow& row, const std::vector<TableColumn>& columns) {
   }
 }
 
+/// Whether the pooled result is of exactly these sources.
+bool is_current(const PooledSensor* pooled, const std::vector<TableSource>& sources) {
+  if (pooled == nullptr || pooled->model.empty()) {
+    return false;
+  }
+  const std::vector<OpenRow> rows = group_rows(sources, TableMethod::Av, "");
+  return std::all_of(rows.begin(), rows.end(),
+                     [&](const OpenRow& row) { return find_pooled(pooled, row.key, row.members) != nullptr; });
+}
+
 /// The model that the caller asked for, that was pooled over all rows, or that is best over them.
 std::string model_of(const TableRequest& request, const std::vector<TableSource>& sources, const PooledSensor* pooled) {
   if (request.method == TableMethod::Av || !request.model.empty()) {
     return request.method == TableMethod::Av ? "" : request.model;
   }
-  if (pooled != nullptr && !pooled->model.empty()) {
-    const std::vector<OpenRow> rows = group_rows(sources, TableMethod::Av, "");
-    const bool current = std::all_of(rows.begin(), rows.end(), [&](const OpenRow& row) {
-      return find_pooled(pooled, row.key, row.members) != nullptr;
-    });
-    if (current) {
-      return pooled->model;
+  return is_current(pooled, sources) ? pooled->model : common_best_model(sources);
+}
+
+/// Two questions have two answers: which structure is best over all rows, and which serves each of them.
+std::string note_on_model(const TableRequest& request, const std::string& model, const PooledStructure& structure) {
+  if (structure.common.empty() || structure.common == model) {
+    return "";
+  }
+  return "The table shows " + model +
+         (request.model.empty() ? ", whose criterion summed over the conditions is the least; " : ", as was asked; ") +
+         structure.common +
+         " is the smallest structure that, whole or in part, comes close to the best in each condition by itself.";
+}
+
+/// The row that the others are compared with. Error: InvalidArgument naming the conditions that there are.
+Result<std::size_t> reference_row(const TableRequest& request, const std::vector<TableRow>& rows) {
+  if (!request.reference) {
+    return std::size_t{0};
+  }
+  const std::string wanted = to_text(*request.reference);
+  std::string known;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string condition = to_text(rows[i].condition);
+    if (condition == wanted) {
+      return i;
+    }
+    known += (known.empty() ? "" : ", ") + condition;
+  }
+  return fail(ErrorCode::InvalidArgument,
+              "No recording of the table has the condition " + wanted + "; its conditions are " + known + ".",
+              {{"parameter", "reference"}});
+}
+
+/// Changes and ratios of every row against that of the reference.
+void compare_rows(ParameterTable& table) {
+  const TableRow& reference = table.rows[table.reference];
+  const auto compare = [](const TableCell& with, TableCell& cell) {
+    cell.change = change_between(with.estimate, cell.estimate);
+    cell.ratio = ratio_of(cell.estimate, with.estimate);
+  };
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    if (r == table.reference) {
+      continue;
+    }
+    TableRow& row = table.rows[r];
+    compare(reference.density, row.density);
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      compare(reference.cells[c], row.cells[c]);
     }
   }
-  return common_best_model(sources);
 }
 
 /// Errors: those of build_parameter_table.
@@ -310,13 +366,15 @@ Result<ParameterTable> build_parameter_table(const TableRequest& request, const 
     fill_cells(row, table.columns);
     table.rows.push_back(std::move(row.shown));
   }
-  const TableRow& first = table.rows.front();
-  for (std::size_t r = 1; r < table.rows.size(); ++r) {
-    TableRow& row = table.rows[r];
-    row.density.change = change_between(first.density.estimate, row.density.estimate);
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      row.cells[c].change = change_between(first.cells[c].estimate, row.cells[c].estimate);
-    }
+  const auto reference = reference_row(request, table.rows);
+  if (!reference) {
+    return fail(reference.error());
+  }
+  table.reference = *reference;
+  compare_rows(table);
+  if (request.method == TableMethod::Gmwm && is_current(pooled, sources)) {
+    table.structure = pooled->structure;
+    table.model_note = table.structure ? note_on_model(request, model, *table.structure) : "";
   }
   compare_first_row(request, table);
   return table;

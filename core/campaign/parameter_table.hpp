@@ -8,9 +8,10 @@
 /// (`joint`) where a pooled result of exactly these members exists (core/campaign/pooled_sensor.hpp); otherwise, and
 /// for method av, their values are averaged on the log scale with weights from their intervals (`average`). `agreement`
 /// says whether they agree: the likelihood-ratio test of the joint fit, else Cochran's Q over the parameters shown. A
-/// parameter that no replicate identifies has no value, and its reason is given. `change` compares a row with the first
-/// (the static one where there is one): up or down where the two 95 % intervals say so at 5 % (difference of logs
-/// against the root of the summed squared half-widths), none where not, nothing where either is not identified.
+/// parameter that no replicate identifies has no value, and its reason is given. `change` and `ratio` compare a row
+/// with the reference row, which is the first (the static one where there is one) or the one asked for: up or down
+/// where the two 95 % intervals say so at 5 % (difference of logs against the root of the summed squared half-widths),
+/// none where not, nothing where either is not identified.
 #include "core/campaign/pooled_sensor.hpp"
 #include "core/campaign/sensor_sources.hpp"
 #include "core/campaign/sheet_comparison.hpp"
@@ -35,7 +36,8 @@ struct TableRequest {
   Quantity quantity = Quantity::AngularRate;
   std::string axis;
   TableMethod method = TableMethod::Gmwm;
-  std::string model;  ///< empty: chosen by the criterion
+  std::string model;                                  ///< empty: chosen by the criterion
+  std::optional<Condition> reference = std::nullopt;  ///< of the row that others are compared with; nothing: the first
   /// Texts in which the sensor may be named, most telling first: the IMU, the model, the name of the device.
   std::vector<std::string> hardware = {};
 };
@@ -56,14 +58,18 @@ struct TableColumn {
 };
 
 struct TableCell {
-  ReportedValue estimate;        ///< its unit is that of the row
-  std::optional<Change> change;  ///< against the first row
+  ReportedValue estimate;                       ///< its unit is that of the row
+  std::optional<Change> change = std::nullopt;  ///< against the reference row
+  ReportedValue ratio = {};                     ///< to the reference row; without a value in that row itself
 };
 
 struct TableRow {
   Condition condition;
   std::string label;  ///< of the condition, for people
   std::vector<std::string> recordings;
+  double duration_s = 0.0;  ///< of all of them, as analysed
+  std::optional<double> j_test_p =
+      {};                     ///< of the one fit shown; nothing where several are averaged, and without a test
   std::string contamination;  ///< worst verdict of the recordings; empty where none has one
   Pooling pooling = Pooling::Single;
   bool robust = false;  ///< the values come from robust variances
@@ -82,14 +88,19 @@ struct ParameterTable {
   std::string model;  ///< the one model of all rows; empty for method av
   std::vector<TableColumn> columns;
   std::vector<TableRow> rows;  ///< static first, then by kind and value; at least one
+  std::size_t reference = 0;   ///< the row that the others are compared with
   /// Of the first row, where the sensor is known and at rest there.
   std::optional<SheetComparison> data_sheet = std::nullopt;
+  /// Whether one structure serves every condition; nothing where that was not asked of exactly these recordings.
+  std::optional<PooledStructure> structure = std::nullopt;
+  /// How `model` and the structure that `structure` names are both right; empty where they are one.
+  std::string model_note = {};
 };
 
 /// `pooled`: the pooled result of this sensor axis, or nullptr; entries that are not of these sources are passed over.
 /// Where such an entry has no joint fit, its reason is among the row's warnings. Errors: NotFound (no source);
-/// InvalidArgument (a model that no source was fitted with; sources in units that do not convert into each other, for a
-/// column then has no unit).
+/// InvalidArgument (a model that no source was fitted with; a reference that is no row; sources in units that do not
+/// convert into each other, for a column then has no unit).
 [[nodiscard]] Result<ParameterTable> build_parameter_table(const TableRequest& request,
                                                            const std::vector<TableSource>& sources,
                                                            const PooledSensor* pooled = nullptr);

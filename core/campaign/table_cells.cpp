@@ -155,4 +155,30 @@ std::optional<Change> change_between(const ReportedValue& first, const ReportedV
   return difference > 0.0 ? Change::Up : Change::Down;
 }
 
+ReportedValue ratio_of(const ReportedValue& now, const ReportedValue& reference) {
+  ReportedValue ratio;
+  ratio.unit = "1";
+  const auto& above = now.value;
+  const auto& below = reference.value;
+  if (!above || !below || !(*above > 0.0) || !(*below > 0.0)) {
+    return ratio;
+  }
+  ratio.value = *above / *below;
+  const auto a = log_half_width(now);
+  const auto b = log_half_width(reference);
+  if (a && b) {
+    const double half = std::hypot(*a, *b);
+    ratio.low = *above / *below * std::exp(-half);
+    ratio.high = *above / *below * std::exp(half);
+  }
+  return ratio;
+}
+
+std::string_view name_of(Absence absence) { return absence == Absence::NoneFound ? "none_found" : "not_identifiable"; }
+
+Absence absence_of(std::string_view reason) {
+  return reason.find("the best fit has none of it") == std::string_view::npos ? Absence::NotIdentifiable
+                                                                              : Absence::NoneFound;
+}
+
 }  // namespace driftlab

@@ -46,4 +46,21 @@ enum class Change { None, Up, Down };
 /// Nothing where either interval is open.
 [[nodiscard]] std::optional<Change> change_between(const ReportedValue& first, const ReportedValue& now);
 
+/// `now` over `reference`, without unit; the interval from both, taken as independent, on the log scale: the half-width
+/// is the root of the summed squared half-widths, as for change_between. Without it where either interval is open;
+/// without a value where either has none that is greater than zero.
+[[nodiscard]] ReportedValue ratio_of(const ReportedValue& now, const ReportedValue& reference);
+
+/// Why a value is absent.
+enum class Absence {
+  NotIdentifiable,  ///< the data are compatible with none of it, or do not bound it
+  NoneFound,        ///< the best fit has none of it
+};
+
+/// `not_identifiable`, `none_found`.
+[[nodiscard]] std::string_view name_of(Absence absence);
+
+/// From the reason that a fit gives (core/fit/fit_report.hpp), which is all that is stored of it.
+[[nodiscard]] Absence absence_of(std::string_view reason);
+
 }  // namespace driftlab

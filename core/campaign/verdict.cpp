@@ -177,21 +177,22 @@ std::optional<std::size_t> white_column(const ParameterTable& table) {
   return std::nullopt;
 }
 
-/// The levels of white noise of all rows: at the first, and how many of the others moved.
+/// The levels of white noise of all rows: at the reference, and how many of the others moved.
 void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdict) {
-  const ReportedValue& first = table.rows.front().cells[column].estimate;
+  const TableRow& reference = table.rows[table.reference];
+  const ReportedValue& first = reference.cells[column].estimate;
   if (!first.value) {
-    verdict.sentence = "White noise is not identified under the condition " + table.rows.front().label + ".";
+    verdict.sentence = "White noise is not identified under the condition " + reference.label + ".";
     return;
   }
-  verdict.sentence = "White noise is " + written(first) + " (" + table.rows.front().label + ")";
+  verdict.sentence = "White noise is " + written(first) + " (" + reference.label + ")";
   std::size_t moved = 0;
   std::size_t compared = 0;
   const TableRow* highest = nullptr;
   double most = 0.0;
   for (const TableRow& row : table.rows) {
     const TableCell& cell = row.cells[column];
-    if (&row == &table.rows.front() || !cell.estimate.value) {
+    if (&row == &reference || !cell.estimate.value) {
       continue;
     }
     ++compared;
@@ -208,7 +209,7 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
   verdict.sentence += " and " + written(highest->cells[column].estimate) + " at " + highest->label +
                       (compared > 1 ? ", the highest" : "") + ".";
   if (moved == 0) {
-    verdict.sentence += " No change against " + table.rows.front().label + " is shown.";
+    verdict.sentence += " No change against " + reference.label + " is shown.";
   } else {
     verdict.sentence += " It moves";
     if (compared > 1) {
@@ -216,7 +217,7 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
                               ? " under every other condition"
                               : " under " + counted(moved) + " of " + counted(compared) + " other conditions";
     }
-    verdict.sentence += ": a model of " + table.rows.front().label + " alone is wrong for this device in motion.";
+    verdict.sentence += ": a model of " + reference.label + " alone is wrong for this device in motion.";
     raise(verdict, VerdictLevel::Look);
   }
 }
@@ -266,6 +267,12 @@ Verdict verdict_of(const ParameterTable& table) {
       verdict.details.push_back("Gross errors move the variances under " + row.label + ".");
       raise(verdict, VerdictLevel::Look);
     }
+  }
+  if (table.structure && !table.structure->statement.empty()) {
+    verdict.details.push_back(table.structure->statement);
+  }
+  if (!table.model_note.empty()) {
+    verdict.details.push_back(table.model_note);
   }
   if (table.data_sheet) {
     for (const SheetFigure& figure : table.data_sheet->figures) {

@@ -1,5 +1,6 @@
 #include "schema/json/parameter_table.hpp"
 
+#include "core/fit/j_test.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
@@ -7,19 +8,30 @@
 namespace driftlab {
 namespace {
 
-/// Named values with how each changed against the first row; null where there is none, and why in `reasons`.
-Json cells_to_json(const std::vector<std::pair<std::string, const TableCell*>>& cells, Json& reasons) {
+/// Named values with how each compares with the reference row; null where there is none.
+struct Cells {
+  Json values;
+  Json reasons = Json::object();  ///< why there is none, as a sentence
+  Json why = Json::object();      ///< and in a word
+};
+
+Cells cells_to_json(const std::vector<std::pair<std::string, const TableCell*>>& cells) {
+  Cells told;
   ReportedValues estimates;
   for (const auto& [name, cell] : cells) {
     estimates.emplace_back(name, cell->estimate);
   }
-  Json values = to_json(estimates, reasons);
+  told.values = to_json(estimates, told.reasons);
   for (const auto& [name, cell] : cells) {
-    if (Json& value = values[name]; value.is_object()) {
+    if (Json& value = told.values[name]; value.is_object()) {
+      Json no_reasons = Json::object();
       value["change"] = cell->change ? Json(name_of(*cell->change)) : Json(nullptr);
+      value["ratio"] = to_json(ReportedValues{{name, cell->ratio}}, no_reasons).at(name);
+    } else {
+      told.why[name] = name_of(absence_of(cell->estimate.reason));
     }
   }
-  return values;
+  return told;
 }
 
 Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
@@ -27,21 +39,23 @@ Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     cells.emplace_back(columns[c].key, &row.cells[c]);
   }
-  Json reasons = Json::object();
-  Json values = cells_to_json(cells, reasons);
-  Json density_reasons = Json::object();
-  Json density = cells_to_json({{"N", &row.density}}, density_reasons).at("N");
+  Cells told = cells_to_json(cells);
+  Json density = cells_to_json({{"N", &row.density}}).values.at("N");
   return Json{{"condition", to_json(row.condition)},
               {"label", row.label},
               {"density", std::move(density)},
               {"recordings", row.recordings},
+              {"duration_s", number(row.duration_s)},
+              {"fits", row.j_test_p ? Json(*row.j_test_p >= kRejected) : Json(nullptr)},
+              {"j_test_p", row.j_test_p ? number(*row.j_test_p) : Json(nullptr)},
               {"contamination", text_or_null(row.contamination)},
               {"pooling", name_of(row.pooling)},
               {"robust", row.robust},
               {"agreement", to_json(row.agreement)},
               {"warnings", row.warnings},
-              {"values", std::move(values)},
-              {"reasons", std::move(reasons)}};
+              {"values", std::move(told.values)},
+              {"reasons", std::move(told.reasons)},
+              {"why", std::move(told.why)}};
 }
 
 Json to_json(const SheetFigure& figure) {
@@ -83,6 +97,13 @@ Json to_json(const ParameterTable& table) {
       {"device", table.device},          {"sensor", sensor_of(table.quantity)}, {"axis", text_or_null(table.axis)},
       {"method", name_of(table.method)}, {"model", text_or_null(table.model)},  {"columns", std::move(columns)},
       {"rows", std::move(rows)}};
+  document["reference"] = table.rows.empty() ? Json(nullptr) : Json(to_text(table.rows[table.reference].condition));
+  if (table.structure) {
+    document["structure"] = Json{{"verdict", table.structure->verdict},
+                                 {"common", table.structure->common},
+                                 {"statement", table.structure->statement}};
+  }
+  document["model_note"] = text_or_null(table.model_note);
   if (table.data_sheet) {
     document["data_sheet"] = to_json(*table.data_sheet);
   }

@@ -156,7 +156,11 @@ std::vector<std::vector<std::string>> grid_of(const ParameterTable& table) {
   return grid;
 }
 
-constexpr const char* kLegend = "value [95 % interval]; … not identifiable; ↑ ↓ changed against the first row";
+constexpr const char* kLegend = "value [95 % interval]; … not identifiable; ↑ ↓ changed against ";
+
+std::string legend_of(const ParameterTable& table) {
+  return kLegend + (table.reference == 0 ? std::string("the first row") : table.rows[table.reference].label);
+}
 
 std::string exact(const std::optional<double>& value) { return value ? to_text(*value) : ""; }
 
@@ -263,11 +267,11 @@ std::vector<TableColumn> columns_of(const std::vector<ParameterTable>& tables) {
 }  // namespace
 
 std::string table_to_text(const ParameterTable& table, bool legend) {
-  return heading_of(table) + (legend ? std::string(" (") + kLegend + ")" : std::string()) + "\n\n" +
+  return heading_of(table) + (legend ? " (" + legend_of(table) + ")" : std::string()) + "\n\n" +
          aligned(grid_of(table)) + notes_of(table) + sheet_line(table);
 }
 
-std::string table_legend() { return std::string("Legend: ") + kLegend + "; – no part of the model.\n"; }
+std::string table_legend() { return std::string("Legend: ") + kLegend + "the first row; – no part of the model.\n"; }
 
 std::string axes_to_text(const std::vector<ParameterTable>& tables) {
   const ParameterTable& first = tables.front();
@@ -319,7 +323,7 @@ std::string axes_to_text(const std::vector<ParameterTable>& tables) {
 
 std::string table_to_markdown(const ParameterTable& table) {
   const std::vector<std::vector<std::string>> grid = grid_of(table);
-  std::string text = "**" + heading_of(table) + "** (" + kLegend + ")\n\n";
+  std::string text = "**" + heading_of(table) + "** (" + legend_of(table) + ")\n\n";
   const auto line = [&](const auto& cell) {
     text += "|";
     for (std::size_t i = 0; i < grid[0].size(); ++i) {

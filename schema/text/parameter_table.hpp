@@ -25,4 +25,8 @@ namespace driftlab {
 /// A pipe table for papers and issues, with the same notes below.
 [[nodiscard]] std::string table_to_markdown(const ParameterTable& table);
 
+/// A tabular of booktabs for papers, with a caption: digits as the intervals let stand, the ends of the interval
+/// beside each value, an arrow where a value changed against the reference row; conditions and names escaped.
+[[nodiscard]] std::string table_to_latex(const ParameterTable& table);
+
 }  // namespace driftlab

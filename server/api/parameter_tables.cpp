@@ -32,20 +32,24 @@ std::string note_of(const AxisPooling& pooling) {
   return "";
 }
 
-/// The document with what is said about its pooling: an answer that changes when the job which pools has ended.
-Response pooled_response(Json document, const AxisPooling& pooling) {
-  document["pooling"] = to_json(pooling);
-  Response response = json_response(200, document);
-  if (pooling.state == PoolingState::Pending) {
+/// Marks an answer that changes when the job which pools has ended.
+void say_pending(const AxisPooling& pooling, Response& response) {
+  if (pooling.state == PoolingState::Pending && response.pending_job.empty()) {
     response.pending_job = pooling.job;
     response.headers.emplace_back("Retry-After", "1");
   }
+}
+
+/// The document with what is said about its pooling.
+Response pooled_response(Json document, const AxisPooling& pooling) {
+  document["pooling"] = to_json(pooling);
+  Response response = json_response(200, document);
+  say_pending(pooling, response);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 
-/// The table that a request asks for, from stored results alone.
-Result<StoredTable> read_table(ApiContext& context, const Request& request) {
+Result<StoredTableRequest> table_request(const Request& request) {
   const auto name = request.parameter("device");
   if (!name || name->empty()) {
     return fail(ErrorCode::InvalidArgument, "Name the device: ?device=…", {{"parameter", "device"}});
@@ -56,35 +60,77 @@ Result<StoredTable> read_table(ApiContext& context, const Request& request) {
   wanted.axis = request.parameter("axis").value_or("");
   wanted.method = request.parameter("method").value_or(wanted.method);
   wanted.model = request.parameter("model").value_or("");
-  return stored_table(context.store, wanted);
+  wanted.reference = request.parameter("reference").value_or("");
+  return wanted;
+}
+
+Json document_of(const StoredTable& stored) {
+  Json document = driftlab::to_json(stored.table);
+  document["summary"] = driftlab::to_json(verdict_of(stored.table));
+  document["pooling"] = to_json(stored.pooling);
+  return document;
+}
+
+/// One table as text of that media type.
+std::string text_of(const StoredTable& stored, std::string_view type) {
+  const std::string note = note_of(stored.pooling);
+  if (type == "text/csv") {
+    return table_to_csv(stored.table);
+  }
+  if (type == "text/x-latex") {
+    return table_to_latex(stored.table) + (note.empty() ? "" : "% " + note);
+  }
+  return type == "text/markdown" ? table_to_markdown(stored.table) + (note.empty() ? "" : "\n" + note)
+                                 : table_to_text(stored.table) + (note.empty() ? "" : "! " + note);
+}
+
+/// The tables of all axes: one document, or texts with an empty line between them.
+Response tables_response(const std::vector<StoredTable>& tables, std::string_view type) {
+  Response response;
+  if (type == "application/json") {
+    const ParameterTable& first = tables.front().table;
+    Json document{{"device", first.device},
+                  {"sensor", sensor_of(first.quantity)},
+                  {"method", driftlab::name_of(first.method)},
+                  {"tables", Json::array()}};
+    for (const StoredTable& stored : tables) {
+      document["tables"].push_back(document_of(stored));
+    }
+    response = json_response(200, document);
+  } else {
+    response.content_type = std::string(type) + "; charset=utf-8";
+    for (const StoredTable& stored : tables) {
+      response.body += (response.body.empty() ? "" : "\n") + text_of(stored, type);
+    }
+  }
+  return response;
 }
 
 Result<Response> get_table(ApiContext& context, const Request& request) {
-  const auto type =
-      negotiate(request.header("accept"), {"application/json", "text/csv", "text/plain", "text/markdown"});
+  const auto type = negotiate(request.header("accept"),
+                              {"application/json", "text/csv", "text/plain", "text/markdown", "text/x-latex"});
   if (!type) {
     return problem_response(HttpFault::NotAcceptable,
-                            "Offered are application/json, text/csv, text/plain and text/markdown.");
+                            "Offered are application/json, text/csv, text/plain, text/markdown and text/x-latex.");
   }
-  const auto stored = read_table(context, request);
-  if (!stored) {
-    return fail(stored.error());
+  const auto wanted = table_request(request);
+  if (!wanted) {
+    return fail(wanted.error());
   }
-  const auto& [table, pooling] = *stored;
-  const std::string note = note_of(pooling);
-  Json document = driftlab::to_json(table);
-  document["summary"] = driftlab::to_json(verdict_of(table));
-  Response response = pooled_response(std::move(document), pooling);
-  if (*type == "text/csv") {
-    response.content_type = "text/csv; charset=utf-8";
-    response.body = table_to_csv(table);
-  } else if (*type == "text/plain") {
-    response.content_type = "text/plain; charset=utf-8";
-    response.body = table_to_text(table) + (note.empty() ? "" : "! " + note);
-  } else if (*type == "text/markdown") {
-    response.content_type = "text/markdown; charset=utf-8";
-    response.body = table_to_markdown(table) + (note.empty() ? "" : "\n" + note);
+  const bool all = wanted->axis == "all";
+  const auto tables =
+      all ? stored_tables(context.store, *wanted) : stored_table(context.store, *wanted).map([](StoredTable table) {
+        return std::vector<StoredTable>{std::move(table)};
+      });
+  if (!tables) {
+    return fail(tables.error());
   }
+  Response response = all || *type != "application/json" ? tables_response(*tables, *type)
+                                                         : json_response(200, document_of(tables->front()));
+  for (const StoredTable& stored : *tables) {
+    say_pending(stored.pooling, response);
+  }
+  response.headers.emplace_back("Vary", "Accept");
   return response;
 }
 
@@ -95,7 +141,8 @@ Result<Response> get_trends(ApiContext& context, const Request& request) {
     return problem_response(HttpFault::NotAcceptable,
                             "Offered are application/json, text/csv, text/plain and text/markdown.");
   }
-  const auto stored = read_table(context, request);
+  const auto wanted = table_request(request);
+  const auto stored = wanted ? stored_table(context.store, *wanted) : fail(wanted.error());
   if (!stored) {
     return fail(stored.error());
   }
@@ -121,7 +168,7 @@ void add_parameter_table_routes(Router& router, ApiContext& context) {
   router.add(from_rows({"GET",
                         "/v1/parameter-tables",
                         "getParameterTable",
-                        {"device", "sensor", "axis", "method", "model"},
+                        {"device", "sensor", "axis", "method", "model", "reference"},
                         Handler([&](const Request& request) { return get_table(context, request); })}));
   router.add(from_rows({"GET",
                         "/v1/trends",

@@ -26,6 +26,13 @@ Result<TableRequest> checked(const StoredTableRequest& wanted, const Device& dev
   }
   table.method = *method;
   table.model = wanted.model;
+  if (!wanted.reference.empty()) {
+    auto reference = parse_condition(wanted.reference);
+    if (!reference) {
+      return fail(Error(reference.error()).with("parameter", "reference"));
+    }
+    table.reference = *reference;
+  }
   table.hardware = hardware_of(device);
   return table;
 }
@@ -50,20 +57,30 @@ AxisPooling pooling_of(const AxisResults& results) {
                                           : AxisPooling{PoolingState::Failed, job.id, reason_of(job)};
 }
 
-/// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
-Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
-  std::string present;
+/// The axes about which a sensor has results.
+Result<std::vector<std::string>> axes_with_results(Store& store, const Device& device, Quantity quantity) {
+  std::vector<std::string> axes;
   for (const std::string_view axis : {"x", "y", "z"}) {
-    auto rows = store.latest_channel_results(device.id, driftlab::name_of(wanted.quantity), axis);
+    auto rows = store.latest_channel_results(device.id, driftlab::name_of(quantity), axis);
     if (!rows) {
       return fail(rows.error());
     }
     if (!rows->empty()) {
-      present.append(present.empty() ? "" : ", ").append(axis);
+      axes.emplace_back(axis);
     }
   }
-  if (present.empty()) {
-    return {};
+  return axes;
+}
+
+/// A sensor that has results, but only about axes, when no axis was named: which they are. Error: InvalidArgument.
+Status check_axis_named(Store& store, const Device& device, const TableRequest& wanted) {
+  const auto axes = axes_with_results(store, device, wanted.quantity);
+  if (!axes || axes->empty()) {
+    return axes ? Status{} : fail(axes.error());
+  }
+  std::string present;
+  for (const std::string& axis : *axes) {
+    present.append(present.empty() ? "" : ", ").append(axis);
   }
   return fail(ErrorCode::InvalidArgument,
               "Name the axis; the " + std::string(sensor_of(wanted.quantity)) + " of device '" + device.name +
@@ -120,6 +137,38 @@ Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request
     return fail(table.error());
   }
   return StoredTable{std::move(*table), wanted->method == TableMethod::Gmwm ? pooling_of(*results) : AxisPooling{}};
+}
+
+Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRequest& request) {
+  StoredTableRequest one = request;
+  one.axis.clear();
+  auto device = store.device(request.device);
+  if (!device) {
+    return fail(device.error());
+  }
+  const auto wanted = checked(one, *device);
+  if (!wanted) {
+    return fail(wanted.error());
+  }
+  const auto axes = axes_with_results(store, *device, wanted->quantity);
+  if (!axes) {
+    return fail(axes.error());
+  }
+  if (axes->empty()) {
+    return fail(ErrorCode::NotFound, "No characterised channel of device '" + device->name + "' is a " +
+                                         std::string(sensor_of(wanted->quantity)) +
+                                         " about an axis; characterise a recording of it first.");
+  }
+  std::vector<StoredTable> tables;
+  for (const std::string& axis : *axes) {
+    one.axis = axis;
+    auto table = stored_table(store, one);
+    if (!table) {
+      return fail(table.error());
+    }
+    tables.push_back(std::move(*table));
+  }
+  return tables;
 }
 
 }  // namespace driftlab::server

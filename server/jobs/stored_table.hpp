@@ -12,7 +12,8 @@ struct StoredTableRequest {
   std::string sensor = "gyroscope";
   std::string axis;  ///< empty: channels that have none
   std::string method = "gmwm";
-  std::string model;  ///< empty: the best over all rows
+  std::string model;           ///< empty: the best over all rows
+  std::string reference = {};  ///< compact text of the condition that rows are compared with; empty: the first row
 };
 
 enum class PoolingState {
@@ -42,5 +43,9 @@ inline constexpr std::string_view kPendingPool = "pool_job";
 /// Errors: NotFound (device, or no result); InvalidArgument (a parameter, which the field "parameter" names; results in
 /// units that do not convert into each other); those of the store.
 [[nodiscard]] Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request);
+
+/// The tables of every axis of the sensor that has results, in order; `axis` of the request is passed over. Errors:
+/// those of stored_table; NotFound where no axis has any.
+[[nodiscard]] Result<std::vector<StoredTable>> stored_tables(Store& store, const StoredTableRequest& request);
 
 }  // namespace driftlab::server

@@ -105,6 +105,87 @@ TEST(ParameterTable, MarksChangesAgainstTheFirstRow) {
   }
 }
 
+TEST(ParameterTable, ComparesWithTheRowAskedFor) {
+  const auto row = [](const char* condition, double value) {
+    return TableSource{"rec", condition, channel(cell(value, value / 1.05, value * 1.05), 1, 2)};
+  };
+  const std::vector<TableSource> sources{row("static", 1.0), row("constant_rate:z:1:deg/s", 2.0)};
+  TableRequest wanted = request(TableMethod::Av);
+  const ReportedValue& up = table(wanted, sources).rows[1].cells[0].ratio;
+  // Half-widths of ln 1.05 each make sqrt(2) ln 1.05 for the ratio.
+  const double factor = std::exp(std::sqrt(2.0) * std::log(1.05));
+  EXPECT_NEAR(*up.value, 2.0, 1e-12);
+  EXPECT_NEAR(*up.low, 2.0 / factor, 1e-12);
+  EXPECT_NEAR(*up.high, 2.0 * factor, 1e-12);
+  EXPECT_EQ(up.unit, "1");
+  wanted.reference = parse_condition("constant_rate:z:1:deg/s").value();
+  const ParameterTable against = table(wanted, sources);
+  EXPECT_EQ(against.reference, 1U);
+  EXPECT_EQ(against.rows[0].cells[0].change, Change::Down);
+  EXPECT_NEAR(*against.rows[0].cells[0].ratio.value, 0.5, 1e-12);
+  EXPECT_EQ(against.rows[0].density.change, Change::Down);
+  EXPECT_EQ(against.rows[1].cells[0].change, std::nullopt);
+  EXPECT_EQ(against.rows[1].cells[0].ratio.value, std::nullopt);
+  wanted.reference = parse_condition("constant_rate:z:2:deg/s").value();
+  const auto refused = build_parameter_table(wanted, sources);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fields[0], (ErrorField{"parameter", "reference"}));
+  EXPECT_NE(refused.error().message.find("static, constant_rate:z:1:deg/s"), std::string::npos);
+}
+
+TEST(ParameterTable, GivesARatioWithoutIntervalWhereAnIntervalIsOpenAndNoneWithoutAValue) {
+  const ReportedValue open = ratio_of(cell(3.0, {}, 4.0), cell(2.0, 1.9, 2.1));
+  EXPECT_EQ(open.value, 1.5);
+  EXPECT_FALSE(open.low || open.high);
+  EXPECT_FALSE(ratio_of(none("No."), cell(2.0, 1.9, 2.1)).value);
+  EXPECT_FALSE(ratio_of(cell(2.0, 1.9, 2.1), cell(0.0, {}, 1.0)).value);
+}
+
+TEST(ParameterTable, SaysOfEachRowHowLongItIsAndWhetherItsOneFitStands) {
+  ReportedChannel one = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  one.samples = 2000;
+  one.dt_s = 0.01;
+  one.fits[0].j_test = JTest{3.0, 5.0, 0.25};
+  const ParameterTable found = table(request(), {{"a", "static", one}, {"b", "drive", one}, {"c", "drive", one}});
+  EXPECT_NEAR(found.rows[0].duration_s, 20.0, 1e-12);
+  EXPECT_EQ(found.rows[0].j_test_p, 0.25);
+  EXPECT_NEAR(found.rows[1].duration_s, 40.0, 1e-12);
+  EXPECT_EQ(found.rows[1].j_test_p, std::nullopt) << "two fits averaged are no fit";
+  EXPECT_EQ(table(request(TableMethod::Av), {{"a", "static", one}}).rows[0].j_test_p, std::nullopt);
+}
+
+TEST(ParameterTable, SaysWhyItsModelIsNotTheOneOfTheStructure) {
+  PooledSensor pooled;
+  pooled.model = "WN";
+  for (const char* const condition : {"static", "drive"}) {
+    PooledCondition entry;
+    entry.key = condition;
+    entry.members = {condition == std::string("static") ? "a" : "b"};
+    pooled.conditions.push_back(entry);
+  }
+  pooled.structure = PooledStructure{
+      "one_structure", "One structure, WN+GM, describes every condition.", 0.3, 9, 8, "WN+GM", 0.0, {}, {}};
+  const ReportedChannel made = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  const std::vector<TableSource> sources{{"a", "static", made}, {"b", "drive", made}};
+  const auto noted = [&](TableRequest wanted, const std::vector<TableSource>& from) {
+    return build_parameter_table(wanted, from, &pooled)->model_note;
+  };
+  EXPECT_EQ(
+      noted(request(), sources),
+      "The table shows WN, whose criterion summed over the conditions is the least; WN+GM is the smallest structure "
+      "that, whole or in part, comes close to the best in each condition by itself.");
+  EXPECT_NE(noted(request(TableMethod::Gmwm, "WN"), sources).find("WN, as was asked; WN+GM"), std::string::npos);
+  EXPECT_EQ(noted(request(TableMethod::Gmwm, "WN+GM"), sources), "") << "they are one";
+  EXPECT_EQ(noted(request(TableMethod::Av), sources), "");
+  EXPECT_EQ(noted(request(), {{"c", "static", made}}), "") << "of other recordings the pooled result says nothing";
+}
+
+TEST(ParameterTable, TellsNothingFoundFromNothingIdentified) {
+  EXPECT_EQ(absence_of("The data show no random walk: the best fit has none of it."), Absence::NoneFound);
+  EXPECT_EQ(absence_of("Not identifiable: the data are compatible with no random walk at all."),
+            Absence::NotIdentifiable);
+}
+
 TEST(ParameterTable, GivesTheReasonForWhatIsNotIdentified) {
   const ParameterTable found = table(request(TableMethod::Gmwm, "WN+GM"),
                                      {{"rec_a", "static", channel(none("No white noise."), 1, 2, cell(1.0, 0.5, {}))}});

@@ -124,17 +124,20 @@ TEST(ParameterTableDocument, HasACellOrAReasonPerColumn) {
   row.pooling = Pooling::Average;
   row.agreement = RecordingAgreement{"", 1.5, 1.0, 0.22};
   row.density = {{1.4, 1.25, 1.5, "deg/sqrt(h)", ""}, Change::None};
-  row.cells = {{{1.5, 1.0, {}, "deg/sqrt(h)", ""}, Change::Up}, {{{}, {}, {}, "deg/h", "No B."}, {}}};
+  row.cells = {{{1.5, 1.0, {}, "deg/sqrt(h)", ""}, Change::Up, {1.25, 1.1, {}, "1", ""}},
+               {{{}, {}, {}, "deg/h", "No B."}, {}}};
   const Json document = to_json(ParameterTable{
       "phone-07", Quantity::AngularRate, "", TableMethod::Av, "", {{"N", "deg/sqrt(h)"}, {"B", ""}}, {row}});
   const Json wanted = *parse_json(R"json({"device": "phone-07", "sensor": "gyroscope", "axis": null, "method": "av",
     "model": null, "columns": [{"key": "N", "unit": "deg/sqrt(h)"}, {"key": "B", "unit": null}],
     "rows": [{"condition": {"kind": "static"}, "label": "static",
-              "density": {"value": 1.4, "unit": "deg/sqrt(h)", "ci95": [1.25, 1.5], "change": "none"},
-              "recordings": ["rec_a", "rec_b"], "contamination": null, "pooling": "average", "robust": false,
+              "density": {"value": 1.4, "unit": "deg/sqrt(h)", "ci95": [1.25, 1.5], "change": "none", "ratio": null},
+              "recordings": ["rec_a", "rec_b"], "duration_s": 0.0, "fits": null, "j_test_p": null, "contamination": null, "pooling": "average", "robust": false,
               "agreement": {"model": null, "statistic": 1.5, "dof": 1, "p": 0.22, "agree": true}, "warnings": [],
-              "values": {"N": {"value": 1.5, "unit": "deg/sqrt(h)", "ci95": [1.0, null], "change": "up"}, "B": null},
-              "reasons": {"B": "No B."}}]})json");
+              "values": {"N": {"value": 1.5, "unit": "deg/sqrt(h)", "ci95": [1.0, null], "change": "up",
+                               "ratio": {"value": 1.25, "unit": "1", "ci95": [1.1, null]}}, "B": null},
+              "reasons": {"B": "No B."}, "why": {"B": "not_identifiable"}}],
+    "reference": "static", "model_note": null})json");
   EXPECT_EQ(document, wanted);
 }
 

@@ -50,6 +50,31 @@ TEST(TableText, AlignsColumnsWhateverCharactersTheyHold) {
             "40 deg/s about z  2.000 [1.900, 2.100] ↑  …      …\n");
 }
 
+TEST(TableText, NamesTheRowThatChangesAreAgainst) {
+  ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05, Change::Down)),
+                                row("9 deg/s about z", {"rec_b"}, cell(2.0, 1.9, 2.1))});
+  found.reference = 1;
+  EXPECT_NE(table_to_text(found).find("changed against 9 deg/s about z)"), std::string::npos);
+  EXPECT_NE(table_to_markdown(found).find("changed against 9 deg/s about z)"), std::string::npos);
+}
+
+TEST(TableLatex, IsATabularWithTheDigitsOfTheIntervals) {
+  ParameterTable found = table({row("static", {"rec_a"}, cell(1.0382, 1.0347, 1.0417)),
+                                row("9 deg/s & more_", {"rec_b"}, cell(3.2e-5, 3.1e-5, {}, Change::Up))});
+  found.device = "phone_07";
+  EXPECT_EQ(
+      table_to_latex(found),
+      "% \\usepackage{booktabs}\n\\begin{table}\n\\centering\n"
+      "\\caption{phone\\_07, gyroscope $z$, Allan variance: value and 95\\,\\% interval; $\\uparrow$ $\\downarrow$ "
+      "changed against static; \\dots{} not identifiable.}\n"
+      "\\begin{tabular}{llll}\n\\toprule\n"
+      "condition & N [deg/sqrt(h)] & B [deg/h] & K [deg/h/sqrt(h)] \\\\\n\\midrule\n"
+      "static & $1.038\\;[1.035,\\,1.042]$ & \\dots & \\dots \\\\\n"
+      "9 deg/s \\& more\\_ & $3.20\\cdot 10^{-5}\\;[3.10\\cdot 10^{-5},\\,\\infty]\\,\\uparrow$ & \\dots & \\dots "
+      "\\\\\n"
+      "\\bottomrule\n\\end{tabular}\n\\end{table}\n");
+}
+
 TEST(TableText, PutsTheDataSheetBelowTheRowsAndTheRatioBelowTheTable) {
   ParameterTable found = table({row("static", {"rec_a"}, cell(1.0, 0.95, 1.05))});
   found.data_sheet =
