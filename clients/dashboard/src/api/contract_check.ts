@@ -18,7 +18,7 @@ export type Checked = [
   None<Missing<documents.Characterisation, Ok<'getCharacterisation'>>>, None<Missing<documents.CharacterisedChannel, Ok<'getCharacterisation'>['channels'][number]>>,
   None<Missing<documents.Channel, Ok<'getCharacterisation'>['channels'][number]['result']>>, None<Missing<documents.Trace, Ok<'getTrace'>>>, None<Missing<documents.Spectrum, Ok<'getSpectrum'>>>,
   None<Missing<documents.Histogram, Ok<'getHistogram'>>>, None<Missing<documents.Spectrogram, Ok<'getSpectrogram'>>>, None<Missing<documents.Job, Ok<'getJob'>>>,
-  None<Missing<documents.Counts, Ok<'getCounts'>>>, None<Missing<documents.Implied, Ok<'getImpliedCurves'>['implied']>>,
+  None<Missing<documents.Counts, Ok<'getCounts'>>>, None<Missing<documents.Attention, Ok<'listAttention'>['items'][number]>>, None<Missing<documents.Implied, Ok<'getImpliedCurves'>['implied']>>,
   None<Missing<PreviewDocument, Ok<'previewRecording'>>>, None<Missing<PreviewColumn, Ok<'previewRecording'>['columns'][number]>>,
   None<Missing<PopulationDocument, Ok<'getPopulations'>>>, None<Missing<PopulationRow, Ok<'getPopulations'>['rows'][number]>>, None<Missing<PlaceOf, Ok<'getPopulations'>['rows'][number]['places'][number]>>,
   None<Missing<DataSheetDocument, Ok<'listDataSheets'>['items'][number]>>, None<Missing<SensorSheet, Ok<'listDataSheets'>['items'][number]['sensors'][number]>>,

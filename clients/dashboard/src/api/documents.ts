@@ -31,8 +31,8 @@ export interface Quality {
 }
 export interface Metadata { id?: string; rate_hz?: number; condition: Condition; columns?: Record<string, {quantity: string; axis?: string; unit?: string}>; calibration?: string }
 export interface Recording {
-  id: string; device: string; revision: number; metadata: Metadata; quality: Quality; created_at: string;
-  file: {sha256: string; bytes?: number; format?: string; compression?: string; rows?: number; columns?: string[]; notes?: string[]};
+  id: string; device: string; revision: number; metadata: Metadata; quality: Quality; created_at: string; rate_hz: number | null; duration_s: number | null; latest_job: string | null;
+  file: {sha256: string; name: string | null; bytes?: number; format?: string; compression?: string; rows?: number; columns?: string[]; notes?: string[]};
 }
 
 export interface ProcessEstimate { process: string; params: Record<string, Quantity | null>; reasons?: Record<string, string> }
@@ -75,4 +75,6 @@ export interface Job {
   request: {kind: string; inputs: {recordings?: {id: string; revision: number; name?: string}[]; study?: string; device?: string; axis?: string; scenario?: unknown; document?: {id: string}; baseline?: {label?: string | null}; candidate?: {label?: string | null}}; parameters: {seed?: number; runs?: number; question?: string}; algorithm_version: number};
   result: {href: string} | null; problem: StoredProblem | null; failed_attempts: StoredProblem[];
 }
-export interface Counts { devices: number; recordings: number; jobs: {queued: number; running: number} }
+export interface CountSince { at: string; count: number }
+export interface Counts { devices: number; recordings: number; jobs: {queued: number; running: number; succeeded_since?: CountSince; failed_since?: CountSince} }
+export interface Attention { id: string; level: string; verdict: string; kind: string; job: string; device_name: string | null; recording: string | null; channel: string | null; created_at: string; href: string }

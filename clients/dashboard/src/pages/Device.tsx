@@ -3,8 +3,8 @@ import type {JSX} from 'preact';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {useRead, ask} from '../api/client';
 import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
-import {writeCount} from '../format/number';
-import {writeWhen} from '../format/time';
+import {writeTick} from '../format/number';
+import {writeDuration, writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
 import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
 import {copy, curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
@@ -62,10 +62,10 @@ function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.
   return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
     <Shown read={read}>{list => <>
       <div class="scroll"><table class="stacked list-of-recordings">
-        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">samples</th><th scope="col">quality</th><th scope="col">uploaded</th></tr></thead>
+        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">length</th><th scope="col">quality</th><th scope="col">uploaded</th></tr></thead>
         <tbody>{list.items.map(recording => <tr key={recording.id}>
           <th scope="row"><a href={pageOf('recordings', recording.id)}>{recording.metadata.id ?? recording.id}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
-          <td class="n" data-label="samples">{writeCount(recording.quality.samples)}</td><td class="sec">{qualityWords(recording)}</td><td class="sec">{writeWhen(recording.created_at)}</td>
+          <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec">{writeWhen(recording.created_at)}</td>
         </tr>)}</tbody></table></div>
       {(list.items.length > PRINTED || list.next_cursor) && <p class="print-only note">The newest {PRINTED} of {list.next_cursor ? `more than ${list.items.length}` : list.items.length} recordings; the page has all.</p>}
       {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
@@ -80,9 +80,11 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
   const chosen = axes.find(channel => `${sensorOf(channel.quantity)}:${channel.axis}` === wanted) ?? axes.find(channel => channel.quantity === 'angular_rate') ?? axes[0];
   const method = query.get('method') === 'av' ? 'av' : 'gmwm';
   const model = query.get('model');
-  const path = chosen ? `/v1/parameter-tables?device=${device.id}&sensor=${sensorOf(chosen.quantity)}&axis=${chosen.axis}&method=${method}${model && method === 'gmwm' ? `&model=${encodeURIComponent(model)}` : ''}` : null;
+  const asked = chosen ? `/v1/parameter-tables?device=${device.id}&sensor=${sensorOf(chosen.quantity)}&axis=${chosen.axis}&method=${method}${model && method === 'gmwm' ? `&model=${encodeURIComponent(model)}` : ''}` : null;
+  const reference = query.get('ref');
+  const path = asked && reference ? `${asked}&reference=${encodeURIComponent(reference)}` : asked;
   const read = useRead<ParameterTable>(path, undefined);
-  const trends = useRead<Trends>(path ? path.replace('/v1/parameter-tables', '/v1/trends') : null);
+  const trends = useRead<Trends>(asked ? asked.replace('/v1/parameter-tables', '/v1/trends') : null);
   const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
   usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (read.data) go(`/compare?with=${read.data.rows.map(row => row.recordings[0]).slice(0, 8).join(',')}`); }});
   if (!chosen || !path) return <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
@@ -97,7 +99,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
         <Segments label="Sensor and axis" options={axes.map(channel => [`${sensorOf(channel.quantity)}:${channel.axis}`, `${channel.quantity === 'angular_rate' ? 'ω' : 'f'} ${channel.axis}`] as const)} value={`${sensorOf(chosen.quantity)}:${chosen.axis}`} onChange={value => { const [sensor = null, axis = null] = value.split(':'); choose({sensor, axis, sel: null, ref: null}); }} />
         <Segments label="Method" options={[['gmwm', 'GMWM'], ['av', 'Allan']] as const} value={method} onChange={value => choose({method: value === 'gmwm' ? null : value})} />
         {read.data?.model && <span class="sub">model <b>{read.data.model}</b>{model ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>}
-        <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button></div>
+        <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button><button type="button" class="quiet" onClick={() => void text('text/x-latex', 'tex')}>LaTeX</button></div>
         <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. Seed, algorithm version and revision of each recording stand on its own page and in the table’s document.</p>} />
       </div>
       {read.data?.pooling.state === 'pending' && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}

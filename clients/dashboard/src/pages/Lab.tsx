@@ -1,10 +1,10 @@
 // The lab: what must be read today, what runs, and whether each device is like its siblings.
 import type {JSX} from 'preact';
 import {useRead} from '../api/client';
-import type {AxisSummary, Counts, Device, Job, List} from '../api/documents';
+import type {Attention, AxisSummary, Counts, Device, Job, List} from '../api/documents';
 import {writeTick, writeQuantity} from '../format/number';
 import {writeToday, writeWhen} from '../format/time';
-import {capital, conditionName, countWord, jobKind, plural, sensorOf, writeUnit} from '../format/words';
+import {capital, conditionName, countWord, jobKind, plural, writeUnit} from '../format/words';
 import {MarkAt} from '../figure/marks';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
@@ -16,33 +16,31 @@ import {EmptyLab} from './EmptyLab';
 
 const MARKS: Record<string, Mark> = {x: 'dot', y: 'square', z: 'triangle'};
 const PAGE = 50;
+const SHOWN = 8;
 
-interface Attention { device: string; href: string; text: string; at: string; bad: boolean }
+interface Item { who: string; href: string; text: string; at: string; bad: boolean }
 
-function attention(devices: readonly Device[], jobs: readonly Job[]): Attention[] {
-  const items: Attention[] = [];
-  for (const device of devices) {
-    const misfits = (device.summary?.channels ?? []).filter(channel => channel.level !== 'fine');
-    const latest = device.summary?.latest;
-    if (misfits.length === 0 || !latest) continue;
-    const groups = new Map<string, AxisSummary[]>();
-    for (const channel of misfits) groups.set(channel.quantity, [...groups.get(channel.quantity) ?? [], channel]);
-    const text = [...groups].map(([quantity, list]) => `${sensorOf(quantity)} ${list.map(one => one.axis ?? '').join(', ')}: ${list[0]!.reason}`).join('; ');
-    items.push({device: device.name, href: pageOf('recordings', misfits[0]!.recording), text: `${capital(text)}.`, at: latest.at, bad: false});
-  }
-  for (const job of jobs) {
-    if (job.state === 'failed' || job.state === 'dead') items.push({device: capital(jobKind(job.kind)), href: pageOf('jobs', job.id), text: job.problem?.detail ?? 'The job failed.', at: job.finished_at ?? job.created_at, bad: true});
-  }
-  return items.sort((a, b) => a.at < b.at ? 1 : -1).slice(0, 8);
+// The page of a result; the API's address is the page's with /v1 before it.
+function pageOfResult(item: Attention): string {
+  if (item.recording) return `${pageOf('recordings', item.recording)}${item.channel ? `?ch=${encodeURIComponent(item.channel)}` : ''}`;
+  const [, , group = '', id = ''] = item.href.split('/');
+  return pageOf({'outage-evaluations': 'outages'}[group] ?? group, id);
 }
 
-function opening(jobs: readonly Job[], wants: number): string {
-  const today = new Date().toISOString().slice(0, 10);
-  const ended = jobs.filter(job => job.finished_at?.startsWith(today) && job.kind !== 'pool');
-  const failed = ended.filter(job => job.state === 'failed' || job.state === 'dead').length;
-  const results = ended.filter(job => job.state === 'succeeded').length;
-  const made = results === 0 ? 'No result today' : `${capital(countWord(results))}${results >= 50 ? ' or more' : ''} result${results === 1 ? '' : 's'} today`;
-  return `${made}, ${failed === 0 ? 'none' : countWord(failed)} failed. ${wants === 0 ? 'Nothing wants a look.' : `${capital(countWord(wants))} want${wants === 1 ? 's' : ''} a look.`}`;
+// Results whose verdict is not fine, and jobs that failed, newest first.
+function toRead(attention: readonly Attention[], jobs: readonly Job[]): Item[] {
+  const items: Item[] = attention.map(item => ({who: item.device_name ?? capital(jobKind(item.kind)), href: pageOfResult(item), text: `${item.channel ? `${item.channel}: ` : ''}${item.verdict}`, at: item.created_at, bad: item.level === 'wrong'}));
+  for (const job of jobs) {
+    if (job.state === 'failed' || job.state === 'dead') items.push({who: capital(jobKind(job.kind)), href: pageOf('jobs', job.id), text: job.problem?.detail ?? 'The job failed.', at: job.finished_at ?? job.created_at, bad: true});
+  }
+  return items.sort((a, b) => a.at < b.at ? 1 : -1).slice(0, SHOWN);
+}
+
+function opening(counts: Counts, wants: number): string {
+  const results = counts.jobs.succeeded_since?.count ?? 0;
+  const failed = counts.jobs.failed_since?.count ?? 0;
+  const made = results === 0 ? 'No result today' : `${capital(countWord(results))} result${results === 1 ? '' : 's'} today`;
+  return `${made}, ${failed === 0 ? 'none' : countWord(failed)} failed. ${wants === 0 ? 'Nothing wants a look.' : `${capital(countWord(wants))}${wants >= SHOWN ? ' or more' : ''} want${wants === 1 ? 's' : ''} a look.`}`;
 }
 
 interface Scale { (value: number): number; ticks: number[] }
@@ -127,21 +125,23 @@ function Running({jobs}: {jobs: readonly Job[]}): JSX.Element {
 export default function Lab(): JSX.Element {
   const {query} = usePlace();
   useTitle('Lab');
-  const counts = useRead<Counts>('/v1/counts', 5000);
+  const counts = useRead<Counts>(`/v1/counts?since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 5000);
   const after = query.get('after');
   const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=${PAGE}${after ? `&cursor=${after}` : ''}`);
   const jobs = useRead<List<Job>>('/v1/jobs?sort=-created_at&limit=50', 3000);
+  const attention = useRead<List<Attention>>(`/v1/attention?limit=${SHOWN}`, 5000);
   if (devices.data?.items.length === 0 && !after) return <EmptyLab />;
   const list = devices.data?.items ?? [];
   const recent = jobs.data?.items ?? [];
-  const wants = attention(list, recent);
+  const wants = toRead(attention.data?.items ?? [], recent);
+  const known = attention.data && jobs.data;
   return <>
     <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} actions={<a class="btn" href="/record">Record this phone</a>} />
-    {devices.data && jobs.data && <p class="verdict">{opening(recent, wants.length)}</p>}
+    {counts.data && known && <p class="verdict">{opening(counts.data, wants.length)}</p>}
     <div class="grid wide-side">
       <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}>
-        {!devices.data || !jobs.data ? <Hairlines /> : wants.length === 0 ? <p class="sec">Nothing. Every model of the newest devices fits, and no job failed.</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
-          <span class="nowrap"><span class={`g ${item.bad ? 'bad' : 'warn'}`} aria-hidden="true">{item.bad ? '✗' : '△'} </span><b>{item.device}</b></span>
+        {!known ? <Hairlines /> : wants.length === 0 ? <p class="sec">Nothing. Every newest result is fine, and no job failed.</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
+          <span class="nowrap"><span class={`g ${item.bad ? 'bad' : 'warn'}`} aria-hidden="true">{item.bad ? '✗' : '△'} </span><b>{item.who}</b></span>
           <span class="grow"><a href={item.href}>{item.text}</a></span><span class="dim nowrap">{writeWhen(item.at)}</span></li>)}</ul>}
       </Panel>
       {jobs.data ? <Running jobs={recent} /> : <Panel title="Running"><Hairlines /></Panel>}

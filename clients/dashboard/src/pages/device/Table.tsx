@@ -2,7 +2,8 @@
 import type {JSX} from 'preact';
 import {useState} from 'preact/hooks';
 import {writeP, writeQuantity, writeTick} from '../../format/number';
-import {conditionName, plural, writeUnit} from '../../format/words';
+import type {Quantity} from '../../api/documents';
+import {conditionName, conditionText, plural, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 import {Segments} from '../../shell/states';
 import {colours, columnName, uniqueName, withDensity, type Cell, type ParameterTable, type TableRow} from './documents';
@@ -25,15 +26,6 @@ function scaleOf(table: ParameterTable, key: string): Scale | null {
   return Object.assign(x, {ticks: ticks.length > 4 ? ticks.filter(tick => /^1/.test(tick.toExponential())) : ticks});
 }
 
-const overlap = (a: Cell, b: Cell): boolean => (a.ci95[0] ?? -Infinity) <= (b.ci95[1] ?? Infinity) && (b.ci95[0] ?? -Infinity) <= (a.ci95[1] ?? Infinity);
-
-// Against the first row the daemon has tested; against another one the intervals speak.
-function changeOf(cell: Cell, reference: Cell | null | undefined, first: boolean): string | null {
-  if (first) return cell.change;
-  if (!reference || reference === cell) return null;
-  return overlap(cell, reference) ? 'none' : cell.value > reference.value ? 'up' : 'down';
-}
-
 function Micro({cell, reference, scale, colour}: {cell: Cell | null; reference: Cell | null | undefined; scale: Scale | null; colour: string}): JSX.Element {
   return <svg width={WIDTH} height="46" viewBox={`0 0 ${WIDTH} 46`} aria-hidden="true">
     {scale && reference && <line x1={scale(reference.value)} x2={scale(reference.value)} y1="0" y2="46" stroke="var(--rule)" stroke-dasharray="1 2" />}
@@ -44,24 +36,29 @@ function Micro({cell, reference, scale, colour}: {cell: Cell | null; reference: 
   </svg>;
 }
 
-function kindOf(reason: string | undefined): string {
-  return reason && /none of it|shows? no|show no/.test(reason) ? 'none found' : 'not identifiable';
+const ABSENT = {none_found: 'none found', not_identifiable: 'not identifiable'};
+
+// How many times the value of the reference row, with its interval.
+function ratioWords(ratio: Quantity | null): string {
+  if (!ratio || ratio.value === null) return '';
+  const written = writeQuantity(ratio);
+  return `${written.value} times${written.interval ? ` ${written.interval}` : ''}`;
 }
 
-function Value({cell, reason, change, against}: {cell: Cell | null; reason?: string | undefined; change: string | null; against: string}): JSX.Element {
-  if (!cell) return <div class="pc" title={reason}><span class="v">…</span><span class="ar" /><span class="ci">{kindOf(reason)}<span class="visually-hidden">. {reason}</span></span></div>;
+function Value({cell, reason, why, against}: {cell: Cell | null; reason?: string | undefined; why?: keyof typeof ABSENT | undefined; against: string}): JSX.Element {
+  if (!cell) return <div class="pc" title={reason}><span class="v">…</span><span class="ar" /><span class="ci">{ABSENT[why ?? 'not_identifiable']}<span class="visually-hidden">. {reason}</span></span></div>;
   const written = writeQuantity(cell);
-  return <div class="pc"><span class="v">{written.value}</span><span class="ar" aria-hidden="true">{change ? ARROWS[change] : ''}</span><span class="ci">{written.interval}<span class="visually-hidden"> {writeUnit(cell.unit)}{change ? `, ${CHANGES[change]} against ${against}` : ''}</span></span></div>;
+  const ratio = ratioWords(cell.ratio);
+  return <div class="pc" title={ratio && `${ratio} that of ${against}`}><span class="v">{written.value}</span><span class="ar" aria-hidden="true">{cell.change ? ARROWS[cell.change] : ''}</span><span class="ci">{written.interval}<span class="visually-hidden"> {writeUnit(cell.unit)}{cell.change ? `, ${CHANGES[cell.change]} against ${against}` : ''}{ratio && `, ${ratio}`}</span></span></div>;
 }
 
 function RowHead({row, axis, colour, isReference, onReference, chosen, onChoose}: {row: TableRow; axis: string | null; colour: string; isReference: boolean; onReference: () => void; chosen: boolean; onChoose: (add: boolean) => void}): JSX.Element {
-  const misfit = row.warnings?.some(warning => /does not fit/.test(warning));
   const words = [plural(row.recordings.length, 'recording'), row.pooling && row.pooling !== 'single' ? row.pooling : '', row.agreement && row.agreement.p !== null ? `agree ${writeP(row.agreement.p)}` : ''].filter(Boolean).join(', ');
   return <th scope="row">
     <span class="key"><svg width="12" height="12" aria-hidden="true"><circle cx="6" cy="6" r="5" fill={colour} /></svg>
       <button type="button" class="link" aria-pressed={chosen} onClick={event => onChoose(event.shiftKey)}><b>{conditionName(row.condition, axis)}</b></button>
       {isReference ? <span class="u">reference row</span> : <button type="button" class="quiet u no-print" onClick={onReference}>reference</button>}</span>
-    <div class="u" style={{marginLeft: '18px'}}>{misfit ? <><span class="g warn" aria-hidden="true">△ </span>does not fit, J test p &lt; 0.01</> : row.contamination === 'contaminated' ? <><span class="g warn" aria-hidden="true">△ </span>gross errors{row.robust ? ', robust values' : ''}</> : words}</div>
+    <div class="u" style={{marginLeft: '18px'}}>{row.fits === false ? <><span class="g warn" aria-hidden="true">△ </span>does not fit, J test {writeP(row.j_test_p ?? 0)}</> : row.contamination === 'contaminated' ? <><span class="g warn" aria-hidden="true">△ </span>gross errors{row.robust ? ', robust values' : ''}</> : words}</div>
   </th>;
 }
 
@@ -69,8 +66,7 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
   const table = withDensity(given);
   const {query} = usePlace();
   const [phoneColumn, setPhoneColumn] = useState(0);
-  const named = table.rows.findIndex(row => row.label === query.get('ref'));
-  const reference = named > 0 ? named : 0;
+  const reference = Math.max(0, table.rows.findIndex(row => conditionText(row.condition) === table.reference));
   const colour = colours(table.rows);
   const scales = table.columns.map(column => scaleOf(table, column.key));
   const chosen = (query.get('sel') ?? '').split('|').filter(Boolean);
@@ -79,20 +75,16 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
     choose({sel: next.join('|') || null});
   };
   const referenceLabel = conditionName(table.rows[reference]?.condition, table.axis);
-  const cellOf = (row: TableRow, key: string): {cell: Cell | null; change: string | null; against: Cell | null | undefined} => {
-    const cell = row.values[key] ?? null;
-    const against = table.rows[reference]?.values[key];
-    return {cell, change: cell && row !== table.rows[reference] ? changeOf(cell, against, reference === 0) : null, against};
-  };
+  const against = (key: string): Cell | null => table.rows[reference]?.values[key] ?? null;
   const phone = table.columns[phoneColumn];
   return <>
     <div class="scroll desk-only"><table class="pt" style={{'--columns': String(table.columns.length)}}>
       <thead><tr><th scope="col">condition</th>{table.columns.map(column => { const name = columnName(column.key); return <th key={column.key} scope="colgroup" colSpan={2}>{name.process} <b>{name.symbol}</b> <span class="u">{writeUnit(column.unit)}</span></th>; })}</tr></thead>
       <tbody>{table.rows.map((row, i) => <tr key={row.label} class={i === reference ? 'ref' : ''}>
-        <RowHead row={row} axis={table.axis} colour={colour[i]!} isReference={i === reference} onReference={() => choose({ref: i === 0 ? null : row.label})} chosen={chosen.includes(row.label)} onChoose={add => pick(row.label, add)} />
-        {table.columns.map((column, c) => { const {cell, change, against} = cellOf(row, column.key); return <>
-          <td key={`${column.key}v`} class="num"><Value cell={cell} reason={row.reasons[column.key]} change={change} against={referenceLabel} /></td>
-          <td key={`${column.key}m`} class="mic"><Micro cell={cell} reference={against} scale={scales[c] ?? null} colour={colour[i]!} /></td>
+        <RowHead row={row} axis={table.axis} colour={colour[i]!} isReference={i === reference} onReference={() => choose({ref: i === 0 ? null : conditionText(row.condition)})} chosen={chosen.includes(row.label)} onChoose={add => pick(row.label, add)} />
+        {table.columns.map((column, c) => { const cell = row.values[column.key] ?? null; return <>
+          <td key={`${column.key}v`} class="num"><Value cell={cell} reason={row.reasons[column.key]} why={row.why[column.key]} against={referenceLabel} /></td>
+          <td key={`${column.key}m`} class="mic"><Micro cell={cell} reference={against(column.key)} scale={scales[c] ?? null} colour={colour[i]!} /></td>
         </>; })}
       </tr>)}
       <tr class="axis" aria-hidden="true"><td />{table.columns.map((column, c) => <><td key={`${column.key}a`} /><td key={`${column.key}b`} class="mic"><svg width={WIDTH} height="22" viewBox={`0 0 ${WIDTH} 22`}><line class="ax" x1="0" x2={WIDTH} y1="0.5" y2="0.5" />{scales[c]?.ticks.map(tick => <text key={tick} class="s" x={scales[c]!(tick)} y="15" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td></>)}</tr>
@@ -100,8 +92,8 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
     </table></div>
     <div class="phone-only">
       <Segments label="Parameter" options={table.columns.map((column, i) => [String(i), uniqueName(column.key, table.columns)] as const)} value={String(phoneColumn)} onChange={value => setPhoneColumn(Number(value))} />
-      {phone && <><p class="sec">{columnName(phone.key).process}, {writeUnit(phone.unit)}</p><ul class="pl">{table.rows.map((row, i) => { const {cell, change, against} = cellOf(row, phone.key); return <li key={row.label}><b>{conditionName(row.condition, table.axis)}</b><Micro cell={cell} reference={against} scale={scales[phoneColumn] ?? null} colour={colour[i]!} /><Value cell={cell} reason={row.reasons[phone.key]} change={change} against={referenceLabel} /></li>; })}</ul></>}
+      {phone && <><p class="sec">{columnName(phone.key).process}, {writeUnit(phone.unit)}</p><ul class="pl">{table.rows.map((row, i) => { const cell = row.values[phone.key] ?? null; return <li key={row.label}><b>{conditionName(row.condition, table.axis)}</b><Micro cell={cell} reference={against(phone.key)} scale={scales[phoneColumn] ?? null} colour={colour[i]!} /><Value cell={cell} reason={row.reasons[phone.key]} why={row.why[phone.key]} against={referenceLabel} /></li>; })}</ul></>}
     </div>
-    <p class="note">Value and 95 % interval; the interval decides the digits. ↑ ↓ {reference === 0 ? 'changed against the reference row at 5 %' : 'intervals apart from those of the reference row'}. … the data do not identify it. Dotted line: the reference row. Axes logarithmic.</p>
+    <p class="note">Value and 95 % interval; the interval decides the digits. ↑ ↓ changed against the reference row at 5 %. … the data do not identify it. Dotted line: the reference row. Axes logarithmic.</p>
   </>;
 }

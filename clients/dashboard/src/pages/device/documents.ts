@@ -1,16 +1,17 @@
 import type {Condition, Ends, Quantity, Summary} from '../../api/documents';
 
-export interface Cell extends Quantity { value: number; unit: string; ci95: Ends; change: 'up' | 'down' | 'none' | null }
+export interface Cell extends Quantity { value: number; unit: string; ci95: Ends; change: 'up' | 'down' | 'none' | null; ratio: Quantity | null }
 export interface TableRow {
   condition: Condition; label: string; contamination?: string | null; warnings?: string[]; recordings: string[]; pooling?: string; robust?: boolean;
   agreement?: {p: number | null} | null; density?: Cell | null; values: Record<string, Cell | null>; reasons: Record<string, string>;
+  why: Record<string, 'not_identifiable' | 'none_found'>; duration_s: number; fits: boolean | null; j_test_p: number | null;
 }
 export interface SheetComparison {
   sensor: string; source: string; condition: string;
   figures: {parameter: 'N' | 'B'; stated: number; unit: string; measured: Quantity | null; ratio: number | null; ci95: Ends | null; verdict: 'agrees' | 'above' | 'below' | null}[];
 }
 export interface ParameterTable {
-  device: string; sensor: string; axis: string | null; method: string; model: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
+  device: string; sensor: string; axis: string | null; method: string; model: string | null; reference: string | null; model_note: string | null; columns: {key: string; unit: string | null}[]; rows: TableRow[];
   pooling: {state: string; job: string | null; reason: string | null}; summary?: Summary; data_sheet?: SheetComparison;
 }
 export interface Trend {

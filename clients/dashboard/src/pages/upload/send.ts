@@ -5,7 +5,7 @@ import type {Pending} from './pending';
 import {columnsOf} from './preview';
 
 function queryOf(each: Pending): string {
-  const query = new URLSearchParams({device: each.device, condition: each.condition, id: each.file.name.replace(/\.[^.]+(\.(gz|xz|zst))?$/, '')});
+  const query = new URLSearchParams({device: each.device, condition: each.condition, id: each.file.name.replace(/\.[^.]+(\.(gz|xz|zst))?$/, ''), file_name: each.file.name});
   if (each.rate.trim()) query.set('rate_hz', each.rate.trim());
   const columns = columnsOf(each.roles);
   if (columns) query.set('columns', columns);
