@@ -46,9 +46,10 @@ tl::unexpected<Error> trimmed_away(const RecordingSpec& spec, double duration_s)
 
 Result<Window> plan_uniform(const RecordingSpec& spec, std::size_t rows) {
   if (!spec.rate_hz) {
-    return fail(ErrorCode::InconsistentSampling,
-                "There is no time column and no stated rate: give rate_hz, or name the time column.",
-                {{"parameter", "rate_hz"}});
+    return fail(
+        ErrorCode::InconsistentSampling,
+        "There is no time column and no stated rate: give rate_hz, or name the time column (columns NAME=time:s).",
+        {{"parameter", "rate_hz"}});
   }
   // A sample at exactly the trim stays; the slack absorbs rounding of seconds times rate.
   const auto samples_in = [&](double seconds) {
@@ -139,7 +140,8 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
   if (!spec.rate_hz) {
     if (!unit_known) {
       return fail(ErrorCode::InconsistentSampling,
-                  "The time column has no unit and no rate is stated: give its unit (s, ms, us, ns) or rate_hz.",
+                  "The time column has no unit and no rate is stated: give its unit (columns NAME=time:s, or ms, us, "
+                  "ns) or rate_hz.",
                   {{"parameter", "rate_hz"}});
     }
     return {};

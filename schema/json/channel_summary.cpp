@@ -4,6 +4,8 @@
 #include "schema/json/error_model.hpp"
 #include "schema/json/reported_channel.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace driftlab {
@@ -46,7 +48,7 @@ Json present(const Json& processes) {
     bool none = false;
     const Json reasons = process.value("reasons", Json::object());
     for (const Json& reason : reasons) {
-      none = none || reason.get<std::string>().find("has none of it") != std::string::npos;
+      none = none || absence_of(reason.get<std::string>()) == Absence::NoneFound;
     }
     if (!none) {
       kept.push_back(process);
@@ -106,6 +108,22 @@ Result<Json> channel_summary(const Json& channel) {
   }
   evidence.scales = reported->haar.scale.size();
   return to_json(verdict_of(*reported, evidence));
+}
+
+Json gravest_summary(const Json& channels) {
+  constexpr std::array<std::string_view, 3> kByGravity{"fine", "look", "wrong"};
+  const auto gravity = [&](const Json& summary) {
+    return std::find(kByGravity.begin(), kByGravity.end(), summary.at("level").get<std::string>());
+  };
+  Json gravest = nullptr;
+  for (const Json& channel : channels) {
+    auto summary = channel_summary(channel);
+    if (summary && (gravest.is_null() || gravity(*summary) > gravity(gravest))) {
+      gravest = std::move(*summary);
+      gravest["channel"] = channel.at("channel");
+    }
+  }
+  return gravest;
 }
 
 std::optional<Model> model_of(const Json& fit, Dimension dimension) {

@@ -15,6 +15,10 @@ namespace driftlab {
 /// driftlab has not written.
 [[nodiscard]] Result<Json> channel_summary(const Json& channel);
 
+/// Of the summaries of all members of `channels` the one that says most against its channel, the first of these, with
+/// that `channel`; null without channels. Those that driftlab has not written are passed over.
+[[nodiscard]] Json gravest_summary(const Json& channels);
+
 /// The error model of a fit, without the processes that it has nothing of; nothing where it leaves a parameter open.
 [[nodiscard]] std::optional<Model> model_of(const Json& fit, Dimension dimension);
 

@@ -1,6 +1,7 @@
 #include "schema/json/recording_preview.hpp"
 
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/reported_channel.hpp"
 
 namespace driftlab {
 namespace {
@@ -13,17 +14,12 @@ Json list_of(std::span<const double> values) {
   return list;
 }
 
-Json text_or_null(std::string_view text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 Json column_json(const PreviewColumn& column) {
-  const auto& role = column.role;
-  return Json{{"name", column.name},
-              {"quantity", role ? Json(name_of(role->quantity)) : Json(nullptr)},
-              {"axis", role ? text_or_null(role->axis) : Json(nullptr)},
-              {"unit", role && role->unit ? Json(role->unit->symbol) : Json(nullptr)},
-              {"from", name_of(column.from)},
-              {"first", list_of(column.first)},
-              {"course", list_of(column.course)}};
+  Json document = role_json(column.name, column.role);
+  document["from"] = name_of(column.from);
+  document["first"] = list_of(column.first);
+  document["course"] = list_of(column.course);
+  return document;
 }
 
 Json problem_json(const Error& error) {

@@ -235,6 +235,16 @@ Json to_json(const ChannelQuality& channel) {
 
 }  // namespace
 
+Json role_json(const std::string& name, const std::optional<ColumnRole>& role) {
+  Json document{{"name", name}, {"quantity", nullptr}, {"axis", nullptr}, {"unit", nullptr}};
+  if (role) {
+    document["quantity"] = name_of(role->quantity);
+    document["axis"] = role->axis.empty() ? Json(nullptr) : Json(role->axis);
+    document["unit"] = role->unit ? Json(role->unit->symbol) : Json(nullptr);
+  }
+  return document;
+}
+
 Json to_json(const Quality& quality) {
   Json document{{"samples", quality.samples},
                 {"analysed", quality.analysed},

@@ -25,6 +25,9 @@ namespace driftlab {
 /// UnknownQuantity, UnknownUnit, UnitMismatch; each names the column.
 [[nodiscard]] Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text);
 
+/// A column of a file and what it is taken to mean: {"name", "quantity", "axis", "unit"}, null where nobody says.
+[[nodiscard]] Json role_json(const std::string& name, const std::optional<ColumnRole>& role);
+
 /// What was found true of the recording as it came.
 [[nodiscard]] Json to_json(const Quality& quality);
 

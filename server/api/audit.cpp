@@ -19,7 +19,8 @@ Result<Response> list_audit(ApiContext& context, const Request& request) {
   if (!page) {
     return fail(page.error());
   }
-  const auto rows = context.access.audit(sequence_of(page->after), page->limit + 1, page->newest_first);
+  const auto rows =
+      context.access.audit(sequence_of(page->after), page->limit + 1, page->order == PageOrder::NewestFirst);
   if (!rows) {
     return fail(rows.error());
   }

@@ -30,6 +30,8 @@ bool is_utf8(std::string_view text) {
 
 }  // namespace
 
+bool is_plain_text(std::string_view text) { return !has_control_character(text) && is_utf8(text); }
+
 std::string fault_of_device_name(std::string_view name) {
   if (name.empty()) {
     return "A device needs a name.";

@@ -8,6 +8,9 @@
 
 namespace driftlab::server {
 
+/// Whether a text is well-formed UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F).
+[[nodiscard]] bool is_plain_text(std::string_view text);
+
 /// Nothing if the name will do; else one sentence: a name is 1 to 200 bytes of well-formed UTF-8 without control
 /// characters (U+0000 to U+001F, U+007F to U+009F).
 [[nodiscard]] std::string fault_of_device_name(std::string_view name);

@@ -8,10 +8,11 @@
 #include "server/store/digest.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 namespace driftlab::server {
 namespace {
+
+constexpr char kBeside = '~';  ///< in an ETag: what follows is no state of the object
 
 Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc3339(*time)) : Json(nullptr); }
 
@@ -20,15 +21,6 @@ Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc
 Json stored(const std::string& text) {
   auto document = parse_json(text);
   return document ? std::move(*document) : Json(nullptr);
-}
-
-Json described(const Recording& recording) {
-  Json metadata = stored(recording.metadata_json);
-  const Json tags = stored(recording.tags_json);
-  for (const auto& [name, value] : tags.items()) {
-    metadata[name] = value;
-  }
-  return metadata;
 }
 
 Json to_json(const Device& device) {
@@ -41,25 +33,6 @@ Json to_json(const Device& device) {
               {"revision", device.revision},
               {"created_at", rfc3339(device.created_at)},
               {"updated_at", rfc3339(device.updated_at)}};
-}
-
-Json to_json(const Recording& recording, const Blob* blob) {
-  Json document{{"id", recording.id},
-                {"device", recording.device_id},
-                {"revision", recording.revision},
-                {"metadata", described(recording)},
-                {"quality", stored(recording.quality_json)}};
-  if (blob != nullptr) {
-    document["file"] =
-        Json{{"sha256", blob->sha256},           {"bytes", blob->bytes}, {"format", blob->format},
-             {"compression", blob->compression}, {"rows", blob->rows},   {"columns", stored(blob->columns_json)},
-             {"notes", stored(blob->notes_json)}};
-  } else {
-    document["file"] = Json{{"sha256", recording.blob_sha256}};
-  }
-  document["created_at"] = rfc3339(recording.created_at);
-  document["updated_at"] = rfc3339(recording.updated_at);
-  return document;
 }
 
 Json to_json(const Job& job) {
@@ -104,6 +77,19 @@ Json to_json(const Fit& fit) {
   }
   document["created_at"] = rfc3339(fit.created_at);
   return document;
+}
+
+std::string result_address(std::string_view kind, const std::string& job, const std::string& investigation) {
+  if (kind == "outage_evaluation") {
+    return "/v1/outage-evaluations/" + job;
+  }
+  if (kind == "drive_evaluation") {
+    return "/v1/drive-evaluations/" + job;
+  }
+  if (kind == "regress") {
+    return "/v1/regressions/" + job;
+  }
+  return investigation.empty() ? "/v1/jobs/" + job + "/result" : "/v1/investigations/" + investigation;
 }
 
 std::string own_key(const Request& request, std::string_view key) {
@@ -195,6 +181,10 @@ std::string etag_of(const Recording& recording) {
   return etag;
 }
 
+std::string shown_etag(const std::string& etag, const std::string& beside) {
+  return beside.empty() ? etag : etag.substr(0, etag.size() - 1) + kBeside + beside + '"';
+}
+
 std::optional<Response> refuse_stale(const Request& request, const std::string& etag) {
   const auto match = request.header("if-match");
   if (!match) {
@@ -202,7 +192,11 @@ std::optional<Response> refuse_stale(const Request& request, const std::string& 
         HttpFault::PreconditionRequired,
         "Send If-Match with the ETag of the object as you read it: " + etag + " is the current one.");
   }
-  if (*match == "*" || plain_tag(*match) == etag) {
+  std::string state(plain_tag(*match));
+  if (const std::size_t beside = state.find(kBeside); beside != std::string::npos) {
+    state.replace(beside, std::string::npos, "\"");
+  }
+  if (*match == "*" || state == etag) {
     return std::nullopt;
   }
   return problem_response(HttpFault::PreconditionFailed, "The object has changed; its ETag is now " + etag + ".");
@@ -250,42 +244,6 @@ Result<std::optional<JobState>> state_filter(const Request& request) {
   return state;
 }
 
-namespace {
-
-bool is_row_cursor(std::string_view cursor) {
-  const std::size_t underscore = cursor.find('_');
-  return underscore != std::string_view::npos && is_id(cursor, cursor.substr(0, underscore));
-}
-
-}  // namespace
-
-Result<Page> page_of(const Request& request) { return page_of(request, is_row_cursor); }
-
-Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view)) {
-  Page page;
-  if (const auto limit = request.parameter("limit")) {
-    const auto [stop, error] = std::from_chars(limit->data(), limit->data() + limit->size(), page.limit);
-    if (error != std::errc{} || stop != limit->data() + limit->size() || page.limit < 1 || page.limit > 500) {
-      return fail(ErrorCode::InvalidArgument, "The limit must be a whole number from 1 to 500.",
-                  {{"parameter", "limit"}});
-    }
-  }
-  if (const auto sort = request.parameter("sort")) {
-    if (*sort != "created_at" && *sort != "-created_at") {
-      return fail(ErrorCode::InvalidArgument, "Lists are sorted by created_at, oldest first, or by -created_at.",
-                  {{"parameter", "sort"}});
-    }
-    page.newest_first = *sort == "-created_at";
-  }
-  if (const auto cursor = request.parameter("cursor")) {
-    if (!is_cursor(*cursor)) {
-      return fail(ErrorCode::InvalidArgument, "The cursor is not one that a list gave.", {{"parameter", "cursor"}});
-    }
-    page.after = *cursor;
-  }
-  return page;
-}
-
 void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,
                 Faults& faults) {
   if (text.size() > static_cast<std::size_t>(most)) {
@@ -293,48 +251,6 @@ void limit_text(std::string_view text, std::string_view budget, std::int64_t mos
         pointer, ErrorCode::LimitExceeded,
         "This text of " + std::to_string(text.size()) + " bytes is too long " + naming_budget(budget, most) + ".");
   }
-}
-
-ListPage::ListPage(const Request& request, const Page& page)
-    : request_(request),
-      most_items_(static_cast<std::size_t>(page.limit)),
-      most_bytes_(static_cast<std::size_t>(request.budgets->page_bytes)),
-      last_id_(page.after) {}
-
-int ListPage::rows_to_fetch() const {
-  constexpr std::size_t kFirst = 16;
-  constexpr std::size_t kMost = 128;
-  const std::size_t left = most_items_ + 1 - items_;
-  const std::size_t room = most_bytes_ > text_.size() ? most_bytes_ - text_.size() : 0;
-  const std::size_t fitting = items_ == 0 ? kFirst : std::min(room / std::max<std::size_t>(largest_, 1) + 1, kMost);
-  return static_cast<int>(std::clamp<std::size_t>(fitting, 1, left));
-}
-
-bool ListPage::add(const Json& item, const std::string& id) {
-  const std::string text = to_text(item);
-  if (items_ == most_items_ || (items_ > 0 && text_.size() + text.size() > most_bytes_)) {
-    return false;
-  }
-  text_ += (items_ > 0 ? "," : "") + text;
-  ++items_;
-  largest_ = std::max(largest_, text.size());
-  last_id_ = id;
-  return true;
-}
-
-Response ListPage::response(bool more) const {
-  Response response;
-  response.body = text_ + "],\"next_cursor\":" + (more ? to_text(Json(last_id_)) : "null") + "}";
-  if (more) {
-    std::string link = request_.target.substr(0, request_.target.find('?')) + "?";
-    for (const auto& [name, value] : request_.query) {
-      if (name != "cursor") {
-        link += name + "=" + percent_encode(value) + "&";
-      }
-    }
-    response.headers.emplace_back("Link", "<" + link + "cursor=" + last_id_ + ">; rel=\"next\"");
-  }
-  return response;
 }
 
 }  // namespace driftlab::server

@@ -15,8 +15,14 @@ namespace driftlab::server {
 [[nodiscard]] Json to_json(const Device& device);
 /// `blob` may be nullptr: then the members about the file are left out.
 [[nodiscard]] Json to_json(const Recording& recording, const Blob* blob);
+/// Samples per second of a recording: measured by its time column, or as stated; nothing where neither is known.
+[[nodiscard]] std::optional<double> rate_of(const Recording& recording);
 [[nodiscard]] Json to_json(const Job& job);
 [[nodiscard]] Json to_json(const Fit& fit);
+
+/// Where the result of a job of that kind is read; `investigation`: what it made, if it is one that does.
+[[nodiscard]] std::string result_address(std::string_view kind, const std::string& job,
+                                         const std::string& investigation);
 
 /// The key under which the reply is kept: keys are those of a token.
 [[nodiscard]] std::string own_key(const Request& request, std::string_view key);
@@ -65,6 +71,9 @@ template <class Read>
 [[nodiscard]] std::string etag_of(std::string_view id, std::int64_t revision);
 /// Labels count apart from the revision, which results name.
 [[nodiscard]] std::string etag_of(const Recording& recording);
+/// The ETag of an answer that shows more than the object's own state, such as a job that names it: `If-Match` takes it
+/// for that state, `If-None-Match` sees every change.
+[[nodiscard]] std::string shown_etag(const std::string& etag, const std::string& beside);
 
 /// The refusal where If-Match is missing (428) or names another state of an object than `etag` (412); `*` is any.
 [[nodiscard]] std::optional<Response> refuse_stale(const Request& request, const std::string& etag);
@@ -88,11 +97,24 @@ template <class Read>
 void limit_text(std::string_view text, std::string_view budget, std::int64_t most, const std::string& pointer,
                 Faults& faults);
 
-/// `?limit=` (1 to 500, default 50), `?cursor=`, and `?sort=` created_at (default) or -created_at. Error:
-/// InvalidArgument naming the parameter.
-[[nodiscard]] Result<Page> page_of(const Request& request);
-/// The same for a list whose cursors are no ids of rows: `is_cursor` tells them.
+/// Whether a list can be in the order of names.
+enum class ListNames { None, Sorted };
+
+/// `?limit=` (1 to 500, default 50), `?cursor=`, and `?sort=` created_at (default) or -created_at, or name where rows
+/// have one. Error: InvalidArgument naming the parameter.
+[[nodiscard]] Result<Page> page_of(const Request& request, ListNames names);
+/// The same for a list without names whose cursors are no ids of rows: `is_cursor` tells them.
 [[nodiscard]] Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view));
+
+/// The cursor that leads on from the row at which a page in this order ends: its id, with its name where names order
+/// the list. Clients take it as it is.
+[[nodiscard]] std::string cursor_at(PageOrder order, const std::string& id, const std::string& name);
+
+/// `?q=`, what is sought; nothing where it is not asked for. Error: InvalidArgument naming the parameter.
+[[nodiscard]] Result<std::optional<std::string>> text_filter(const Request& request);
+
+/// `?since=`, a time of RFC 3339; nothing where it is not asked for. Error: InvalidArgument naming the parameter.
+[[nodiscard]] Result<std::optional<UtcMicros>> since_filter(const Request& request);
 
 /// The id of the device that `?device=` names by id or name; nothing where it is not asked for. Error: NotFound.
 [[nodiscard]] Result<std::optional<std::string>> device_filter(Store& store, const Request& request);
@@ -109,8 +131,7 @@ class ListPage {
   /// How many rows to fetch next, from what the largest so far took. At least 1.
   [[nodiscard]] int rows_to_fetch() const;
   /// False: the page is full, and the item begins the next one.
-  [[nodiscard]] bool add(const Json& item, const std::string& id);
-  [[nodiscard]] const std::string& last_id() const { return last_id_; }
+  [[nodiscard]] bool add(const Json& item, const std::string& cursor);
   /// {"items": [...], "next_cursor": ...} with `Link: rel="next"` where more follow.
   [[nodiscard]] Response response(bool more) const;
 
@@ -120,7 +141,7 @@ class ListPage {
   std::size_t most_bytes_;
   std::size_t items_ = 0;
   std::size_t largest_ = 0;
-  std::string last_id_;
+  std::string last_cursor_;
   std::string text_ = "{\"items\":[";
 };
 
@@ -129,25 +150,31 @@ class ListPage {
 /// those of page_of and of the store.
 template <class Fetch, class Item>
 [[nodiscard]] Result<Response> list_rows(const Request& request, const Fetch& fetch, const Item& item) {
-  const auto page = page_of(request);
+  using Row = typename std::invoke_result_t<const Fetch&, const Page&>::value_type::value_type;
+  constexpr bool kNamed = requires(const Row& row) { row.name; };
+  auto page = page_of(request, kNamed ? ListNames::Sorted : ListNames::None);
   if (!page) {
     return fail(page.error());
   }
   ListPage list(request, *page);
-  std::string after = page->after;
   while (true) {
-    const int asked = list.rows_to_fetch();
-    const auto rows = fetch(Page{after, asked, page->newest_first});
+    page->limit = list.rows_to_fetch();
+    const auto rows = fetch(*page);
     if (!rows) {
       return fail(rows.error());
     }
     for (const auto& row : *rows) {
-      if (!list.add(item(row), row.id)) {
+      std::string name;
+      if constexpr (kNamed) {
+        name = row.name;
+      }
+      if (!list.add(item(row), cursor_at(page->order, row.id, name))) {
         return list.response(true);
       }
-      after = row.id;
+      page->after = row.id;
+      page->after_name = std::move(name);
     }
-    if (rows->size() < static_cast<std::size_t>(asked)) {
+    if (rows->size() < static_cast<std::size_t>(page->limit)) {
       return list.response(false);
     }
   }

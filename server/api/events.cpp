@@ -14,23 +14,10 @@ constexpr std::size_t kMostAtOnce = 200;
 
 /// Where the result of a finished job is read.
 std::string address_of(ApiContext& context, const Job& job) {
-  if (job.kind == "outage_evaluation") {
-    return "/v1/outage-evaluations/" + job.id;
-  }
-  if (job.kind == "drive_evaluation") {
-    return "/v1/drive-evaluations/" + job.id;
-  }
-  if (job.kind == "regress") {
-    return "/v1/regressions/" + job.id;
-  }
-  if (job.kind == "investigate") {
-    InvestigationFilter filter;
-    filter.job_id = job.id;
-    if (const auto found = context.store.investigations(filter, Page{"", 1}); found && !found->empty()) {
-      return "/v1/investigations/" + found->front().id;
-    }
-  }
-  return "/v1/jobs/" + job.id + "/result";
+  InvestigationFilter filter;
+  filter.job_id = job.id;
+  const auto found = context.store.investigations(filter, Page{"", 1});
+  return result_address(job.kind, job.id, found && !found->empty() ? found->front().id : "");
 }
 
 /// The sentence of a result: its own, or of a characterisation that of the channel that a person should look at first.
@@ -38,18 +25,14 @@ Json sentence_of(const Json& document) {
   if (const auto own = document.find("summary"); own != document.end() && own->is_object()) {
     return own->value("verdict", Json(nullptr));
   }
-  Json sentence = nullptr;
-  bool calm = true;
+  Json channels = Json::array();
   for (const Json& recording : document.value("recordings", Json::array())) {
     for (const Json& channel : recording.value("channels", Json::array())) {
-      const auto summary = channel_summary(channel);
-      if (summary && (sentence.is_null() || (calm && summary->at("level") != "fine"))) {
-        sentence = summary->at("verdict");
-        calm = summary->at("level") == "fine";
-      }
+      channels.push_back(channel);
     }
   }
-  return sentence;
+  const Json gravest = gravest_summary(channels);
+  return gravest.is_null() ? Json(nullptr) : gravest.at("verdict");
 }
 
 void announce_result(ApiContext& context, const Job& job) {

@@ -29,6 +29,13 @@ Result<Response> list_investigations(ApiContext& context, const Request& request
   if (const auto job = request.parameter("job")) {
     filter.job_id = *job;
   }
+  auto sought = text_filter(request);
+  auto since = since_filter(request);
+  if (!sought || !since) {
+    return fail(sought ? since.error() : sought.error());
+  }
+  filter.text = std::move(*sought);
+  filter.since = *since;
   return list_rows(
       request, [&](const Page& page) { return context.store.investigations(filter, page); },
       [](const Investigation& row) { return summary(row); });
@@ -78,7 +85,7 @@ void add_investigation_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/investigations",
               "listInvestigations",
-              {"limit", "cursor", "sort", "device", "study", "job"},
+              {"limit", "cursor", "sort", "device", "study", "job", "q", "since"},
               Handler([&](const Request& request) { return list_investigations(context, request); })});
   router.add(from_rows({"GET", "/v1/investigations/{id}", "getInvestigation", {}, Handler([&](const Request& request) {
                           return get_investigation(context, request);

@@ -124,6 +124,13 @@ Result<Response> list_job_objects(ApiContext& context, const Request& request, c
     return fail(state.error());
   }
   filter.state = *state;
+  auto sought = text_filter(request);
+  auto since = since_filter(request);
+  if (!sought || !since) {
+    return fail(sought ? since.error() : sought.error());
+  }
+  filter.scenario = std::move(*sought);
+  filter.since = *since;
   return list_rows(
       request, [&](const Page& page) { return context.store.jobs(filter, page); },
       [&](const Job& job) { return object_summary(job, resource); });

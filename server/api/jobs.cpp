@@ -77,6 +77,11 @@ Result<Response> list_jobs(ApiContext& context, const Request& request) {
     return fail(state.error());
   }
   filter.state = *state;
+  auto device_id = device_filter(context.store, request);
+  if (!device_id) {
+    return fail(device_id.error());
+  }
+  filter.device_id = std::move(*device_id);
   return list_rows(
       request, [&](const Page& page) { return context.store.jobs(filter, page); },
       [](const Job& job) { return to_json(job); });
@@ -182,7 +187,7 @@ void add_job_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/jobs",
               "listJobs",
-              {"limit", "cursor", "sort", "kind", "state"},
+              {"limit", "cursor", "sort", "kind", "state", "device"},
               Handler([&](const Request& request) { return list_jobs(context, request); })});
   router.add({"POST", "/v1/jobs", "createJob", {}, Handler([&](const Request& request) {
                 return create_job(context, request);

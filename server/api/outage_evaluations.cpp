@@ -29,7 +29,7 @@ void add_outage_evaluation_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/outage-evaluations",
               "listOutageEvaluations",
-              {"limit", "cursor", "sort", "state"},
+              {"limit", "cursor", "sort", "state", "q", "since"},
               Handler([&](const Request& request) { return list_job_objects(context, request, kOutageEvaluations); })});
   router.add({"POST", "/v1/outage-evaluations", "createOutageEvaluation", {}, Handler([&](const Request& request) {
                 return create_job_object(context, request, kOutageEvaluations);

@@ -6,6 +6,7 @@
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/http/message.hpp"
 
 #include <map>
 
@@ -63,14 +64,61 @@ bool tells_more(const Fit& fit, const Fit& shown) {
   return rests && axis_summary(fit).at("level") == "look" && axis_summary(shown).at("level") == "fine";
 }
 
-Result<Response> get_counts(ApiContext& context, const Request&) {
-  auto counts = context.store.counts();
-  if (!counts) {
-    return fail(counts.error());
+Result<Response> get_counts(ApiContext& context, const Request& request) {
+  const auto since = since_filter(request);
+  const auto counts = context.store.counts();
+  if (!since || !counts) {
+    return fail(since ? counts.error() : since.error());
   }
-  return json_response(200, Json{{"devices", counts->devices},
-                                 {"recordings", counts->recordings},
-                                 {"jobs", Json{{"queued", counts->queued}, {"running", counts->running}}}});
+  Json jobs{{"queued", counts->queued}, {"running", counts->running}};
+  if (const std::optional<UtcMicros>& at = *since) {
+    const auto ended = context.store.ended_since(*at);
+    if (!ended) {
+      return fail(ended.error());
+    }
+    jobs["succeeded_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->succeeded}};
+    jobs["failed_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->failed}};
+  }
+  return json_response(
+      200, Json{{"devices", counts->devices}, {"recordings", counts->recordings}, {"jobs", std::move(jobs)}});
+}
+
+/// A result that must be read, with the page of the API that holds what its verdict rests on.
+Json to_json(const Attention& item) {
+  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  const std::string href = item.recording_id.empty() ? result_address(item.kind, item.job_id, item.investigation_id)
+                                                     : "/v1/recordings/" + item.recording_id +
+                                                           "/characterisation?channel=" + percent_encode(item.channel);
+  return Json{{"id", item.id},
+              {"level", item.level},
+              {"verdict", item.verdict},
+              {"kind", item.kind},
+              {"href", href},
+              {"job", item.job_id},
+              {"device", or_null(item.device_id)},
+              {"device_name", or_null(item.device_name)},
+              {"recording", or_null(item.recording_id)},
+              {"channel", or_null(item.channel)},
+              {"created_at", rfc3339(item.created_at)}};
+}
+
+/// Newest first unless it is asked otherwise: what came last is read first.
+Result<Response> list_attention(ApiContext& context, const Request& request) {
+  AttentionFilter filter;
+  auto device_id = device_filter(context.store, request);
+  const auto since = since_filter(request);
+  if (!device_id || !since) {
+    return fail(device_id ? since.error() : device_id.error());
+  }
+  filter.device_id = std::move(*device_id);
+  filter.since = *since;
+  Request asked = request;
+  if (!asked.parameter("sort")) {
+    asked.query.emplace_back("sort", "-created_at");
+  }
+  return list_rows(
+      asked, [&](const Page& page) { return context.store.attention(filter, page); },
+      [](const Attention& item) { return to_json(item); });
 }
 
 Result<Response> get_summary(ApiContext& context, const Request& request) {
@@ -132,8 +180,14 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
 }
 
 void add_overview_routes(Router& router, ApiContext& context) {
-  router.add(from_rows(
-      {"GET", "/v1/counts", "getCounts", {}, Handler([&](const Request& r) { return get_counts(context, r); })}));
+  router.add(from_rows({"GET", "/v1/counts", "getCounts", {"since"}, Handler([&](const Request& r) {
+                          return get_counts(context, r);
+                        })}));
+  router.add(from_rows({"GET",
+                        "/v1/attention",
+                        "listAttention",
+                        {"limit", "cursor", "sort", "device", "since"},
+                        Handler([&](const Request& r) { return list_attention(context, r); })}));
   router.add(from_rows({"GET", "/v1/devices/{id}/summary", "getDeviceSummary", {}, Handler([&](const Request& r) {
                           return get_summary(context, r);
                         })}));

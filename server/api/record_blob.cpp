@@ -4,6 +4,7 @@
 #include "core/read/format.hpp"
 #include "core/read/open_recording.hpp"
 #include "core/read/trace_pyramid.hpp"
+#include "core/signal/full_scale.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
@@ -147,6 +148,36 @@ Result<std::string> quality_of_fixes(const RecordingSpec& spec, const std::files
   return to_text(driftlab::to_json(quality));
 }
 
+/// The longest gaps of the analysed part, the earlier of equal ones, in order of their rows.
+std::vector<Gap> longest_of(std::vector<Gap> gaps) {
+  constexpr std::size_t kTold = 64;  // more than a screen can tell apart
+  const auto end = gaps.begin() + static_cast<std::ptrdiff_t>(std::min(gaps.size(), kTold));
+  std::partial_sort(gaps.begin(), end, gaps.end(), [](const Gap& a, const Gap& b) {
+    return a.missing != b.missing ? a.missing > b.missing : a.row < b.row;
+  });
+  gaps.erase(end, gaps.end());
+  std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.row < b.row; });
+  return gaps;
+}
+
+/// The quality with what a drawing of the samples marks: where the longest gaps are, and the ends of the range.
+Json quality_of(const OpenRecording& opened) {
+  Json quality = driftlab::to_json(opened.view.window.quality);
+  for (const Gap& gap : longest_of(opened.view.window.gaps)) {
+    quality["longest_gaps"].push_back(Json{{"row", gap.row + 1}, {"missing", gap.missing}});
+  }
+  const auto or_null = [](const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); };
+  const auto& names = opened.columns.names();
+  for (Json& channel : quality["channels"]) {
+    const auto named = std::find(names.begin(), names.end(), channel.at("column").get<std::string>());
+    if (channel.at("saturated").get<std::size_t>() > 0 && named != names.end()) {
+      const Rails rails = find_rails(*named, opened.columns.column(static_cast<std::size_t>(named - names.begin())));
+      channel["rails"] = Json::array({or_null(rails.low), or_null(rails.high)});
+    }
+  }
+  return quality;
+}
+
 }  // namespace
 
 Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem::path& columns,
@@ -160,7 +191,7 @@ Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem:
     return fail(opened.error());
   }
   add_unit_notes(opened->view, opened->columns, spec, hardware_of(device));
-  std::string quality = to_text(driftlab::to_json(opened->view.window.quality));
+  std::string quality = to_text(quality_of(*opened));
   if (!calibrated) {
     return quality;
   }
@@ -203,6 +234,7 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
   recording.condition = driftlab::to_text(metadata.spec.condition);
   recording.quality_json = *quality;
   recording.tags_json = canonical_text(driftlab::to_json(metadata.tags));
+  recording.file_name = metadata.file_name;
   auto outcome = context.store.add_recording(decoded->row, recording);
   if (!outcome) {
     return fail(naming_patch(outcome.error()));
@@ -215,7 +247,7 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
   }
   Response response = json_response(outcome->created ? 201 : 200, to_json(recorded, &decoded->row));
   response.headers.emplace_back("Location", "/v1/recordings/" + recorded.id);
-  response.headers.emplace_back("ETag", etag_of(recorded));
+  response.headers.emplace_back("ETag", shown_etag(etag_of(recorded), recorded.latest_job));
   return response;
 }
 
@@ -229,8 +261,8 @@ Status require_space(const ApiContext& context) {
 }
 
 std::vector<std::string_view> metadata_parameters() {
-  return {"device",  "id",           "condition",  "axis",        "value",  "unit",    "direction",  "rate_hz",
-          "columns", "trim_start_s", "trim_end_s", "calibration", "labels", "session", "recorded_at"};
+  return {"device",  "id",           "condition",  "axis",        "value",  "unit",    "direction",   "rate_hz",
+          "columns", "trim_start_s", "trim_end_s", "calibration", "labels", "session", "recorded_at", "file_name"};
 }
 
 }  // namespace driftlab::server

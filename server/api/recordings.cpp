@@ -16,7 +16,7 @@ Result<Response> recording_response(ApiContext& context, int status, const Recor
   }
   const std::optional<Blob>& kept = *blob;
   Response response = json_response(status, to_json(recording, kept ? &*kept : nullptr));
-  response.headers.emplace_back("ETag", etag_of(recording));
+  response.headers.emplace_back("ETag", shown_etag(etag_of(recording), recording.latest_job));
   return response;
 }
 
@@ -40,6 +40,19 @@ Result<Response> list_recordings(ApiContext& context, const Request& request) {
       return fail(labels.error());
     }
     filter.labels = label_words(*labels);
+  }
+  auto sought = text_filter(request);
+  auto since = since_filter(request);
+  if (!sought || !since) {
+    return fail(sought ? since.error() : sought.error());
+  }
+  filter.text = std::move(*sought);
+  filter.since = *since;
+  if (const auto wanted = request.parameter("has_result")) {
+    if (*wanted != "true" && *wanted != "false") {
+      return fail(ErrorCode::InvalidArgument, "has_result is true or false.", {{"parameter", "has_result"}});
+    }
+    filter.has_result = *wanted == "true";
   }
   return list_rows(
       request, [&](const Page& page) { return context.store.recordings(filter, page); },
@@ -155,7 +168,7 @@ void add_recording_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/recordings",
               "listRecordings",
-              {"limit", "cursor", "sort", "device", "condition", "labels"},
+              {"limit", "cursor", "sort", "device", "condition", "labels", "q", "since", "has_result"},
               Handler([&](const Request& request) { return list_recordings(context, request); })});
   router.add({"POST", "/v1/recordings", "uploadRecording", metadata_parameters(),
               UploadHandler([&](const Request& request) { return begin_upload(context, request); })});

@@ -109,7 +109,7 @@ Result<Response> list_tokens(ApiContext& context, const Request& request) {
   if (!all) {
     return fail(all.error());
   }
-  if (page->newest_first) {
+  if (page->order == PageOrder::NewestFirst) {
     std::reverse(all->begin(), all->end());
   }
   auto token = all->begin();

@@ -6,10 +6,13 @@
 #include "schema/json/recording_spec.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
+#include "server/http/problem.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace driftlab::server {
 namespace {
@@ -42,13 +45,6 @@ Result<std::size_t> points_of(const Request& request) {
     }
   }
   return static_cast<std::size_t>(points);
-}
-
-/// Samples per second: measured by the time column, or as stated.
-double rate_of(const Recording& recording, const RecordingSpec& spec) {
-  const Json quality = stored(recording.quality_json);
-  const Json measured = quality.is_object() ? quality.value("measured_rate_hz", Json(nullptr)) : Json(nullptr);
-  return measured.is_number() && measured.get<double>() > 0.0 ? measured.get<double>() : spec.rate_hz.value_or(1.0);
 }
 
 struct Stretch {
@@ -106,25 +102,104 @@ Json missing_in(const Trace& trace, std::size_t end, double rate_hz) {
   return missing;
 }
 
-/// What is not analysed: trimmed ends, and a stretch in which the sensor gives one value only.
-Json flags_of(const Recording& recording, const RecordingSpec& spec, const std::string& channel, double duration_s,
-              double rate_hz) {
-  Json flags = Json::array();
-  const auto add = [&](const char* kind, double t0, double t1) {
-    if (t1 > t0) {
-      flags.push_back(Json{{"kind", kind}, {"t0", number(t0)}, {"t1", number(t1)}});
-    }
-  };
-  add("trim", 0.0, std::min(spec.trim.start_s, duration_s));
-  add("trim", std::max(0.0, duration_s - spec.trim.end_s), duration_s);
-  const Json quality = stored(recording.quality_json);
+/// The survey of a column; null where it is no sensor.
+Json survey_of(const Json& quality, const std::string& channel) {
   for (const Json& one : quality.value("channels", Json::array())) {
-    if (one.value("column", "") == channel && one.value("frozen", 0) > 0 && one["frozen_from"].is_number()) {
-      const double first = (one["frozen_from"].get<double>() - 1.0) / rate_hz;
-      add("frozen", first, first + one["frozen"].get<double>() / rate_hz);
+    if (one.value("column", "") == channel) {
+      return one;
     }
   }
-  return flags;
+  return nullptr;
+}
+
+/// A list of {"kind", "t0", "t1"}.
+class Flags {
+ public:
+  void add(const char* kind, double t0, double t1) {
+    if (t1 > t0) {
+      list_.push_back(Json{{"kind", kind}, {"t0", number(t0)}, {"t1", number(t1)}});
+    }
+  }
+  void add_gap(double t0, double t1, const Json& missing) {
+    add("gap", t0, t1);
+    list_.back()["missing"] = missing;
+  }
+  [[nodiscard]] Json take() { return std::move(list_); }
+
+ private:
+  Json list_ = Json::array();
+};
+
+/// Where the trace reaches a value at which samples pile up: stretches of it, joined where they touch.
+void flag_saturated(const Trace& trace, const Json& rails, std::size_t end, double rate_hz, Flags& flags) {
+  const auto is_at = [&](std::size_t rail, double value) {
+    return rails.is_array() && rails.at(rail).is_number() && rails.at(rail).get<double>() == value;
+  };
+  const auto at = [&](std::size_t i) {
+    return static_cast<double>(i < trace.buckets.size() ? trace.buckets[i].first : end) / rate_hz;
+  };
+  double from = 0.0;
+  bool open = false;
+  for (std::size_t i = 0; i <= trace.buckets.size(); ++i) {
+    const bool there = i < trace.buckets.size() && trace.buckets[i].present > 0 &&
+                       (is_at(0, trace.buckets[i].low) || is_at(1, trace.buckets[i].high));
+    if (there && !open) {
+      from = at(i);
+    } else if (!there && open) {
+      flags.add("saturated", from, at(i));
+    }
+    open = there;
+  }
+}
+
+/// What a reader must not take for the sensor's noise: trimmed ends, gaps, a stretch in which the sensor gives one
+/// value only, and full scale. `end`: the row behind the trace.
+Json flags_of(const Recording& recording, const RecordingSpec& spec, const std::string& channel, const Trace& trace,
+              std::size_t end, double duration_s, double rate_hz) {
+  Flags flags;
+  flags.add("trim", 0.0, std::min(spec.trim.start_s, duration_s));
+  flags.add("trim", std::max(0.0, duration_s - spec.trim.end_s), duration_s);
+  const Json quality = stored(recording.quality_json);
+  for (const Json& gap : quality.value("longest_gaps", Json::array())) {
+    const double row = gap.at("row").get<double>() - 1.0;
+    flags.add_gap((row - 1.0) / rate_hz, row / rate_hz, gap.at("missing"));
+  }
+  const Json survey = survey_of(quality, channel);
+  if (survey.is_object()) {
+    if (survey.value("frozen", 0) > 0 && survey["frozen_from"].is_number()) {
+      const double first = (survey["frozen_from"].get<double>() - 1.0) / rate_hz;
+      flags.add("frozen", first, first + survey["frozen"].get<double>() / rate_hz);
+    }
+    flag_saturated(trace, survey.value("rails", Json(nullptr)), end, rate_hz, flags);
+  }
+  return flags.take();
+}
+
+/// Three float32, little-endian, of each stretch: seconds since the first one begins, least and greatest value; NaN
+/// where it has no sample.
+Response binary_trace(const Trace& trace, double rate_hz, const std::optional<std::string>& unit) {
+  Response response;
+  response.content_type = "application/octet-stream";
+  const std::size_t first = trace.buckets.empty() ? 0 : trace.buckets.front().first;
+  response.body.reserve(trace.buckets.size() * 3 * sizeof(float));
+  const auto put = [&](double value) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      response.body.push_back(static_cast<char>(bits >> shift & 0xFFU));
+    }
+  };
+  for (const TraceBucket& bucket : trace.buckets) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    put(static_cast<double>(bucket.first - first) / rate_hz);
+    put(bucket.present > 0 ? bucket.low : none);
+    put(bucket.present > 0 ? bucket.high : none);
+  }
+  response.headers.emplace_back("Trace-Start", to_text(number(static_cast<double>(first) / rate_hz)));
+  response.headers.emplace_back("Trace-Samples-Per-Bucket", std::to_string(trace.samples_per_bucket));
+  if (unit) {
+    response.headers.emplace_back("Trace-Unit", *unit);
+  }
+  return response;
 }
 
 Json trace_document(const Trace& trace, double rate_hz) {
@@ -146,6 +221,10 @@ Json trace_document(const Trace& trace, double rate_hz) {
 }
 
 Result<Response> get_trace(ApiContext& context, const Request& request) {
+  const auto type = negotiate(request.header("accept"), {"application/json", "application/octet-stream"});
+  if (!type) {
+    return problem_response(HttpFault::NotAcceptable, "Offered are application/json and application/octet-stream.");
+  }
   auto recording = context.store.recording(request.parameters[0]);
   if (!recording) {
     return fail(recording.error());
@@ -174,7 +253,7 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
     return fail(roles.error());
   }
   const auto column = static_cast<std::size_t>(named - names.begin());
-  const double rate_hz = rate_of(*recording, spec);
+  const double rate_hz = rate_of(*recording).value_or(1.0);
   const auto t0 = real_parameter(request, "t0", 0.0);
   const auto t1 = real_parameter(request, "t1", static_cast<double>(columns->rows()) / rate_hz);
   const auto points = points_of(request);
@@ -188,14 +267,23 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
   const double duration_s = static_cast<double>(rows) / rate_hz;
   const Stretch stretch = stretch_of(*t0, *t1, rate_hz, rows);
   const Trace trace = trace_of(context.blobs.columns_path(recording->blob_sha256), *columns, column, stretch, *points);
-  Json document = trace_document(trace, rate_hz);
-  document["missing"] = missing_in(trace, std::min(stretch.first + stretch.count, rows), rate_hz);
-  document["flags"] = flags_of(*recording, spec, channel, duration_s, rate_hz);
   const std::optional<ColumnRole>& role = (*roles)[column];
-  document["unit"] = role && role->unit ? Json(role->unit->symbol) : Json(nullptr);
-  document["duration_s"] = number(duration_s);
-  document["rate_hz"] = number(rate_hz);
-  return json_response(200, document);
+  const auto unit = role && role->unit ? std::optional<std::string>(role->unit->symbol) : std::nullopt;
+  Response response;
+  if (*type == "application/octet-stream") {
+    response = binary_trace(trace, rate_hz, unit);
+  } else {
+    const std::size_t end = std::min(stretch.first + stretch.count, rows);
+    Json document = trace_document(trace, rate_hz);
+    document["missing"] = missing_in(trace, end, rate_hz);
+    document["flags"] = flags_of(*recording, spec, channel, trace, end, duration_s, rate_hz);
+    document["unit"] = unit ? Json(*unit) : Json(nullptr);
+    document["duration_s"] = number(duration_s);
+    document["rate_hz"] = number(rate_hz);
+    response = json_response(200, document);
+  }
+  response.headers.emplace_back("Vary", "Accept");
+  return response;
 }
 
 }  // namespace

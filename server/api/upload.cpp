@@ -45,9 +45,10 @@ class RecordingUpload final : public UploadSession {
       : context_(context), request_(std::move(request)), blob_(std::move(blob)) {}
 
   void expect_multipart(std::string_view boundary) {
-    multipart_.emplace(
-        boundary, MultipartReader::Callbacks{[this](const std::string& name) { return begin_part(name); },
-                                             [this](std::span<const std::byte> bytes) { return part_data(bytes); }});
+    multipart_.emplace(boundary,
+                       MultipartReader::Callbacks{
+                           [this](const std::string& name, const std::string& file) { return begin_part(name, file); },
+                           [this](std::span<const std::byte> bytes) { return part_data(bytes); }});
   }
   void set_metadata(UploadMetadata metadata) { metadata_ = std::move(metadata); }
 
@@ -79,7 +80,7 @@ class RecordingUpload final : public UploadSession {
   }
 
  private:
-  Status begin_part(const std::string& name) {
+  Status begin_part(const std::string& name, const std::string& file_name) {
     const auto fields = metadata_parameters();
     const bool is_field = std::find(fields.begin(), fields.end(), name) != fields.end();
     if (name != "metadata" && name != "file" && !is_field) {
@@ -98,6 +99,7 @@ class RecordingUpload final : public UploadSession {
     file_seen_ = file_seen_ || name == "file";
     metadata_seen_ = metadata_seen_ || name == "metadata";
     in_file_ = name == "file";
+    sent_name_ = in_file_ ? file_name : sent_name_;
     in_field_ = is_field;
     if (is_field) {
       request_.query.emplace_back(name, "");
@@ -146,6 +148,9 @@ class RecordingUpload final : public UploadSession {
       return fail(metadata.error());
     }
     metadata_ = std::move(*metadata);
+    if (metadata_.file_name.empty()) {
+      metadata_.file_name = shown_file_name(sent_name_);
+    }
     return resolve_device_name(context_.store, metadata_.device);
   }
 
@@ -192,6 +197,7 @@ class RecordingUpload final : public UploadSession {
   std::optional<MultipartReader> multipart_;
   UploadMetadata metadata_;
   std::string metadata_text_;
+  std::string sent_name_;  ///< of the file, as its part calls it
   std::size_t stated_in_query_ = request_.query.size();
   std::size_t described_bytes_ = 0;
   bool in_file_ = false;

@@ -6,6 +6,8 @@
 #include "server/api/device_name.hpp"
 #include "server/api/documents.hpp"
 
+#include <algorithm>
+
 namespace driftlab::server {
 namespace {
 
@@ -111,6 +113,19 @@ Status tags_from_query(const Request& request, RecordingTags& tags) {
 
 }  // namespace
 
+std::string shown_file_name(std::string_view name) {
+  constexpr std::size_t kLongest = 255;
+  const std::size_t folder = name.find_last_of("/\\");
+  std::string shown(folder == std::string_view::npos ? name : name.substr(folder + 1));
+  std::erase_if(shown, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+  std::size_t end = std::min(shown.size(), kLongest);
+  while (end < shown.size() && end > 0 && (static_cast<unsigned char>(shown[end]) & 0xC0U) == 0x80U) {
+    --end;  // a character is kept whole
+  }
+  shown.resize(end);
+  return is_plain_text(shown) ? shown : std::string();
+}
+
 void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults) {
   if (tags.labels.size() > static_cast<std::size_t>(budgets.labels)) {
     faults.add(pointer + "/labels", ErrorCode::LimitExceeded,
@@ -135,6 +150,7 @@ Result<UploadMetadata> metadata_from_query(const Request& request) {
   }
   metadata.spec.condition = *condition;
   metadata.spec.id = request.parameter("id").value_or("");
+  metadata.file_name = shown_file_name(request.parameter("file_name").value_or(""));
   metadata.spec.calibration = request.parameter("calibration").value_or("");
   auto rate = number_of(request, "rate_hz", false);
   auto start = number_of(request, "trim_start_s", true);

@@ -11,13 +11,18 @@ struct UploadMetadata {
   Device device;  ///< only the user's members are set
   RecordingSpec spec;
   RecordingTags tags;
+  std::string file_name = {};  ///< as the sender calls the file; may be empty
 };
+
+/// What a sender calls a file, as it is kept and shown: without folders and control characters, 255 bytes at most;
+/// empty where that leaves nothing or it is no UTF-8.
+[[nodiscard]] std::string shown_file_name(std::string_view name);
 
 /// A fault for each label, session and time beyond the budgets, which `pointer` leads to.
 void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults);
 
 /// `?device=…&condition=…&rate_hz=…&columns=…&id=…&trim_start_s=…&trim_end_s=…`
-/// and `&labels=firmware=1.5.0&session=…&recorded_at=…`; the condition in its compact form
+/// and `&labels=firmware=1.5.0&session=…&recorded_at=…&file_name=…`; the condition in its compact form
 /// (`constant_rate:z:9:deg/s`) or its parts as `condition`, `axis`, `value`, `unit`, `direction`.
 /// Errors: those of core/signal, with field "parameter".
 [[nodiscard]] Result<UploadMetadata> metadata_from_query(const Request& request);

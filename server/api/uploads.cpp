@@ -68,9 +68,7 @@ std::string file_name_in(std::string_view metadata) {
     const std::string_view pair = trimmed(metadata.substr(0, metadata.find(',')));
     if (const std::size_t space = pair.find(' ');
         space != std::string_view::npos && pair.substr(0, space) == "filename") {
-      std::string name = decode_base64(pair.substr(space + 1)).value_or("");
-      std::erase_if(name, [](char c) { return static_cast<unsigned char>(c) < 32; });
-      return name.substr(0, 255);
+      return shown_file_name(decode_base64(pair.substr(space + 1)).value_or(""));
     }
     const std::size_t comma = metadata.find(',');
     metadata.remove_prefix(comma == std::string_view::npos ? metadata.size() : comma + 1);
@@ -314,6 +312,9 @@ Result<Response> record(ApiContext& context, ResumableUploads& uploads, const Re
   auto metadata = metadata_from_query(request);
   if (!metadata) {
     return fail(metadata.error());
+  }
+  if (metadata->file_name.empty()) {
+    metadata->file_name = upload->file_name;
   }
   if (auto resolved = resolve_device_name(context.store, metadata->device); !resolved) {
     return fail(resolved.error());

@@ -15,7 +15,11 @@ std::optional<Visibility> limits() {
              : std::optional(Visibility{nlohmann::json(*devices).dump(), caller_of_thread()->principal.token});
 }
 
-Page limited(const Page& page) { return {page.after, page.limit, page.newest_first, limits()}; }
+Page limited(const Page& page) {
+  Page seen = page;
+  seen.visible = limits();
+  return seen;
+}
 
 /// What the store itself says of an object that does not exist.
 Error absent(const char* kind, std::string_view id) {
@@ -36,6 +40,9 @@ class VisibleStore final : public Store {
   }
   Result<int> forget_ended_jobs(UtcMicros before) override { return whole_.forget_ended_jobs(before); }
   Result<Counts> counts(const std::optional<Visibility>& /*visible*/) override { return whole_.counts(limits()); }
+  Result<EndedCounts> ended_since(UtcMicros since, const std::optional<Visibility>& /*visible*/) override {
+    return whole_.ended_since(since, limits());
+  }
   Result<bool> sees_job(std::string_view job, const Visibility& visible) override {
     return whole_.sees_job(job, visible);
   }
@@ -149,6 +156,9 @@ class VisibleStore final : public Store {
   Result<Fit> fit(std::string_view id) override { return owned_by_device(whole_.fit(id), "fit", id); }
   Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) override {
     return whole_.fits(filter, limited(page));
+  }
+  Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) override {
+    return whole_.attention(filter, limited(page));
   }
   Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id, std::string_view quantity,
                                                             std::string_view axis) override {

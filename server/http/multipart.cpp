@@ -32,7 +32,8 @@ std::optional<std::string> header_parameter(std::string_view header, std::string
   return std::nullopt;
 }
 
-std::optional<std::string> part_name(std::string_view header) {
+/// Content-Disposition of a part header, without its name; empty where there is none.
+std::string_view disposition_in(std::string_view header) {
   for (std::string_view line : split(header, '\n')) {
     const std::size_t colon = line.find(':');
     if (colon != std::string_view::npos &&
@@ -40,10 +41,10 @@ std::optional<std::string> part_name(std::string_view header) {
       if (!line.empty() && line.back() == '\r') {
         line.remove_suffix(1);
       }
-      return header_parameter(line.substr(colon + 1), "name");
+      return line.substr(colon + 1);
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace
@@ -144,11 +145,12 @@ Result<bool> MultipartReader::step_header() {
     }
     return false;
   }
-  auto name = part_name(std::string_view(pending_).substr(0, end));
+  const std::string_view disposition = disposition_in(std::string_view(pending_).substr(0, end));
+  const auto name = header_parameter(disposition, "name");
   if (!name) {
     return fail(ErrorCode::ParseError, "A part of the multipart body has no name in its Content-Disposition.");
   }
-  if (auto begun = callbacks_.begin_part(*name); !begun) {
+  if (auto begun = callbacks_.begin_part(*name, header_parameter(disposition, "filename").value_or("")); !begun) {
     return fail(begun.error());
   }
   pending_.erase(0, end + 4);

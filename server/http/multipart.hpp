@@ -17,8 +17,9 @@ namespace driftlab::server {
 class MultipartReader {
  public:
   struct Callbacks {
-    std::function<Status(const std::string& name)> begin_part;  ///< form field name from Content-Disposition
-    std::function<Status(std::span<const std::byte>)> data;     ///< consecutive pieces of the part begun last
+    /// The names of form field and file in Content-Disposition; without a file the second is empty.
+    std::function<Status(const std::string& name, const std::string& file_name)> begin_part;
+    std::function<Status(std::span<const std::byte>)> data;  ///< consecutive pieces of the part begun last
   };
 
   MultipartReader(std::string_view boundary, Callbacks callbacks);

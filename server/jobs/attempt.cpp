@@ -1,6 +1,7 @@
 #include "server/jobs/attempt.hpp"
 
 #include "schema/json/json.hpp"
+#include "server/jobs/attention.hpp"
 #include "server/jobs/fault_recorder.hpp"
 #include "server/store/crash_point.hpp"
 
@@ -28,8 +29,9 @@ void Attempt::run() {
   if (changed_) {
     changed_(job_.id);
   }
-  const Result<JobResults> results = work();
+  Result<JobResults> results = work();
   if (results) {
+    note_attention(*results);
     finish(*results);
   } else {
     fail(results.error());

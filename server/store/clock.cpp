@@ -57,6 +57,21 @@ Tail next_tail(std::uint64_t milliseconds) {
   return last;
 }
 
+std::uint64_t milliseconds_of(UtcMicros time) {
+  return static_cast<std::uint64_t>(std::max<UtcMicros>(time, 0) / 1000);
+}
+
+/// What ids of one millisecond begin with. 26 characters hold 130 bits: the first ten are 48 bits of milliseconds (two
+/// bits unused), the rest the tail.
+std::string prefix_and_time(std::string_view prefix, std::uint64_t milliseconds) {
+  std::string id(prefix);
+  id.push_back('_');
+  for (std::size_t i = 0; i < kTimeLength; ++i) {
+    id.push_back(kAlphabet[(milliseconds >> (5 * (kTimeLength - 1 - i))) & 31U]);
+  }
+  return id;
+}
+
 }  // namespace
 
 UtcMicros SystemClock::now() const {
@@ -78,14 +93,15 @@ std::string rfc3339(UtcMicros time) {
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
+std::string first_id(std::string_view prefix, UtcMicros time) {
+  std::string id = prefix_and_time(prefix, milliseconds_of(time));
+  id.append(kBodyLength - kTimeLength, kAlphabet.front());
+  return id;
+}
+
 std::string make_id(std::string_view prefix, UtcMicros now) {
-  // 26 characters hold 130 bits: the first ten are 48 bits of milliseconds (two bits unused), the rest the tail.
-  const auto milliseconds = static_cast<std::uint64_t>(std::max<UtcMicros>(now, 0) / 1000);
-  std::string id(prefix);
-  id.push_back('_');
-  for (std::size_t i = 0; i < kTimeLength; ++i) {
-    id.push_back(kAlphabet[(milliseconds >> (5 * (kTimeLength - 1 - i))) & 31U]);
-  }
+  const std::uint64_t milliseconds = milliseconds_of(now);
+  std::string id = prefix_and_time(prefix, milliseconds);
   for (const unsigned char digit : next_tail(milliseconds)) {
     id.push_back(kAlphabet[digit]);
   }

@@ -34,6 +34,9 @@ class SystemClock final : public Clock {
 /// are those of the earlier plus a random step. Randomness comes from the operating system. Thread safe.
 [[nodiscard]] std::string make_id(std::string_view prefix, UtcMicros now);
 
+/// The least id of that prefix that make_id gives at `time` or later.
+[[nodiscard]] std::string first_id(std::string_view prefix, UtcMicros time);
+
 /// True for `<prefix>_` + 26 characters of the alphabet: the only ids that reach a store.
 [[nodiscard]] bool is_id(std::string_view text, std::string_view prefix);
 

@@ -49,6 +49,9 @@ struct Recording {
   UtcMicros updated_at = 0;
   std::string tags_json = "{}";  ///< canonical text of labels, session and recorded_at; no result depends on them
   std::int64_t tags_revision = 0;
+  std::string file_name = {};   ///< of the file that was uploaded, as its sender called it; may be empty
+  std::string name = {};        ///< read only: `id` of the metadata, else the name of the file
+  std::string latest_job = {};  ///< read only: the newest job whose request names the recording; empty: none does
 };
 
 /// The label that regression runs of a device compare with, from then on.
@@ -155,6 +158,21 @@ struct AxisResults {
   std::string pooled_json = {};       ///< its result; empty until it has succeeded
 };
 
+/// A result whose verdict a person must read.
+struct Attention {
+  std::string id;                ///< `att_...`
+  std::string job_id;            ///< known once it is stored
+  std::string kind;              ///< of the job; known once it is stored
+  std::string device_id;         ///< empty: it speaks of no device, or of several
+  std::string recording_id;      ///< empty: it speaks of the job's result as a whole
+  std::string channel;           ///< the channel that says most against itself; empty likewise
+  std::string level;             ///< `look` or `wrong`
+  std::string verdict;           ///< one sentence
+  std::string investigation_id;  ///< read only: what the job made; empty: it is of another kind
+  std::string device_name;       ///< read only
+  UtcMicros created_at = 0;
+};
+
 /// A study as it was handed in: one device, some of its recordings.
 struct Study {
   std::string id;  ///< `stu_...`
@@ -217,6 +235,8 @@ struct JobResults {
   std::vector<Model> models = {};  ///< parents before children
   std::vector<Investigation> investigations = {};
   std::vector<Artefact> artefacts = {};
+  std::vector<Attention> attention = {};    ///< replaces what was said of the same recordings before
+  std::vector<std::string> looked_at = {};  ///< the recordings that were characterised, whatever came of it
 };
 
 /// A stored answer to a POST that carried an Idempotency-Key.

@@ -4,8 +4,7 @@
 /// One suite (tests/unit/store/store_suite.hpp) runs over every implementation: SQLite and PostgreSQL. Methods are
 /// synchronous and thread safe; they may block on disk and are therefore called from pools, never from I/O threads. A
 /// write that returned success survives power loss. Every method may fail with ErrorCode::Io or DiskFull; other errors
-/// are named. Lists are keyset pages in order of id, which is that of making: `after` is the last id of the page
-/// before, empty for the first.
+/// are named. Lists are keyset pages in order of id, which is that of making, or of name.
 #include "core/signal/result.hpp"
 #include "server/store/rows.hpp"
 
@@ -23,10 +22,14 @@ struct Visibility {
   std::string token;
 };
 
+/// Devices, recordings and models have names; equal ones are in order of id.
+enum class PageOrder { OldestFirst, NewestFirst, ByName };
+
 struct Page {
-  std::string after;
+  std::string after;  ///< the last id of the page before; empty: the first page
   int limit = 50;
-  bool newest_first = false;  ///< descending id order; `after` is still the last id of the page before
+  PageOrder order = PageOrder::OldestFirst;
+  std::string after_name = {};                       ///< the name of that last row, where names order the list
   std::optional<Visibility> visible = std::nullopt;  ///< nothing: every row
 };
 
@@ -36,6 +39,12 @@ struct Counts {
   std::int64_t recordings = 0;
   std::int64_t queued = 0;
   std::int64_t running = 0;
+};
+
+/// How many jobs ended from a moment on, without those that pool results.
+struct EndedCounts {
+  std::int64_t succeeded = 0;
+  std::int64_t failed = 0;  ///< those given up among them
 };
 
 struct ConditionCount {
@@ -54,6 +63,9 @@ struct RecordingFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> condition;
   std::vector<std::string> labels = {};  ///< `name=value`; a recording has them all
+  std::optional<std::string> text = {};  ///< part of its name, file, condition or id, in any case
+  std::optional<UtcMicros> since = {};   ///< made at this time or later
+  std::optional<bool> has_result = {};   ///< whether a job has characterised it
 };
 
 struct JobFilter {
@@ -61,6 +73,9 @@ struct JobFilter {
   std::optional<JobState> state;
   std::optional<std::string> input_device = std::nullopt;  ///< id: `inputs.device` of the request
   std::optional<std::string> candidate = std::nullopt;     ///< label: `inputs.candidate.label` of the request
+  std::optional<std::string> device_id = std::nullopt;     ///< the request names it, or something of it
+  std::optional<std::string> scenario = std::nullopt;  ///< part of the name of the scenario or of the id, in any case
+  std::optional<UtcMicros> since = std::nullopt;       ///< made at this time or later
 };
 
 /// For fits and channel results. Only the latest result per (recording, channel) is listed when `latest_only`.
@@ -84,6 +99,13 @@ struct InvestigationFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> study_id;
   std::optional<std::string> job_id;
+  std::optional<std::string> text = {};  ///< part of the device's name, of the id or of what was found, in any case
+  std::optional<UtcMicros> since = {};   ///< made at this time or later
+};
+
+struct AttentionFilter {
+  std::optional<std::string> device_id;
+  std::optional<UtcMicros> since = {};  ///< made at this time or later
 };
 
 struct DeviceChange {
@@ -140,6 +162,9 @@ class Store {
   [[nodiscard]] virtual Status write_probe() = 0;
   /// Of what is `visible`; nothing: of everything.
   [[nodiscard]] virtual Result<Counts> counts(const std::optional<Visibility>& visible = std::nullopt) = 0;
+  /// Of the jobs that ended at this time or later; likewise.
+  [[nodiscard]] virtual Result<EndedCounts> ended_since(UtcMicros since,
+                                                        const std::optional<Visibility>& visible = std::nullopt) = 0;
   /// Whether somebody limited to devices may know of a job: it asked for it, or it names devices and only its own.
   [[nodiscard]] virtual Result<bool> sees_job(std::string_view job, const Visibility& visible) = 0;
   /// Whether that token asked for the object.
@@ -220,6 +245,8 @@ class Store {
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
   [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
+  /// What must be read of the results: of each recording by its newest characterisation, of every other job.
+  [[nodiscard]] virtual Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) = 0;
   /// The latest result per (recording, channel) of the recording's current revision, by condition, content of the
   /// recording (its blob's hash) and channel: the same order however and whenever the recordings came.
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,

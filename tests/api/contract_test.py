@@ -149,8 +149,9 @@ class Operations(DaemonTest):
         fit = next(fit for fit in daemon.items("/v1/fits") if fit["model"] == "WN")  # no parameter of it is open
         daemon.finished(daemon.items("/v1/jobs")[-1]["id"])
         daemon.request("DELETE", second.headers["location"], headers={"If-Match": "*"})
-        for media in ("application/json", "text/csv", "text/plain", "text/markdown"):
-            daemon.get("/v1/parameter-tables?device=phone-07&axis=z", Accept=media)
+        for media in ("application/json", "text/csv", "text/plain", "text/markdown", "text/x-latex"):
+            for axis in ("z", "all"):
+                self.expect(200, daemon.get(f"/v1/parameter-tables?device=phone-07&axis={axis}&reference=static", Accept=media))
         body = {"device": {"id": "phone-07"}, "recordings": [{"recording": first.json["id"]}]}
         study, _ = (daemon.post("/v1/studies", body) for _ in range(2))
         evaluation, _ = (daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}) for _ in range(2))

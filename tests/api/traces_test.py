@@ -9,6 +9,7 @@ import http.client
 import math
 import os
 import random
+import struct
 import time
 import unittest
 from pathlib import Path
@@ -52,6 +53,48 @@ class Traces(DaemonTest):
         self.assertEqual(flags["trim"], (0, 2))
         self.assertAlmostEqual(flags["frozen"][0], 30, delta=0.02)
         self.assertAlmostEqual(flags["frozen"][1], 36, delta=0.02)
+
+    def test_gaps_and_full_scale_are_marked_where_they_are(self) -> None:
+        values = [max(-2.0, min(2.0, value)) for value in samples.noise(3000, seed=25)[0]]
+        values[2000:2020] = [2.0] * 20
+        values[2500:2512] = [-2.0] * 12
+        stamps = [i / RATE + (0.5 if i >= 1000 else 0.0) for i in range(3000)]
+        text = "t,gz\n" + "".join(f"{stamp:.4f},{value:.5f}\n" for stamp, value in zip(stamps, values))
+        roles = "t=time::s," + samples.GYRO_Z
+        made = self.expect(201, self.daemon.upload(text.encode(), columns=roles)).json
+        self.assertEqual(made["quality"]["longest_gaps"], [{"row": 1001, "missing": 50}])
+        self.assertEqual(made["quality"]["channels"][0]["rails"], [-2.0, 2.0])
+        found = self.trace(made["id"], "&points=3000")
+        rate = found["rate_hz"]
+        of = {kind: [flag for flag in found["flags"] if flag["kind"] == kind] for kind in ("gap", "saturated")}
+        self.assertEqual([flag["missing"] for flag in of["gap"]], [50])
+        self.assertAlmostEqual(of["gap"][0]["t0"] * rate, 999, places=6)
+        self.assertAlmostEqual(of["gap"][0]["t1"] * rate, 1000, places=6)
+        long = [(round(flag["t0"] * rate), round(flag["t1"] * rate)) for flag in of["saturated"] if (flag["t1"] - flag["t0"]) * rate > 8]
+        self.assertTrue(any(a <= 2000 and b >= 2020 for a, b in long) and any(a <= 2500 and b >= 2512 for a, b in long), long)
+        for flag in of["saturated"]:
+            for row in range(round(flag["t0"] * rate), round(flag["t1"] * rate)):
+                self.assertIn(float(f"{values[row]:.5f}"), (-2.0, 2.0))
+
+    def test_float32_triples_say_what_the_document_says(self) -> None:
+        values = [f"{value:.5f}" for value in samples.noise(3000, seed=26)[0]]
+        values[1000:1040] = [""] * 40
+        text = "row,gz\n" + "".join(f"{i},{value}\n" for i, value in enumerate(values))
+        id = self.expect(201, self.daemon.upload(text.encode(), rate_hz=RATE, columns=samples.GYRO_Z)).json["id"]
+        target = f"/v1/recordings/{id}/trace?channel=gz&t0=5&t1=20&points=75"
+        said = self.expect(200, self.daemon.get(target)).json
+        answer = self.expect(200, self.daemon.get(target, Accept="application/octet-stream"))
+        self.assertEqual(len(answer.body), 12 * len(said["time_s"]))
+        start = float(answer.headers["trace-start"])
+        self.assertEqual((start, answer.headers["trace-samples-per-bucket"], answer.headers["trace-unit"]), (5.0, "20", "deg/s"))
+        for (t, low, high), time_s, least, greatest in zip(struct.iter_unpack("<fff", answer.body), said["time_s"], said["min"], said["max"]):
+            self.assertAlmostEqual(start + t, time_s, places=4)
+            if least is None:
+                self.assertTrue(math.isnan(low) and math.isnan(high))
+            else:
+                self.assertEqual((low, high), struct.unpack("<ff", struct.pack("<ff", least, greatest)))
+        self.assertIn(None, said["min"])
+        self.problem(406, "not_acceptable", self.daemon.get(target, Accept="image/png"))
 
     def test_what_is_no_stretch_is_refused_with_its_parameter(self) -> None:
         id = self.expect(201, self.daemon.upload(samples.gyro_csv(seed=23), rate_hz=RATE, columns=samples.GYRO_Z)).json["id"]

@@ -169,6 +169,8 @@ class Results(ClientTest):
             self.client.create_device(name)
         found = [device["name"] for device in self.client.devices(page_size=2) if device["name"].startswith("many-")]
         self.assertEqual(found, names)
+        listed = [device["name"] for device in self.client.devices(page_size=2, sort="name")]
+        self.assertEqual([name for name in listed if name.startswith("many-")], sorted(names))
 
     def test_a_calibration_corrects_readings(self) -> None:
         correction = [[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.5, 1.0]]
@@ -242,6 +244,13 @@ class Everything(ClientTest):
         self.assertIn("verdict", client.characterisation(first)["channels"][0]["summary"])
         self.assertEqual(len(client.trace(first, client.recording(first)["file"]["columns"][0], points=10)["mean"]), 10)
         self.assertGreater(client.counts()["recordings"], 0)
+        self.assertGreater(client.counts(since="2020-01-01T00:00:00Z")["jobs"]["succeeded_since"]["count"], 0)
+        self.assertTrue(all(item["level"] in ("look", "wrong") for item in client.attention(device="all-07", since="2020-01-01T00:00:00Z")))
+        found = {one["id"] for one in client.recordings(device="all-07", sort="name", q="static", has_result=True)}
+        self.assertEqual(found - {first, second}, set())
+        self.assertTrue(all(job["kind"] for job in client.jobs(device="all-07", sort="-created_at")))
+        self.assertEqual([table.document["axis"] for table in client.parameter_tables("all-07", reference="static")], ["z"])
+        self.assertIn("\\toprule", client.parameter_table_text("all-07", axis="z", media="text/x-latex"))
         self.assertGreater(client.device_summary("all-07")["recordings"], 0)
         with contextlib.suppress(NotFound):  # a fit may leave a parameter open
             self.assertIn("allan", client.implied(next(client.fits(best=True))["id"])["implied"])

@@ -19,6 +19,29 @@ RecordingPreviewColumnOdd = TypedDict("RecordingPreviewColumnOdd", {"from": Lite
 RecordingPreviewRateHzOdd = TypedDict("RecordingPreviewRateHzOdd", {"from": Literal['time_column', 'stated']})
 
 
+class Attention(TypedDict):
+    """Result that must be read. A result whose verdict is not fine."""
+
+    id: str
+    # look: usable, with something that a reader must know first; wrong: not to be used as it is.
+    level: Literal['look', 'wrong']
+    # One sentence that a person could act on.
+    verdict: str
+    # Of the job.
+    kind: str
+    # Where the result is read.
+    href: str
+    job: str
+    # null for a result of no device, or of several.
+    device: str | None
+    device_name: str | None
+    # null for a result that is not of one recording.
+    recording: str | None
+    # The channel of the recording whose verdict this is: the gravest.
+    channel: str | None
+    created_at: str
+
+
 class AuditRow(TypedDict):
     sequence: int
     at: str
@@ -80,7 +103,8 @@ class CalibrationSensor(TypedDict):
     bias: NotRequired[CalibrationEstimates]
     # By axis.
     scale_factor: NotRequired[CalibrationEstimates]
-    # By pair of axes: what the first reads of the second.
+    # By pair of axes: what the first reads of the second. A pair that is not here was not estimated, or is 0 by the
+    # choice of the frame.
     misalignment: NotRequired[CalibrationEstimates]
     # Of positions in any attitude: by pair of axes, upper triangle.
     correction: NotRequired[CalibrationEstimates]
@@ -459,6 +483,13 @@ class ContractAnswer(TypedDict):
     tags: NotRequired[list[Any]]
     paths: dict[str, Any]
     components: dict[str, Any]
+
+
+class CountSince(TypedDict):
+    """How many jobs ended so since that time; where `since` is asked for."""
+
+    at: str
+    count: int
 
 
 class DataSheet(TypedDict):
@@ -1161,6 +1192,8 @@ class GetCountsAnswer(TypedDict):
 class GetCountsAnswerJobs(TypedDict):
     queued: int
     running: int
+    succeeded_since: NotRequired[CountSince]
+    failed_since: NotRequired[CountSince]
 
 
 class GetImpliedCurvesAnswer(TypedDict):
@@ -1555,8 +1588,17 @@ class JobRequestArmRecording(TypedDict):
     session: NotRequired[str]
     recorded_at: NotRequired[str]
     temperature_degc: NotRequired[float]
+    # Range of the sensor: gyroscope [deg/s], accelerometer [g]. Arms with different ones are not compared.
+    full_scale: NotRequired[JobRequestArmRecordingFullScale]
     # What an investigation identified.
     causes: NotRequired[list[str]]
+
+
+class JobRequestArmRecordingFullScale(TypedDict):
+    """Range of the sensor: gyroscope [deg/s], accelerometer [g]. Arms with different ones are not compared."""
+
+    gyroscope: NotRequired[float]
+    accelerometer: NotRequired[float]
 
 
 class JobRequestCharacterise(TypedDict):
@@ -1830,11 +1872,22 @@ class JobRequestRegressParametersMargin(TypedDict):
     # How far a bias may move: gyroscope [deg/s], accelerometer [mg]; 0: it is told and not tested. Needs three sessions
     # an arm.
     bias: NotRequired[JobRequestRegressParametersMarginBias]
+    # How far a scale factor may move [ppm]; 0: it is told and not tested. Needs three sessions an arm, each with
+    # recordings of an axis under two known inputs.
+    scale_factor: NotRequired[JobRequestRegressParametersMarginScaleFactor]
 
 
 class JobRequestRegressParametersMarginBias(TypedDict):
     """How far a bias may move: gyroscope [deg/s], accelerometer [mg]; 0: it is told and not tested. Needs three
     sessions an arm."""
+
+    gyroscope: NotRequired[float]
+    accelerometer: NotRequired[float]
+
+
+class JobRequestRegressParametersMarginScaleFactor(TypedDict):
+    """How far a scale factor may move [ppm]; 0: it is told and not tested. Needs three sessions an arm, each with
+    recordings of an axis under two known inputs."""
 
     gyroscope: NotRequired[float]
     accelerometer: NotRequired[float]
@@ -2469,6 +2522,12 @@ class ParameterTable(TypedDict):
     method: Literal['av', 'gmwm']
     # The one model of all rows; null for method av.
     model: str | None
+    # The condition of the row that the others are compared with, in its compact form.
+    reference: str | None
+    # Whether one structure serves every condition; absent where that is not known of exactly these recordings.
+    structure: NotRequired[ParameterTableStructure]
+    # How the model of the table and the structure of the statement are both right; null where they are one.
+    model_note: str | None
     pooling: ParameterTablePooling
     summary: NotRequired[RecordingCharacterisationSummary]
     data_sheet: NotRequired[ParameterTableSheetComparison]
@@ -2480,8 +2539,11 @@ class ParameterTableCell(TypedDict):
     value: float
     unit: str
     ci95: list[float | None]
-    # Against the first row; null for that row and where an interval is open.
+    # Against the row of the reference; null for that row and where an interval is open.
     change: Literal['up', 'down', 'none', None]
+    # To the row of the reference; null for that row and where it has no value. The interval is that of two independent
+    # values.
+    ratio: Quantity | None
 
 
 class ParameterTableColumn(TypedDict):
@@ -2511,6 +2573,13 @@ class ParameterTableRow(TypedDict):
     # What the fits shown say against themselves.
     warnings: NotRequired[list[str]]
     recordings: list[str]
+    # Of all recordings of the row, as analysed.
+    duration_s: float
+    # Whether the J test lets the one fit of the row stand (p of 0.01 or more); null where several are averaged, for
+    # method av, and where too few scales are left to test.
+    fits: bool | None
+    # Its p.
+    j_test_p: float | None
     # One recording; replicates averaged from their intervals; replicates fitted jointly.
     pooling: NotRequired[Literal['single', 'average', 'joint']]
     # The values come from robust variances.
@@ -2523,6 +2592,9 @@ class ParameterTableRow(TypedDict):
     values: dict[str, ParameterTableCell | None]
     # Why a value is null.
     reasons: dict[str, str]
+    # The same in a word. not_identifiable: the data are compatible with none of it, or do not bound it; none_found: the
+    # best fit has none of it.
+    why: dict[str, Literal['not_identifiable', 'none_found']]
 
 
 class ParameterTableSheetComparison(TypedDict):
@@ -2548,6 +2620,24 @@ class ParameterTableSheetComparisonFigure(TypedDict):
     ci95: list[float | None] | None
     # agrees: the interval of the ratio reaches between 1/1.5 and 1.5.
     verdict: Literal['agrees', 'above', 'below', None]
+
+
+class ParameterTableStructure(TypedDict):
+    """Whether one structure serves every condition; absent where that is not known of exactly these recordings."""
+
+    verdict: Literal['one_structure', 'changes', 'undecided']
+    # The structure that the statement speaks of.
+    common: str
+    statement: str
+
+
+class ParameterTables(TypedDict):
+    """The tables of every axis of a sensor that has results."""
+
+    device: str
+    sensor: Literal['gyroscope', 'accelerometer', 'sensor']
+    method: Literal['av', 'gmwm']
+    tables: list[ParameterTable]
 
 
 class PooledSensor(TypedDict):
@@ -3100,7 +3190,7 @@ class RegressionBetween(TypedDict):
 
 
 class RegressionComparabilityItem(TypedDict):
-    item: Literal['unit', 'temperature', 'length', 'repeatability']
+    item: Literal['unit', 'temperature', 'full_scale', 'length', 'repeatability']
     sentence: str
 
 
@@ -3118,7 +3208,7 @@ class RegressionFactor(TypedDict):
 
 class RegressionFinding(TypedDict):
     check: Literal['full_scale', 'missing', 'frozen', 'repeated', 'timestamps', 'resolution', 'contamination',
-                   'findings', 'rate', 'bias']
+                   'findings', 'rate', 'bias', 'scale_factor']
     verdict: Literal['ok', 'note', 'fail']
     sentence: str | None
     sessions: list[str]
@@ -3372,16 +3462,35 @@ class StoredRecording(TypedDict):
     revision: int
     metadata: Recording
     quality: StoredRecordingQuality
-    # The bytes as uploaded; in lists only their digest.
+    # The bytes as uploaded; in lists only their digest and name.
     file: StoredRecordingFile
+    # Samples per second, measured by the time column from the first to the last, or as stated.
+    rate_hz: float | None
+    # Samples of the file over the rate, gaps included.
+    duration_s: float | None
+    # Every column of the file, in its order, as it was recognised or stated; absent in lists.
+    columns: NotRequired[list[StoredRecordingColumn] | None]
+    # The newest job whose request names the recording; null where none does.
+    latest_job: str | None
     created_at: str
     updated_at: str
 
 
+class StoredRecordingColumn(TypedDict):
+    name: str
+    # null for a column that is not read.
+    quantity: str | None
+    axis: str | None
+    # null where nobody states it.
+    unit: str | None
+
+
 class StoredRecordingFile(TypedDict):
-    """The bytes as uploaded; in lists only their digest."""
+    """The bytes as uploaded; in lists only their digest and name."""
 
     sha256: str
+    # What the sender called the file; null where nobody said.
+    name: str | None
     bytes: NotRequired[int]
     # Name of the format that the file was read as.
     format: NotRequired[str]
@@ -3406,6 +3515,8 @@ class StoredRecordingQuality(TypedDict):
     # Rows with the stamp and all values of the row before; they do not count as samples. Absent: none.
     repeated_rows: NotRequired[int]
     longest_gap_s: float | None
+    # The longest gaps of the analysed part in order of their rows. Absent: none.
+    longest_gaps: NotRequired[list[StoredRecordingQualityLongestGap]]
     # Steps of the time column below 0; the recording is split there.
     backward_steps: NotRequired[int]
     # Times a counter in the time column started again; it is continued.
@@ -3437,6 +3548,9 @@ class StoredRecordingQualityChannel(TypedDict):
     resolution: float | None
     # Samples at full scale.
     saturated: int
+    # The full-scale values where samples pile up, at the lower and the upper end, in the unit of the column; null where
+    # none does. Absent: no sample is at full scale.
+    rails: NotRequired[list[float | None]]
     # Samples of a stretch in which the sensor gives one value only.
     frozen: int
     # Its first sample, from 1.
@@ -3447,6 +3561,13 @@ class StoredRecordingQualityChannel(TypedDict):
     last: NotRequired[int]
     # Samples analysed: those of first to last without any of the above.
     analysed: int
+
+
+class StoredRecordingQualityLongestGap(TypedDict):
+    # The sample before which others are missing, from 1.
+    row: int
+    # How many.
+    missing: int
 
 
 class StoredStudy(TypedDict):
@@ -3546,7 +3667,8 @@ class Trace(TypedDict):
     mean: list[float | None]
     # From when to when [s] stretches lack samples.
     missing: list[list[float]]
-    # What of the whole file is not analysed - trimmed ends, and where the sensor gives one value only.
+    # What must not be taken for the sensor's noise. Of the whole file: trimmed ends, its longest gaps, and where the
+    # sensor gives one value only; of the stretches of this trace: those that reach full scale.
     flags: list[TraceFlag]
     # null where nobody states it.
     unit: str | None
@@ -3556,9 +3678,13 @@ class Trace(TypedDict):
 
 
 class TraceFlag(TypedDict):
-    kind: Literal['trim', 'frozen']
+    kind: Literal['trim', 'gap', 'frozen', 'saturated']
+    # Of a gap the sample before it.
     t0: float
+    # Of a gap the sample after it: times count samples, and a gap has none.
     t1: float
+    # Of a gap: how many samples.
+    missing: NotRequired[int]
 
 
 class Trends(TypedDict):
@@ -3754,7 +3880,9 @@ OPERATIONS: dict[str, Operation] = {
     'getSchema': Operation(
         'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
     'getCounts': Operation(
-        'GET', '/v1/counts', (), (), ('application/json',)),
+        'GET', '/v1/counts', ('since',), (), ('application/json',)),
+    'listAttention': Operation(
+        'GET', '/v1/attention', ('limit', 'cursor', 'sort', 'device', 'since'), (), ('application/json',)),
     'search': Operation(
         'GET', '/v1/search', ('q', 'limit'), (), ('application/json',)),
     'getSample': Operation(
@@ -3773,12 +3901,12 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/devices/{id}/summary', (), (), ('application/json',)),
     'listRecordings': Operation(
         'GET', '/v1/recordings',
-        ('limit', 'cursor', 'sort', 'device', 'condition', 'labels'),
+        ('limit', 'cursor', 'sort', 'device', 'condition', 'labels', 'q', 'since', 'has_result'),
         (), ('application/json',)),
     'uploadRecording': Operation(
         'POST', '/v1/recordings',
         ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at'),
+         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
         ('Idempotency-Key', 'Repr-Digest'), ('application/json',)),
     'previewRecording': Operation(
         'POST', '/v1/recordings/preview',
@@ -3795,7 +3923,9 @@ OPERATIONS: dict[str, Operation] = {
     'getCharacterisation': Operation(
         'GET', '/v1/recordings/{id}/characterisation', ('channel',), (), ('application/json',)),
     'getTrace': Operation(
-        'GET', '/v1/recordings/{id}/trace', ('channel', 't0', 't1', 'points'), (), ('application/json',)),
+        'GET', '/v1/recordings/{id}/trace',
+        ('channel', 't0', 't1', 'points'),
+        (), ('application/json', 'application/octet-stream')),
     'getSpectrum': Operation(
         'GET', '/v1/recordings/{id}/spectrum', ('channel', 'scale', 'points'), (), ('application/json',)),
     'getHistogram': Operation(
@@ -3815,7 +3945,7 @@ OPERATIONS: dict[str, Operation] = {
     'recordUpload': Operation(
         'POST', '/v1/uploads/{id}/recording',
         ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at'),
+         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
         ('Idempotency-Key',), ('application/json',)),
     'createLiveRecording': Operation(
         'POST', '/v1/live-recordings', (), ('Idempotency-Key',), ('application/json',)),
@@ -3828,7 +3958,7 @@ OPERATIONS: dict[str, Operation] = {
     'streamLiveRecording': Operation(
         'GET', '/v1/live-recordings/{id}/events', ('channel',), (), ('text/event-stream',)),
     'listJobs': Operation(
-        'GET', '/v1/jobs', ('limit', 'cursor', 'sort', 'kind', 'state'), (), ('application/json',)),
+        'GET', '/v1/jobs', ('limit', 'cursor', 'sort', 'kind', 'state', 'device'), (), ('application/json',)),
     'createJob': Operation(
         'POST', '/v1/jobs', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getJob': Operation(
@@ -3851,8 +3981,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/fits/{id}/implied', (), (), ('application/json',)),
     'getParameterTable': Operation(
         'GET', '/v1/parameter-tables',
-        ('device', 'sensor', 'axis', 'method', 'model'),
-        ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown')),
+        ('device', 'sensor', 'axis', 'method', 'model', 'reference'),
+        ('Prefer',), ('application/json', 'text/csv', 'text/plain', 'text/markdown', 'text/x-latex')),
     'getTrends': Operation(
         'GET', '/v1/trends',
         ('device', 'sensor', 'axis', 'method', 'model'),
@@ -3876,7 +4006,7 @@ OPERATIONS: dict[str, Operation] = {
     'deleteStudy': Operation(
         'DELETE', '/v1/studies/{id}', (), ('If-Match',), ()),
     'listOutageEvaluations': Operation(
-        'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'sort', 'state'), (), ('application/json',)),
+        'GET', '/v1/outage-evaluations', ('limit', 'cursor', 'sort', 'state', 'q', 'since'), (), ('application/json',)),
     'createOutageEvaluation': Operation(
         'POST', '/v1/outage-evaluations', (), ('Idempotency-Key', 'Prefer'), ('application/json',)),
     'getOutageEvaluation': Operation(
@@ -3902,7 +4032,9 @@ OPERATIONS: dict[str, Operation] = {
     'deleteCalibration': Operation(
         'DELETE', '/v1/calibrations/{id}', (), ('If-Match',), ()),
     'listInvestigations': Operation(
-        'GET', '/v1/investigations', ('limit', 'cursor', 'sort', 'device', 'study', 'job'), (), ('application/json',)),
+        'GET', '/v1/investigations',
+        ('limit', 'cursor', 'sort', 'device', 'study', 'job', 'q', 'since'),
+        (), ('application/json',)),
     'getInvestigation': Operation(
         'GET', '/v1/investigations/{id}', (), (), ('application/json', 'text/markdown')),
     'deleteInvestigation': Operation(

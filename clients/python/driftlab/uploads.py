@@ -52,6 +52,7 @@ class Upload:
 
     def __init__(self, source: Source, progress: Progress | None = None) -> None:
         self._open, self._progress = opener_of(source), progress
+        self.name = Path(source).name if isinstance(source, (str, os.PathLike)) else None
         digest, self.size = hashlib.sha256(), 0
         with self._open() as file:
             while piece := file.read(PIECE):

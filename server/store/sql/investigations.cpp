@@ -8,6 +8,8 @@ namespace {
 
 constexpr std::string_view kSelect = "SELECT " DRIFTLAB_INVESTIGATION_COLUMNS " FROM investigations";
 constexpr std::string_view kById = "SELECT " DRIFTLAB_INVESTIGATION_COLUMNS " FROM investigations WHERE id = ?";
+constexpr std::string_view kSought =
+    "(SELECT devices.name FROM devices WHERE devices.id = device_id) || ' ' || id || ' ' || summary_json";
 constexpr std::string_view kInsert =
     "INSERT INTO investigations (" DRIFTLAB_INVESTIGATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
@@ -61,6 +63,8 @@ Result<std::vector<Investigation>> investigations(Connection& connection, const 
   query.where("device_id = ?", filter.device_id);
   query.where("study_id = ?", filter.study_id);
   query.where("job_id = ?", filter.job_id);
+  query.holds(kSought, filter.text);
+  query.made_since("inv", filter.since);
   return query.visible(page, "device_id").read_page(connection, page, read_investigation);
 }
 

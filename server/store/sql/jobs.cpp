@@ -33,6 +33,13 @@ constexpr std::string_view kNoteDevices =
     "UNION SELECT models.device_id FROM named JOIN models ON models.id = named.id WHERE models.device_id IS NOT NULL "
     "UNION SELECT fits.device_id FROM named JOIN fits ON fits.id = named.id "
     "UNION SELECT channel_results.device_id FROM named JOIN channel_results ON channel_results.id = named.id) AS found";
+constexpr std::string_view kNoteRecordings =
+    "INSERT INTO job_recordings (job_id, recording_id) SELECT DISTINCT ?2, recordings.id FROM json_each(?1) AS named "
+    "JOIN recordings ON recordings.id = named.value";
+/// The name of a scenario that ships or of one that the request holds, with the id of the job.
+constexpr std::string_view kScenario =
+    "coalesce(json_extract(request_json, '$.inputs.scenario.name'), json_extract(request_json, '$.inputs.scenario'), "
+    "'') || ' ' || id";
 constexpr std::string_view kAttempts = "SELECT problem_json FROM job_attempts WHERE job_id = ? ORDER BY attempt";
 constexpr std::string_view kEvents =
     "SELECT sequence, type, state, stage, progress, attempt, at FROM job_events WHERE job_id = ? AND sequence > ? "
@@ -125,6 +132,9 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
     inserted = connection.prepare(kNoteDevices).bind(possible_ids(job.request_json), id).run();
   }
   if (inserted) {
+    inserted = connection.prepare(kNoteRecordings).bind(possible_ids(job.request_json), id).run();
+  }
+  if (inserted) {
     inserted = add_event(connection, id, "state", now);
   }
   if (!inserted) {
@@ -158,6 +168,10 @@ Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, c
   query.where("state = ?", filter.state ? std::optional<std::string>(name_of(*filter.state)) : std::nullopt);
   query.where("json_extract(request_json, '$.inputs.device') = ?", filter.input_device);
   query.where("json_extract(request_json, '$.inputs.candidate.label') = ?", filter.candidate);
+  query.where("EXISTS (SELECT 1 FROM job_devices WHERE job_devices.job_id = jobs.id AND job_devices.device_id = ?)",
+              filter.device_id);
+  query.holds(kScenario, filter.scenario);
+  query.made_since("job", filter.since);
   return query.visible_jobs(page).read_page(connection, page, read_job);
 }
 

@@ -1,5 +1,7 @@
 #include "server/store/sql/tables.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace driftlab::server::tables {
 namespace {
 
@@ -13,21 +15,15 @@ constexpr std::string_view kBlobHashes = "SELECT sha256 FROM blobs ORDER BY sha2
 constexpr std::string_view kRemoveUnusedBlob =
     "DELETE FROM blobs WHERE sha256 = ?1 AND NOT EXISTS (SELECT 1 FROM recordings WHERE blob_sha256 = ?1)";
 
-constexpr std::string_view kSelect =
-    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
-    "tags_json, tags_revision FROM recordings";
-constexpr std::string_view kById =
-    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
-    "tags_json, tags_revision FROM recordings WHERE id = ?";
+#define DRIFTLAB_RECORDING_COLUMNS                                                                         \
+  "id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, " \
+  "tags_json, tags_revision, file_name, name, coalesce((SELECT max(job_id) FROM job_recordings WHERE "     \
+  "recording_id = recordings.id), '')"
+constexpr std::string_view kSelect = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings";
+constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE id = ?";
 constexpr std::string_view kByDeviceAndBlob =
-    "SELECT id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, updated_at, "
-    "tags_json, tags_revision FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
-constexpr std::string_view kVisibleDevicesAndRecordings =
-    "SELECT (SELECT count(*) FROM devices WHERE name IN (SELECT value FROM json_each(?))), (SELECT count(*) FROM "
-    "recordings JOIN devices ON devices.id = device_id WHERE name IN (SELECT value FROM json_each(?)))";
-constexpr std::string_view kCounts =
-    "SELECT (SELECT count(*) FROM devices), (SELECT count(*) FROM recordings), "
-    "(SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running')";
+    "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
+constexpr std::string_view kHasResult = "EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings.id)";
 constexpr std::string_view kUsageOf =
     "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
     "FROM recordings "
@@ -36,10 +32,10 @@ constexpr std::string_view kConditionsOf =
     "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
 constexpr std::string_view kInsert =
     "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, created_at, "
-    "updated_at, tags_json) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+    "updated_at, tags_json, file_name, name) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kUpdate =
     "UPDATE recordings SET metadata_json = ?2, condition = ?3, quality_json = ?4, revision = ?5, updated_at = ?6, "
-    "tags_json = ?7, tags_revision = ?8 WHERE id = ?1";
+    "tags_json = ?7, tags_revision = ?8, name = ?9 WHERE id = ?1";
 constexpr std::string_view kRemove = "DELETE FROM recordings WHERE id = ?";
 constexpr std::string_view kDeviceExists = "SELECT 1 FROM devices WHERE id = ?";
 /// A job names its inputs in its request; an id of 26 random characters occurs nowhere by chance.
@@ -78,10 +74,20 @@ Recording read_recording(const Statement& row) {
   recording.updated_at = row.integer(8);
   recording.tags_json = row.text(9);
   recording.tags_revision = row.integer(10);
+  recording.file_name = row.text(11);
+  recording.name = row.text(12);
+  recording.latest_job = row.text(13);
   return recording;
 }
 
 std::string read_text(const Statement& row) { return row.text(0); }
+
+/// `id` of the metadata, else the name of the file.
+std::string called(const Recording& recording) {
+  const nlohmann::json metadata = nlohmann::json::parse(recording.metadata_json, nullptr, false);
+  const std::string id = metadata.is_object() ? metadata.value("id", std::string()) : std::string();
+  return id.empty() ? recording.file_name : id;
+}
 
 Status insert_blob(Connection& connection, const Blob& blob, UtcMicros now) {
   return connection.prepare(kInsertBlob)
@@ -147,14 +153,17 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
   made.revision = 1;
   made.created_at = now;
   made.updated_at = now;
-  Status inserted = connection.prepare(kInsert)
-                        .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json,
-                              made.condition, made.quality_json, made.created_at, made.updated_at, made.tags_json)
-                        .run();
+  Status inserted =
+      connection.prepare(kInsert)
+          .bind(made.id, made.device_id, made.blob_sha256, made.revision, made.metadata_json, made.condition,
+                made.quality_json, made.created_at, made.updated_at, made.tags_json, made.file_name, called(made))
+          .run();
   if (!inserted) {
     return fail(inserted.error());
   }
-  return RecordingOutcome{std::move(made), true};
+  return tables::recording(connection, made.id).map([](Recording row) {
+    return RecordingOutcome{std::move(row), true};
+  });
 }
 
 Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256) {
@@ -180,6 +189,11 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   for (const std::string& label : filter.labels) {
     query.where("EXISTS (SELECT 1 FROM json_each(tags_json, '$.labels') WHERE key || '=' || value = ?)", label);
   }
+  query.holds("name || ' ' || file_name || ' ' || condition || ' ' || id", filter.text);
+  query.made_since("rec", filter.since);
+  if (filter.has_result) {
+    query.where((*filter.has_result ? "" : "NOT ") + std::string(kHasResult));
+  }
   return query.visible(page, "device_id").read_page(connection, page, read_recording);
 }
 
@@ -201,18 +215,16 @@ Result<Recording> revise_recording(Connection& connection, const Recording& chan
   revised.quality_json = changed.quality_json;
   revised.revision += other_meaning ? 1 : 0;
   revised.updated_at = now;
-  Status updated = connection.prepare(kUpdate)
-                       .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json,
-                             revised.revision, revised.updated_at, revised.tags_json, revised.tags_revision)
-                       .run();
+  Status updated =
+      connection.prepare(kUpdate)
+          .bind(revised.id, revised.metadata_json, revised.condition, revised.quality_json, revised.revision,
+                revised.updated_at, revised.tags_json, revised.tags_revision, called(revised))
+          .run();
   if (updated && other_meaning) {
     const auto axes = axes_of_recording(connection, revised.id);
     updated = axes ? refresh_pools(connection, *axes, now).map([](int) {}) : fail(axes.error());
   }
-  if (!updated) {
-    return fail(updated.error());
-  }
-  return revised;
+  return updated ? recording(connection, revised.id) : fail(updated.error());
 }
 
 Status remove_recording(Connection& connection, std::string_view id, std::int64_t expected_revision, UtcMicros now) {
@@ -256,20 +268,6 @@ Result<bool> remove_unused_blob(Connection& connection, std::string_view sha256)
     return fail(removed.error());
   }
   return connection.changes() > 0;
-}
-
-Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible) {
-  const std::string jobs = "(SELECT count(*) FROM jobs WHERE state = ? AND " + std::string(kVisibleJob) + ")";
-  Statement statement = connection.prepare(
-      visible ? std::string(kVisibleDevicesAndRecordings) + ", " + jobs + ", " + jobs : std::string(kCounts));
-  if (visible) {
-    statement.bind(visible->devices_json, visible->devices_json, "queued", visible->token, visible->devices_json,
-                   "running", visible->token, visible->devices_json);
-  }
-  return one_row(
-      statement,
-      +[](const Statement& row) { return Counts{row.integer(0), row.integer(1), row.integer(2), row.integer(3)}; },
-      Error{ErrorCode::Internal, "The store counts nothing.", {}});
 }
 
 Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id) {

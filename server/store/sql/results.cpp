@@ -102,7 +102,10 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
   if (inserted) {
     inserted = insert_artefacts(connection, job_id, results);
   }
-  return inserted ? insert_investigations(connection, job_id, results, now) : inserted;
+  if (inserted) {
+    inserted = insert_investigations(connection, job_id, results, now);
+  }
+  return inserted ? insert_attention(connection, job_id, results, now) : inserted;
 }
 
 Result<std::string> result_document(Connection& connection, std::string_view job_id) {

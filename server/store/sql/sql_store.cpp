@@ -117,6 +117,10 @@ Result<Counts> SqlStore::counts(const std::optional<Visibility>& visible) {
   return database_->read([&](Connection& c) { return tables::counts(c, visible); });
 }
 
+Result<EndedCounts> SqlStore::ended_since(UtcMicros since, const std::optional<Visibility>& visible) {
+  return database_->read([&](Connection& c) { return tables::ended_since(c, since, visible); });
+}
+
 Result<bool> SqlStore::sees_job(std::string_view job, const Visibility& visible) {
   return database_->read([&](Connection& c) { return tables::sees_job(c, job, visible); });
 }
@@ -261,6 +265,10 @@ Result<Fit> SqlStore::fit(std::string_view id) {
 
 Result<std::vector<Fit>> SqlStore::fits(const FitFilter& filter, const Page& page) {
   return database_->read([&](Connection& c) { return tables::fits(c, filter, page); });
+}
+
+Result<std::vector<Attention>> SqlStore::attention(const AttentionFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::attention(c, filter, page); });
 }
 
 Result<std::vector<ChannelResult>> SqlStore::latest_channel_results(std::string_view device_id,

@@ -48,6 +48,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<Recording> recording(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override;
   [[nodiscard]] Result<Counts> counts(const std::optional<Visibility>& visible) override;
+  [[nodiscard]] Result<EndedCounts> ended_since(UtcMicros since, const std::optional<Visibility>& visible) override;
   [[nodiscard]] Result<bool> sees_job(std::string_view job, const Visibility& visible) override;
   [[nodiscard]] Result<bool> is_owner(std::string_view object, std::string_view token) override;
   [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(std::string_view device_id) override;
@@ -81,6 +82,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<std::string> result_document(std::string_view job_id) override;
   [[nodiscard]] Result<Fit> fit(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) override;
+  [[nodiscard]] Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) override;
   [[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                           std::string_view quantity,
                                                                           std::string_view axis) override;

@@ -75,6 +75,14 @@ class FilteredQuery {
       values_.push_back(*value);
     }
   }
+  /// Rows made at that time or later: their ids, which begin with `prefix`, say when.
+  void made_since(std::string_view prefix, const std::optional<UtcMicros>& since) {
+    where("id >= ?", since ? std::optional(first_id(prefix, *since)) : std::nullopt);
+  }
+  /// Rows of which the texts of `columns` hold a text, in any case of its ASCII letters.
+  void holds(std::string_view columns, const std::optional<std::string>& text) {
+    where("instr(lower(" + std::string(columns) + "), lower(?)) > 0", text);
+  }
   void where(std::string_view condition) {
     sql_.append(first_ ? " WHERE " : " AND ").append(condition);
     first_ = false;
@@ -119,12 +127,24 @@ class FilteredQuery {
     if (page.visible && !guarded_) {
       return fail(ErrorCode::Internal, "A list does not say what a token limited to devices sees of it.");
     }
-    if (page.newest_first) {
-      where("id < ?", page.after.empty() ? std::nullopt : std::optional(page.after));
-    } else {
-      where("id > ?", page.after);
+    const std::optional<std::string> after = page.after.empty() ? std::nullopt : std::optional(page.after);
+    switch (page.order) {
+      case PageOrder::OldestFirst:
+        where("id > ?", after);
+        sql_.append(" ORDER BY id LIMIT ?");
+        break;
+      case PageOrder::NewestFirst:
+        where("id < ?", after);
+        sql_.append(" ORDER BY id DESC LIMIT ?");
+        break;
+      case PageOrder::ByName:
+        if (after) {
+          where("(name, id) > (?, ?)", page.after_name);
+          values_.push_back(*after);
+        }
+        sql_.append(" ORDER BY name, id LIMIT ?");
+        break;
     }
-    sql_.append(page.newest_first ? " ORDER BY id DESC LIMIT ?" : " ORDER BY id LIMIT ?");
     Statement statement = connection.prepare(sql_);
     for (const std::string& value : values_) {
       statement.bind(value);
@@ -156,6 +176,8 @@ class FilteredQuery {
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
 [[nodiscard]] Result<Counts> counts(Connection& connection, const std::optional<Visibility>& visible);
+[[nodiscard]] Result<EndedCounts> ended_since(Connection& connection, UtcMicros since,
+                                              const std::optional<Visibility>& visible);
 [[nodiscard]] Result<std::vector<ConditionCount>> conditions_of(Connection& connection, std::string_view device_id);
 [[nodiscard]] Result<Recording> revise_recording(Connection& connection, const Recording& changed,
                                                  std::int64_t expected_revision, UtcMicros now);
@@ -203,6 +225,13 @@ class FilteredQuery {
                                                                         std::string_view axis);
 /// Their ids alone.
 [[nodiscard]] Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis);
+
+// ---- what wants a look
+[[nodiscard]] Result<std::vector<Attention>> attention(Connection& connection, const AttentionFilter& filter,
+                                                       const Page& page);
+/// After the job's result document. What was said of the recordings in `results.looked_at` is forgotten.
+[[nodiscard]] Status insert_attention(Connection& connection, std::string_view job_id, const JobResults& results,
+                                      UtcMicros now);
 
 // ---- pooling of the results of an axis
 /// Makes the row of each axis name its latest results: what pooled others is cancelled, a job for these queued. How

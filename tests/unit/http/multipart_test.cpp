@@ -15,7 +15,7 @@ struct Read {
 /// Feeds `body` in pieces of `piece` bytes.
 Read read(std::string_view body, std::size_t piece, std::string_view boundary = "b") {
   Read result;
-  MultipartReader reader(boundary, {[&](const std::string& name) -> Status {
+  MultipartReader reader(boundary, {[&](const std::string& name, const std::string&) -> Status {
                                       result.parts.emplace_back(name, "");
                                       return {};
                                     },
@@ -84,11 +84,12 @@ TEST(Multipart, RefusesPartHeadersThatAreEndlessOrNameless) {
 
 TEST(Multipart, StopsWhereACallbackRefuses) {
   int data_calls = 0;
-  MultipartReader reader("b", {[](const std::string&) -> Status { return fail(ErrorCode::InvalidArgument, "No."); },
-                               [&](std::span<const std::byte>) -> Status {
-                                 ++data_calls;
-                                 return {};
-                               }});
+  MultipartReader reader(
+      "b", {[](const std::string&, const std::string&) -> Status { return fail(ErrorCode::InvalidArgument, "No."); },
+            [&](std::span<const std::byte>) -> Status {
+              ++data_calls;
+              return {};
+            }});
   const std::string body = part("file", "1") + "--b--";
   const Status fed = reader.feed(std::as_bytes(std::span(body)));
   ASSERT_FALSE(fed);

@@ -55,6 +55,11 @@ Device fill(Store& store) {
   investigation.baseline_id = model_id;
   investigation.model_id = model_id;
   results.investigations.push_back(investigation);
+  Attention item;
+  item.recording_id = recording.id;
+  item.level = "look";
+  item.verdict = "does not fit";
+  results.attention.push_back(item);
   EXPECT_TRUE(store.succeed(lease_of(done), results)->held);
   add_job(store, "failed");
   EXPECT_TRUE(store.fail_attempt(lease_of(claim_one(store)), {"{}"})->held);
@@ -71,6 +76,7 @@ void expect_filled(Store& store, const Device& device) {
   EXPECT_THAT(*store.jobs({}, {}), SizeIs(3));
   EXPECT_THAT(*store.fits({}, {}), SizeIs(2));
   EXPECT_THAT(*store.investigations({}, {}), SizeIs(1));
+  EXPECT_THAT(*store.attention({}, {}), SizeIs(1));
 }
 
 TEST(Migrations, EmbeddedTextsAreTheFilesOfTheRepository) {
@@ -167,6 +173,31 @@ TEST(Migrations, WhatAnEarlierReleasePooledIsPooledAgain) {
   EXPECT_EQ((*now)->axis_results(axis)->pool->state, JobState::Queued);
 }
 
+TEST(Migrations, RecordingsOfAnEarlierReleaseHaveTheirNamesAndJobs) {
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 9);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  {
+    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    ASSERT_TRUE((*old)->execute(
+        "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+        "INSERT INTO blobs VALUES ('" +
+        hash_of("a") +
+        "', 1, 'csv', 'none', 1, '[]', '[]', 0);"
+        "INSERT INTO recordings (id, device_id, blob_sha256, revision, metadata_json, condition, quality_json, "
+        "created_at, updated_at) VALUES ('rec_1', 'dev_1', '" +
+        hash_of("a") +
+        "', 1, '{\"id\":\"static 1\"}', 'static', '{}', 0, 0);"
+        "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
+        "VALUES ('job_1', 'characterise', 'queued', 5, 5, 'key', '{\"recordings\":[{\"id\":\"rec_1\"}]}', 0, 0)"));
+  }
+  const auto now = open_with(directory.path(), embedded_migrations());
+  ASSERT_TRUE(now) << now.error().message;
+  EXPECT_EQ((*now)->recording("rec_1")->name, "static 1");
+  EXPECT_EQ((*now)->recording("rec_1")->file_name, "");
+  EXPECT_EQ((*now)->recording("rec_1")->latest_job, "job_1");
+}
+
 TEST(Migrations, ABackupIsMadeBeforeAndCanBeOpenedByTheOldRelease) {
   const TemporaryDirectory directory;
   Device device;
@@ -257,7 +288,7 @@ TEST(Migrations, OneThatFailsLeavesTheDatabaseAsItWas) {
 }
 
 TEST(Migrations, AFullDiskStopsBeforeMigrating) {
-  const std::string said = on_small_disk(1 << 20, [](const std::filesystem::path& disk) -> std::string {
+  const std::string said = on_small_disk((1 << 20) + (128 << 10), [](const std::filesystem::path& disk) -> std::string {
     {
       const auto store = open_with(disk, embedded_migrations());
       if (!store) {

@@ -227,7 +227,8 @@ TEST_P(RecordingStore, AnchorsAreAHistoryAndGoWithTheirDevice) {
   const auto all = store().anchors(device.id, {});
   ASSERT_EQ(all->size(), 2U);
   EXPECT_TRUE(all->front().id.starts_with("anc_"));
-  EXPECT_EQ(store().anchors(device.id, {.after = "", .limit = 1, .newest_first = true})->front().label, "firmware=1.1");
+  EXPECT_EQ(store().anchors(device.id, {.after = "", .limit = 1, .order = PageOrder::NewestFirst})->front().label,
+            "firmware=1.1");
   ASSERT_TRUE(store().remove_device(device.id, device.revision));
   EXPECT_TRUE(store().anchors(std::nullopt, {})->empty());
 }

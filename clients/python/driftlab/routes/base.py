@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 from ..transport import Body, Query, Transport
 
 Method = TypeVar("Method", bound=Callable[..., Any])
 PAGE = 200
+Sort = Literal["created_at", "-created_at"]
+SortByName = Literal["created_at", "-created_at", "name"]
 
 
 def operation(name: str) -> Callable[[Method], Method]:

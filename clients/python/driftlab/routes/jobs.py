@@ -8,14 +8,15 @@ from typing import Any, cast
 from ..contract import Characterisation, DriveEvaluation, DriveEvaluationResource, DriveEvaluationSummary
 from ..contract import Investigation, Job, JobEvent, JobRequest, JobState
 from ..contract import NewDriveEvaluation, NewOutageEvaluation, OutageEvaluation, OutageEvaluationResource, OutageEvaluationSummary
-from .base import PAGE, Routes, operation
+from .base import PAGE, Routes, Sort, operation
 
 
 class JobRoutes(Routes):
     @operation("listJobs")
-    def jobs(self, *, kind: str | None = None, state: JobState | None = None, page_size: int = PAGE) -> Iterator[Job]:
-        """Jobs, oldest first."""
-        return self._list("listJobs", {"kind": kind, "state": state}, page_size)
+    def jobs(self, *, kind: str | None = None, state: JobState | None = None, device: str | None = None, sort: Sort | None = None,
+             page_size: int = PAGE) -> Iterator[Job]:
+        """Jobs, oldest first unless sorted otherwise; with `device` those that name it, or something of it."""
+        return self._list("listJobs", {"kind": kind, "state": state, "device": device, "sort": sort}, page_size)
 
     @operation("createJob")
     def create_job(self, request: JobRequest, *, wait_s: float | None = None, idempotency_key: str | None = None) -> Job:
@@ -70,9 +71,10 @@ class JobRoutes(Routes):
                 data = ""
 
     @operation("listOutageEvaluations")
-    def outage_evaluations(self, *, state: JobState | None = None, page_size: int = PAGE) -> Iterator[OutageEvaluationSummary]:
-        """Outage evaluations, oldest first, without their results."""
-        return self._list("listOutageEvaluations", {"state": state}, page_size)
+    def outage_evaluations(self, *, state: JobState | None = None, q: str | None = None, since: str | None = None,
+                           sort: Sort | None = None, page_size: int = PAGE) -> Iterator[OutageEvaluationSummary]:
+        """Outage evaluations, oldest first unless sorted otherwise, without their results; `q` is part of the scenario's name."""
+        return self._list("listOutageEvaluations", {"state": state, "q": q, "since": since, "sort": sort}, page_size)
 
     @operation("createOutageEvaluation")
     def create_outage_evaluation(self, request: NewOutageEvaluation, *, wait_s: float | None = None,

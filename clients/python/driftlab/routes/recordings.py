@@ -10,7 +10,7 @@ from ..contract import RecordingPreview, Spectrogram, Spectrum, StoredRecording,
 from ..problems import Problem
 from ..transport import Body
 from ..uploads import Columns, Progress, Source, Upload, columns_text, condition_query, tag_query
-from .base import PAGE, given, operation
+from .base import PAGE, SortByName, given, operation
 from .uploads import UploadRoutes
 
 DOWNLOADED = 8 << 20  # bytes of a file that are asked for at once
@@ -20,9 +20,10 @@ class RecordingRoutes(UploadRoutes):
     resumable_from = 64 << 20  # bytes from which an upload goes in pieces
 
     @operation("listDevices")
-    def devices(self, *, include: Literal["summary"] | None = None, page_size: int = PAGE) -> Iterator[Device]:
-        """Every device, oldest first; with `include` each with its summary."""
-        return self._list("listDevices", {"include": include}, page_size)
+    def devices(self, *, include: Literal["summary"] | None = None, sort: SortByName | None = None,
+                page_size: int = PAGE) -> Iterator[Device]:
+        """Every device, oldest first unless sorted otherwise; with `include` each with its summary."""
+        return self._list("listDevices", {"include": include, "sort": sort}, page_size)
 
     @operation("createDevice")
     def create_device(self, name: str, *, model: str | None = None, imu: str | None = None, serial: str | None = None,
@@ -63,9 +64,14 @@ class RecordingRoutes(UploadRoutes):
 
     @operation("listRecordings")
     def recordings(self, *, device: str | None = None, condition: str | None = None, labels: Mapping[str, str] | None = None,
+                   q: str | None = None, since: str | None = None, has_result: bool | None = None, sort: SortByName | None = None,
                    page_size: int = PAGE) -> Iterator[StoredRecording]:
-        """Recordings, oldest first; `condition` in its compact form, for example constant_rate:z:9:deg/s; those that have all labels."""
-        query = {"device": device, "condition": condition, "labels": tag_query(labels, None, None)["labels"]}
+        """Recordings, oldest first unless sorted otherwise: those that have all labels, whose name, file, condition or id holds `q`,
+        that were made at `since` (RFC 3339) or later, that were characterised or not. `condition` is in its compact form, for example
+        constant_rate:z:9:deg/s.
+        """
+        query = {"device": device, "condition": condition, "labels": tag_query(labels, None, None)["labels"], "q": q, "since": since,
+                 "has_result": None if has_result is None else str(has_result).lower(), "sort": sort}
         return self._list("listRecordings", query, page_size)
 
     @operation("getCharacterisation")
@@ -118,24 +124,27 @@ class RecordingRoutes(UploadRoutes):
                columns: Columns | None = None, id: str | None = None, trim_start_s: float | None = None, trim_end_s: float | None = None,
                calibration: str | None = None, axis: str | None = None, value: float | None = None, unit: str | None = None,
                direction: str | None = None, labels: Mapping[str, str] | None = None, session: str | None = None,
-               recorded_at: str | None = None, progress: Progress | None = None, idempotency_key: str | None = None) -> StoredRecording:
+               recorded_at: str | None = None, file_name: str | None = None, progress: Progress | None = None,
+               idempotency_key: str | None = None) -> StoredRecording:
         """Uploads a file, bytes, or an array whose rows are samples, and says what it is. Queues no job.
 
         columns and condition are given as in the manual (gz=angular_rate:z:deg/s; constant_rate:z:9:deg/s) or as documents; axis,
         value, unit and direction stand beside a condition of which only the kind is given. Labels, session and recorded_at (RFC 3339)
-        are what regression runs compare by. `progress` is called with the bytes sent and the bytes in all. An upload that the network
-        cuts off is sent again under the same Idempotency-Key; the daemon checks the digest, and stores the recording once. One of
-        64 MiB or more goes in pieces that are kept as they arrive, so that a broken connection costs one piece.
+        are what regression runs compare by. `file_name` is shown beside the recording; of a path it is known. `progress` is called with
+        the bytes sent and the bytes in all. An upload that the network cuts off is sent again under the same Idempotency-Key; the daemon
+        checks the digest, and stores the recording once. One of 64 MiB or more goes in pieces that are kept as they arrive, so that a
+        broken connection costs one piece.
         """
         upload = Upload(source, progress)
         if upload.size >= self.resumable_from:
             return self.record_upload(self._sent_in_pieces(upload), device=device, condition=condition, rate_hz=rate_hz, columns=columns,
                                       name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
                                       value=value, unit=unit, direction=direction, labels=labels, session=session,
-                                      recorded_at=recorded_at, idempotency_key=idempotency_key)
+                                      recorded_at=recorded_at, file_name=file_name or upload.name, idempotency_key=idempotency_key)
         query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns),
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
-                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition),
+                                 "value": value, "unit": unit, "direction": direction,
+                                 "file_name": file_name or upload.name, **condition_query(condition),
                                  **tag_query(labels, session, recorded_at)}
         answer = self._transport.call("uploadRecording", None, query, upload.body(), idempotency_key=idempotency_key,
                                       headers={"Repr-Digest": upload.digest})

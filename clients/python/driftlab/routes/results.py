@@ -13,7 +13,7 @@ from ..contract import Trends as TrendsDocument
 from ..results import Investigation
 from ..tables import ParameterTable, Trends
 from ..transport import Query
-from .base import PAGE, Routes, operation
+from .base import PAGE, Routes, Sort, operation
 
 Sensor = Literal["gyroscope", "accelerometer"]
 Axis = Literal["x", "y", "z"]
@@ -41,18 +41,28 @@ class ResultRoutes(Routes):
 
     @operation("getParameterTable")
     def parameter_table(self, device: str, *, sensor: Sensor = "gyroscope", axis: Axis | None = None, method: AnalysisMethod = "gmwm",
-                        model: str | None = None, wait_s: float | None = 30.0) -> ParameterTable:
+                        model: str | None = None, reference: str | None = None, wait_s: float | None = 30.0) -> ParameterTable:
         """Parameters of one sensor axis, a row per dynamic condition. Without `model`: the one that is best over all rows.
 
-        `wait_s` is how long the daemon may wait until recordings of one condition are fitted jointly (`pooling` of the document).
+        Changes and ratios are against the first row, or that of the condition `reference`, for example static. `wait_s` is how long
+        the daemon may wait until recordings of one condition are fitted jointly (`pooling` of the document).
         """
-        query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
+        query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model, "reference": reference}
         return ParameterTable(cast(ParameterTableDocument, self._get("getParameterTable", None, query, wait_s)))
 
-    def parameter_table_text(self, device: str, *, media: TableText = "text/plain", sensor: Sensor = "gyroscope", axis: Axis | None = None,
-                             method: AnalysisMethod = "gmwm", model: str | None = None, wait_s: float | None = 30.0) -> str:
-        """The same table as the daemon writes it: aligned text, CSV or Markdown."""
-        query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model}
+    def parameter_tables(self, device: str, *, sensor: Sensor = "gyroscope", method: AnalysisMethod = "gmwm", model: str | None = None,
+                         reference: str | None = None, wait_s: float | None = 30.0) -> list[ParameterTable]:
+        """The same table of each axis that has results."""
+        query: Query = {"device": device, "sensor": sensor, "axis": "all", "method": method, "model": model, "reference": reference}
+        document = cast("dict[str, list[ParameterTableDocument]]", self._get("getParameterTable", None, query, wait_s))
+        return [ParameterTable(table) for table in document["tables"]]
+
+    def parameter_table_text(self, device: str, *, media: TableText | Literal["text/x-latex"] = "text/plain",
+                             sensor: Sensor = "gyroscope", axis: Axis | Literal["all"] | None = None,
+                             method: AnalysisMethod = "gmwm", model: str | None = None, reference: str | None = None,
+                             wait_s: float | None = 30.0) -> str:
+        """The same table as the daemon writes it: aligned text, CSV, Markdown or LaTeX (text/x-latex)."""
+        query: Query = {"device": device, "sensor": sensor, "axis": axis, "method": method, "model": model, "reference": reference}
         return self._text("getParameterTable", media, None, query, wait_s)
 
     @operation("getTrends")
@@ -94,9 +104,11 @@ class ResultRoutes(Routes):
 
     @operation("listInvestigations")
     def investigations(self, *, device: str | None = None, study: str | None = None, job: str | None = None,
+                       q: str | None = None, since: str | None = None, sort: Sort | None = None,
                        page_size: int = PAGE) -> Iterator[InvestigationSummary]:
-        """Investigations with their findings, without the reports."""
-        return self._list("listInvestigations", {"device": device, "study": study, "job": job}, page_size)
+        """Investigations with their findings, without the reports; `q` is part of the device's name, the id or what was found."""
+        query = {"device": device, "study": study, "job": job, "q": q, "since": since, "sort": sort}
+        return self._list("listInvestigations", query, page_size)
 
     @operation("getInvestigation")
     def investigation(self, id: str) -> Investigation:

@@ -1,10 +1,11 @@
 """Health, contract and documentation."""
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, cast
 
-from ..contract import ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
-from .base import Routes, operation
+from ..contract import Attention, ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
+from .base import PAGE, Routes, Sort, operation
 
 
 class ServiceRoutes(Routes):
@@ -29,9 +30,15 @@ class ServiceRoutes(Routes):
         return self._text("metrics", "text/plain")
 
     @operation("getCounts")
-    def counts(self) -> GetCountsAnswer:
-        """How many devices and recordings there are, and jobs that live."""
-        return cast(GetCountsAnswer, self._get("getCounts"))
+    def counts(self, *, since: str | None = None) -> GetCountsAnswer:
+        """How many devices and recordings there are, and jobs that live; with `since` (RFC 3339) jobs that ended from then on."""
+        return cast(GetCountsAnswer, self._get("getCounts", None, {"since": since}))
+
+    @operation("listAttention")
+    def attention(self, *, device: str | None = None, since: str | None = None, sort: Sort | None = None,
+                  page_size: int = PAGE) -> Iterator[Attention]:
+        """Results whose verdict is not fine, newest first unless sorted otherwise."""
+        return self._list("listAttention", {"device": device, "since": since, "sort": sort}, page_size)
 
     @operation("contract")
     def contract(self) -> ContractAnswer:

@@ -6,7 +6,7 @@ from typing import cast
 
 from ..contract import Calibration, CalibrationSensors, Drive, Model
 from ..contract import ModelRequest, StoredDrive, StoredStudy, StudyBaseline, StudyRequestRecording
-from .base import PAGE, Routes, given, operation
+from .base import PAGE, Routes, SortByName, given, operation
 
 
 class StudyRoutes(Routes):
@@ -49,9 +49,10 @@ class StudyRoutes(Routes):
         return cast(StoredDrive, self._get("getDrive", {"id": id}))
 
     @operation("listModels")
-    def models(self, *, device: str | None = None, parent: str | None = None, page_size: int = PAGE) -> Iterator[Model]:
+    def models(self, *, device: str | None = None, parent: str | None = None, sort: SortByName | None = None,
+               page_size: int = PAGE) -> Iterator[Model]:
         """Simulation models; with `parent` the revisions of that one."""
-        return self._list("listModels", {"device": device, "parent": parent}, page_size)
+        return self._list("listModels", {"device": device, "parent": parent, "sort": sort}, page_size)
 
     @operation("createModel")
     def create_model(self, request: ModelRequest, *, idempotency_key: str | None = None) -> Model:

@@ -48,11 +48,11 @@ class UploadRoutes(Routes):
                       trim_end_s: float | None = None, calibration: str | None = None, axis: str | None = None,
                       value: float | None = None, unit: str | None = None, direction: str | None = None,
                       labels: Mapping[str, str] | None = None, session: str | None = None, recorded_at: str | None = None,
-                      idempotency_key: str | None = None) -> StoredRecording:
+                      file_name: str | None = None, idempotency_key: str | None = None) -> StoredRecording:
         """Makes a recording of a complete upload, which `name` names; the rest is as in `upload`. Refused, the upload stays."""
         query: dict[str, Any] = {"device": device, "id": name, "rate_hz": rate_hz, "columns": columns_text(columns),
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
-                                 "value": value, "unit": unit, "direction": direction, **condition_query(condition),
+                                 "value": value, "unit": unit, "direction": direction, "file_name": file_name, **condition_query(condition),
                                  **tag_query(labels, session, recorded_at)}
         return cast(StoredRecording, self._transport.call("recordUpload", {"id": id}, query, idempotency_key=idempotency_key).json)
 

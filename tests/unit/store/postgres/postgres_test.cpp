@@ -289,16 +289,17 @@ TEST_F(PostgresStoreTest, AnotherSchemaIsRefusedAtStartAndWhileItRuns) {
 TEST_F(PostgresStoreTest, AMigrationThatFailsLeavesTheDatabaseAsItWas) {
   PostgresOptions options;
   options.migrations = embedded_postgres_migrations();
-  options.migrations->push_back({10, "broken", "CREATE TABLE half (a BIGINT); SELECT * FROM nowhere"});
+  const int last = options.migrations->back().number;
+  options.migrations->push_back({last + 1, "broken", "CREATE TABLE half (a BIGINT); SELECT * FROM nowhere"});
   const auto broken = open_postgres_store(uri_, options);
   ASSERT_FALSE(broken);
-  EXPECT_THAT(broken.error().message, HasSubstr("Migration 10 (broken) failed."));
+  EXPECT_THAT(broken.error().message, HasSubstr("Migration " + std::to_string(last + 1) + " (broken) failed."));
   EXPECT_EQ(open()->facts().schema_before, 0);
   options.migrations->back().sql = "CREATE TABLE whole (a BIGINT)";
   const auto mended = open_postgres_store(uri_, options);
   ASSERT_TRUE(mended) << mended.error().message;
-  EXPECT_EQ((*mended)->facts().schema_before, 9);
-  EXPECT_EQ((*mended)->facts().schema, 10);
+  EXPECT_EQ((*mended)->facts().schema_before, last);
+  EXPECT_EQ((*mended)->facts().schema, last + 1);
 }
 
 TEST_F(PostgresStoreTest, WhatCannotBeOpenedIsRefused) {
