@@ -94,8 +94,8 @@ std::string dechunked(std::string_view text, std::size_t piece) {
 /// The parts of a multipart body, and whether it ended.
 std::string parts(std::string_view text, std::size_t piece) {
   std::string seen;
-  MultipartReader reader("b", {[&seen](const std::string& name) -> Status {
-                                 seen += '[' + name + ']';
+  MultipartReader reader("b", {[&seen](const std::string& name, const std::string& file) -> Status {
+                                 seen += '[' + name + '|' + file + ']';
                                  return {};
                                },
                                [&seen](std::span<const std::byte> bytes) -> Status {
