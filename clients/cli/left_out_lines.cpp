@@ -1,6 +1,7 @@
 #include "clients/cli/left_out_lines.hpp"
 
 #include "core/read/byte_source.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <cstdio>
 #include <fstream>
@@ -43,7 +44,7 @@ Result<LeftOut> copy_without(const FileFlags& flags, const std::filesystem::path
     return fail(ErrorCode::Io, "The copy of " + from.string() + " without the lines left out cannot be written.");
   }
   if (left.skipped < flags.skip_lines || left.skipped == number) {
-    return fail(ErrorCode::InvalidArgument, from.string() + " has " + std::to_string(number) + " lines; --skip-lines " +
+    return fail(ErrorCode::InvalidArgument, from.string() + " has " + with_count(number, "line") + "; --skip-lines " +
                                                 std::to_string(flags.skip_lines) + " leaves nothing.");
   }
   return left;

@@ -49,8 +49,14 @@ class Predictor {
 
   /// Median of the samples within `reach`, the sample itself left out.
   double around(std::size_t t, std::size_t reach) {
+    if (reach == 2 && t >= 2 && t + 2 < samples_.size()) {  // the four neighbours: mean of the middle two
+      const auto [low, high] = std::minmax(samples_[t - 2], samples_[t - 1]);
+      const auto [other_low, other_high] = std::minmax(samples_[t + 1], samples_[t + 2]);
+      const auto [second, third] = std::minmax(std::max(low, other_low), std::min(high, other_high));
+      return 0.5 * (second + third);
+    }
     fill(t, reach, false);
-    if (scratch_.size() == 4) {  // the four neighbours: mean of the middle two
+    if (scratch_.size() == 4) {
       std::sort(scratch_.begin(), scratch_.end());
       return 0.5 * (scratch_[1] + scratch_[2]);
     }

@@ -14,6 +14,7 @@
 #include "core/read/stated_scale.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -347,7 +348,7 @@ Status CsvDecoder::take_row_carefully(std::string_view line) {
     return {};
   }
   if (cells.size() != names_.size()) {
-    return at_line(ErrorCode::RaggedRow, "has " + std::to_string(cells.size()) + " values; the first row has " +
+    return at_line(ErrorCode::RaggedRow, "has " + with_count(cells.size(), "value") + "; the first row has " +
                                              std::to_string(names_.size()) + "; correct or delete that line.");
   }
   for (std::size_t column = 0; column < cells.size(); ++column) {
@@ -390,13 +391,15 @@ Status CsvDecoder::finish() {
     return at_line(ErrorCode::RaggedRow, "holds words alone, and so do " + std::to_string(words_.count() - 1) +
                                              " more between " + std::to_string(rows_) + " rows; is this one table?");
   }
-  blank_.note(sink_, "blank lines between the rows were skipped");
-  words_.note(sink_, "lines between the rows hold words alone and were skipped");
+  blank_.note(sink_, "blank line between the rows was skipped", "blank lines between the rows were skipped");
+  words_.note(sink_, "line between the rows holds words alone and was skipped",
+              "lines between the rows hold words alone and were skipped");
   if (torn_) {
     sink_.note("The file ends within a row (line " + std::to_string(line_) + "); that row is left out.");
   }
   if (inner_comments_ > 0) {
-    sink_.note(std::to_string(inner_comments_) + " comment lines between the rows were skipped.");
+    sink_.note(with_count(inner_comments_, "comment line between the rows was skipped.",
+                          "comment lines between the rows were skipped."));
   }
   cells_.note(rows_, sink_);
   return {};

@@ -3,6 +3,7 @@
 #include "core/read/decimal.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <cmath>
 #include <utility>
@@ -73,7 +74,7 @@ void CsvCells::note(std::uint64_t rows, ColumnSink& sink) const {
   for (std::size_t column = 0; column < texts_.size(); ++column) {
     if (texts_[column].count > 0) {
       sink.note("Column '" + names_[column] + "' holds text in " + std::to_string(texts_[column].count) + " of " +
-                std::to_string(rows) + " rows, first " + texts_[column].first + ".");
+                with_count(rows, "row") + ", first " + texts_[column].first + ".");
     }
   }
 }

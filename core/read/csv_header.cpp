@@ -1,6 +1,7 @@
 #include "core/read/csv_header.hpp"
 
 #include "core/read/text_shape.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <set>
@@ -103,11 +104,12 @@ Result<ColumnNames> column_names(const CsvFirstLine& first, std::uint64_t line, 
 
 void note_dialect(const text::Dialect& dialect, std::uint64_t comments, ColumnSink& sink) {
   if (comments > 0) {
-    sink.note(std::to_string(comments) + " comment lines above the first row were skipped.");
+    sink.note(with_count(comments, "comment line above the first row was skipped.",
+                         "comment lines above the first row were skipped."));
   }
   if (dialect.preamble_lines > 0) {
-    sink.note(std::to_string(dialect.preamble_lines) +
-              " lines above the names of the columns are no samples and were skipped.");
+    sink.note(with_count(dialect.preamble_lines, "line above the names of the columns is no sample and was skipped.",
+                         "lines above the names of the columns are no samples and were skipped."));
   }
   if (!dialect.units.empty()) {
     sink.note("The second header line is read as the units of the columns.");

@@ -2,6 +2,7 @@
 
 #include "core/read/dialect.hpp"
 #include "core/read/text_shape.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 
@@ -18,10 +19,10 @@ void CsvLeftOut::add(std::uint64_t line, std::uint64_t count, std::string_view t
   count_ += count;
 }
 
-void CsvLeftOut::note(ColumnSink& sink, const std::string& what) const {
+void CsvLeftOut::note(ColumnSink& sink, std::string_view one, std::string_view several) const {
   if (count_ > 0) {
-    sink.note(std::to_string(count_) + " " + what + " (the first is line " + std::to_string(first_) +
-              (text_.empty() ? "" : ": \"" + text_ + "\"") + ").");
+    sink.note(with_count(count_, one, several) + (count_ == 1 ? " (line " : " (the first is line ") +
+              std::to_string(first_) + (text_.empty() ? "" : ": \"" + text_ + "\"") + ").");
   }
 }
 

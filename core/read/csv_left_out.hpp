@@ -17,8 +17,9 @@ class CsvLeftOut {
   void add(std::uint64_t line, std::uint64_t count, std::string_view text);
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::uint64_t first() const { return first_; }
-  /// `3 <what> (the first is line 502: "[WARN] buffer full").`; nothing where there are none.
-  void note(ColumnSink& sink, const std::string& what) const;
+  /// `3 <several> (the first is line 502: "[WARN] buffer full").`, `1 <one> (line 502: ...).`; nothing where there are
+  /// none.
+  void note(ColumnSink& sink, std::string_view one, std::string_view several) const;
 
  private:
   std::uint64_t count_ = 0;

@@ -7,6 +7,7 @@
 #include "core/read/formats.hpp"
 #include "core/read/little_endian.hpp"
 #include "core/read/stamped_blocks.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <array>
 #include <chrono>
@@ -169,14 +170,15 @@ Status CwaDecoder::take(std::string_view bytes) {
 
 void CwaDecoder::note_quality() {
   if (damaged_ > 0) {
-    sink_.note(std::to_string(damaged_) + " of " + std::to_string(seen_) +
-               " blocks are left out: their checksum is wrong or their kind is not that of the first.");
+    sink_.note(std::to_string(damaged_) + " of " + with_count(seen_, "block") +
+               (damaged_ == 1 ? " is left out: its checksum is wrong or its kind is not that of the first."
+                              : " are left out: their checksum is wrong or their kind is not that of the first."));
   }
   if (lost_ > 0) {
-    sink_.note("The numbers of the blocks show that " + std::to_string(lost_) + " are missing.");
+    sink_.note("The numbers of the blocks show that " + with_count(lost_, "is missing.", "are missing."));
   }
   if (torn_bytes_ > 0) {
-    sink_.note("The file ends " + std::to_string(torn_bytes_) + " bytes into a block; that block is left out.");
+    sink_.note("The file ends " + with_count(torn_bytes_, "byte") + " into a block; that block is left out.");
   }
 }
 

@@ -4,6 +4,7 @@
 #include "core/read/formats.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -107,7 +108,7 @@ Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const R
         return status;
       }
       if (lines.wraps() > 0) {
-        sink.note("The counter of ticks started again " + std::to_string(lines.wraps()) + " times; the time goes on.");
+        sink.note("The counter of ticks started again " + how_often(lines.wraps()) + "; the time goes on.");
       }
       return {};
     }

@@ -7,6 +7,7 @@
 #include "core/read/formats.hpp"
 #include "core/read/inertial_streams.hpp"
 #include "core/read/little_endian.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -296,7 +297,8 @@ Status DataflashDecoder::run() {
                                           ", before any inertial sample.");
   }
   if (damaged_bytes_ > 0) {
-    sink_.note(std::to_string(damaged_bytes_) + " bytes of the log are no messages and are skipped.");
+    sink_.note(with_count(damaged_bytes_, "byte of the log is no message and is skipped.",
+                          "bytes of the log are no messages and are skipped."));
   }
   if (torn_at_) {
     sink_.note("The log ends within the message at byte " + std::to_string(*torn_at_) +

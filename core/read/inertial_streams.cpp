@@ -1,6 +1,7 @@
 #include "core/read/inertial_streams.hpp"
 
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <cmath>
 #include <utility>
@@ -144,14 +145,14 @@ Status InertialStreams::finish(const std::string& nothing) {
   for (const Stream& stream : streams_) {
     if (&stream != &streams_[chosen_] && stream.samples > 0) {
       others.add(quoted_name(stream.name) + " (" + std::string(contents_of(stream.holds)) + ", " +
-                 std::to_string(stream.samples) + " samples)");
+                 with_count(stream.samples, "sample") + ")");
     }
   }
   if (!others.empty()) {
     const Stream& chosen = streams_[chosen_];
     sink_.note("Of several inertial streams " + quoted_name(chosen.name) + " is read (" +
-               std::string(contents_of(chosen.holds)) + ", " + std::to_string(chosen.samples) +
-               " samples); left out: " + others.text() + ".");
+               std::string(contents_of(chosen.holds)) + ", " + with_count(chosen.samples, "sample") +
+               "); left out: " + others.text() + ".");
   }
   return status;
 }

@@ -9,6 +9,7 @@
 #include "core/read/text_lines.hpp"
 #include "core/read/text_numbers.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <array>
 #include <chrono>
@@ -202,7 +203,8 @@ class NmeaDecoder {
     sink_.note(day_ ? "Times are UTC, in seconds since 1970."
                     : "No sentence says a date: times are seconds of the day.");
     if (skipped_ > 0) {
-      sink_.note(std::to_string(skipped_) + " lines are no sentences or have a wrong checksum and are left out.");
+      sink_.note(with_count(skipped_, "line is no sentence or has a wrong checksum and is left out.",
+                            "lines are no sentences or have a wrong checksum and are left out."));
     }
     return {};
   }

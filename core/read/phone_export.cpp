@@ -4,6 +4,7 @@
 #include "core/read/zip_entries.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -177,7 +178,7 @@ Status deliver_sensors(std::vector<Sensor> sensors, const DecodeLimits& limits, 
     const auto shift = static_cast<std::ptrdiff_t>(steps);
     if (&sensor != &first) {
       sink.note("'" + sensor.name + "' starts " + seconds(late) + " after '" + first.name + "' and has " +
-                std::to_string(sensor.time_s.size()) + " samples beside " + std::to_string(rows) +
+                with_count(sensor.time_s.size(), "sample") + " beside " + std::to_string(rows) +
                 "; its rows are set beside those by number, not resampled.");
     }
     for (std::size_t i = 0; i < sensor.columns.size(); ++i) {

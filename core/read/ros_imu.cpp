@@ -1,6 +1,7 @@
 #include "core/read/ros_imu.hpp"
 
 #include "core/read/little_endian.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <utility>
 
@@ -123,7 +124,8 @@ Status RosTopics::finish(const std::string& container) {
     }
   }
   if (unreadable_ > 0) {
-    sink_.note(std::to_string(unreadable_) + " inertial messages cannot be read and are left out.");
+    sink_.note(with_count(unreadable_, "inertial message cannot be read and is left out.",
+                          "inertial messages cannot be read and are left out."));
   }
   if (!others.empty() && !streams_.empty()) {
     sink_.note("Topics of other types are left out: " + others.text() + ".");

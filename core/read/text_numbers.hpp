@@ -3,6 +3,7 @@
 #include "core/read/decimal.hpp"
 #include "core/read/text_shape.hpp"
 #include "core/signal/result.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -40,7 +41,7 @@ namespace driftlab::text {
 [[nodiscard]] inline tl::unexpected<Error> wrong_cells(std::uint64_t line, std::size_t found, std::size_t wanted) {
   const std::string row = std::to_string(line);
   return fail(ErrorCode::RaggedRow,
-              "Line " + row + " has " + std::to_string(found) + " cells instead of " + std::to_string(wanted) + ".",
+              "Line " + row + " has " + with_count(found, "cell") + " instead of " + std::to_string(wanted) + ".",
               {{"row", row}});
 }
 

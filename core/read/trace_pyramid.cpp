@@ -8,8 +8,8 @@
 namespace driftlab {
 namespace {
 
-constexpr std::size_t kLeaf = 256;   ///< samples of a node of level 0
-constexpr std::size_t kFactor = 16;  ///< nodes of a level in one of the next
+constexpr std::size_t kLeaf = 256;                    ///< samples of a node of level 0
+constexpr std::size_t kFactor = 16;                   ///< nodes of a level in one of the next
 constexpr std::size_t kHeld = std::size_t{1} << 19U;  ///< samples in memory at once, whole nodes of level 0
 constexpr std::size_t kFields = 4;
 constexpr std::array<const char*, kFields> kNames{".low", ".high", ".sum", ".present"};

@@ -7,6 +7,7 @@
 /// before the date is known are left out. Frames with a wrong checksum are counted and skipped.
 #include "core/read/formats.hpp"
 #include "core/read/little_endian.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <array>
 #include <chrono>
@@ -128,10 +129,12 @@ class UbxDecoder {
     }
     sink_.note("Times are GPST, in seconds since 1970.");
     if (damaged_ > 0) {
-      sink_.note(std::to_string(damaged_) + " messages have a wrong checksum and are left out.");
+      sink_.note(with_count(damaged_, "message has a wrong checksum and is left out.",
+                            "messages have a wrong checksum and are left out."));
     }
     if (undated_ > 0) {
-      sink_.note(std::to_string(undated_) + " messages from before the receiver knew the date are left out.");
+      sink_.note(with_count(undated_, "message from before the receiver knew the date is left out.",
+                            "messages from before the receiver knew the date are left out."));
     }
     return {};
   }

@@ -13,6 +13,7 @@
 #include "core/read/inertial_streams.hpp"
 #include "core/read/little_endian.hpp"
 #include "core/read/ulog_format.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -351,15 +352,16 @@ Status UlogDecoder::take_data(std::string_view body) {
 
 void UlogDecoder::note_quality() {
   if (dropouts_ > 0) {
-    sink_.note("The logger dropped messages " + std::to_string(dropouts_) + " times, for " +
-               std::to_string(dropout_ms_) + " ms together.");
+    sink_.note("The logger dropped messages " + how_often(dropouts_) + ", for " + std::to_string(dropout_ms_) +
+               " ms together.");
   }
   if (damaged_bytes_ > 0) {
-    sink_.note("The log is damaged: " + std::to_string(damaged_bytes_) +
-               " bytes up to the next synchronisation are skipped.");
+    sink_.note("The log is damaged: " + with_count(damaged_bytes_, "byte up to the next synchronisation is skipped.",
+                                                   "bytes up to the next synchronisation are skipped."));
   }
   if (short_messages_ > 0) {
-    sink_.note(std::to_string(short_messages_) + " data messages are shorter than their format and left out.");
+    sink_.note(with_count(short_messages_, "data message is shorter than its format and left out.",
+                          "data messages are shorter than their format and left out."));
   }
   if (torn_at_) {
     sink_.note("The log ends within the message at byte " + std::to_string(*torn_at_) +

@@ -6,6 +6,7 @@
 #include "core/read/formats.hpp"
 #include "core/read/phone_export.hpp"
 #include "core/read/text_shape.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -134,7 +135,8 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
     source.consume(std::min(end + 1, view->size()));
   }
   if (rows.others() > 0) {
-    sink.note(std::to_string(rows.others()) + " rows of other attributes are left out.");
+    sink.note(
+        with_count(rows.others(), "row of other attributes is left out.", "rows of other attributes are left out."));
   }
   return deliver_phone_export(std::move(rows).tables(), limits, sink);
 }

@@ -2,6 +2,7 @@
 
 #include "core/signal/full_scale.hpp"
 #include "core/signal/number.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -262,11 +263,15 @@ Status check_holes(const std::string& column, std::span<const double> values, co
   }
   if (count(Missing::Nan) * 1000 >= values.size() && count(Missing::Nan) > 0) {
     return refuse(ErrorCode::NonFinite, Missing::Nan,
-                  "is the first NaN; they are " + std::to_string(count(Missing::Nan)) + of_all);
+                  count(Missing::Nan) == 1
+                      ? "is the only NaN" + of_all
+                      : "is the first NaN; they are " + std::to_string(count(Missing::Nan)) + of_all);
   }
   if (count(Missing::Empty) * 20 > values.size()) {
     return refuse(ErrorCode::NotANumber, Missing::Empty,
-                  "is the first empty cell; they are " + std::to_string(count(Missing::Empty)) + of_all);
+                  count(Missing::Empty) == 1
+                      ? "is the only empty cell" + of_all
+                      : "is the first empty cell; they are " + std::to_string(count(Missing::Empty)) + of_all);
   }
   if (count(Missing::Ended) == values.size()) {
     return refuse(ErrorCode::NoSamples, Missing::Ended, "holds no sample at all.");
@@ -277,18 +282,18 @@ Status check_holes(const std::string& column, std::span<const double> values, co
 std::string describe(const ChannelQuality& quality, std::size_t window_rows) {
   std::vector<std::string> facts;
   if (quality.missing > 0) {
-    facts.push_back(std::to_string(quality.missing) + " samples are missing");
+    facts.push_back(with_count(quality.missing, "sample is missing", "samples are missing"));
   }
   if (quality.implausible > 0) {
-    facts.push_back(std::to_string(quality.implausible) +
-                    " samples are no measurements (such as -9999) and are left out");
+    facts.push_back(with_count(quality.implausible, "sample is no measurement (such as -9999) and is left out",
+                               "samples are no measurements (such as -9999) and are left out"));
   }
   if (quality.frozen > 0) {
-    facts.push_back("the sensor is frozen for " + std::to_string(quality.frozen) + " samples from sample " +
+    facts.push_back("the sensor is frozen for " + with_count(quality.frozen, "sample") + " from sample " +
                     std::to_string(quality.frozen_from));
   }
   if (quality.saturated > 0) {
-    facts.push_back(std::to_string(quality.saturated) + " samples are at full scale");
+    facts.push_back(with_count(quality.saturated, "sample is at full scale", "samples are at full scale"));
   }
   if (quality.distinct && *quality.distinct == 1) {
     facts.emplace_back("every sample is the same");

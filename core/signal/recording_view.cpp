@@ -4,6 +4,7 @@
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/repeated_rows.hpp"
 #include "core/signal/turns.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -310,9 +311,12 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
   if (view) {
     Quality& quality = view->window.quality;
     quality.repeated_rows = repeated.size();
-    quality.notes.insert(quality.notes.begin(), std::to_string(repeated.size()) + " of " + std::to_string(rows) +
-                                                    " rows repeat the row before, stamp and values; they are one "
-                                                    "sample written twice and do not count.");
+    quality.notes.insert(
+        quality.notes.begin(),
+        std::to_string(repeated.size()) + " of " + with_count(rows, "row") +
+            (repeated.size() == 1
+                 ? " repeats the row before, stamp and values; it is one sample written twice and does not count."
+                 : " repeat the row before, stamp and values; they are one sample written twice and do not count."));
     view->distinct = std::move(distinct);
   }
   return view;

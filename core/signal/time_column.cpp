@@ -2,6 +2,7 @@
 
 #include "core/signal/missing.hpp"
 #include "core/signal/number.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -93,7 +94,7 @@ Result<TimeColumn> read_time_column(std::span<const double> column, const Unit& 
       const std::size_t more = time.backward.size() - 1;
       std::string sentence = "The time column steps back by " + short_text(time.stamps[row - 1] - time.stamps[row]) +
                              " s at sample " + std::to_string(row + 1);
-      sentence += more == 0 ? "" : " and " + std::to_string(more) + " more times";
+      sentence += more == 0 ? "" : " and " + with_count(more, "more time", "more times");
       sentence += "; sort the rows, or leave the time column out (name the others with columns) and state the rate.";
       return fail(ErrorCode::NonMonotonicTime, sentence, {{"row", std::to_string(row + 1)}});
     }

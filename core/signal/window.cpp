@@ -1,8 +1,10 @@
+#include "core/signal/no_rate.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
 #include "core/signal/spacing.hpp"
 #include "core/signal/stretch.hpp"
 #include "core/signal/time_column.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -46,10 +48,7 @@ tl::unexpected<Error> trimmed_away(const RecordingSpec& spec, double duration_s)
 
 Result<Window> plan_uniform(const RecordingSpec& spec, std::size_t rows) {
   if (!spec.rate_hz) {
-    return fail(
-        ErrorCode::InconsistentSampling,
-        "There is no time column and no stated rate: give rate_hz, or name the time column (columns NAME=time:s).",
-        {{"parameter", "rate_hz"}});
+    return neither_time_nor_rate();
   }
   // A sample at exactly the trim stays; the slack absorbs rounding of seconds times rate.
   const auto samples_in = [&](double seconds) {
@@ -173,10 +172,11 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
 void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& window) {
   Quality& quality = window.quality;
   if (quality.repeated_stamps > 0) {
-    quality.notes.push_back(std::to_string(quality.repeated_stamps) + " time stamps repeat the one before.");
+    quality.notes.push_back(with_count(quality.repeated_stamps, "time stamp repeats the one before.",
+                                       "time stamps repeat the one before."));
   }
   if (quality.gaps > 0) {
-    quality.notes.push_back("The time column has " + std::to_string(quality.gaps) + " gaps, the longest " +
+    quality.notes.push_back("The time column has " + with_count(quality.gaps, "gap, of ", "gaps, the longest ") +
                             short_text(quality.longest_gap_s) + " s.");
   }
   if (quality.bursts) {
@@ -184,16 +184,18 @@ void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& w
                             short_text(window.time.dt_s) + " s.");
   }
   if (quality.counter_wraps > 0) {
-    quality.notes.push_back("The counter in the time column started again " + std::to_string(quality.counter_wraps) +
-                            " times; it is continued.");
+    quality.notes.push_back("The counter in the time column started again " + how_often(quality.counter_wraps) +
+                            "; it is continued.");
   }
   if (quality.backward_steps > 0) {
-    quality.notes.push_back("The time column steps back " + std::to_string(quality.backward_steps) +
-                            " times, by at most " + short_text(step_back_s) + " s; the recording is split there.");
+    quality.notes.push_back("The time column steps back " + how_often(quality.backward_steps) +
+                            (quality.backward_steps == 1 ? ", by " : ", by at most ") + short_text(step_back_s) +
+                            " s; the recording is split there.");
   }
   if (quality.missing > 0) {
-    quality.notes.push_back(std::to_string(quality.missing) +
-                            " samples are missing in the gaps of the analysed part; nothing is put in their place.");
+    quality.notes.push_back(
+        with_count(quality.missing, "sample is missing in the gaps of the analysed part; nothing is put in its place.",
+                   "samples are missing in the gaps of the analysed part; nothing is put in their place."));
   }
   if (window.count < trimmed_rows) {
     quality.notes.push_back("Too much is missing to analyse the recording as one: " + std::to_string(window.count) +
@@ -260,8 +262,8 @@ Result<Window> plan_window(const RecordingSpec& spec, std::size_t rows, std::spa
     return fail(status.error());
   }
   if (rows < 2) {
-    return fail(ErrorCode::TooFewSamples, "The recording has " + std::to_string(rows) +
-                                              (rows == 1 ? " sample" : " samples") + "; at least two are needed.");
+    return fail(ErrorCode::TooFewSamples,
+                "The recording has " + with_count(rows, "sample") + "; at least two are needed.");
   }
   return time_column.empty() ? plan_uniform(spec, rows) : plan_stamped(spec, time_column, time_unit);
 }

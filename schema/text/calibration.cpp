@@ -1,5 +1,6 @@
 #include "schema/text/calibration.hpp"
 
+#include "core/signal/with_count.hpp"
 #include "schema/text/printed.hpp"
 
 #include <cmath>
@@ -100,13 +101,13 @@ std::string lines_of(const MultiPositionCalibration& calibration) {
 std::string calibration_to_text(const CalibrationReport& report) {
   std::string text;
   if (const auto& rests = report.rests) {
-    text += "accelerometer, from " + std::to_string(rests->found.positions) + " positions at rest\n" +
-            lines_of(rests->found);
+    text +=
+        "accelerometer, from " + with_count(rests->found.positions, "position") + " at rest\n" + lines_of(rests->found);
   }
   const auto add = [&](const char* sensor, const std::optional<PositionCalibration>& one, const char* unit) {
     if (one) {
-      text += std::string(sensor) + ", from " + std::to_string(one->positions) + " positions\n" +
-              lines_of(one->found, unit);
+      text +=
+          std::string(sensor) + ", from " + with_count(one->positions, "position") + "\n" + lines_of(one->found, unit);
     }
   };
   add("accelerometer", report.accelerometer, "m/s^2");

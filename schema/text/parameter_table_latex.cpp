@@ -10,20 +10,20 @@ namespace {
 
 /// Text with what LaTeX would take for a command escaped.
 std::string latex_escaped(const std::string& text) {
-  static const std::map<char, std::string> kEscapes{{'\\', "\\textbackslash{}"},
-                                                    {'{', "\\{"},
-                                                    {'}', "\\}"},
-                                                    {'$', "\\$"},
-                                                    {'&', "\\&"},
-                                                    {'#', "\\#"},
-                                                    {'_', "\\_"},
-                                                    {'%', "\\%"},
-                                                    {'^', "\\^{}"},
-                                                    {'~', "\\~{}"}};
+  static const std::map<char, std::string> k_escapes{{'\\', "\\textbackslash{}"},
+                                                     {'{', "\\{"},
+                                                     {'}', "\\}"},
+                                                     {'$', "\\$"},
+                                                     {'&', "\\&"},
+                                                     {'#', "\\#"},
+                                                     {'_', "\\_"},
+                                                     {'%', "\\%"},
+                                                     {'^', "\\^{}"},
+                                                     {'~', "\\~{}"}};
   std::string safe;
   for (const char c : text) {
-    const auto found = kEscapes.find(c);
-    safe += found == kEscapes.end() ? std::string(1, c) : found->second;
+    const auto found = k_escapes.find(c);
+    safe += found == k_escapes.end() ? std::string(1, c) : found->second;
   }
   return safe;
 }

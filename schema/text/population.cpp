@@ -4,6 +4,7 @@
 #include "core/campaign/words.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/significant.hpp"
+#include "core/signal/with_count.hpp"
 #include "schema/text/fields.hpp"
 
 #include <cmath>
@@ -12,10 +13,6 @@ namespace driftlab {
 namespace {
 
 std::string full_digits(const std::optional<double>& value) { return value ? to_text(*value) : ""; }
-
-std::string number_of(std::size_t count, const char* word) {
-  return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
-}
 
 /// tau as people say it: by how many per cent a device differs from the mean, one standard deviation.
 std::string percent(double spread) { return short_text(std::round(1000.0 * std::expm1(spread)) / 10.0) + " %"; }
@@ -45,7 +42,7 @@ std::string row_text(const PopulationRow& row) {
   const ReportedValue& mean = population.mean;
   text += (mean.value ? significant(*mean.value, mean.low, mean.high) : "-") + " " +
           interval_text(mean.low, mean.high) + " " + population.unit + ", " +
-          number_of(population.places.size(), "device") + "; devices differ by " + percent(population.spread);
+          with_count(population.places.size(), "device") + "; devices differ by " + percent(population.spread);
   if (population.predicted_low) {
     text += "; a further one lies in " + interval_text(population.predicted_low, population.predicted_high);
   }
@@ -56,12 +53,12 @@ std::string row_text(const PopulationRow& row) {
               significant(*place.estimate.value, place.estimate.low, place.estimate.high) +
               " is outlying (z = " + short_text(std::round(10.0 * place.z) / 10.0) +
               ", p = " + significant(place.p_holm.value_or(1.0)) + " corrected for " +
-              number_of(population.places.size(), "device") + ")\n";
+              with_count(population.places.size(), "device") + ")\n";
     }
   }
   if (!population.left_out.empty()) {
-    text += "     without " + number_of(population.left_out.size(), "device") + " that do" +
-            (population.left_out.size() == 1 ? "es" : "") + " not identify it: " + names_of(population.left_out) + "\n";
+    text += "     without " + with_count(population.left_out.size(), "device that does", "devices that do") +
+            " not identify it: " + names_of(population.left_out) + "\n";
   }
   return text;
 }
@@ -70,7 +67,7 @@ std::string row_text(const PopulationRow& row) {
 
 std::string populations_to_text(const PopulationReport& report) {
   std::string text = verdict_of(report).sentence + "\n" + report.model + ", " +
-                     number_of(report.devices.size(), "device") +
+                     with_count(report.devices.size(), "device") +
                      ": mean [95 % interval], spread between devices (one standard deviation), 95 % prediction\n";
   std::string heading;
   for (const PopulationRow& row : report.rows) {
@@ -86,7 +83,7 @@ std::string populations_to_text(const PopulationReport& report) {
 std::string populations_to_markdown(const PopulationReport& report) {
   const Verdict verdict = verdict_of(report);
   std::string text = "**" + markdown_field(verdict.sentence) + "**\n\n" + markdown_field(report.model) + ", " +
-                     number_of(report.devices.size(), "device") + ".\n";
+                     with_count(report.devices.size(), "device") + ".\n";
   if (!report.rows.empty()) {
     text +=
         "\n| sensor | condition | parameter | unit | mean [95 %] | devices differ by | a further one lies in | devices "

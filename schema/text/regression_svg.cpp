@@ -1,4 +1,5 @@
 /// Figure and badge of a regression run, as SVG without scripts or outside references.
+#include "core/signal/with_count.hpp"
 #include "schema/text/regression.hpp"
 
 #include <algorithm>
@@ -147,7 +148,7 @@ std::string badge_words(const regression::Report& report) {
   if (!report.comparability.empty() || !sessions) {
     return "undecided";
   }
-  return "undecided: " + std::to_string(*sessions) + " sessions";
+  return "undecided: " + with_count(*sessions, "session");
 }
 
 }  // namespace

@@ -55,13 +55,7 @@ std::string text_of(double value, bool gyroscope) {
 EventCheck check_bias(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
                       const BiasMargins& margins, double level) {
   const ShiftWords words{
-      .check = "bias",
-      .figure = "the bias",
-      .no_sessions =
-          "The bias is not tested: its margin needs three sessions an arm, for nobody knows how much the "
-          "bias of this sensor moves from one power-up to the next.",
-      .no_figures = "The bias is not tested: no axis was recorded at rest in both arms.",
-      .text = text_of};
+      .check = "bias", .figure = "bias", .without = "no axis was recorded at rest in both arms", .text = text_of};
   return check_shift(arm_figures(baseline, candidate, means_of), candidate, {margins.gyroscope, margins.accelerometer},
                      words, level);
 }

@@ -3,6 +3,7 @@
 #include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/gross_errors.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -236,8 +237,8 @@ EventCheck check_findings(const std::vector<PowerUp>& baseline, const std::vecto
     const bool fails = sessions.size() >= 2;
     if (check.verdict != CheckVerdict::Fail && (fails || check.verdict == CheckVerdict::Ok)) {
       check.verdict = fails ? CheckVerdict::Fail : CheckVerdict::Note;
-      check.sentence = "Investigations find " + cause + " in " + std::to_string(sessions.size()) +
-                       " candidate sessions and in no baseline session.";
+      check.sentence = "Investigations find " + cause + " in " + with_count(sessions.size(), "candidate session") +
+                       " and in no baseline session.";
       check.sessions.assign(sessions.begin(), sessions.end());
     }
   }

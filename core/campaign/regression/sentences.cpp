@@ -1,5 +1,6 @@
 /// The sentences of a regression run, made once for every output (spec/regression.md, section 9).
 #include "core/campaign/regression/report.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
@@ -53,10 +54,6 @@ std::string worse_sentence(const Told& told) {
          written("%.3g %%.", percent_of(test.test.margin));
 }
 
-std::string counted(std::size_t count, const char* one) {
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 std::string pass_sentence(const Report& report) {
   std::string margins;
   for (const char* const sensor : {"gyroscope", "accelerometer"}) {
@@ -71,8 +68,8 @@ std::string pass_sentence(const Report& report) {
     }
   }
   return "No worse than " + margins + " to " + duration_text(report.scope_s) + ", " +
-         (report.units.size() == 1 ? "1 axis" : std::to_string(report.units.size()) + " axes") + ", " +
-         counted(report.candidate.sessions.size(), "session") + " against " +
+         with_count(report.units.size(), "axis", "axes") + ", " +
+         with_count(report.candidate.sessions.size(), "session") + " against " +
          std::to_string(report.baseline.sessions.size()) + ".";
 }
 
@@ -86,7 +83,7 @@ std::string needs_sentence(const Report& report, const Told& open) {
   const std::string length = report.needed_length_s ? duration_text(*report.needed_length_s) : std::string();
   const std::string longer = length.empty() ? "" : "sessions of " + length;
   if (needs.sessions_per_arm) {
-    return counted(*needs.sessions_per_arm, "session") + " an arm decide; " +
+    return with_count(*needs.sessions_per_arm, "session") + " an arm decide; " +
            (longer.empty() ? "longer recordings do not." : "so do " + longer + ".");
   }
   return longer.empty() ? "Neither more sessions (to 30) nor longer ones (to 64 times) decide."

@@ -4,6 +4,7 @@
 #include "core/investigate/report/explain.hpp"
 #include "core/investigate/report/order.hpp"
 #include "core/signal/significant.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 
@@ -11,10 +12,6 @@ namespace driftlab::investigate {
 namespace {
 
 constexpr std::size_t kNamed = 4;  ///< causes in the sentence
-
-std::string number_of(std::size_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 
 /// "a bias that follows the temperature (gx, gy)".
 std::string phrase(const FindingGroup& group) {
@@ -51,7 +48,7 @@ std::string what_remains(const Report& report) {
   for (const Unexplained& left : report.unexplained) {
     columns.push_back(left.channel);
   }
-  return number_of(report.failed_after, "check still fails", "checks still fail") + " (" + list_of(columns) + ")";
+  return with_count(report.failed_after, "check still fails", "checks still fail") + " (" + list_of(columns) + ")";
 }
 
 VerdictLevel level_of(const Report& report) {
@@ -67,7 +64,7 @@ VerdictLevel level_of(const Report& report) {
 Verdict verdict_of(const Report& report) {
   Verdict verdict;
   verdict.level = level_of(report);
-  const std::string all = number_of(report.checks.size(), "check", "checks");
+  const std::string all = with_count(report.checks.size(), "check", "checks");
   if (report.models.empty()) {
     verdict.sentence = "No channel of this study can be examined.";
     verdict.level = VerdictLevel::Look;

@@ -1,9 +1,11 @@
 #include "core/investigate/study/study.hpp"
 
 #include "core/investigate/study/time_grid.hpp"
+#include "core/signal/no_rate.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/turns.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +154,7 @@ Presence presence_of(const TimeGrid& grid) {
 Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const RecordingColumns& columns) {
   if (rows < 16) {
     return fail(ErrorCode::TooFewSamples,
-                "The recording has " + std::to_string(rows) + " samples; an investigation needs at least 16.");
+                "The recording has " + with_count(rows, "sample") + "; an investigation needs at least 16.");
   }
   if (const auto index = columns.time()) {
     std::vector<double> stamps = columns.si(*index, Unit{"s", Dimension::Time});
@@ -161,9 +163,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
     return fit_time_grid(stamps, spec.rate_hz);
   }
   if (!spec.rate_hz) {
-    return fail(ErrorCode::InconsistentSampling,
-                "There is no time column and no stated rate: give rate_hz, or name the time column.",
-                {{"parameter", "rate_hz"}});
+    return neither_time_nor_rate();
   }
   TimeGrid grid;
   grid.dt_s = 1.0 / *spec.rate_hz;

@@ -1,6 +1,7 @@
 #include "core/navigate/drive/explain.hpp"
 
 #include "core/navigate/drive/profile.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -136,7 +137,7 @@ DriveFinding finding_of_slips(const WheelSlips& found) {
   DriveFinding finding;
   finding.cause = "wheel_slip";
   finding.parameter = "seconds";
-  finding.title = "the wheel of the odometer slips or locks, " + std::to_string(found.slips.size()) + " times, in all";
+  finding.title = "the wheel of the odometer slips or locks, " + how_often(found.slips.size()) + ", in all";
   finding.unit = "s";
   finding.value = found.seconds();
   // Each reading of a slip is five standard deviations off and more: 12 nats in half of its square.

@@ -51,7 +51,8 @@ TEST(DriveCauses, NothingIsNamedOnADriveOfItsOwnModel) {
 
 TEST(DriveCauses, FindsNoiseThatFollowsVibration) {
   // A third of the time the unit is shaken at 20 Hz, which turns nothing, and its noise is four times as large: what
-  // follows the vibration is 15/3 times the rest. (Value over standard error is 2 to 3 here, though the likelihood is sure.)
+  // follows the vibration is 15/3 times the rest. (Value over standard error is 2 to 3 here, though the likelihood is
+  // sure.)
   Drive drive = simulated_drive(32);
   Random random(32, 5);
   UniformRun& run = drive.runs.front();

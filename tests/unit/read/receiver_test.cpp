@@ -47,7 +47,7 @@ TEST(Nmea, CountsDamagedLinesAndSaysThatThereIsNoDate) {
   EXPECT_EQ(outcome.decoded.rows, 8U);
   EXPECT_DOUBLE_EQ(cell(outcome, 0, 0), 43200.0);
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("seconds of the day")));
-  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 lines are no sentences")));
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 line is no sentence")));
   EXPECT_EQ(decode_bytes(nmea_sentence("GPGSV,1,1,00")).error, ErrorCode::NoSamples);
 }
 

@@ -98,7 +98,7 @@ TEST(RosImu, NamesTheTopicsItLeavesOutAndThoseOfAFileWithoutAny) {
   const Outcome with = decode_bytes(bag_front() + other + bag_connection(0, "/imu", "sensor_msgs/Imu") +
                                     bag_message(0, 1, ros1_imu(row)) + bag_message(0, 1, "torn message"));
   ASSERT_FALSE(with.error) << with.message;
-  EXPECT_THAT(with.decoded.notes, ElementsAre(HasSubstr("1 inertial messages cannot be read"),
+  EXPECT_THAT(with.decoded.notes, ElementsAre(HasSubstr("1 inertial message cannot be read"),
                                               HasSubstr("'/fix?' ('sensor_msgs/NavSatFix')")));
   const Outcome without = decode_bytes(bag_front() + other);
   EXPECT_EQ(without.error, ErrorCode::NoSamples);

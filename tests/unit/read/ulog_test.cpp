@@ -41,7 +41,7 @@ TEST(Ulog, ReadsSensorCombinedInSiFromItsFirstSampleOn) {
   EXPECT_THAT(column(outcome, 0), ElementsAre(0.0, 0.005, 0.01, 0.02));
   EXPECT_THAT(column(outcome, 1), ElementsAre(0.0, 0.125, 0.25, 0.375));
   EXPECT_THAT(column(outcome, 6), ElementsAre(9.8125, 9.8125, 9.8125, 9.8125));
-  EXPECT_THAT(outcome.decoded.notes, ElementsAre("The logger dropped messages 1 times, for 30 ms together."));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre("The logger dropped messages once, for 30 ms together."));
 }
 
 TEST(Ulog, ReadsIncrementsAsMeanRatesOverTheirOwnInterval) {

@@ -66,7 +66,7 @@ TEST(Cwa, DeliversTheRateBetweenTheStampsAndLeavesAGapAGap) {
   EXPECT_NEAR(time[1], second / 10, kFraction);
   EXPECT_NEAR(time[11] - time[10], 0.01, kTimeTolerance) << "behind a gap of 1.9 s the stated rate holds";
   EXPECT_NEAR(time[20], 2.0, kFraction);
-  EXPECT_THAT(outcome.decoded.notes, ElementsAre("The numbers of the blocks show that 1 are missing."));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre("The numbers of the blocks show that 1 is missing."));
 }
 
 TEST(Cwa, LeavesOutADamagedBlockAndATornOne) {
@@ -77,8 +77,8 @@ TEST(Cwa, LeavesOutADamagedBlockAndATornOne) {
       decode_bytes(cwa_header() + cwa_block({0, 7}, 1, data) + damaged + cwa_block({2, 9}, 1, data) + "AX torn");
   ASSERT_FALSE(outcome.error) << outcome.message;
   EXPECT_EQ(outcome.decoded.rows, 2U);
-  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("1 of 3 blocks are left out"), HasSubstr("1 are missing"),
-                                                 HasSubstr("7 bytes into a block")));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("1 of 3 blocks is left out: its checksum is wrong"),
+                                                 HasSubstr("1 is missing"), HasSubstr("7 bytes into a block")));
 }
 
 TEST(Cwa, RefusesAFileWithoutABlock) {

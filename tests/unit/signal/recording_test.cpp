@@ -321,7 +321,7 @@ TEST(PlanWindow, CountsRepeatedStampsAndKeepsThem) {
   EXPECT_EQ(window->count, 1000U);
   EXPECT_EQ(window->quality.gaps, 0U);
   EXPECT_EQ(window->quality.repeated_stamps, 1U);
-  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("1 time stamps repeat")));
+  EXPECT_THAT(window->quality.notes, Contains(HasSubstr("1 time stamp repeats the one before.")));
 }
 
 TEST(PlanWindow, SplitsAtGapsOfMoreThanAFifth) {
