@@ -257,10 +257,11 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   }
   examine_together(outcomes, groups, found, examined);
   join_axes(found);
+  const std::vector<Evidence> seen = found;
   drop_confirmed(study.baseline, groups, found, report.notes);
   control.report("checks", 0.95);
   make_checks(groups, outcomes, taken.checks, examined, report);
-  const std::vector<Remainder> remains = what_remains(groups, outcomes, std::move(taken.remains));
+  const std::vector<Remainder> remains = what_remains(groups, outcomes, seen, std::move(taken.remains));
   doubt_what_is_not_earned(groups, taken.means, remains, report, found);
   list_findings(std::move(found), groups, report);
   settle_gains(groups, outcomes, report);

@@ -174,10 +174,51 @@ void wavelet_checks(const ChannelGroup::Member& member, const Series& e, const s
   }
 }
 
-/// Excess kurtosis of innovations of which a part is uniform: rounding to the file's lattice (variance step^2/12) and
-/// the differenced noise of the model. A sum of independent parts of weights c has the excess sum(c^4 k s^4) over the
-/// square of its variance, and that of a uniform variate is -6/5.
-double uniform_kurtosis(const FullRate& data) {
+/// Fourth cumulant that rounding to multiples of `step` gives a normal variate, [SI^4].
+double cumulant_of_rounding(double mean, double sd, double step) {
+  const auto below = [&](double x) { return 1.0 - normal_tail((x - mean) / sd); };
+  const double nearest = std::round(mean / step);
+  const double reach = std::ceil(9.0 * sd / step) + 1.0;
+  double second = 0.0;
+  double fourth = 0.0;
+  double first = 0.0;
+  for (double k = nearest - reach; k <= nearest + reach; k += 1.0) {
+    first += (below((k + 0.5) * step) - below((k - 0.5) * step)) * (k * step - mean);
+  }
+  for (double k = nearest - reach; k <= nearest + reach; k += 1.0) {
+    const double chance = below((k + 0.5) * step) - below((k - 0.5) * step);
+    const double square = std::pow(k * step - mean - first, 2.0);
+    second += chance * square;
+    fourth += chance * square * square;
+  }
+  return fourth - 3.0 * second * second;
+}
+
+/// The same for member r of the data: that of a uniform error, -step^4/120, unless the lattice is coarse against noise
+/// that stands in one place of it (a constant reference and hardly any slow noise).
+double cumulant_of_lattice(const FullRate& data, std::size_t r) {
+  constexpr double kCoarse = 1.2;
+  constexpr double kStill = 0.95;
+  const Channel& channel = *data.group->members[r].channel;
+  const double step = data.lattice_step;
+  const double sd = std::sqrt(std::max(0.0, data.model.white / data.dt_s - step * step / 12.0));
+  if (!channel.reference.empty() || data.white_share < kStill || !(sd > 0.1 * step) || step < kCoarse * sd) {
+    return -std::pow(step, 4.0) / 120.0;
+  }
+  const std::size_t begin = data.group->members[r].recording->begin;
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < data.used[r].size(); ++i) {
+    sum += data.used[r][i] != 0 ? channel.measured[begin + i] : 0.0;
+    count += data.used[r][i] != 0 ? 1.0 : 0.0;
+  }
+  return cumulant_of_rounding(sum / std::max(1.0, count), sd, step);
+}
+
+/// Excess kurtosis of the innovations of member r, of which a part is not normal: rounding to the file's lattice and
+/// the differenced noise of the model. A sum of independent parts of weights c and fourth cumulants k has the excess
+/// sum(c^4 k) over the square of its variance; of a uniform variate of variance s^2 it is -6/5.
+double uniform_kurtosis(const FullRate& data, std::size_t r) {
   std::vector<double> filter{1.0};  // from samples to innovations, beyond the Kalman filter's slow part
   for (const double a : data.further) {
     filter.push_back(-a);
@@ -191,9 +232,9 @@ double uniform_kurtosis(const FullRate& data) {
     differenced += std::pow(step, 4.0);
   }
   const double variance = data.innovation_sd * data.innovation_sd;
-  const double of_lattice = data.lattice_step * data.lattice_step / 12.0 / variance;
+  const double of_lattice = data.lattice_step > 0.0 ? cumulant_of_lattice(data, r) / (variance * variance) : 0.0;
   const double of_noise = data.quantization / (data.dt_s * data.dt_s) / variance;
-  return -1.2 * (of_lattice * of_lattice * rounding + of_noise * of_noise * differenced);
+  return of_lattice * rounding - 1.2 * of_noise * of_noise * differenced;
 }
 
 /// Do all recordings keep one level? Their mean squares against that of all, or against 1 under a given baseline, gross
@@ -259,7 +300,7 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
     tails.channel = member.channel->column;
     tails.observed = all.kurtosis;
     const double sd = std::sqrt(24.0 / all.count);
-    tails.median = uniform_kurtosis(data);
+    tails.median = uniform_kurtosis(data, r);
     tails.q025 = tails.median - kNormal975 * sd;
     tails.q975 = tails.median + kNormal975 * sd;
     const double z = (all.kurtosis - tails.median) / sd;

@@ -1,5 +1,6 @@
 #include "core/investigate/report/remains.hpp"
 
+#include "core/investigate/causes/cause.hpp"
 #include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/process/distributions.hpp"
@@ -171,14 +172,18 @@ Remainder mean_over_time(const std::vector<double>& score, double dt_s, const st
   return best;
 }
 
-/// Periodogram of the squared scores less one.
-Remainder line_in_variance(const std::vector<double>& score, double dt_s, const std::string& name) {
+/// Periodogram of the squared scores less their mean; samples that are not in use say nothing, wherever they stand.
+Remainder line_in_variance(const std::vector<double>& score, const std::vector<unsigned char>& used, double dt_s,
+                           const std::string& name) {
   const std::size_t n = fast_length(score.size());
   double mean = 0.0;
+  double count = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    mean += score[i] * score[i] / static_cast<double>(n);
+    mean += used[i] != 0 ? score[i] * score[i] : 0.0;
+    count += used[i] != 0 ? 1.0 : 0.0;
   }
-  const auto beyond = [&](std::size_t i) { return score[i] * score[i] - mean; };
+  mean /= std::max(1.0, count);
+  const auto beyond = [&](std::size_t i) { return used[i] != 0 ? score[i] * score[i] - mean : 0.0; };
   double variance = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double v = beyond(i);
@@ -229,14 +234,12 @@ Remainder skewness(const FullRate& data, const std::string& name) {
   return best;
 }
 
-/// Coherence of two series, cut at four deviations, in dyadic bands.
-Remainder between(const Series& a, const Series& b, double dt_s, const std::string& name) {
+/// Coherence of two series, cut at four deviations, in dyadic bands, beyond the correlation that is known of them.
+Remainder between(const Series& a, const Series& b, double known, double dt_s, const std::string& name) {
   const std::size_t n = fast_length(std::min(a.size(), b.size()));
-  const auto cut = [n](const Series& values) {
-    return half_spectrum(n, [&](std::size_t i) { return std::min(4.0, std::max(-4.0, values[i])); });
-  };
-  const auto x = cut(a);
-  const auto y = cut(b);
+  const auto cut = [](const Series& values, std::size_t i) { return std::min(4.0, std::max(-4.0, values[i])); };
+  const auto x = half_spectrum(n, [&](std::size_t i) { return cut(a, i); });
+  const auto y = half_spectrum(n, [&](std::size_t i) { return cut(b, i) - known * cut(a, i); });
   Remainder best;
   for (std::size_t bands = 1; bands <= 16; bands *= 2) {
     for (std::size_t k = 0; k < bands; ++k) {
@@ -268,6 +271,19 @@ Remainder between(const Series& a, const Series& b, double dt_s, const std::stri
   return best;
 }
 
+/// The correlation of two channels' innovations that findings of noise shared by several axes explain.
+double known_correlation(const std::vector<Evidence>& found, std::size_t a, std::size_t b) {
+  double known = 0.0;
+  for (const Evidence& evidence : found) {
+    const auto acts_on = [&](std::size_t group) {
+      return evidence.group == group ||
+             std::find(evidence.also_groups.begin(), evidence.also_groups.end(), group) != evidence.also_groups.end();
+    };
+    known += evidence.cause->as<CommonNoise>() != nullptr && acts_on(a) && acts_on(b) ? evidence.shape : 0.0;
+  }
+  return known;
+}
+
 void keep(std::vector<Remainder>& list, Remainder remainder, const ChannelGroup::Member* member,
           const ChannelGroup& group, const char* test, bool in_time_or_frequency) {
   remainder.channel = group.column;
@@ -289,14 +305,15 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     }
     keep(list, Tiles(scores[r], data.used[r], data.dt_s).strongest(member.name()), &member, group, "tiles", true);
     keep(list, mean_over_time(scores[r], data.dt_s, member.name()), &member, group, "mean_over_time", false);
-    keep(list, line_in_variance(scores[r], data.dt_s, member.name()), &member, group, "line_in_variance", true);
+    keep(list, line_in_variance(scores[r], data.used[r], data.dt_s, member.name()), &member, group, "line_in_variance",
+         true);
   }
   keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
   return list;
 }
 
 std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups, const std::vector<GroupOutcome>& outcomes,
-                                    std::vector<Remainder> of_channels) {
+                                    const std::vector<Evidence>& found, std::vector<Remainder> of_channels) {
   std::vector<Remainder> list = std::move(of_channels);
   std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> by_recording;  // group and member
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -318,7 +335,8 @@ std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups, con
           continue;
         }
         const std::string name = first.column + " and " + second.column + " of " + recording;
-        keep(list, between(one, other, dt_s, name), nullptr, first, "", false);
+        keep(list, between(one, other, known_correlation(found, axes[a].first, axes[b].first), dt_s, name), nullptr,
+             first, "", false);
         list.back().id = recording + "/" + first.column + "." + second.column + ".coherence";
         list.back().recording = recording;
       }

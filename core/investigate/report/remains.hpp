@@ -41,10 +41,12 @@ struct Remainder {
 [[nodiscard]] std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data);
 
 /// Those of the channels, with the strongest between two channels, most surprising first; those with p_study below
-/// kShown are findings of their own. Of the outcomes it looks at the innovations of usable ones. O(samples log samples)
+/// kShown are findings of their own. Of the outcomes it looks at the innovations of usable ones;
+/// the correlation of noise found to be shared is no departure. O(samples log samples)
 /// a pair. Deterministic.
 [[nodiscard]] std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
                                                   const std::vector<GroupOutcome>& outcomes,
+                                                  const std::vector<Evidence>& found,
                                                   std::vector<Remainder> of_channels);
 
 /// Adds a check and an entry of `unexplained` for each departure below kShown, at most three of a channel.
