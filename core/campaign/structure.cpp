@@ -84,7 +84,7 @@ std::optional<std::size_t> smallest_common(const std::vector<std::string>& names
 
 std::string statement_of(const StructureChoice& choice, const std::vector<std::string>& names) {
   const std::string& common = names[choice.common];
-  const std::string p = " (p = " + written("%.3g", choice.p) + ")";
+  const std::string p = choice.p < 0.01 ? " (p < 0.01)" : " (p = " + written("%.3g", choice.p) + ")";
   if (choice.by_condition.size() < 2) {
     return "With one condition there is nothing to compare; its best structure is " + names[choice.best] + ".";
   }

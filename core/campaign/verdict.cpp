@@ -1,5 +1,6 @@
 #include "core/campaign/verdict.hpp"
 
+#include "core/campaign/channel_closeness.hpp"
 #include "core/campaign/words.hpp"
 #include "core/signal/significant.hpp"
 
@@ -142,11 +143,27 @@ void say_shape(const ReportedChannel& channel, const GrossErrorEvidence& evidenc
   }
 }
 
+/// The criterion weighs parameters by ln N, closeness to the data by 2: what is ranked first may be implausible.
+void say_closest(const ReportedChannel& channel, Verdict& verdict) {
+  const ReportedFit& best = channel.fits.front();
+  const auto distances = distances_2p(channel);
+  const auto closest = std::find(distances.begin(), distances.end(), std::optional<double>(0.0));
+  if (distances.front() && closest != distances.end()) {
+    verdict.details.push_back(best.model + " is ranked first by the criterion; " +
+                              channel.fits[static_cast<std::size_t>(closest - distances.begin())].model +
+                              " is closer to the data, by " + significant(*distances.front()) +
+                              " in distance + 2p, of which 6 are chance.");
+  }
+}
+
 void say_rivals(const ReportedChannel& channel, Verdict& verdict) {
   const ReportedFit& best = channel.fits.front();
   const auto plausible = static_cast<std::size_t>(
       std::count_if(channel.fits.begin() + 1, channel.fits.end(), [](const ReportedFit& f) { return f.plausible; }));
-  if (channel.fits.size() > 1) {
+  const bool closer = std::any_of(channel.fits.begin(), channel.fits.end(), [](const auto& f) { return f.plausible; });
+  if (closer && !best.plausible) {
+    say_closest(channel, verdict);
+  } else if (channel.fits.size() > 1) {
     verdict.details.push_back(plausible == 0 ? "No other candidate is plausible."
                               : plausible == 1
                                   ? "One more model is plausible: the data cannot tell it from the best."

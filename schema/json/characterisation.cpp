@@ -1,6 +1,6 @@
 #include "schema/json/characterisation.hpp"
 
-#include "core/campaign/reported_channel.hpp"
+#include "core/campaign/channel_closeness.hpp"
 #include "core/fit/noise_equivalents.hpp"
 #include "core/process/registry.hpp"
 #include "schema/json/recording_spec.hpp"
@@ -237,8 +237,14 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
   }
   document["description"] = description_json(channel, unit);
   Json fits = Json::array();
-  for (const ModelFit& fit : channel.fits) {
-    fits.push_back(to_json(reported(fit, unit)));
+  const auto distances = distances_2p(reported(identity.column, identity.role, channel));
+  for (std::size_t i = 0; i < channel.fits.size(); ++i) {
+    Json fit = to_json(reported(channel.fits[i], unit));
+    if (distances[i]) {
+      fit["distance_2p"] = number(*distances[i]);
+      fit["closest"] = *distances[i] == 0.0;
+    }
+    fits.push_back(std::move(fit));
   }
   document["fits"] = std::move(fits);
   document["discrepancy"] = number(channel.discrepancy);

@@ -3,6 +3,7 @@
 #include "core/fit/characterise.hpp"
 #include "core/signal/significant.hpp"
 #include "core/signal/unit.hpp"
+#include "core/signal/with_count.hpp"
 #include "schema/json/channel_summary.hpp"
 #include "schema/json/figure_values.hpp"
 #include "schema/json/investigation_figures.hpp"
@@ -271,9 +272,10 @@ std::vector<NamedFigure> of_outages(const Json& document) {
     ++index;
     plot.series.push_back(std::move(series));
   }
-  Figure figure{.title = "Errors at the ends of the outages",
-                .sentence = "Mean horizontal error of each filter at the end of each outage with its 95 % interval.",
-                .source = "driftlab " DRIFTLAB_VERSION ", " + std::to_string(document.value("runs", 0)) + " runs"};
+  Figure figure{
+      .title = "Errors at the ends of the outages",
+      .sentence = "Mean horizontal error of each filter at the end of each outage with its 95 % interval.",
+      .source = "driftlab " DRIFTLAB_VERSION ", " + with_count(document.value("runs", std::size_t{0}), "run")};
   figure.plots.push_back(std::move(plot));
   return {{"outages", std::move(figure)}};
 }

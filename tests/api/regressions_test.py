@@ -44,9 +44,54 @@ class Regressions(DaemonTest):
         refused = self.ask(before, same[1:], "1.1")
         self.assertEqual(refused.status, 409, refused.text)
         self.assertIn("start a new label", refused.json["detail"])
-        listed = self.daemon.items("/v1/regressions")
+        listed = self.daemon.items("/v1/regressions?device=imu-07")
         self.assertEqual([(run["candidate"], run["verdict"]) for run in listed[:2]], [("firmware=1.1", "pass"), ("firmware=1.2", "fail")])
         self.assertEqual(listed[1]["summary"], failed["summary"])
+
+    def turned(self, firmware: str, scale: float, seeds: range) -> list[str]:
+        """Sessions of a recording at rest and one at 90 deg/s, with a scale factor error that differs by 1e-4 from session to session."""
+        ids = []
+        for seed in seeds:
+            for condition, rate in (("static", 0.0), ("constant_rate:z:90:deg/s", 90.0)):
+                [column] = samples.noise(6000, 1, 100 * seed + int(rate))
+                values = [0.1 + rate * (1.0 + scale + 1e-4 * (seed % 3)) + 0.05 * value for value in column]
+                about = dict(device="turned", condition=condition, labels=f"firmware={firmware}", session=f"{firmware}-{seed}")
+                made = self.expect(201, self.daemon.upload(samples.csv([values], ["gz"]), rate_hz=20, columns=samples.GYRO_Z, **about))
+                ids.append(str(made.json["id"]))
+        self.daemon.finished(self.daemon.characterise(*ids, models=["WN"]).json["id"])
+        return ids
+
+    def test_a_scale_factor_that_moved_fails_beyond_its_margin(self) -> None:
+        before = self.turned("1.0", 0.0, range(1, 4))
+        same, other = self.turned("1.1", 1e-4, range(4, 7)), self.turned("1.2", 2e-3, range(7, 10))
+
+        def arm(ids: list[str], release: str, more: dict[str, Any]) -> dict[str, Any]:
+            return {"labels": {"firmware": release}, "recordings": [{"recording": id_, **more} for id_ in ids]}
+
+        def run(candidate: list[str], release: str, margin: dict[str, Any], **arms: Any) -> dict[str, Any]:
+            inputs = {"device": "turned", "baseline": arm(before, "1.0", arms.get("before", {})),
+                      "candidate": arm(candidate, release, arms.get("after", {}))}
+            return self.run_of(self.daemon.post("/v1/jobs", {"kind": "regress", "inputs": inputs, "parameters": {"margin": margin}}))
+
+        def said(document: dict[str, Any]) -> tuple[str, str]:
+            [check] = [finding for finding in document["findings"] if finding["check"] == "scale_factor"]
+            return check["verdict"], check["sentence"]
+        margin = {"scale_factor": {"gyroscope": 500}}
+        kept = run(same, "1.1", margin)
+        self.assertEqual(said(kept)[0], "ok", kept["findings"])
+        failed = run(other, "1.2", margin)
+        self.assertEqual((said(failed)[0], failed["verdict"]), ("fail", "fail"))
+        self.assertRegex(said(failed)[1], r"^gyro z: the scale factor moved by \+20\d\d ppm, margin 500 ppm\.$")
+        untested = run(other, "1.2", {})
+        self.assertEqual(said(untested)[0], "ok")
+        self.assertTrue(said(untested)[1].endswith("; no margin is set for it."), said(untested))
+        # Ranges that are stated and differ are not compared: a changed full scale is another sensor.
+        ranges = {"before": {"full_scale": {"gyroscope": 250}}, "after": {"full_scale": {"gyroscope": 500}}}
+        changed = run(same, "1.1", margin, **ranges)
+        self.assertEqual(changed["verdict"], "inconclusive", changed["summary"])
+        self.assertIn("full scale", str([changed["summary"], changed.get("comparability")]).lower().replace("_", " "))
+        equal = {"before": {"full_scale": {"gyroscope": 250}}, "after": {"full_scale": {"gyroscope": 250}}}
+        self.assertEqual(run(same, "1.1", margin, **equal)["verdict"], kept["verdict"])
 
     def test_what_cannot_be_compared_is_refused_with_a_pointer(self) -> None:
         before = self.recordings(31, count=1)

@@ -87,13 +87,10 @@ EventCheck check_scale_factor(const std::vector<PowerUp>& baseline, const std::v
                               const ScaleMargins& margins, double level) {
   const ShiftWords words{
       .check = "scale_factor",
-      .figure = "the scale factor",
-      .no_sessions =
-          "The scale factor is not tested: its margin needs three sessions an arm, for nobody knows how "
-          "much the scale factor of this sensor moves from one power-up to the next.",
-      .no_figures =
-          "The scale factor is not tested: no session of both arms has recordings of one axis under two known "
-          "inputs (static and constant_rate, or six_position up and down).",
+      .figure = "scale factor",
+      .without =
+          "no session of both arms has recordings of one axis under two known inputs (static and "
+          "constant_rate, or six_position up and down)",
       .text = [](double value, bool /*gyroscope*/) { return significant(kPerMillion * value) + " ppm"; }};
   return check_shift(arm_figures(baseline, candidate, scale_factors_of), candidate,
                      {margins.gyroscope, margins.accelerometer}, words, level);

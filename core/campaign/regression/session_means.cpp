@@ -46,7 +46,7 @@ double welch_p(const ArmFigures& figures, double margin) {
 
 std::string moved(const std::string& unit, const ArmFigures& figures, const ShiftWords& words) {
   const double difference = figures.difference();
-  return short_name(unit) + ": " + words.figure + " moved by " + (difference > 0.0 ? "+" : "") +
+  return short_name(unit) + ": the " + words.figure + " moved by " + (difference > 0.0 ? "+" : "") +
          words.text(difference, figures.gyroscope);
 }
 
@@ -89,10 +89,11 @@ EventCheck check_shift(const FiguresByUnit& figures, const std::vector<PowerUp>&
     return check;
   }
   const auto not_tested = [&](const std::string& why) {
-    return EventCheck{words.check, CheckVerdict::Note, why, {}, std::nullopt};
+    return EventCheck{
+        words.check, CheckVerdict::Note, "The " + words.figure + " is not tested: " + why + ".", {}, std::nullopt};
   };
   if (figures.empty()) {
-    return not_tested(words.no_figures);
+    return not_tested(words.without);
   }
   double tests = 0.0;
   for (const auto& [unit, own] : figures) {
@@ -101,7 +102,8 @@ EventCheck check_shift(const FiguresByUnit& figures, const std::vector<PowerUp>&
       continue;
     }
     if (std::min(own.baseline.size(), own.candidate.size()) < kFewestSessions) {
-      return not_tested(words.no_sessions);
+      return not_tested("its margin needs three sessions an arm, for nobody knows how much the " + words.figure +
+                        " of this sensor moves from one power-up to the next");
     }
     ++tests;
     const double p = welch_p(own, margin);

@@ -37,10 +37,9 @@ struct SessionFigure {
 
 /// What a check of such figures is called, and how it speaks.
 struct ShiftWords {
-  std::string check;        ///< `bias`
-  std::string figure;       ///< "the bias"
-  std::string no_sessions;  ///< why a set margin is not tested: fewer than three sessions an arm
-  std::string no_figures;   ///< ... no session has such a figure
+  std::string check;    ///< `bias`
+  std::string figure;   ///< "bias"
+  std::string without;  ///< why a set margin is not tested where no session of both arms has such a figure
   std::function<std::string(double value, bool gyroscope)> text;  ///< with its unit, without a sign in front
 };
 

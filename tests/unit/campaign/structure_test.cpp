@@ -62,6 +62,7 @@ TEST(Structure, SaysSoWhereNoneFits) {
       choose_structure({"WN", "WN+GM"}, {{score(0, 40.0), score(20, 38.0)}, {score(0, 40.0), score(20, 38.0)}});
   EXPECT_LT(choice.p, 0.001);
   EXPECT_EQ(choice.verdict, StructureVerdict::Undecided);
+  EXPECT_NE(choice.statement.find("does not fit (p < 0.01)"), std::string::npos) << choice.statement;
   EXPECT_NE(choice.statement.find("none of the candidates"), std::string::npos);
 }
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace driftlab {
 namespace {
 
@@ -47,6 +49,29 @@ TEST(Verdict, NamesTheModelThatFitsThoughAnotherIsRankedFirst) {
   const Verdict verdict = verdict_of(channel_of({fit_of("WN+GM+RW", 0.001), fit_of("WN+2GM", 0.3)}), {});
   EXPECT_THAT(verdict.sentence, HasSubstr("WN+GM+RW, ranked first by the criterion, does not fit"));
   EXPECT_THAT(verdict.sentence, HasSubstr("WN+2GM does (p = 0.30)"));
+}
+
+TEST(Verdict, SaysThatTheFirstOfTheRankingIsNotTheClosest) {
+  // The criterion ranked first what is not in the plausible set, and the sentence said that others could not be told
+  // from it.
+  // L is 30 with three parameters and 13.66 with five: by L + p ln N the first wins, by L + 2p the second, by 12.34.
+  ReportedFit first = fit_of("WN+GM", 0.2);
+  ReportedFit second = fit_of("WN+2GM", 0.3);
+  ReportedChannel channel = channel_of({});
+  channel.samples = 100'000;
+  const double ln = std::log(100'000.0);
+  first.wic = 30.0 + 3.0 * ln;
+  second.wic = 13.66 + 5.0 * ln;
+  ASSERT_LT(first.wic, second.wic);
+  second.plausible = true;
+  channel.fits = {first, second};
+  const Verdict verdict = verdict_of(channel, {});
+  EXPECT_THAT(verdict.details, testing::Contains("WN+GM is ranked first by the criterion; WN+2GM is closer to the "
+                                                 "data, by 12.3 in distance + 2p, of which 6 are chance."));
+  EXPECT_THAT(verdict.details, Not(testing::Contains(HasSubstr("cannot tell"))));
+  channel.fits[0].plausible = true;
+  EXPECT_THAT(verdict_of(channel, {}).details,
+              testing::Contains("One more model is plausible: the data cannot tell it from the best."));
 }
 
 TEST(Verdict, SaysWhatGrossErrorsAndAnotherShapeDo) {

@@ -53,7 +53,10 @@ TEST(ReportedChannel, IsTheSameFromItsCharacterisationAndFromItsStoredDocument) 
     ASSERT_EQ(read->fits.size(), 3U);
     for (std::size_t f = 0; f < 3; ++f) {
       EXPECT_EQ(read->fits[f].processes, told.fits[f].processes);
-      EXPECT_EQ(to_text(to_json(read->fits[f])), to_text(document["fits"][f]));
+      Json alone =
+          document["fits"][f];  // how far it is from the closest is said of all fits together, and not read back
+      EXPECT_EQ(alone.erase("distance_2p") + alone.erase("closest"), 2U);
+      EXPECT_EQ(to_text(to_json(read->fits[f])), to_text(alone));
     }
   }
 }
