@@ -2,6 +2,8 @@
 
 #include "core/navigate/outage_runs.hpp"
 #include "core/process/distributions.hpp"
+#include "core/signal/significant.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,6 +14,7 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kBatch = 20;
+constexpr std::size_t kTellings = 10;  ///< of what is known so far, where nothing hangs on it
 
 /// Squared radius of the ellipse that holds a fraction of a plane normal distribution: -2 ln(1 - fraction).
 double ellipse_bound(double fraction) { return -2.0 * std::log(1.0 - fraction); }
@@ -172,17 +175,31 @@ bool precise_enough(const Scores& scores, std::size_t filters, double relative_p
   return true;
 }
 
+/// What is known after some runs, as the stage of those that follow: "outages, mean after 40 runs: M_stat(AV) 12 m [10,
+/// 14], ...".
+std::string stage_after(const Scores& scores, std::size_t done, const OutageScenario& scenario) {
+  const Scores so_far(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(done));
+  std::string stage = "outages, mean after " + with_count(done, "run") + ":";
+  for (std::size_t f = 0; f < scenario.filters.size(); ++f) {
+    const Estimate mean = mean_of(per_run(so_far, f, error_m));
+    const auto [low, high] = mean.ci95;
+    stage += (f == 0 ? " " : ", ") + scenario.filters[f].name + " " + significant(mean.value, low, high) + " m [" +
+             significant(low, low, high) + ", " + significant(high, low, high) + "]";
+  }
+  return stage;
+}
+
 /// Runs `first` to `last` - 1; of the threads that share them the calling one alone reports.
 void run_batch(const OutageExperiment& experiment, const OutageOptions& options, std::size_t first, std::size_t last,
-               Scores& scores, std::vector<OutagePath>& paths, const RunControl& control) {
+               Scores& scores, DrawnRun& drawn, const std::string& stage, const RunControl& control) {
   std::atomic<std::size_t> done{first};
   const auto caller = std::this_thread::get_id();
   const auto task = [&](std::size_t number) {
     const std::size_t run = first + number;
-    scores[run] = experiment.run(options.seed, run, run == 0 ? &paths : nullptr, control.stop);
+    scores[run] = experiment.run(options.seed, run, run == 0 ? &drawn : nullptr, control.stop);
     const std::size_t finished = ++done;
     if (std::this_thread::get_id() == caller) {
-      control.report("outages", static_cast<double>(finished) / static_cast<double>(options.runs));
+      control.report(stage, static_cast<double>(finished) / static_cast<double>(options.runs));
     }
   };
   parallel_for(control.threads, last - first, task, control.stop);
@@ -221,18 +238,21 @@ Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const 
   const std::size_t filters = scenario.filters.size();
   const auto most = static_cast<std::size_t>(options.runs);
   Scores scores(most);
-  std::vector<OutagePath> paths(filters);
+  DrawnRun drawn;
   OutageEvaluation result;
   std::size_t done = 0;
+  const bool may_stop = options.relative_precision > 0.0;
+  const std::size_t batch = may_stop ? kBatch : std::max(2 * kBatch, most / kTellings);
+  std::string stage = "outages";
   while (done < most && !result.stopped_early) {
-    const std::size_t last =
-        options.relative_precision > 0.0 ? std::min(done + kBatch, most) : most;  // a batch is never split by threads
-    run_batch(*experiment, options, done, last, scores, paths, control);
+    const std::size_t last = std::min(done + batch, most);  // a batch is never split by threads
+    run_batch(*experiment, options, done, last, scores, drawn, stage, control);
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "The outage evaluation was cancelled.");
     }
     done = last;
-    if (options.relative_precision > 0.0 && done < most) {
+    stage = stage_after(scores, done, scenario);
+    if (may_stop && done < most) {
       const Scores so_far(scores.begin(), scores.begin() + static_cast<std::ptrdiff_t>(done));
       result.stopped_early = precise_enough(so_far, filters, options.relative_precision);
     }
@@ -242,9 +262,13 @@ Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario, const 
   result.runs = static_cast<int>(done);
   result.seed = options.seed;
   result.truth = experiment->true_path();
+  result.true_tracks = experiment->true_tracks();
   for (std::size_t f = 0; f < filters; ++f) {
     result.filters.push_back(evaluate(scores, *experiment, f, options.scatter_runs));
-    result.filters.back().path = std::move(paths[f]);
+    result.filters.back().path = std::move(drawn.paths[f]);
+    for (std::size_t outage = 0; outage < scenario.outages.size(); ++outage) {
+      result.filters.back().outages[outage].track = std::move(drawn.tracks[f][outage]);
+    }
     for (std::size_t against = 0; against < filters; ++against) {
       if (against != f) {
         result.paired.push_back(compare(scores, scenario, f, against));

@@ -48,6 +48,15 @@ struct PlaneCovariance {
   double north = 0.0, east = 0.0, north_east = 0.0;
 };
 
+/// Where a filter of the first run believed to be, or the truth was, in metres from the start.
+struct OutagePath {
+  std::vector<double> time_s, north_m, east_m;
+};
+
+/// Tracks hold ten points a second, from so long before an outage to so long after it.
+inline constexpr double kTrackRateHz = 10.0;
+inline constexpr double kTrackMarginS = 10.0;
+
 struct OutageSummary {
   std::size_t index = 1;  ///< from 1
   double start_s = 0.0, end_s = 0.0;
@@ -60,11 +69,7 @@ struct OutageSummary {
   PlaneCovariance actual;     ///< second moments of the errors
   double mean_north_m = 0.0, mean_east_m = 0.0;
   std::vector<std::array<double, 2>> scatter;  ///< north, east of the first runs
-};
-
-/// Where a filter of the first run believed to be, once a second, in metres from the start.
-struct OutagePath {
-  std::vector<double> time_s, north_m, east_m;
+  OutagePath track;                            ///< of the first run, around the outage
 };
 
 struct FilterEvaluation {
@@ -75,7 +80,7 @@ struct FilterEvaluation {
   double coverage50 = 0.0, coverage95 = 0.0;
   double heading_rms_rad = 0.0, tilt_rms_rad = 0.0;
   std::vector<OutageSummary> outages;
-  OutagePath path;
+  OutagePath path;  ///< once a second
 };
 
 /// `filter` minus `against` over the same runs.
@@ -93,14 +98,15 @@ struct OutageEvaluation {
   bool stopped_early = false;
   std::vector<FilterEvaluation> filters;
   std::vector<PairedDifference> paired;  ///< every pair of filters, in both orders
-  OutagePath truth;
+  OutagePath truth;                      ///< once a second
+  std::vector<OutagePath> true_tracks;   ///< around each outage
 
   /// The pair in the order asked for; nothing where a name is missing.
   [[nodiscard]] std::optional<PairedDifference> difference(std::string_view filter, std::string_view against) const;
 };
 
-/// The runs are tasks of `control.threads`. Errors: those of check(scenario), of the trajectory and of FilterDesign;
-/// Cancelled.
+/// The runs are tasks of `control.threads`; what is known so far is the name of the stage. Errors: those of
+/// check(scenario), of the trajectory and of FilterDesign; Cancelled.
 [[nodiscard]] Result<OutageEvaluation> evaluate_outages(const OutageScenario& scenario,
                                                         const OutageOptions& options = {},
                                                         const RunControl& control = {});

@@ -49,28 +49,50 @@ void add_point(OutagePath& path, double time_s, const Vector3& position, const V
 }
 
 /// Moments at which a filter is interrupted, as numbers of samples done.
-enum class EventKind { Point, Score, Fix };  // in this order at one moment: a score is taken before the returning fix
+enum class EventKind {
+  Point,
+  Track,
+  Score,
+  Fix
+};  // in this order at one moment: a score is taken before the returning fix
 struct Event {
   std::size_t sample = 0;
   EventKind kind = EventKind::Point;
-  std::size_t index = 0;
+  std::size_t index = 0;  // of a point its second, of a fix or a score its own number, of a track its outage
+  double time_s = 0.0;    // of a track
 };
 
+/// The moments of an outage's track that lie in the drive.
+std::vector<double> track_times(const Outage& outage, double duration_s) {
+  const auto first = static_cast<long>(std::ceil((outage.start_s - kTrackMarginS) * kTrackRateHz - 1e-6));
+  const auto last = static_cast<long>(std::floor((outage.end_s() + kTrackMarginS) * kTrackRateHz + 1e-6));
+  std::vector<double> times;
+  for (long i = std::max(first, 0L); i <= last && static_cast<double>(i) <= duration_s * kTrackRateHz + 1e-6; ++i) {
+    times.push_back(static_cast<double>(i) / kTrackRateHz);
+  }
+  return times;
+}
+
 std::vector<Event> events_of(const OutageScenario& scenario, const Trajectory& truth, const std::vector<GnssFix>& fixes,
-                             bool points) {
+                             bool drawn) {
   std::vector<Event> events;
   const auto sample_at = [&](double time_s) {
     return std::min(static_cast<std::size_t>(std::ceil(time_s / truth.dt_s - 1e-6)), truth.imu.size());
   };
   for (std::size_t i = 0; i < fixes.size(); ++i) {
-    events.push_back({sample_at(fixes[i].arrival_s), EventKind::Fix, i});
+    events.push_back({sample_at(fixes[i].arrival_s), EventKind::Fix, i, 0.0});
   }
   for (std::size_t i = 0; i < scenario.outages.size(); ++i) {
-    events.push_back({sample_at(scenario.outages[i].end_s()), EventKind::Score, i});
+    events.push_back({sample_at(scenario.outages[i].end_s()), EventKind::Score, i, 0.0});
   }
-  const auto seconds = static_cast<std::size_t>(static_cast<double>(truth.imu.size()) * truth.dt_s);
-  for (std::size_t s = 0; points && s <= seconds; ++s) {
-    events.push_back({sample_at(static_cast<double>(s)), EventKind::Point, s});
+  const double duration_s = static_cast<double>(truth.imu.size()) * truth.dt_s;
+  for (std::size_t s = 0; drawn && s <= static_cast<std::size_t>(duration_s); ++s) {
+    events.push_back({sample_at(static_cast<double>(s)), EventKind::Point, s, 0.0});
+  }
+  for (std::size_t i = 0; drawn && i < scenario.outages.size(); ++i) {
+    for (const double time_s : track_times(scenario.outages[i], duration_s)) {
+      events.push_back({sample_at(time_s), EventKind::Track, i, time_s});
+    }
   }
   std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
     return a.sample != b.sample ? a.sample < b.sample : (a.kind != b.kind ? a.kind < b.kind : a.index < b.index);
@@ -105,8 +127,7 @@ Result<OutageExperiment> OutageExperiment::make(const OutageScenario& scenario, 
   return experiment;
 }
 
-std::vector<std::vector<OutageScore>> OutageExperiment::run(std::uint64_t seed, std::uint64_t index,
-                                                            std::vector<OutagePath>* paths,
+std::vector<std::vector<OutageScore>> OutageExperiment::run(std::uint64_t seed, std::uint64_t index, DrawnRun* drawn,
                                                             const std::stop_token& stop) const {
   const ImuRun imu = simulate_imu(truth_.imu, truth_.dt_s, scenario_.truth, scenario_.hardware, seed, index, stop);
   if (stop.stop_requested()) {
@@ -115,10 +136,14 @@ std::vector<std::vector<OutageScore>> OutageExperiment::run(std::uint64_t seed, 
   const std::vector<GnssFix> arriving = fixes(seed, index);
   Random initial_random(seed, 16 * index + kInitialStream);
   const NavigationState start = first_estimate(truth_.states.front(), scenario_.initial, initial_random);
-  const std::vector<Event> events = events_of(scenario_, truth_, arriving, paths != nullptr);
+  const std::vector<Event> events = events_of(scenario_, truth_, arriving, drawn != nullptr);
   const Vector3 origin = truth_.states.front().position_ecef_m;
   const Matrix3 axes = ned_axes(origin);
 
+  if (drawn != nullptr) {
+    drawn->paths.assign(designs_.size(), {});
+    drawn->tracks.assign(designs_.size(), std::vector<OutagePath>(scenario_.outages.size()));
+  }
   std::vector<std::vector<OutageScore>> scores;
   for (std::size_t f = 0; f < designs_.size(); ++f) {
     NavigationFilter filter(designs_[f], start);
@@ -129,7 +154,10 @@ std::vector<std::vector<OutageScore>> OutageExperiment::run(std::uint64_t seed, 
       done = event.sample;
       switch (event.kind) {
         case EventKind::Point:
-          add_point((*paths)[f], static_cast<double>(event.index), filter.state().position_ecef_m, origin, axes);
+          add_point(drawn->paths[f], static_cast<double>(event.index), filter.state().position_ecef_m, origin, axes);
+          break;
+        case EventKind::Track:
+          add_point(drawn->tracks[f][event.index], event.time_s, filter.state().position_ecef_m, origin, axes);
           break;
         case EventKind::Score:
           own[event.index] = score_of(filter, truth_.states[event.sample]);
@@ -163,6 +191,21 @@ OutagePath OutageExperiment::true_path() const {
     }
     add_point(path, static_cast<double>(s), truth_.states[sample].position_ecef_m, origin, axes);
   }
+}
+
+std::vector<OutagePath> OutageExperiment::true_tracks() const {
+  const Vector3 origin = truth_.states.front().position_ecef_m;
+  const Matrix3 axes = ned_axes(origin);
+  const double duration_s = static_cast<double>(truth_.imu.size()) * truth_.dt_s;
+  std::vector<OutagePath> tracks;
+  for (const Outage& outage : scenario_.outages) {
+    OutagePath& track = tracks.emplace_back();
+    for (const double time_s : track_times(outage, duration_s)) {
+      const auto sample = static_cast<std::size_t>(std::llround(time_s / truth_.dt_s));
+      add_point(track, time_s, truth_.states[std::min(sample, truth_.states.size() - 1)].position_ecef_m, origin, axes);
+    }
+  }
+  return tracks;
 }
 
 }  // namespace driftlab

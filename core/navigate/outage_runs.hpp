@@ -4,6 +4,12 @@
 
 namespace driftlab {
 
+/// What is drawn of the first run: for each filter its path, and its track around each outage.
+struct DrawnRun {
+  std::vector<OutagePath> paths;
+  std::vector<std::vector<OutagePath>> tracks;  ///< [filter][outage]
+};
+
 /// A scenario made ready: its truth and the designs of its filters. Immutable; shared by threads.
 class OutageExperiment {
  public:
@@ -14,14 +20,15 @@ class OutageExperiment {
   [[nodiscard]] const Trajectory& truth() const { return truth_; }
   [[nodiscard]] const FilterDesign& design(std::size_t filter) const { return designs_[filter]; }
 
-  /// One run: scores[filter][outage]. `paths`, where given, gets one path per filter. An empty result: stopped.
-  [[nodiscard]] std::vector<std::vector<OutageScore>> run(std::uint64_t seed, std::uint64_t index,
-                                                          std::vector<OutagePath>* paths,
+  /// One run: scores[filter][outage]. `drawn`, where given, is filled. An empty result: stopped.
+  [[nodiscard]] std::vector<std::vector<OutageScore>> run(std::uint64_t seed, std::uint64_t index, DrawnRun* drawn,
                                                           const std::stop_token& stop = {}) const;
   /// The fixes of a run.
   [[nodiscard]] std::vector<GnssFix> fixes(std::uint64_t seed, std::uint64_t index) const;
   /// The truth once a second, in metres from the start.
   [[nodiscard]] OutagePath true_path() const;
+  /// The truth around each outage.
+  [[nodiscard]] std::vector<OutagePath> true_tracks() const;
 
  private:
   OutageScenario scenario_;

@@ -36,6 +36,21 @@ Json path_json(const OutagePath& path) {
   return Json{{"time_s", list(path.time_s)}, {"north_m", list(path.north_m)}, {"east_m", list(path.east_m)}};
 }
 
+/// Evenly spaced points in centimetres.
+Json track_json(const OutagePath& track) {
+  const auto list = [](const std::vector<double>& values) {
+    Json out = Json::array();
+    for (const double value : values) {
+      out.push_back(number(std::round(value * 1e2) / 1e2));
+    }
+    return out;
+  };
+  return Json{{"start_s", track.time_s.empty() ? Json(nullptr) : number(track.time_s.front())},
+              {"rate_hz", number(kTrackRateHz)},
+              {"north_m", list(track.north_m)},
+              {"east_m", list(track.east_m)}};
+}
+
 Json outage_json(const OutageSummary& outage) {
   Json north = Json::array();
   Json east = Json::array();
@@ -59,7 +74,8 @@ Json outage_json(const OutageSummary& outage) {
               {"mean_error_m", {{"north", number(outage.mean_north_m)}, {"east", number(outage.mean_east_m)}}},
               {"predicted", moments(outage.predicted)},
               {"actual", moments(outage.actual)},
-              {"errors", {{"north_m", std::move(north)}, {"east_m", std::move(east)}}}};
+              {"errors", {{"north_m", std::move(north)}, {"east_m", std::move(east)}}},
+              {"track", track_json(outage.track)}};
 }
 
 Json filter_json(const FilterEvaluation& filter) {
@@ -117,6 +133,10 @@ Json to_json(const OutageReport& report) {
   for (const Claim& claim : report.claims) {
     claims.push_back(Json{{"claim", claim.claim}, {"supported", claim.supported}, {"because", claim.because}});
   }
+  Json tracks = Json::array();
+  for (const OutagePath& track : evaluation.true_tracks) {
+    tracks.push_back(track_json(track));
+  }
   return Json{{"scenario", to_json(report.scenario)},
               {"summary", to_json(report.summary)},
               {"runs", evaluation.runs},
@@ -127,7 +147,8 @@ Json to_json(const OutageReport& report) {
               {"paired", std::move(paired)},
               {"attribution", std::move(attribution)},
               {"claims", std::move(claims)},
-              {"trajectory", path_json(evaluation.truth)}};
+              {"trajectory", path_json(evaluation.truth)},
+              {"tracks", std::move(tracks)}};
 }
 
 OutageOptions outage_options_from_json(const Json& parameters, const std::string& pointer, Faults& faults) {

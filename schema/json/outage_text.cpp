@@ -1,3 +1,4 @@
+#include "core/signal/with_count.hpp"
 #include "schema/json/outage_evaluation.hpp"
 
 #include <algorithm>
@@ -81,8 +82,8 @@ std::string outage_text(const OutageReport& report) {
   text.append("\nScenario ")
       .append(evaluation.scenario)
       .append(", ")
-      .append(std::to_string(evaluation.runs))
-      .append(" runs, seed ");
+      .append(with_count(evaluation.runs, "run"))
+      .append(", seed ");
   text.append(std::to_string(evaluation.seed)).append(evaluation.stopped_early ? " (precise enough)" : "");
   text.append(". Horizontal error at the end of each outage; 95 % intervals.\n\n").append(filters_text(evaluation));
 

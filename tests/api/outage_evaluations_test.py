@@ -42,6 +42,12 @@ class OutageEvaluations(DaemonTest):
         self.assertEqual(len(matched["outages"][0]["errors"]["north_m"]), 30)
         self.assertEqual(len(matched["trajectory"]["time_s"]), 46)
         self.assertEqual(len(result["trajectory"]["north_m"]), 46)
+        # Ten points a second from 10 s before the outage to the end of the drive, 5 s after it, on the path of the whole drive.
+        [truth], track = result["tracks"], matched["outages"][0]["track"]
+        for drawn, path in ((truth, result["trajectory"]), (track, matched["trajectory"])):
+            self.assertEqual((drawn["start_s"], drawn["rate_hz"], len(drawn["north_m"]), len(drawn["east_m"])), (20, 10, 251, 251))
+            for second in range(20, 46):
+                self.assertAlmostEqual(drawn["north_m"][10 * (second - 20)], path["north_m"][second], delta=0.006)
         ellipse50, ellipse95 = matched["outages"][0]["predicted"]["ellipses"]
         self.assertLess(ellipse50["semi_major_m"], ellipse95["semi_major_m"])
         pair = next(p for p in result["paired"] if p["filter"] == "too quiet")
@@ -169,6 +175,7 @@ class OutageEvaluations(DaemonTest):
         job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000})).json["id"]
         for event in events(self.daemon, job):
             if event.type == "progress" and event.data["progress"] > 0:
+                self.assertTrue(event.data["stage"].startswith("outages"), event.data)
                 break
         self.assertEqual(self.expect(200, self.daemon.get(f"/v1/jobs/{job}")).json["state"], "running")
         self.expect(202, self.daemon.post(f"/v1/jobs/{job}/cancel"))

@@ -58,6 +58,47 @@ TEST(OutageEvaluation, ProcessNoiseAloneDoesNotChangeTheFirstOutage) {
   EXPECT_NE(scores[0][0].north_m, scores[2][0].north_m);
 }
 
+TEST(OutageEvaluation, DrawsTheFirstRunAroundEachOutageAndChangesNothingByIt) {
+  const OutageScenario scenario = first_turn();
+  const OutageExperiment experiment = *OutageExperiment::make(scenario);
+  DrawnRun drawn;
+  const auto scores = experiment.run(1, 0, &drawn);
+  EXPECT_EQ(scores[0][0].north_m, experiment.run(1, 0, nullptr)[0][0].north_m);
+  const auto truth = experiment.true_tracks();
+  ASSERT_EQ(truth.size(), scenario.outages.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Outage& outage = scenario.outages[i];
+    const OutagePath& track = drawn.tracks[0][i];
+    ASSERT_EQ(track.time_s, truth[i].time_s);
+    EXPECT_NEAR(track.time_s.front(), outage.start_s - 10.0, 0.1 + 1e-9);
+    EXPECT_NEAR(track.time_s[1] - track.time_s[0], 0.1, 1e-9);
+    // At its end the track is as far from the truth as the score says. The score is taken before the returning fix, a
+    // point of the same moment too.
+    const auto end = std::min_element(track.time_s.begin(), track.time_s.end(),
+                                      [&](double a, double b) {
+                                        return std::fabs(a - outage.end_s()) < std::fabs(b - outage.end_s());
+                                      }) -
+                     track.time_s.begin();
+    ASSERT_NEAR(track.time_s[static_cast<std::size_t>(end)], outage.end_s(), 1e-6);
+    const auto at = static_cast<std::size_t>(end);
+    EXPECT_NEAR(std::hypot(track.north_m[at] - truth[i].north_m[at], track.east_m[at] - truth[i].east_m[at]),
+                scores[0][i].error_m(), 0.02);  // the plane of the start is turned by 1e-3 rad at some kilometres
+  }
+}
+
+TEST(OutageEvaluation, TellsWhatIsKnownWhileItRuns) {
+  OutageScenario scenario = first_turn();
+  scenario.filters.resize(1);
+  OutageOptions options;
+  options.runs = 44;
+  RunControl control;
+  std::string last;
+  control.progress = [&](std::string_view stage, double fraction) { last = fraction < 1.0 ? stage : last; };
+  ASSERT_TRUE(evaluate_outages(scenario, options, control));
+  EXPECT_TRUE(last.starts_with("outages, mean after 40 runs: " + scenario.filters[0].name + " ")) << last;
+  EXPECT_TRUE(last.ends_with("]")) << last;
+}
+
 TEST(OutageEvaluation, PairsAreMirrorImages) {
   OutageOptions options;
   options.runs = 5;

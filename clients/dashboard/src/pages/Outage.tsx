@@ -5,7 +5,7 @@ import {useJobEvents, useRead} from '../api/client';
 import type {Quantity} from '../api/documents';
 import {writeNumber, writeQuantity, writeShare, writeTick} from '../format/number';
 import {writeDuration, writeWhen} from '../format/time';
-import {writeSentence} from '../format/words';
+import {plural, writeSentence} from '../format/words';
 import {csvOf, save} from '../figure/export';
 import {curlOf, Tools, useWidth} from '../figure/Figure';
 import {choose, usePlace} from '../route';
@@ -114,7 +114,7 @@ export default function OutagePage(): JSX.Element {
   useTitle(read.data ? `Outages: ${read.data.scenario_name}` : 'Outages');
   return <Shown read={read}>{stored => <>
     <Head crumb={[['Outages', '/outages'], [stored.scenario_name, null]]} title={`Simulated outages: ${stored.scenario_name}`}
-      facts={[stored.evaluation && `${stored.evaluation.filters[0]?.outages.length ?? 0} outages`, stored.evaluation && `${stored.evaluation.filters.length} filters`, `${stored.evaluation?.runs ?? stored.runs} runs, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
+      facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
     <MadeBy job={stored.id} />
     {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}</>}
   </>}</Shown>;

@@ -1,7 +1,7 @@
 // The drive in metres, north up, with its outages as thick strokes and the chosen one enlarged.
 import type {JSX} from 'preact';
 import {writeTick} from '../../format/number';
-import type {Evaluation, Filter, Path} from './documents';
+import type {Evaluation, Filter, Path, Track} from './documents';
 
 const WIDTH = 420;
 const HEIGHT = 460;
@@ -17,6 +17,8 @@ function viewOf(east: number[], north: number[], left: number, top: number, widt
   return {x: east => left + width / 2 + (east - midE) * scale, y: north => top + height / 2 - (north - midN) * scale, scale};
 }
 
+// Ten points a second where the evaluation kept them, else the path of the whole drive.
+const around = (track: Track | undefined, path: Path): Path => !track || track.start_s === null ? path : {...track, time_s: track.north_m.map((_, i) => track.start_s! + i / track.rate_hz)};
 const stretch = (path: Path, from: number, to: number): number[] => path.time_s.map((_, i) => i).filter(i => path.time_s[i]! >= from && path.time_s[i]! <= to);
 const points = (path: Path, indices: number[], view: View): string => indices.map(i => `${view.x(path.east_m[i]!).toFixed(1)},${view.y(path.north_m[i]!).toFixed(1)}`).join(' ');
 
@@ -32,15 +34,19 @@ export function DriveMap({evaluation, outage, left, right}: {evaluation: Evaluat
   const view = viewOf(trajectory.east_m, trajectory.north_m, PAD, PAD, WIDTH - 2 * PAD, HEIGHT - 2 * PAD - 20);
   const outages = left.outages;
   const chosen = outages[outage]!;
-  const near = stretch(trajectory, chosen.start_s - 6, chosen.end_s + 1);
-  const filters = [left, right].map(filter => ({filter, indices: stretch(filter.trajectory, chosen.start_s - 6, chosen.end_s)}));
+  const truth = around(evaluation.tracks?.[outage], trajectory);
+  const near = stretch(truth, chosen.start_s - 6, chosen.end_s + 1);
+  const filters = [left, right].map(filter => {
+    const path = around(filter.outages[outage]?.track, filter.trajectory);
+    return {filter, path, indices: stretch(path, chosen.start_s - 6, chosen.end_s)};
+  });
   const inset = {left: WIDTH * 0.28, top: HEIGHT * 0.22, size: WIDTH * 0.46};
-  const zoom = viewOf([...near.map(i => trajectory.east_m[i]!), ...filters.flatMap(({filter, indices}) => indices.map(i => filter.trajectory.east_m[i]!))],
-    [...near.map(i => trajectory.north_m[i]!), ...filters.flatMap(({filter, indices}) => indices.map(i => filter.trajectory.north_m[i]!))], inset.left + 26, inset.top + 22, inset.size - 52, inset.size - 66);
+  const zoom = viewOf([...near.map(i => truth.east_m[i]!), ...filters.flatMap(({path, indices}) => indices.map(i => path.east_m[i]!))],
+    [...near.map(i => truth.north_m[i]!), ...filters.flatMap(({path, indices}) => indices.map(i => path.north_m[i]!))], inset.left + 26, inset.top + 22, inset.size - 52, inset.size - 66);
   const bar = barLength(view.scale, 110);
   const zoomBar = barLength(zoom.scale, 60);
   const middle = near[Math.floor(near.length / 2)] ?? 0;
-  const [atX, atY] = [view.x(trajectory.east_m[middle]!), view.y(trajectory.north_m[middle]!)];
+  const [atX, atY] = [view.x(truth.east_m[middle]!), view.y(truth.north_m[middle]!)];
   return <svg viewBox={`0 0 ${WIDTH} ${HEIGHT}`} width="100%" role="img" aria-label={`The drive with ${outages.length} outages; outage ${chosen.index} enlarged with ${left.name} and ${right.name}.`}>
     <polyline points={points(trajectory, all, view)} fill="none" stroke="var(--rule)" stroke-width="1.2" />
     {outages.map((each, i) => {
@@ -54,8 +60,8 @@ export function DriveMap({evaluation, outage, left, right}: {evaluation: Evaluat
     <circle cx={atX} cy={atY} r="17" fill="none" stroke="var(--focus)" stroke-width="1.2" />
     <line x1={atX} y1={atY} x2={inset.left + inset.size / 2} y2={inset.top + inset.size / 2} stroke="var(--focus)" stroke-width="0.8" opacity="0.6" />
     <rect x={inset.left} y={inset.top} width={inset.size} height={inset.size} fill="var(--surface)" stroke="var(--hair)" />
-    <polyline points={points(trajectory, near, zoom)} fill="none" stroke="var(--rule)" stroke-width="2.5" />
-    {filters.map(({filter, indices}, i) => <polyline key={filter.name} points={points(filter.trajectory, indices, zoom)} fill="none" stroke={i === 0 ? 'var(--robust)' : 'var(--model)'} stroke-width="1.6" />)}
+    <polyline points={points(truth, near, zoom)} fill="none" stroke="var(--rule)" stroke-width="2.5" />
+    {filters.map(({filter, path, indices}, i) => <polyline key={filter.name} points={points(path, indices, zoom)} fill="none" stroke={i === 0 ? 'var(--robust)' : 'var(--model)'} stroke-width="1.6" />)}
     <line class="ax" x1={inset.left + 12} x2={inset.left + 12 + zoomBar * zoom.scale} y1={inset.top + 20} y2={inset.top + 20} /><text class="s" x={inset.left + 12} y={inset.top + 14}>{writeTick(zoomBar)} m</text>
     <text class="s" x={inset.left + 10} y={inset.top + inset.size - 24} style={{fill: 'var(--robust)'}}>{left.name}</text>
     <text class="s" x={inset.left + 10} y={inset.top + inset.size - 10} style={{fill: 'var(--model)'}}>{right.name}, first run</text>
