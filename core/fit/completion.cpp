@@ -13,6 +13,11 @@ constexpr std::size_t kBlock = 2048;
 constexpr double kSettled = 1e-9;
 /// Weights are kept while the precision behind them moves less than this.
 constexpr double kSame = 1e-5;
+/// Precisions closer than this to that of an endless run of good samples are taken as it.
+constexpr double kAsEndless = 1e-7;
+/// Samples after which that run must have settled, to be used at all.
+constexpr int kLongestRun = 20000;
+constexpr double kSettledRun = 1e-13;
 constexpr std::size_t kTable = 1024;
 constexpr double kTableEnd = 8.0;
 
@@ -26,6 +31,7 @@ template <int N>
 struct Information {
   Matrix<N> precision{};
   Vector<N> shift{};
+  bool endless = false;  ///< the precision is that of an endless run of good samples
 };
 
 /// The states of one model, and how information moves back over one sample.
@@ -46,6 +52,7 @@ class Chain {
     for (std::size_t k = 0; k < law.mixture.ratio.size(); ++k) {
       size_[k] = law.mixture.ratio[k] * law.unit / law.mixture.core;
     }
+    settle();
   }
 
   static constexpr double sight(int k) { return Quantized && k == N - 1 ? -1.0 : 1.0; }
@@ -55,8 +62,27 @@ class Chain {
   [[nodiscard]] const Vector<N>& noise() const { return noise_; }
   [[nodiscard]] const Vector<N>& start() const { return start_; }
 
-  /// From the information about x_{t+1} in samples after t to that about x_t in samples from t on.
+  /// From the information about x_{t+1} in samples after t to that about x_t in samples from t on. Where it has the
+  /// precision of an endless run and the sample is good only the shift moves, and that linearly.
   void back(Information<N>& information, double y, std::uint8_t state) const {
+    if (!information.endless || state != kGoodSample) {
+      move(information, y, state);
+      information.endless = settled_ && near_endless(information.precision);
+      return;
+    }
+    Vector<N> shift{};
+    for (int r = 0; r < N; ++r) {
+      double sum = from_sample_[r] * y;
+      for (int c = 0; c < N; ++c) {
+        sum += from_shift_[r][c] * information.shift[c];
+      }
+      shift[r] = sum;
+    }
+    information.shift = shift;
+  }
+
+ private:
+  void move(Information<N>& information, double y, std::uint8_t state) const {
     const bool absent = state == kAbsentSample;
     const double spread = variance_ + (state == kGoodSample || absent ? 0.0 : size_[state - 1U]);
     const double weight = absent ? 0.0 : 1.0 / spread;
@@ -104,13 +130,54 @@ class Chain {
     }
   }
 
- private:
+  /// The precision of an endless run of good samples, and how the shift moves over one of them.
+  void settle() {
+    Information<N> endless;
+    for (int step = 0; step < kLongestRun && !settled_; ++step) {
+      const Matrix<N> before = endless.precision;
+      move(endless, 0.0, kGoodSample);
+      settled_ = true;
+      for (int r = 0; r < N; ++r) {
+        settled_ =
+            settled_ && std::fabs(endless.precision[r][r] - before[r][r]) <= kSettledRun * endless.precision[r][r];
+      }
+    }
+    endless_ = endless.precision;
+    for (int c = 0; c <= N; ++c) {
+      Information<N> probe;
+      probe.precision = endless_;
+      if (c < N) {
+        probe.shift[c] = 1.0;
+      }
+      move(probe, c < N ? 0.0 : 1.0, kGoodSample);
+      for (int r = 0; r < N; ++r) {
+        (c < N ? from_shift_[r][c] : from_sample_[r]) = probe.shift[r];
+      }
+    }
+  }
+
+  [[nodiscard]] bool near_endless(const Matrix<N>& precision) const {
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c <= r; ++c) {
+        const double off = precision[r][c] - endless_[r][c];
+        if (!(off * off <= kAsEndless * kAsEndless * endless_[r][r] * endless_[c][c])) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
   Vector<N> transition_{};
   Vector<N> noise_{};
   Vector<N> start_{};
   double error_ = 0.0;
   double variance_ = 0.0;
   std::array<double, OutlierMixture::kMostSizes> size_{};
+  Matrix<N> endless_{};
+  Matrix<N> from_shift_{};
+  Vector<N> from_sample_{};
+  bool settled_ = false;
 };
 
 /// The law of one sample given everything else.

@@ -197,13 +197,17 @@ std::vector<double> first_variances(const Work& work, const HaarCovariance& plan
   if (closed.size() == good.size()) {
     return variance;
   }
+  const WholeWindowScan scan(good);
   for (std::size_t j = 0; j < variance.size() && !control.stop.stop_requested(); ++j) {
-    const auto windows = whole_window_variance(good, static_cast<std::size_t>(plan.half()[j]));
-    if (!windows || windows->share < 0.1 || windows->windows < 50) {
+    const auto half = static_cast<std::size_t>(plan.half()[j]);
+    const std::size_t windows = scan.windows(half);
+    if (windows < 50 || static_cast<double>(windows) / static_cast<double>(good.size() - 2 * half + 1) < 0.1) {
       scales = j >= kFewestScales ? j : scales;
       break;
     }
-    variance[j] = windows->variance;
+    if (const auto whole = scan.at(half)) {
+      variance[j] = whole->variance;
+    }
   }
   return variance;
 }
@@ -339,9 +343,9 @@ class Sampler {
 
 /// Where gaps are all there is and leave most windows whole, these need no model.
 void prefer_whole_windows(const Work& work, SampleWiseVariance& result) {
-  const GappySamples recorded{work.recorded, work.absent};
+  const WholeWindowScan recorded(GappySamples{work.recorded, work.absent});
   for (std::size_t j = 0; j < result.curve.scales(); ++j) {
-    const auto windows = whole_window_variance(recorded, result.curve.half[j]);
+    const auto windows = recorded.at(result.curve.half[j]);
     if (!windows || windows->share < kMostlyWhole) {
       return;
     }

@@ -22,7 +22,23 @@ struct WholeWindows {
   double share = 0.0;       ///< of all windows
 };
 
-/// At half length `half`, 2 half <= grid; nothing where no window is whole. O(N).
+/// Whole windows of one record at several scales: the samples are centred once.
+class WholeWindowScan {
+ public:
+  explicit WholeWindowScan(const GappySamples& samples);
+
+  /// Windows of half length `half` that touch no gap. O(stretches without a gap).
+  [[nodiscard]] std::size_t windows(std::size_t half) const;
+  /// At half length `half`, 2 half <= grid; nothing where no window is whole. O(N).
+  [[nodiscard]] std::optional<WholeWindows> at(std::size_t half) const;
+
+ private:
+  std::vector<double> centred_;       ///< about the mean of the recorded samples; 0 where missing
+  std::vector<std::size_t> stretch_;  ///< lengths of the stretches without a gap, in order
+  std::vector<std::size_t> start_;    ///< and where they begin
+};
+
+/// The same at one scale.
 [[nodiscard]] std::optional<WholeWindows> whole_window_variance(const GappySamples& samples, std::size_t half);
 
 /// At half length `half`; nothing where no pair at some lag below 2 half is there. O(N half).

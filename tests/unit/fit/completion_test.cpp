@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -135,6 +136,53 @@ TEST(Completion, ResidualsOfTheTrueModelAreStandardNormal) {
   EXPECT_NEAR(square / kSamples, 1.0, 4.0 * std::sqrt(6.0 / kSamples));
   EXPECT_EQ(histogram.total(), kSamples);
   EXPECT_EQ(completed, x);
+}
+
+TEST(Completion, ResidualsOfLongRunsAreThoseOfTheWholeCovariance) {
+  // In a run of good samples the backward precision settles, and is then no longer computed: every residual must still
+  // be the one that the inverse of the covariance gives, r_t = (C^-1 y)_t/sqrt((C^-1)_tt), where runs and a gap follow.
+  constexpr int kSamples = 700;
+  for (const bool quantized : {true, false}) {
+    Model model = composite();
+    if (!quantized) {
+      model.erase(model.begin());
+    }
+    const auto states = linear_states(model, 1.0, kLevel);
+    ASSERT_TRUE(states.has_value());
+    Random random(8);
+    const std::vector<double> x = simulate(model, random, 1.0, kSamples);
+    std::vector<std::uint8_t> state(kSamples, kGoodSample);
+    std::vector<int> present;
+    for (int t = 0; t < kSamples; ++t) {
+      state[static_cast<std::size_t>(t)] = t >= 300 && t < 304 ? kAbsentSample : kGoodSample;
+      if (t < 300 || t >= 304) {
+        present.push_back(t);
+      }
+    }
+    const Eigen::MatrixXd all = covariance_of(*states, kSamples);
+    const Eigen::MatrixXd inverse = all(present, present).inverse();
+    Eigen::VectorXd y(static_cast<Eigen::Index>(present.size()));
+    for (std::size_t i = 0; i < present.size(); ++i) {
+      y(static_cast<Eigen::Index>(i)) = x[static_cast<std::size_t>(present[i])];
+    }
+    const Eigen::VectorXd whole = inverse * y;
+    // After the gap residuals hang on what was drawn inside it.
+    CompletionLaw law;
+    law.states = *states;
+    ResidualHistogram histogram;
+    std::vector<double> completed(kSamples);
+    std::vector<float> residual(kSamples);
+    sweep_completion(law, {x, state, completed, residual}, random, histogram);
+    for (std::size_t i = 0; i < present.size(); ++i) {
+      if (present[i] >= 304) {
+        break;
+      }
+      const auto at = static_cast<Eigen::Index>(i);
+      EXPECT_NEAR(static_cast<double>(residual[static_cast<std::size_t>(present[i])]),
+                  std::fabs(whole(at)) / std::sqrt(inverse(at, at)), 2e-5)
+          << present[i] << quantized;
+    }
+  }
 }
 
 TEST(OutlierMixture, FindsCoreAndShareOfAMixture) {

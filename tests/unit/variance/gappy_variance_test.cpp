@@ -63,6 +63,37 @@ TEST(GappyVariance, BothAreUnbiasedWhereATwentiethIsMissing) {
   }
 }
 
+TEST(GappyVariance, OneScanGivesEveryScaleAsItsDefinition) {
+  Random random(4);
+  const Model model{*make_process("white_noise", {1.0}), *make_process("random_walk", {0.3})};
+  GappySamples samples = random_gaps(simulate(model, random, 1.0, 600), 0.01, random);
+  for (const std::size_t missing : {std::size_t{0}, std::size_t{1}, std::size_t{599}}) {  // at both ends too
+    samples.missing[missing] = 1;
+  }
+  const WholeWindowScan scan(samples);
+  for (std::size_t half = 1; half <= 32; half *= 2) {
+    double sum = 0.0;
+    std::size_t windows = 0;
+    for (std::size_t t = 0; t + 2 * half <= samples.size(); ++t) {
+      double w = 0.0;
+      bool whole = true;
+      for (std::size_t k = 0; k < 2 * half; ++k) {
+        whole = whole && samples.missing[t + k] == 0;
+        w += (k < half ? -1.0 : 1.0) * samples.values[t + k] / (2.0 * static_cast<double>(half));
+      }
+      sum += whole ? w * w : 0.0;
+      windows += whole ? 1 : 0;
+    }
+    ASSERT_GT(windows, 0U) << half;
+    const auto found = scan.at(half);
+    ASSERT_TRUE(found) << half;
+    EXPECT_EQ(found->windows, windows) << half;
+    EXPECT_EQ(scan.windows(half), windows) << half;
+    EXPECT_NEAR(found->variance, sum / static_cast<double>(windows), 1e-10 * sum) << half;
+    EXPECT_EQ(found->variance, whole_window_variance(samples, half)->variance) << half;
+  }
+}
+
 TEST(GappyVariance, NoWholeWindowIsNoEstimate) {
   GappySamples samples{std::vector<double>(16, 1.0), std::vector<std::uint8_t>(16, 0)};
   for (std::size_t t = 0; t < 16; t += 4) {
