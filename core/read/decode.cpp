@@ -1,5 +1,6 @@
 #include "core/read/column_file.hpp"
 #include "core/read/format.hpp"
+#include "core/read/kitti.hpp"
 #include "core/read/phone_export.hpp"
 #include "core/read/recognised_stream.hpp"
 
@@ -114,10 +115,13 @@ Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_p
                               ColumnSink& sink, const DecodeLimits& limits, const RunControl& control) {
   const ByteSource source(std::move(nothing));
   WatchingSink watching(sink, source, limits, control);
-  if (auto status = decode_folder(folder, limits, watching, control); !status) {
+  const bool kitti = is_kitti_folder(folder);
+  auto status =
+      kitti ? decode_kitti_folder(folder, limits, watching, control) : decode_folder(folder, limits, watching, control);
+  if (!status) {
     return fail(status.error());
   }
-  watching.decoded().format = "phone_folder";
+  watching.decoded().format = kitti ? "kitti_folder" : "phone_folder";
   control.report("decode", 1.0);
   return watching.finished();
 }

@@ -24,7 +24,8 @@
   FORMAT(kKfGins)   /* kf_gins.cpp */ \
   FORMAT(kRtklibPos) /* rtklib_pos.cpp */ \
   FORMAT(kNmea)     /* nmea.cpp */ \
-  FORMAT(kUbx)      /* ubx.cpp */
+  FORMAT(kUbx)      /* ubx.cpp */ \
+  FORMAT(kKitti)    /* kitti.cpp */
 // clang-format on
 
 namespace driftlab::formats {

@@ -251,7 +251,7 @@ TEST(Vmu931, SortsTheRowsByTheirSensor) {
   EXPECT_THAT(column(outcome, 2), ElementsAre(2.0, 5.0));
   EXPECT_THAT(column(outcome, 5), ElementsAre(0.2, 0.3));
   EXPECT_DOUBLE_EQ(column(outcome, 0)[1], 0.011);
-  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 rows of other attributes")));
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 row of other attributes is left out")));
 }
 
 TEST(Cxd5602, ContinuesTheCounterAndReadsFloats) {
@@ -264,7 +264,7 @@ TEST(Cxd5602, ContinuesTheCounterAndReadsFloats) {
   EXPECT_EQ(column(outcome, 2)[0], 1.0);
   EXPECT_EQ(why_missing(column(outcome, 2)[1]).why, Missing::Nan);
   EXPECT_EQ(column(outcome, 7)[0], 9.75);
-  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("started again 1 times")));
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("started again once; the time goes on")));
 }
 
 }  // namespace

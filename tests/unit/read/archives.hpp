@@ -52,6 +52,26 @@ inline std::string zip(const std::vector<std::pair<std::string, std::string>>& f
   return archive + directory + end;
 }
 
+/// The unit's files of a KITTI raw drive at 10 Hz. Angles of lat and lon grow, the rest is known.
+inline std::vector<std::pair<std::string, std::string>> kitti_files(std::size_t count,
+                                                                    const std::string& folder = "2011_09_26/drive/") {
+  std::vector<std::pair<std::string, std::string>> files;
+  std::string stamps;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string tenth = std::to_string(i % 10);
+    const std::string second = std::to_string(10 + i / 10);
+    stamps += "2011-09-26 13:02:" + second + "." + tenth + "00000000\n";
+    const std::string number = std::to_string(i);
+    // 11 to 13 are the acceleration, 17 to 19 the rates about the unit's axes
+    files.emplace_back(folder + "oxts/data/" + std::string(10 - number.size(), '0') + number + ".txt",
+                       "49." + std::string(5 - number.size(), '0') + number +
+                           " 8.4 112.8 0.03 0.007 -0.3 -3.5 10.5 11 0.1 0 0.5 -0.25 9.8125 0.6 -0.2 9.7 "
+                           "0.125 -0.5 0.0625 0.2 0.3 0.4 0.05 0.02 4 11 6 6 6\n");
+  }
+  files.emplace_back(folder + "oxts/timestamps.txt", stamps);
+  return files;
+}
+
 /// One element of a MATLAB 5 file, padded to 8 bytes.
 inline std::string mat_element(std::uint32_t type, const std::string& data) {
   return word(type, 4) + word(data.size(), 4) + data + std::string((8 - data.size() % 8) % 8, '\0');

@@ -230,6 +230,7 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"rtklib_pos", {rtklib_pos()}},
       {"nmea", {nmea()}},
       {"ubx", {ubx_pvt(3)}},
+      {"kitti", {zip(kitti_files(3))}},
       {"geneactiv", {geneactiv()}},
       {"rosbag2", {rosbag2(inertial_rows(2))}},
       {"mcap", {mcap(inertial_rows(2)), mcap(inertial_rows(2), "zstd", "ros1"), mcap(inertial_rows(2), "lz4")}},

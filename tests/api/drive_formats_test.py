@@ -1,0 +1,216 @@
+"""The same drive in several formats gives the same outages; what the sources of a drive may do wrong, by its sentence."""
+from __future__ import annotations
+
+import copy
+import csv
+import datetime
+import io
+import json
+import math
+import struct
+import unittest
+from pathlib import Path
+from typing import Any, Callable
+
+import drive_documents
+import samples
+from drives_test import Folder, SHARED
+
+NAV = SHARED.parent / "nav"
+GPS_EPOCH = 315964800.0
+
+
+def rows_of(table: bytes) -> list[list[float]]:
+    return [[float(cell) for cell in row] for row in list(csv.reader(io.StringIO(table.decode())))[1:]]
+
+
+def text_of(rows: list[list[float]], separator: str = " ") -> str:
+    return "".join(separator.join(repr(value) for value in row) + "\n" for row in rows)
+
+
+def mat_struct(name: str, fields: dict[str, list[list[float]]]) -> bytes:
+    """A MATLAB 5 file with one struct of real matrices, given by column."""
+    def element(kind: int, data: bytes) -> bytes:
+        return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+    def matrix(label: str, cls: int, rows: int, columns: int, content: bytes) -> bytes:
+        return element(14, element(6, struct.pack("<II", cls, 0)) + element(5, struct.pack("<ii", rows, columns))
+                       + element(1, label.encode()) + content)
+    numbers = b"".join(matrix("", 6, len(columns[0]), len(columns), element(9, b"".join(struct.pack(f"<{len(c)}d", *c) for c in columns)))
+                       for columns in fields.values())
+    names = element(1, b"".join(field.encode().ljust(32, b"\0") for field in fields))
+    content = struct.pack("<HHI", 5, 4, 32) + names + numbers
+    return b"MATLAB 5.0 MAT-file, made up".ljust(124) + b"\x00\x01IM" + matrix(name, 2, 1, 1, content)
+
+
+def columns_as(columns: dict[str, Any], renamed: dict[str, str]) -> dict[str, Any]:
+    return {renamed[name]: role for name, role in columns.items()}
+
+
+class MadeUpDrive(Folder):
+    """`samples.drive_csvs` at GPS second 345600 of week 2300, in the words of other programs."""
+    WEEK, SECOND = 2300, 345600.0
+
+    def setUp(self) -> None:
+        super().setUp()
+        readings, fixes = samples.drive_csvs(seconds=400)
+        # Driven faster, so that stamps are whole multiples of 1/32 s: the same numbers on every clock below.
+        self.readings = [[(i + 1) / 32.0, *row[1:]] for i, row in enumerate(rows_of(readings))]
+        self.fixes = [[0.625 * row[0], *row[1:4], *(v / 0.625 for v in row[4:])] for row in rows_of(fixes)]
+        for row in self.readings:
+            row[4] /= 0.625 ** 2
+
+    def document(self, imu: str, gnss: str) -> dict[str, Any]:
+        document = samples.drive_document(imu, gnss)
+        for source in ("imu", "gnss"):
+            document[source]["file"] = document[source].pop("recording")
+        document["outages"] = {"duration_s": [10], "at": [80.1, 120.2, 170.3]}  # no fix on an edge
+        return document
+
+    def found(self, document: dict[str, Any]) -> list[dict[str, Any]]:
+        return list(json.loads(self.drive(0, "run", document, "--json"))["durations"])
+
+    def as_csv(self) -> dict[str, Any]:
+        for name, rows, names in (("imu.csv", self.readings, samples.DRIVE_IMU), ("gnss.csv", self.fixes, samples.DRIVE_GNSS)):
+            (self.folder / name).write_text(",".join(names) + "\n" + text_of(rows, ","))
+        return self.document("imu.csv", "gnss.csv")
+
+
+class SameDrive(MadeUpDrive):
+    def test_structs_of_navego(self) -> None:
+        t, lat, lon, height, *velocity = [list(column) for column in zip(*self.fixes)]
+        (self.folder / "gnss.mat").write_bytes(mat_struct("gnss", {"t": [t], "lat": [lat], "lon": [lon], "h": [height], "vel": velocity,
+                                                                   "freq": [[1.6]]}))
+        t, *six = [list(column) for column in zip(*self.readings)]
+        (self.folder / "imu.mat").write_bytes(mat_struct("imu", {"t": [t], "wb": six[:3], "fb": six[3:], "freq": [[32.0]]}))
+        document = self.document("imu.mat", "gnss.mat")
+        imu, gnss = document["imu"], document["gnss"]
+        imu["columns"] = columns_as(imu["columns"], {**{f"g{a}": f"imu.wb_{a}" for a in "xyz"}, **{f"a{a}": f"imu.fb_{a}" for a in "xyz"}})
+        gnss["columns"] = columns_as(gnss["columns"], {"lat": "gnss.lat", "lon": "gnss.lon", "height": "gnss.h",
+                                                       "vn": "gnss.vel_x", "ve": "gnss.vel_y", "vd": "gnss.vel_z"})
+        imu["time"]["column"], gnss["time"]["column"] = "imu.t", "gnss.t"
+        self.assertEqual(self.found(document), self.found(self.as_csv()))
+
+    def test_texts_of_kf_gins(self) -> None:
+        increments = [[self.SECOND, *[0.0] * 6]] + [[self.SECOND + row[0], *(value / 32.0 for value in row[1:])] for row in self.readings]
+        (self.folder / "imu.txt").write_text(text_of(increments))
+        (self.folder / "gnss.txt").write_text(text_of([[self.SECOND + row[0], *row[1:4], 1.0, 1.0, 2.0, *row[4:]] for row in self.fixes]))
+        document = self.document("imu.txt", "gnss.txt")
+        imu, gnss = document["imu"], document["gnss"]
+        imu["columns"] = columns_as(imu["columns"], {**{f"g{a}": f"gyro_{a} (rad/s)" for a in "xyz"},
+                                                     **{f"a{a}": f"acc_{a} (m/s^2)" for a in "xyz"}})
+        gnss["columns"] = columns_as(gnss["columns"], {"lat": "1", "lon": "2", "height": "3", "vn": "7", "ve": "8", "vd": "9"})
+        imu["time"]["column"], gnss["time"]["column"] = "time (s)", "0"
+        self.assertEqual(self.found(document), self.found(self.as_csv()))
+
+    def test_a_solution_of_rtklib(self) -> None:
+        week = GPS_EPOCH + 604800.0 * self.WEEK + self.SECOND
+
+        def date(seconds: float) -> str:
+            moment = datetime.datetime(1970, 1, 1) + datetime.timedelta(seconds=week + seconds)
+            return moment.strftime("%Y/%m/%d %H:%M:%S.") + f"{moment.microsecond // 1000:03d}"
+        lines = ["%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) vn(m/s) ve(m/s) vu(m/s)"]
+        lines += [f"{date(t)} {lat!r} {lon!r} {height!r} 1 9 1.0 {vn!r} {ve!r} {-vd!r}" for t, lat, lon, height, vn, ve, vd in self.fixes]
+        (self.folder / "rover.pos").write_text("\n".join(lines) + "\n")
+        document = self.as_csv()
+        wanted = self.found(document)
+        gnss = document["gnss"]
+        gnss["columns"] = columns_as(gnss["columns"], {"lat": "latitude(deg)", "lon": "longitude(deg)", "height": "height(m)",
+                                                       "vn": "vn(m/s)", "ve": "ve(m/s)", "vd": "vu(m/s)"})
+        gnss["columns"]["vu(m/s)"]["axis"] = "up"
+        gnss["file"], gnss["time"]["column"] = "rover.pos", "time (s)"
+        document["imu"]["time"]["offset_s"] = week
+        found = self.found(document)
+        for ours, theirs in zip(found, wanted):  # 1.7e9 s have a resolution of 0.24 us: some micrometres at 10 m/s
+            self.assertEqual(ours["n"], theirs["n"])
+            self.assertAlmostEqual(ours["rms_m"]["value"], theirs["rms_m"]["value"], delta=1e-3 * theirs["rms_m"]["value"])
+
+    def test_fixes_inside_outages_leave_no_trace_in_the_file(self) -> None:
+        document = self.as_csv()
+        places = {name: {**document["gnss"]["columns"][name], "quantity": "reference_position"} for name in ("lat", "lon", "height")}
+        document["reference"] = {"file": "gnss.csv", "time": document["gnss"]["time"], "sd_m": 1.0, "columns": places}
+        document["gnss"]["file"] = "fixes.csv"
+        header = ",".join(samples.DRIVE_GNSS) + "\n"
+        found = []
+        for duration in (10, 20):
+            document["outages"]["duration_s"] = [duration]
+            for left_out in (False, True):
+                rows = [row for row in self.fixes
+                        if not (left_out and any(at < row[0] < at + duration for at in document["outages"]["at"]))]
+                (self.folder / "fixes.csv").write_text(header + text_of(rows, ","))
+                found.append(self.found(document))
+        self.assertEqual(found[0], found[1])
+        self.assertEqual(found[2], found[3])
+        self.assertEqual(found[0][0]["n"], 3)
+
+
+class Spoilt(MadeUpDrive):
+    """Section 8 of the specification: refused with a reason, or survived and counted."""
+
+    def given(self, change: Callable[[dict[str, Any], list[list[float]], list[list[float]]], None]) -> dict[str, Any]:
+        kept = copy.deepcopy((self.readings, self.fixes))
+        document = self.document("imu.csv", "gnss.csv")
+        change(document, self.readings, self.fixes)
+        self.as_csv()
+        self.readings, self.fixes = kept
+        return document
+
+    def test_survived_and_counted(self) -> None:
+        def checked(change: Callable[[dict[str, Any], list[list[float]], list[list[float]]], None]) -> dict[str, Any]:
+            document = self.given(change)
+            self.drive(0, "run", document)
+            return dict(json.loads(self.drive(0, "check", document, "--json")))
+
+        def placeholders(_: dict[str, Any], __: list[list[float]], fixes: list[list[float]]) -> None:
+            for row in fixes[:4]:
+                row[1:4] = [45.0, 45.0, 0.0]
+            fixes[4][1:4] = [0.0, 0.0, 0.0]
+        gnss = checked(placeholders)["facts"]["gnss"]
+        self.assertEqual(gnss["far_away"] + gnss["incomplete"], 5)
+
+        def repeated(_: dict[str, Any], readings: list[list[float]], __: list[list[float]]) -> None:
+            readings[1000][0] = readings[999][0]
+        self.assertGreaterEqual(checked(repeated)["facts"]["imu"]["rows"], 4000)
+
+        def not_a_number(_: dict[str, Any], readings: list[list[float]], fixes: list[list[float]]) -> None:
+            readings[2000][3] = math.nan
+            fixes[50][1] = math.nan
+        self.assertEqual(checked(not_a_number)["facts"]["gnss"]["incomplete"], 1)
+
+        def ends_early(_: dict[str, Any], readings: list[list[float]], __: list[list[float]]) -> None:
+            del readings[4800:]
+        checked(ends_early)
+
+        def over_the_week(document: dict[str, Any], readings: list[list[float]], fixes: list[list[float]]) -> None:
+            for row in readings + fixes:
+                row[0] = (row[0] + 604800.0 - 100.0) % 604800.0
+        checked(over_the_week)
+
+
+@unittest.skipUnless(NAV.exists(), f"SKIPPED: NaveGo's rover, for it is not in {NAV} (set DRIFTLAB_SHARED)")
+class Shared(Folder):
+    def test_navegos_rover_is_read(self) -> None:
+        drive_documents.link(self.folder, NAV / "navego_canada")
+        found = json.loads(self.drive(0, "run", drive_documents.rover(), "--json"))
+        self.assertEqual((found["facts"]["imu"]["rows"], found["facts"]["gnss"]["fixes"]), (73453, 7238))
+        self.assertEqual([duration["n"] for duration in found["durations"]], [30, 19])
+
+    def test_the_fixes_of_kf_gins_are_read(self) -> None:
+        self.assertTrue(Path(NAV / "kfgins" / "GNSS-RTK.txt").exists())
+        document = samples.drive_document("imu", "gnss")
+        readings, _ = samples.drive_csvs()
+        (self.folder / "imu.csv").write_bytes(readings)
+        (self.folder / "gnss.txt").symlink_to(NAV / "kfgins" / "GNSS-RTK.txt")
+        for source, file in (("imu", "imu.csv"), ("gnss", "gnss.txt")):
+            del document[source]["recording"]
+            document[source]["file"] = file
+        document["imu"]["time"]["offset_s"] = 456300.0
+        document["gnss"]["columns"] = {str(i + 1): drive_documents.role("gnss_position", axis, unit)
+                                       for i, (axis, unit) in enumerate((("lat", "deg"), ("lon", "deg"), ("height", "m")))}
+        document["gnss"]["time"]["column"] = "0"
+        facts = json.loads(self.drive(0, "check", document, "--json"))["facts"]["gnss"]
+        self.assertAlmostEqual(facts["rate_hz"], 1.0, places=6)
+
+
+if __name__ == "__main__":
+    unittest.main()
