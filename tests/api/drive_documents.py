@@ -69,6 +69,28 @@ def aircraft() -> dict[str, Any]:
             "model": model(0.1, 0.02, 5e-4, 2e-3, 30)}
 
 
+def rover() -> dict[str, Any]:
+    """NaveGo's structs: a planetary rover with fixes of 5 m at 20 Hz, made from the reference, which is a file of its own."""
+    def triad(name: str, quantity: str, axes: list[str], unit: str) -> dict[str, Any]:
+        return {f"{name}_{suffix}": role(quantity, axis, unit) for suffix, axis in zip("xyz", axes)}
+
+    def place(name: str, kind: str) -> dict[str, Any]:
+        return {f"{name}.lat": role(f"{kind}_position", "lat", "rad"), f"{name}.lon": role(f"{kind}_position", "lon", "rad"),
+                f"{name}.h": role(f"{kind}_position", "height", "m")}
+
+    def time(name: str) -> dict[str, Any]:
+        return {"column": f"{name}.t", "unit": "s", "scale": "boot"}
+    imu, gnss, reference = "imu_planetary", "gnss_planetary", "gnss_planetary_r"
+    return {"id": "navego-canada", "vehicle": "rover",
+            "imu": {"file": f"{imu}.mat", "time": time(imu), "columns": {**triad(f"{imu}.wb", "angular_rate", list("xyz"), "rad/s"),
+                                                                         **triad(f"{imu}.fb", "specific_force", list("xyz"), "m/s^2")}},
+            "gnss": {"file": f"{gnss}.mat", "time": time(gnss), "position_sd_m": [5, 5, 5], "velocity_sd_m_s": [0.1, 0.1, 0.1],
+                     "columns": {**place(gnss, "gnss"), **triad(f"{gnss}.vel", "gnss_velocity", ["north", "east", "down"], "m/s")}},
+            "reference": {"file": f"{reference}.mat", "time": time(reference), "columns": place(reference, "reference"), "sd_m": 0.1},
+            "start": {"heading_deg": 180}, "model": model(0.01, 0.005),
+            "outages": {"duration_s": [10, 30], "every_s": [40, 60], "phases": 4, "settle_s": 60}}
+
+
 def link(folder: Path, recordings: Path) -> None:
     """The files of a recording under their own names in `folder`."""
     for path in recordings.iterdir():
