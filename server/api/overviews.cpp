@@ -64,25 +64,6 @@ bool tells_more(const Fit& fit, const Fit& shown) {
   return rests && axis_summary(fit).at("level") == "look" && axis_summary(shown).at("level") == "fine";
 }
 
-Result<Response> get_counts(ApiContext& context, const Request& request) {
-  const auto since = since_filter(request);
-  const auto counts = context.store.counts();
-  if (!since || !counts) {
-    return fail(since ? counts.error() : since.error());
-  }
-  Json jobs{{"queued", counts->queued}, {"running", counts->running}};
-  if (const std::optional<UtcMicros>& at = *since) {
-    const auto ended = context.store.ended_since(*at);
-    if (!ended) {
-      return fail(ended.error());
-    }
-    jobs["succeeded_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->succeeded}};
-    jobs["failed_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->failed}};
-  }
-  return json_response(
-      200, Json{{"devices", counts->devices}, {"recordings", counts->recordings}, {"jobs", std::move(jobs)}});
-}
-
 /// A result that must be read, with the page of the API that holds what its verdict rests on.
 Json to_json(const Attention& item) {
   const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
@@ -119,6 +100,41 @@ Result<Response> list_attention(ApiContext& context, const Request& request) {
   return list_rows(
       asked, [&](const Page& page) { return context.store.attention(filter, page); },
       [](const Attention& item) { return to_json(item); });
+}
+
+/// Results to read that stand beside the counts: as many as the first page of a day shows.
+constexpr int kMostBesideCounts = 8;
+
+Result<Response> get_counts(ApiContext& context, const Request& request) {
+  const auto include = request.parameter("include");
+  if (include && *include != "attention") {
+    return fail(ErrorCode::InvalidArgument, "What can be included is attention.", {{"parameter", "include"}});
+  }
+  const auto since = since_filter(request);
+  const auto counts = context.store.counts();
+  if (!since || !counts) {
+    return fail(since ? counts.error() : since.error());
+  }
+  Json jobs{{"queued", counts->queued}, {"running", counts->running}};
+  if (const std::optional<UtcMicros>& at = *since) {
+    const auto ended = context.store.ended_since(*at);
+    if (!ended) {
+      return fail(ended.error());
+    }
+    jobs["succeeded_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->succeeded}};
+    jobs["failed_since"] = Json{{"at", rfc3339(*at)}, {"count", ended->failed}};
+  }
+  Json document{{"devices", counts->devices}, {"recordings", counts->recordings}, {"jobs", std::move(jobs)}};
+  if (include) {
+    Request newest = request;
+    newest.query = {{"limit", std::to_string(kMostBesideCounts)}};
+    auto listed = list_attention(context, newest);
+    if (!listed) {
+      return listed;
+    }
+    document["attention"] = stored(listed->body).at("items");
+  }
+  return json_response(200, document);
 }
 
 Result<Response> get_summary(ApiContext& context, const Request& request) {
@@ -180,7 +196,7 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
 }
 
 void add_overview_routes(Router& router, ApiContext& context) {
-  router.add(from_rows({"GET", "/v1/counts", "getCounts", {"since"}, Handler([&](const Request& r) {
+  router.add(from_rows({"GET", "/v1/counts", "getCounts", {"since", "include"}, Handler([&](const Request& r) {
                           return get_counts(context, r);
                         })}));
   router.add(from_rows({"GET",

@@ -158,6 +158,10 @@ class Attention(DaemonTest):
         self.assertEqual(self.items("?since=2999-01-01T00:00:00Z"), [])
         self.problem(400, "invalid_argument", self.daemon.get("/v1/attention?since=x"), parameter="since")
         self.problem(404, "not_found", self.daemon.get("/v1/attention?device=nobody"))
+        beside = self.expect(200, self.daemon.get("/v1/counts?include=attention&since=2999-01-01T00:00:00Z")).json
+        self.assertEqual(beside["attention"], self.daemon.get("/v1/attention?limit=8").json["items"])
+        self.assertNotIn("attention", self.daemon.get("/v1/counts").json)
+        self.problem(400, "invalid_argument", self.daemon.get("/v1/counts?include=devices"), parameter="include")
         self.expect(204, self.daemon.request("DELETE", second.headers["location"], headers={"If-Match": "*"}))
         self.assertEqual(self.items(), found[1:])
         # Trimmed to where it does not wander, the recording fits, and its newest result is what counts.

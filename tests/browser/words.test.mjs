@@ -31,6 +31,15 @@ test('units and conditions are written as in print', async () => {
   assert.equal(conditionName({kind: 'constant_rate', axis: 'x', value: -9, unit: 'deg/s'}, 'z'), '\u22129 deg/s about x');
 });
 
+test('counts agree with their nouns, and moments of other days have a date', async () => {
+  const {plural} = await source('format/words.ts');
+  assert.deepEqual([plural(1, 'gap'), plural(2, 'gap'), plural(0, 'axis', 'axes'), plural(12345, 'sample')], ['1 gap', '2 gaps', '0 axes', '12\u202f345 samples']);
+  const {writeMoment} = await source('format/time.ts');
+  const now = new Date('2026-11-23T12:00:00Z');
+  assert.equal(writeMoment('2026-11-23T07:24:51Z', now), '07:24:51');
+  assert.equal(writeMoment('2026-11-22T07:24:51Z', now), '22 Nov 2026 07:24:51');
+});
+
 test('equal decades are equal, and a slope of -1/2 looks like one', async () => {
   const {layout} = await source('figure/layout.ts');
   const x = [0.01, 0.1, 1, 10, 100];

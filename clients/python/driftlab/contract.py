@@ -1123,6 +1123,8 @@ class Fit(TypedDict):
     bounds_active: NotRequired[list[str]]
     intervals: NotRequired[FitModelFitIntervals]
     plausible: NotRequired[bool]
+    distance_2p: NotRequired[float]
+    closest: NotRequired[bool]
     j_test: FitModelFitJTest | None
     verdict: NotRequired[FitModelFitVerdict]
     described_within: NotRequired[float | None]
@@ -1154,6 +1156,12 @@ class FitModelFit(TypedDict):
     bounds_active: NotRequired[list[str]]
     # How the parameters' intervals were made.
     intervals: NotRequired[Literal['profile', 'sandwich', 'bootstrap']]
+    # Twice the number of parameters more than the distance (objective, under the covariance that ranks), above the
+    # least of all candidates. A model within 6 is plausible: the order by `wic`, which weighs parameters more, may rank
+    # first a model that is not.
+    distance_2p: NotRequired[float]
+    # The candidate with the least `distance_2p`.
+    closest: NotRequired[bool]
     # In the set of models that the data cannot tell apart from the best.
     plausible: NotRequired[bool]
     # The test of over-identifying restrictions; null where the model leaves no degrees of freedom.
@@ -1186,6 +1194,8 @@ class FitProcess(TypedDict):
 class GetCountsAnswer(TypedDict):
     devices: int
     recordings: int
+    # Only with `include=attention`.
+    attention: NotRequired[list[Attention]]
     jobs: GetCountsAnswerJobs
 
 
@@ -2134,6 +2144,8 @@ class OutageEvaluation(TypedDict):
     attribution: OutageEvaluationAttribution | None
     claims: list[OutageEvaluationClaim]
     trajectory: OutageEvaluationPath
+    # Of the truth, one for each outage; those of the filters are in their outages.
+    tracks: NotRequired[list[OutageEvaluationTrack]]
     # What stored simulation models say that the scenario does not hold: effects, and biases that a filter is not told.
     left_out: NotRequired[list[OutageEvaluationLeftOutItem]]
 
@@ -2210,6 +2222,8 @@ class OutageEvaluationOutage(TypedDict):
     mean_error_m: OutageEvaluationOutageMeanErrorM
     predicted: OutageEvaluationMoments
     actual: OutageEvaluationMoments
+    # Where the filter believed to be in the first run.
+    track: NotRequired[OutageEvaluationTrack]
     # Estimate minus truth in single runs, at most 200.
     errors: OutageEvaluationOutageErrors
 
@@ -2285,6 +2299,16 @@ class OutageEvaluationSummary(TypedDict):
 
 class OutageEvaluationSummaryJob(TypedDict):
     href: str
+
+
+class OutageEvaluationTrack(TypedDict):
+    """Ten points a second from 10 s before an outage to 10 s after it, metres from the start of the drive; shorter at
+    its ends. Absent from evaluations of before it was kept."""
+
+    start_s: float | None
+    rate_hz: float
+    north_m: list[float | None]
+    east_m: list[float | None]
 
 
 class OutageScenario(TypedDict):
@@ -3880,7 +3904,7 @@ OPERATIONS: dict[str, Operation] = {
     'getSchema': Operation(
         'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
     'getCounts': Operation(
-        'GET', '/v1/counts', ('since',), (), ('application/json',)),
+        'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
     'listAttention': Operation(
         'GET', '/v1/attention', ('limit', 'cursor', 'sort', 'device', 'since'), (), ('application/json',)),
     'search': Operation(

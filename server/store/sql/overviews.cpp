@@ -31,8 +31,8 @@ std::optional<std::string> some(const std::string& text) {
 }
 
 Attention read_attention(const Statement& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4),
-          row.text(5), row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)};
+  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4),    row.text(5),
+          row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)};
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ export interface Recording {
 
 export interface ProcessEstimate { process: string; params: Record<string, Quantity | null>; reasons?: Record<string, string> }
 export interface ModelFit {
-  model: string; robust: boolean; processes: ProcessEstimate[]; wic: number | null; plausible?: boolean; status: string; warnings: string[];
+  model: string; robust: boolean; processes: ProcessEstimate[]; wic: number | null; plausible?: boolean; distance_2p?: number; closest?: boolean; status: string; warnings: string[];
   j_test: {statistic: number | null; dof: number | null; p: number | null} | null; intervals?: string; bounds_active?: string[];
 }
 export interface Equivalent { convention: string; value: number; unit: string; ci95: Ends }
@@ -76,5 +76,5 @@ export interface Job {
   result: {href: string} | null; problem: StoredProblem | null; failed_attempts: StoredProblem[];
 }
 export interface CountSince { at: string; count: number }
-export interface Counts { devices: number; recordings: number; jobs: {queued: number; running: number; succeeded_since?: CountSince; failed_since?: CountSince} }
+export interface Counts { devices: number; recordings: number; attention?: Attention[]; jobs: {queued: number; running: number; succeeded_since?: CountSince; failed_since?: CountSince} }
 export interface Attention { id: string; level: string; verdict: string; kind: string; job: string; device_name: string | null; recording: string | null; channel: string | null; created_at: string; href: string }

@@ -72,15 +72,15 @@ function NoteMark({note, place, lift}: {note: Note; place: Area; lift: number}):
 }
 
 function Keys({plan}: {plan: Layout}): JSX.Element {
-  const {areas, keyBelow, keyLeft, width} = plan;
+  const {areas, keyBelow, keyLeft, keyWidth, width} = plan;
   const last = areas[areas.length - 1];
-  const columns = Math.max(1, Math.floor(width / 190));
+  const columns = Math.max(1, Math.floor(width / keyWidth));
   let count = 0;
   return <g>{areas.map(place => {
     let y = place.top + 12;
     return place.plot.series.filter(series => !series.hidden && !series.noKey).map(series => {
       const index = count++;
-      const sampleX = keyBelow ? (index % columns) * 190 : keyLeft;
+      const sampleX = keyBelow ? (index % columns) * keyWidth : keyLeft;
       const sampleY = keyBelow ? (last?.foot ?? 0) + 12 + Math.floor(index / columns) * 18 : y;
       y += series.detail ? 40 : 26;
       return <g key={series.id}>

@@ -102,6 +102,7 @@ export function defaultReadout(plot: Plot, x: number): JSX.Element {
 }
 
 const SAY_MS = 500;
+const PAPER_HEIGHT = 0.6;
 
 export function Figure(props: FigureProps): JSX.Element {
   const {plots, name, title} = props;
@@ -112,7 +113,8 @@ export function Figure(props: FigureProps): JSX.Element {
   const [over, setOver] = useState<number | null>(null);
   const [drag, setDrag] = useState<[number, number] | null>(null);
   const svg = useRef<SVGSVGElement>(null);
-  const plan = useMemo(() => layout(plots, Math.max(width, 280)), [plots, width]);
+  const onPaper = document.documentElement.classList.contains('paper');  // which changes the width, so that this is read again
+  const plan = useMemo(() => layout(plots, Math.max(width, 280), onPaper ? PAPER_HEIGHT : 1), [plots, width, onPaper]);
   const xs = useMemo(() => snapping(plots), [plots]);
   const log = plots[0]?.x.scale === 'log';
   const given = props.cursor ?? null;

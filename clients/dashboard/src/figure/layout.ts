@@ -12,7 +12,7 @@ export interface Area {
   foot: number;          // lowest pixel that belongs to it
 }
 
-export interface Layout { width: number; height: number; areas: Area[]; keyBelow: boolean; keyLeft: number }
+export interface Layout { width: number; height: number; areas: Area[]; keyBelow: boolean; keyLeft: number; keyWidth: number }
 
 const LEFT = 58;
 const KEY = 152;
@@ -20,6 +20,8 @@ const NARROW = 600;
 const LEAST_EQUAL = 240;
 const MOST_EQUAL = 900;
 const KEY_LINE = 18;
+const KEY_SAMPLE = 34;  // the stroke before a name
+const KEY_LETTER = 7.2;
 
 function extent(lists: Numbers[], log: boolean): [number, number] {
   let low = Infinity;
@@ -96,24 +98,23 @@ function domainY(plot: Plot, x: [number, number]): [number, number] {
   return padded(range, log, 0.05);
 }
 
-function keyLines(plots: readonly Plot[]): number {
-  return plots.reduce((sum, plot) => sum + drawn(plot).filter(series => !series.noKey).length, 0);
-}
-
-export function layout(plots: readonly Plot[], width: number): Layout {
-  const keys = keyLines(plots);
+// `share` of the heights that plots ask for: paper has room for less than a screen.
+export function layout(plots: readonly Plot[], width: number, share = 1): Layout {
+  const keyed = plots.flatMap(drawn).filter(series => !series.noKey);
+  const keys = keyed.length;
   const keyBelow = width < NARROW || keys === 0;
+  const keyWidth = Math.max(...keyed.map(series => KEY_SAMPLE + KEY_LETTER * series.name.length), 100);
   const right = keyBelow ? width - 8 : width - KEY;
   const x = domainX(plots);
   let top = 0;
   const areas: Area[] = [];
   for (const plot of plots) {
     const y = domainY(plot, x);
-    let height = plot.height ?? 220;
+    let height = share * (plot.height ?? 220);
     if (plot.equalDecades) {
       const perDecade = (right - LEFT) / Math.log10(x[1] / x[0]);
       height = perDecade * Math.log10(y[1] / y[0]);
-      const wanted = Math.min(Math.max(height, LEAST_EQUAL), MOST_EQUAL);
+      const wanted = Math.min(Math.max(height, share * LEAST_EQUAL), MOST_EQUAL);
       const more = 10 ** ((wanted - height) / perDecade / 2);
       y[0] /= more;
       y[1] *= more;
@@ -125,6 +126,6 @@ export function layout(plots: readonly Plot[], width: number): Layout {
     areas.push({plot, x: makeScale(plot.x, x, LEFT, right), y: makeScale(plot.y, y, areaBottom, areaTop), left: LEFT, right, top: areaTop, bottom: areaBottom, foot});
     top = foot;
   }
-  const columns = Math.max(1, Math.floor(width / 190));
-  return {width, height: top + (keyBelow && keys > 0 ? Math.ceil(keys / columns) * KEY_LINE + 6 : 0), areas, keyBelow, keyLeft: width - KEY + 14};
+  const columns = Math.max(1, Math.floor(width / keyWidth));
+  return {width, height: top + (keyBelow && keys > 0 ? Math.ceil(keys / columns) * KEY_LINE + 6 : 0), areas, keyBelow, keyLeft: width - KEY + 14, keyWidth};
 }

@@ -17,6 +17,12 @@ export function writeClock(at: string): string {
   return new Date(at).toISOString().slice(11, 19);
 }
 
+// 07:24:51 today, 22 Nov 2026 07:24:51 else.
+export function writeMoment(at: string, now: Date = new Date()): string {
+  const when = writeWhen(at, now);
+  return when.includes(':') ? writeClock(at) : `${when} ${writeClock(at)}`;
+}
+
 export const writeFull = (at: string): string => `${new Date(at).toISOString().replace('T', ' ').slice(0, 19)} UTC`;
 
 export function writeToday(now: Date): string {

@@ -1,4 +1,5 @@
 // Names of the field, in print: what the API writes in ASCII and snake_case never reaches a page.
+import {writeCount} from './number';
 
 const PROCESSES: Record<string, string> = {
   white_noise: 'white noise', gauss_markov: 'Gauss-Markov', random_walk: 'random walk', linear_drift: 'drift',
@@ -68,7 +69,7 @@ export function modelWords(model: string): string {
 // A sentence of the API as it is printed: units and minus signs of the field.
 export const writeSentence = (text: string): string => writeUnit(text).replace(/(^|[\s[(])-(?=\d)/g, '$1\u2212');
 
-export const plural = (n: number, one: string, many = `${one}s`): string => `${n} ${n === 1 ? one : many}`;
+export const plural = (n: number, one: string, many = `${one}s`): string => `${writeCount(n)} ${n === 1 ? one : many}`;
 const COUNTS = ['no', 'one', 'two', 'three', 'four', 'five', 'six', 'seven', 'eight', 'nine', 'ten', 'eleven', 'twelve'];
 export const countWord = (n: number): string => COUNTS[n] ?? String(n);
 

@@ -3,7 +3,7 @@ import type {JSX} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
 import {Problem, send, useRead} from '../api/client';
 import type {Counts, Job, List} from '../api/documents';
-import {writeClock, writeDuration, writeWhen} from '../format/time';
+import {writeClock, writeDuration, writeMoment} from '../format/time';
 import {capital, jobKind, plural} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
@@ -108,7 +108,7 @@ export default function Jobs(): JSX.Element {
           <td class="desk-only" style={{width: '38%'}}><Clock job={job} from={from} to={to} /></td>
           <td class="n">{job.state === 'succeeded' ? <a href={resultPage(job)}>Result</a> : <Cancel job={job} onDone={read.again} />}</td>
         </tr>)}
-        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeWhen(new Date(from).toISOString())} {writeClock(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
+        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
         </tbody>
       </table></div>}</Shown>
       {(read.data?.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{read.data?.next_cursor && <button type="button" class="btn" onClick={() => choose({after: read.data!.next_cursor})}>Older</button>}</p>}

@@ -1,5 +1,6 @@
 // The lab: what must be read today, what runs, and whether each device is like its siblings.
 import type {JSX} from 'preact';
+import {useState} from 'preact/hooks';
 import {useRead} from '../api/client';
 import type {Attention, AxisSummary, Counts, Device, Job, List} from '../api/documents';
 import {writeTick, writeQuantity} from '../format/number';
@@ -17,6 +18,7 @@ import {EmptyLab} from './EmptyLab';
 const MARKS: Record<string, Mark> = {x: 'dot', y: 'square', z: 'triangle'};
 const PAGE = 50;
 const SHOWN = 8;
+const SEEN = 'driftlab-seen';  // until when results to read were marked as seen, in this browser alone
 
 interface Item { who: string; href: string; text: string; at: string; bad: boolean }
 
@@ -36,11 +38,11 @@ function toRead(attention: readonly Attention[], jobs: readonly Job[]): Item[] {
   return items.sort((a, b) => a.at < b.at ? 1 : -1).slice(0, SHOWN);
 }
 
-function opening(counts: Counts, wants: number): string {
+function opening(counts: Counts, wants: number, seen: boolean): string {
   const results = counts.jobs.succeeded_since?.count ?? 0;
   const failed = counts.jobs.failed_since?.count ?? 0;
   const made = results === 0 ? 'No result today' : `${capital(countWord(results))} result${results === 1 ? '' : 's'} today`;
-  return `${made}, ${failed === 0 ? 'none' : countWord(failed)} failed. ${wants === 0 ? 'Nothing wants a look.' : `${capital(countWord(wants))}${wants >= SHOWN ? ' or more' : ''} want${wants === 1 ? 's' : ''} a look.`}`;
+  return `${made}, ${failed === 0 ? 'none' : countWord(failed)} failed. ${wants === 0 ? seen ? 'Nothing new wants a look.' : 'Nothing wants a look.' : `${capital(countWord(wants))}${wants >= SHOWN ? ' or more' : ''} want${wants === 1 ? 's' : ''} a look.`}`;
 }
 
 interface Scale { (value: number): number; ticks: number[] }
@@ -125,22 +127,26 @@ function Running({jobs}: {jobs: readonly Job[]}): JSX.Element {
 export default function Lab(): JSX.Element {
   const {query} = usePlace();
   useTitle('Lab');
-  const counts = useRead<Counts>(`/v1/counts?since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 5000);
+  const counts = useRead<Counts>(`/v1/counts?include=attention&since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 5000);
   const after = query.get('after');
   const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=${PAGE}${after ? `&cursor=${after}` : ''}`);
   const jobs = useRead<List<Job>>('/v1/jobs?sort=-created_at&limit=50', 3000);
-  const attention = useRead<List<Attention>>(`/v1/attention?limit=${SHOWN}`, 5000);
   if (devices.data?.items.length === 0 && !after) return <EmptyLab />;
   const list = devices.data?.items ?? [];
   const recent = jobs.data?.items ?? [];
-  const wants = toRead(attention.data?.items ?? [], recent);
-  const known = attention.data && jobs.data;
+  const [seen, setSeen] = useState(() => localStorage.getItem(SEEN) ?? '');
+  const all = toRead(counts.data?.attention ?? [], recent);
+  const wants = all.filter(item => item.at > seen);
+  const mark = (until: string): void => { localStorage.setItem(SEEN, until); setSeen(until); };
+  const known = counts.data && jobs.data;
   return <>
     <Head title="Lab" facts={[counts.data && plural(counts.data.devices, 'device'), counts.data && plural(counts.data.recordings, 'recording'), writeToday(new Date())]} actions={<a class="btn" href="/record">Record this phone</a>} />
-    {counts.data && known && <p class="verdict">{opening(counts.data, wants.length)}</p>}
+    {known && counts.data && <p class="verdict">{opening(counts.data, wants.length, all.length > 0)}</p>}
     <div class="grid wide-side">
-      <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}>
-        {!known ? <Hairlines /> : wants.length === 0 ? <p class="sec">Nothing. Every newest result is fine, and no job failed.</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
+      <Panel title="Wants a look" sub={wants.length > 0 ? `newest ${wants.length}` : ''}
+        tools={all.length > 0 && <div class="tools">{wants.length > 0 ? <button type="button" class="quiet" onClick={() => mark(wants[0]!.at)}>Mark all seen</button>
+          : <button type="button" class="quiet" onClick={() => mark('')}>Show what was seen</button>}</div>}>
+        {!known ? <Hairlines /> : wants.length === 0 ? <p class="sec">{all.length > 0 ? 'Nothing that was not seen.' : 'Nothing. Every newest result is fine, and no job failed.'}</p> : <ul class="rows">{wants.map(item => <li key={item.href}>
           <span class="nowrap"><span class={`g ${item.bad ? 'bad' : 'warn'}`} aria-hidden="true">{item.bad ? '✗' : '△'} </span><b>{item.who}</b></span>
           <span class="grow"><a href={item.href}>{item.text}</a></span><span class="dim nowrap">{writeWhen(item.at)}</span></li>)}</ul>}
       </Panel>

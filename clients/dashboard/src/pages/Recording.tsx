@@ -7,7 +7,7 @@ import {useEvents} from '../api/events';
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
 import {writeDuration} from '../format/time';
 import {unitsFor} from '../format/units';
-import {capital, conditionName, sensorOf, writeUnit} from '../format/words';
+import {capital, conditionName, plural, sensorOf, writeUnit} from '../format/words';
 import {curlOf, defaultReadout, Figure} from '../figure/Figure';
 import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
@@ -20,20 +20,20 @@ import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Sid
 import {Leftover} from './recording/Leftover';
 import {Shape} from './recording/Shape';
 import {Signal} from './recording/Signal';
-import {Spectrum} from './recording/Spectrum';
+import {Spectrum, SpectrumMethod} from './recording/Spectrum';
 
 const SENSORS = ['angular_rate', 'specific_force'];
 
 export function qualityWords(recording: Recording): string {
   const {quality} = recording;
   const faults: string[] = [];
-  if (quality.gaps > 0) faults.push(`${quality.gaps} gap${quality.gaps === 1 ? '' : 's'}`);
+  if (quality.gaps > 0) faults.push(plural(quality.gaps, 'gap'));
   const sum = (pick: (c: NonNullable<Recording['quality']['channels']>[number]) => number): number => (quality.channels ?? []).reduce((total, channel) => total + pick(channel), 0);
   const frozen = sum(c => c.frozen);
   const saturated = sum(c => c.saturated);
   const missing = sum(c => c.missing + c.implausible);
-  if (missing > 0) faults.push(`${writeCount(missing)} values missing`);
-  if (frozen > 0) faults.push(`${writeCount(frozen)} samples frozen`);
+  if (missing > 0) faults.push(`${plural(missing, 'value')} missing`);
+  if (frozen > 0) faults.push(`${plural(frozen, 'sample')} frozen`);
   if (saturated > 0) faults.push(`${writeCount(saturated)} at full scale`);
   return faults.length > 0 ? faults.join(', ') : 'no gaps, no frozen stretch';
 }
@@ -88,7 +88,7 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
   };
   const path = `/v1/recordings/${recording.id}/characterisation?channel=${encodeURIComponent(c.channel)}`;
   const lastEdf = c.allan.edf?.[c.allan.edf.length - 1];
-  return <div class="grid main-side">
+  return <><div class="grid main-side evidence">
     <div class="stack">
       <Figure name={`${recording.metadata.id ?? recording.id}-${c.axis ?? c.channel}-${curve}`} title={curve === 'allan' ? 'Allan deviation' : 'Haar wavelet deviation'}
         controls={<Segments label="Curve" options={[['allan', 'Allan'], ['haar', 'Haar wavelet']] as const} value={curve} onChange={value => choose({curve: value === 'allan' ? null : value})} />}
@@ -97,7 +97,7 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
         describe={describe(c, fit, unit, curve)} plots={plots} cursor={tau} onCursor={point}
         readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}<span>{writeUnit(unit)}</span></>}
         source={`driftlab, ${recording.id} ${c.channel}, algorithm ${result.algorithm_version}, seed ${result.parameters.seed ?? 1}`} curl={curlOf(path)} how={() => <How result={result} channel={channel} />}
-        note={<>Equal decades on both axes, so that a slope of −½ looks like one.{lastEdf ? ` The last point has ${writeNumber(lastEdf, 2)} equivalent degrees of freedom; its interval says so.` : ''}{chosen > 0 && other.problem ? ` ${other.problem.document.detail}` : ''}</>} />
+        note={<><span class="no-print">Equal decades on both axes, so that a slope of −½ looks like one.</span>{lastEdf ? ` The last point has ${writeNumber(lastEdf, 2)} equivalent degrees of freedom; its interval says so.` : ''}{chosen > 0 && other.problem ? ` ${other.problem.document.detail}` : ''}</>} />
       <Spectrum recording={recording} channel={c} fit={fit} implied={implied} unit={unit} components={shown.components} tau={tau} onTau={point} />
       <Leftover recording={recording} channel={c} fit={fit} fitId={channel.fit_ids[chosen]} />
       <div class="grid two no-top">
@@ -111,7 +111,8 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
       <Ieee channel={c} />
       <Shape recording={recording} channel={c} />
     </div>
-  </div>;
+  </div>
+  <div class="print-only method foot"><How result={result} channel={channel} /><SpectrumMethod /></div></>;
 }
 
 function Body({recording}: {recording: Recording}): JSX.Element {

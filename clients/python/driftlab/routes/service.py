@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from ..contract import Attention, ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
 from .base import PAGE, Routes, Sort, operation
@@ -30,9 +30,10 @@ class ServiceRoutes(Routes):
         return self._text("metrics", "text/plain")
 
     @operation("getCounts")
-    def counts(self, *, since: str | None = None) -> GetCountsAnswer:
-        """How many devices and recordings there are, and jobs that live; with `since` (RFC 3339) jobs that ended from then on."""
-        return cast(GetCountsAnswer, self._get("getCounts", None, {"since": since}))
+    def counts(self, *, since: str | None = None, include: Literal["attention"] | None = None) -> GetCountsAnswer:
+        """How many devices and recordings there are, and jobs that live; with `since` (RFC 3339) jobs that ended from then on, with
+        `include` also the newest results that must be read first."""
+        return cast(GetCountsAnswer, self._get("getCounts", None, {"since": since, "include": include}))
 
     @operation("listAttention")
     def attention(self, *, device: str | None = None, since: str | None = None, sort: Sort | None = None,

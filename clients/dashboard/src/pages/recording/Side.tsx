@@ -52,11 +52,12 @@ export function Ranking({fits, chosen, onChoose}: {fits: readonly ModelFit[]; ch
   const width = 250;
   const x = (value: number): number => 8 + symlog(value) / symlog(most) * (width - 74);
   const ticks = [0, 6, 30, 100, 300, 1000, 3000, 10000].filter(tick => tick <= most);
-  const closest = fits.findIndex(fit => fit.plausible);
+  const closest = fits.findIndex(fit => fit.closest ?? fit.plausible);
+  const behind = fits[0]?.distance_2p;
   return <Panel title="Ranking" sub={`${fits.length} candidates`}>
     <div class="row u"><span style={{width: '142px'}}>model</span><span>criterion above the best</span></div>
     {fits.map((fit, i) => <button key={`${fit.model}${fit.robust}`} type="button" class="model-row" aria-pressed={i === chosen} onClick={() => onChoose(i)}>
-      <span>{fit.model}<span class="visually-hidden">, {above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, {fit.plausible ? 'plausible' : 'ruled out'}{fit.status === 'collapsed' ? ', a component vanished' : ''}, J test {writeP(fit.j_test?.p)}</span></span><span class="u" aria-hidden="true">{fit.status === 'collapsed' ? '∅' : ''}</span>
+      <span>{fit.model}<span class="visually-hidden">, {above[i] === null ? 'no criterion' : `${writeNumber(above[i])} above the best`}, {fit.plausible ? 'plausible' : 'ruled out'}{fit.distance_2p === undefined ? '' : `, ${writeNumber(fit.distance_2p)} further from the data than the closest`}{fit.status === 'collapsed' ? ', a component vanished' : ''}, J test {writeP(fit.j_test?.p)}</span></span><span class="u" aria-hidden="true">{fit.status === 'collapsed' ? '∅' : ''}</span>
       <svg viewBox={`0 0 ${width} 26`} width="100%" height="26" preserveAspectRatio="xMinYMid meet" aria-hidden="true">
         {ticks.map(tick => <line key={tick} class="gr" x1={x(tick)} x2={x(tick)} y1="0" y2="26" />)}
         {above[i] !== null && <circle cx={x(above[i]!)} cy="13" r="4" fill={fit.plausible ? 'var(--model)' : 'var(--surface)'} stroke={fit.plausible ? 'var(--model)' : 'var(--ink3)'} stroke-width="1.5" />}
@@ -64,8 +65,8 @@ export function Ranking({fits, chosen, onChoose}: {fits: readonly ModelFit[]; ch
       </svg>
     </button>)}
     <div class="model-row" aria-hidden="true"><span /><span /><svg viewBox={`0 0 ${width} 16`} width="100%" height="16" preserveAspectRatio="xMinYMid meet">{ticks.map(tick => <text key={tick} class="s" x={x(tick)} y="12" text-anchor="middle">{tick}</text>)}</svg></div>
-    <p class="note">● plausible: the data cannot tell it from the best · ○ ruled out · ∅ a component vanished. A click draws the model.</p>
-    {closest > 0 && !fits[0]!.plausible && <p class="note">Ranked first by the criterion; {fits[closest]!.model} is closer to the data.</p>}
+    <p class="note">● plausible: the data cannot tell it from the best · ○ ruled out · ∅ a component vanished.<span class="no-print"> A click draws the model.</span></p>
+    {closest > 0 && !fits[0]!.plausible && <p class="note">Ranked first by the criterion; {fits[closest]!.model} is closer to the data{behind ? `, by ${writeNumber(behind)} in distance + 2p, of which 6 are chance` : ''}.</p>}
   </Panel>;
 }
 
@@ -98,7 +99,7 @@ export function FilePanel({recording, result}: {recording: Recording; result?: C
       <tr><th scope="row">format</th><td>{file.format ?? '–'}{file.compression && file.compression !== 'none' ? `, ${file.compression}` : ''}{file.bytes ? `, ${writeBytes(file.bytes)}` : ''}</td></tr>
       {file.rows && <tr><th scope="row">rows</th><td>{writeCount(file.rows)}</td></tr>}
       {file.columns && <tr><th scope="row">columns</th><td><code>{file.columns.slice(0, 12).join(', ')}{file.columns.length > 12 ? ' …' : ''}</code></td></tr>}
-      <tr><th scope="row">SHA-256</th><td><button type="button" class="link" onClick={() => copy(file.sha256, 'The hash is')}><code>{file.sha256.slice(0, 16)}…</code></button></td></tr>
+      <tr><th scope="row">SHA-256</th><td><button type="button" class="link no-print" onClick={() => copy(file.sha256, 'The hash is')}><code>{file.sha256.slice(0, 16)}…</code></button><code class="print-only">{file.sha256}</code></td></tr>
       <tr><th scope="row">uploaded</th><td>{writeFull(recording.created_at)}, revision {recording.revision}</td></tr>
       {result && <tr><th scope="row">characterised</th><td>{writeFull(result.created_at)}, algorithm {result.algorithm_version}, seed {result.parameters.seed ?? 1}, <a href={`/jobs/${result.job}`}>job</a></td></tr>}
     </tbody></table>

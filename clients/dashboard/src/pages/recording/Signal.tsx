@@ -33,7 +33,7 @@ export function Signal({recording, column, quantity}: {recording: Recording; col
   const trace = read.data;
   const stretch = (trace.time_s[trace.time_s.length - 1] ?? 0) - (trace.time_s[0] ?? 0);
   return <Figure name={`${recording.metadata.id ?? recording.id}-signal`} title="Signal"
-    sub={<>{trace.samples_per_bucket === 1 ? `${trace.time_s.length} samples` : `least and greatest of every ${writeDuration(trace.samples_per_bucket / (trace.rate_hz ?? 1))}`}{from && to ? <>, {writeDuration(stretch)} of {writeDuration(trace.duration_s ?? 0)} <button type="button" class="link" onClick={() => choose({t0: null, t1: null})}>Show all</button></> : ', drag to enlarge'}</>}
+    sub={<>{trace.samples_per_bucket === 1 ? `${trace.time_s.length} samples` : `least and greatest of every ${writeDuration(trace.samples_per_bucket / (trace.rate_hz ?? 1))}`}{from && to ? <>, {writeDuration(stretch)} of {writeDuration(trace.duration_s ?? 0)} <button type="button" class="link" onClick={() => choose({t0: null, t1: null})}>Show all</button></> : <span class="no-print">, drag to enlarge</span>}</>}
     describe={`${sensorOf(quantity)} reading in ${writeUnit(trace.unit)} over ${writeDuration(stretch)}.`} plots={plots} source={`driftlab, ${recording.id} revision ${recording.revision}`} curl={curlOf(path)}
     onZoom={(a, b) => choose({t0: a.toPrecision(7), t1: b.toPrecision(7)})} />;
 }

@@ -40,6 +40,10 @@ function spectrumPlots(spectrum: SpectrumDocument, fit: ModelFit | undefined, im
   return [{id: 'spectrum', height: 240, x: {scale: 'log', name: 'frequency, Hz', domain: [spectrum.f_hz[0] ?? 1e-3, spectrum.f_hz[spectrum.f_hz.length - 1] ?? 1]}, y: {scale: 'log', name: `two-sided density, (${writeUnit(unit)})²/Hz`, domain, write: writePower}, series: [measured, ...model, ...parts, greatest]}];
 }
 
+export function SpectrumMethod(): JSX.Element {
+  return <p>Spectrum: five sine tapers over the whole record, or over segments of 2²⁰ samples, averaged in bins of equal width in the logarithm of frequency. The interval is chi-square, for Gaussian noise. A line stands out in the greatest ordinate of its bin long before the mean of the bin rises.</p>;
+}
+
 interface SpectrumProps {
   recording: Recording;
   channel: Channel;
@@ -64,5 +68,5 @@ export function Spectrum({recording, channel, fit, implied, unit, components, ta
     plots={plots} cursor={tau ? 1 / (2 * tau) : null} onCursor={(f, pinned) => onTau(f === null ? null : 1 / (2 * f), pinned)}
     readout={f => <><b>f {writeNumber(f, 4)} Hz</b>{defaultReadout(plots[0]!, f)}<span>({writeUnit(unit)})²/Hz</span></>} quietReadout={<span>Move over the figure: the Allan deviation shows the same place.</span>}
     source={`driftlab, ${recording.id} ${channel.channel}, revision ${recording.revision}`} curl={curlOf(path)}
-    how={() => <><p>Five sine tapers over the whole record, or over segments of 2²⁰ samples, averaged in bins of equal width in the logarithm of frequency. The interval is chi-square, for Gaussian noise. A line stands out in the greatest ordinate of its bin long before the mean of the bin rises.</p><dl><dt>samples</dt><dd>{writeCount(spectrum.samples)}</dd><dt>segments</dt><dd>{spectrum.segments} of {writeCount(spectrum.segment_samples)} samples</dd><dt>taper</dt><dd>{spectrum.window}</dd></dl></>} />;
+    how={() => <><SpectrumMethod /><dl><dt>samples</dt><dd>{writeCount(spectrum.samples)}</dd><dt>segments</dt><dd>{spectrum.segments} of {writeCount(spectrum.segment_samples)} samples</dd><dt>taper</dt><dd>{spectrum.window}</dd></dl></>} />;
 }

@@ -1,0 +1,41 @@
+#pragma once
+/// What every report is written in: the page around it, and paragraphs, lists, tables and figures of HTML. Whatever a
+/// document holds is text there. Internal to schema/json.
+#include "schema/json/json.hpp"
+
+#include <string>
+#include <vector>
+
+namespace driftlab::page {
+
+/// A whole page that prints on A4: the style is in it, and nothing else is asked for.
+[[nodiscard]] std::string framed(const std::string& title, const std::string& body);
+
+/// `text` with the characters of markup written out.
+[[nodiscard]] std::string html(const std::string& text);
+
+/// The sentence that a report begins with; nothing where there is none.
+[[nodiscard]] std::string verdict_html(const std::string& sentence);
+
+/// The sign of a level: fine, wrong, or to be looked at.
+[[nodiscard]] std::string mark_of(const std::string& level);
+
+/// The members of a list that are text; nothing where there are none.
+[[nodiscard]] std::string list_html(const Json& sentences);
+
+/// Every figure of the document under its title.
+[[nodiscard]] std::string figures_html(const Json& document);
+
+[[nodiscard]] std::string row_html(const std::vector<std::string>& cells, const char* tag = "td");
+
+/// A table under its heading; nothing without rows.
+[[nodiscard]] std::string table_html(const std::string& heading, const std::vector<std::string>& columns,
+                                     const std::string& rows);
+
+/// A member that is a text; empty where it is null or absent.
+[[nodiscard]] std::string text_of(const Json& object, const char* member);
+
+/// Members of a list, joined by commas.
+[[nodiscard]] std::string with_commas(const Json& words);
+
+}  // namespace driftlab::page

@@ -1,0 +1,123 @@
+/// The report of an investigation: verdict, findings, figures, checks, the extended model and what was not examined.
+#include "core/signal/significant.hpp"
+#include "schema/figure/drawing.hpp"
+#include "schema/json/figure_values.hpp"
+#include "schema/json/report/bodies.hpp"
+#include "schema/json/report/html.hpp"
+
+namespace driftlab::page {
+namespace {
+
+std::string parameters_of(const Json& params) {
+  std::string text;
+  for (const auto& [name, value] : params.items()) {
+    if (value.is_object() && value.value("value", Json(nullptr)).is_number()) {
+      text += (text.empty() ? "" : "; ") + name + " = " + quantity_text(value);
+    }
+  }
+  return text;
+}
+
+std::string finding_html(const Json& finding) {
+  const auto status = text_of(finding, "status");
+  const std::string others = with_commas(finding.value("alternatives", Json::array()));
+  std::string text = "<section>\n<h2>" + html(finding.value("title", finding.at("cause").get<std::string>())) +
+                     "</h2>\n<p>" + html(text_of(finding, "explanation")) + "</p>\n";
+  text += "<p class=\"meta\">" + html(finding.at("cause").get<std::string>()) + ", " +
+          html(status + (others.empty() ? "" : ": or " + others)) + "; " +
+          html(with_commas(finding.value("channels", Json::array()))) + "</p>\n";
+  std::string rows;
+  const Json parameters = finding.value("parameters", Json::object());
+  for (const auto& [name, value] : parameters.items()) {
+    if (!value.is_object() || !value.value("value", Json(nullptr)).is_number()) {
+      continue;
+    }
+    const Json ci95 = value.value("ci95", Json(nullptr));
+    const bool bounded = ci95.is_array() && ci95.size() == 2 && ci95[0].is_number() && ci95[1].is_number();
+    const double low = bounded ? ci95[0].get<double>() : 0.0;
+    const double high = bounded ? ci95[1].get<double>() : 0.0;
+    rows += row_html({name, quantity_text(value),
+                      bounded ? significant(low, low, high) + " to " + significant(high, low, high) : ""});
+  }
+  return text +
+         (rows.empty() ? ""
+                       : "<table>" + row_html({"parameter", "estimate", "95 % interval"}, "th") + rows + "</table>\n") +
+         "</section>\n";
+}
+
+/// Checks that failed before or after, then how many there were.
+std::string checks_html(const Json& checks) {
+  std::string rows;
+  for (const Json& check : checks) {
+    const bool before = check.value("failed", false);
+    const bool after = check.value("failed_after", false);
+    if (before || after) {
+      const auto chance = [&](const char* member) {
+        const Json p = check.value(member, Json(nullptr));
+        return p.is_number() ? figure::tick_text(p.get<double>()) : std::string("not made");
+      };
+      const Json end = check.value("end", Json(nullptr));
+      rows += row_html({text_of(check, "channel"), text_of(check, "recording"), text_of(check, "title"),
+                        chance("p_adjusted"), chance("p_after_adjusted"),
+                        after             ? "still fails"
+                        : end.is_string() ? "passes: " + end.get<std::string>()
+                                          : "passes"});
+    }
+  }
+  const std::string count = std::to_string(checks.size());
+  return rows.empty()
+             ? (checks.size() == 1 ? std::string("<p>The one check passes.</p>\n")
+                                   : "<p>All " + count + " checks pass.</p>\n")
+             : table_html("Checks that failed, of " + count,
+                          {"channel", "recording", "check", "p before", "p after", "with what was found"}, rows);
+}
+
+std::string extended_html(const Json& model) {
+  std::string rows;
+  const auto add = [&rows](const std::string& where, const Json& processes) {
+    for (const Json& process : processes) {
+      rows += row_html({where, text_of(process, "process"), parameters_of(process.value("params", Json::object()))});
+    }
+  };
+  const Json channels = model.value("channels", Json::object());
+  if (channels.empty()) {
+    add("all", model.value("processes", Json::array()));
+  }
+  for (const auto& [name, channel] : channels.items()) {
+    add(name, channel.value("processes", Json::array()));
+  }
+  for (const Json& effect : model.value("effects", Json::array())) {
+    rows += row_html({with_commas(effect.value("channels", Json::array())), text_of(effect, "cause"),
+                      parameters_of(effect.value("params", Json::object()))});
+  }
+  return table_html("Extended model", {"channel", "process or effect", "parameters"}, rows);
+}
+
+}  // namespace
+
+std::string investigation_html(const Json& document) {
+  const Json summary = document.value("summary", Json::object());
+  std::string text = verdict_html(mark_of(text_of(summary, "level")) + " " + text_of(summary, "verdict")) +
+                     list_html(summary.value("details", Json::array()));
+  if (document.at("findings").empty()) {
+    text += "<p>Nothing was found: what was measured agrees with what the baseline simulates.</p>\n";
+  }
+  for (const Json& finding : document.at("findings")) {
+    text += finding_html(finding);
+  }
+  Json sentences = Json::array();
+  for (const Json& one : document.value("unexplained", Json::array())) {
+    sentences.push_back(text_of(one, "explanation"));
+  }
+  text += sentences.empty() ? "" : "<h2>Unexplained</h2>\n" + list_html(sentences);
+  text += figures_html(document) + checks_html(document.value("checks", Json::array())) +
+          extended_html(document.value("extended_model", Json::object()));
+  std::string unseen;
+  for (const Json& one : document.value("not_examined", Json::array())) {
+    unseen += row_html({text_of(one, "channel"), text_of(one, "cause"), text_of(one, "needs")});
+  }
+  return text + table_html("Not examined", {"channel", "cause", "would need"}, unseen) +
+         list_html(document.value("notes", Json::array()));
+}
+
+}  // namespace driftlab::page

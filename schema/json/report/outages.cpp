@@ -1,0 +1,47 @@
+/// The report of an outage evaluation: verdict, figures, filters and what the paper claims.
+#include "core/signal/significant.hpp"
+#include "core/signal/with_count.hpp"
+#include "schema/json/report/bodies.hpp"
+#include "schema/json/report/html.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace driftlab::page {
+namespace {
+
+/// A number of a document with the digits that its interval lets stand, and the interval.
+std::string written(double value, const Json& ci95) {
+  const double low = ci95.at(0).get<double>();
+  const double high = ci95.at(1).get<double>();
+  return significant(value, low, high) + " [" + significant(low, low, high) + ", " + significant(high, low, high) + "]";
+}
+
+}  // namespace
+
+std::string outages_html(const Json& document) {
+  const Json summary = document.value("summary", Json::object());
+  std::string filters;
+  for (const Json& filter : document.at("filters")) {
+    const Json& error = filter.at("mean_error_m");
+    filters += row_html({text_of(filter, "name"), std::to_string(filter.at("states").get<int>()),
+                         written(error.at("value").get<double>(), error.at("ci95")),
+                         written(filter.at("nees").get<double>(), filter.at("nees_ci95")),
+                         std::to_string(std::lround(100.0 * filter.at("coverage95").get<double>())) + " %"});
+  }
+  std::string claims;
+  for (const Json& claim : document.at("claims")) {
+    claims += row_html({text_of(claim, "claim"), claim.at("supported").get<bool>() ? "supported" : "not supported",
+                        text_of(claim, "because")});
+  }
+  return verdict_html(text_of(summary, "verdict")) + list_html(summary.value("details", Json::array())) +
+         figures_html(document) +
+         table_html("Filters", {"filter", "states", "mean error [m]", "NEES", "in its 95 % ellipse"}, filters) +
+         table_html("What the paper claims", {"claim", "", "because"}, claims) + "<p class=\"meta\">" +
+         html(with_count(document.at("runs").get<int>(), "run") + ", seed " +
+              std::to_string(document.at("seed").get<std::uint64_t>()) + ", algorithm " +
+              std::to_string(document.at("algorithm_version").get<int>()) + ".") +
+         "</p>\n";
+}
+
+}  // namespace driftlab::page
