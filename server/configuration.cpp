@@ -105,6 +105,20 @@ Setting store_setting() {
           [](const Settings& settings) { return Json(without_password(settings.store)); }};
 }
 
+Setting blobs_setting() {
+  return {"blobs", SettingKind::Text,
+          "Folder of recordings that several daemons and workers share, or `database`; none: in --data",
+          [](Settings& settings, const std::vector<std::string>& values) -> Status {
+            const std::string& where = values.back();
+            if (!where.empty() && where != "database" && !where.starts_with('/')) {
+              return refuse("blobs", "must be the absolute path of a folder, or database.");
+            }
+            settings.blobs = where;
+            return {};
+          },
+          [](const Settings& settings) { return Json(settings.blobs); }};
+}
+
 Setting path_setting(std::string_view name, std::filesystem::path Settings::* member, std::string_view meaning) {
   return {name, SettingKind::Text, meaning,
           [member](Settings& settings, const std::vector<std::string>& values) -> Status {
@@ -322,6 +336,9 @@ const std::vector<Setting>& all_settings() {
   static const std::vector<Setting> all{
       data_setting(),
       store_setting(),
+      blobs_setting(),
+      whole_setting("cache_megabytes", &Settings::cache_megabytes, 0, 100'000'000,
+                    "Local copies of recordings that lie in the database, in --data"),
       text_setting("listen", &Settings::listen, "IP:PORT to listen on; port 0 takes any free one"),
       list_setting("allow_host", &Settings::allow_host, "Another name to answer for in the Host header"),
       list_setting("proxies", &Settings::proxies, "Address of a proxy, which connects for many people"),

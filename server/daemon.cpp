@@ -32,6 +32,9 @@ namespace {
 
 /// Of the time to stop, the part that running jobs get before they are handed back.
 constexpr double kGraceShare = 0.7;
+/// Nobody ends the leases of one of several daemons that died but the clock: they are shorter than those of a daemon
+/// that has its store alone.
+constexpr std::int64_t kSharedLeaseMicros = 20'000'000;
 constexpr std::int64_t kMicrosPerDay = 24LL * 3600 * 1'000'000;
 
 /// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
@@ -75,6 +78,20 @@ Status charge_faults(Store& store, const std::filesystem::path& file) {
   return install_fault_recorder(file);
 }
 
+/// Whoever comes first to a store knows that nobody works with it; later ones let leases expire.
+Status end_leases_of_the_dead(Store& store, Coordination* others) {
+  if (others == nullptr || others->came_first()) {
+    const auto ended = store.end_all_leases();
+    if (!ended) {
+      return fail(ended.error());
+    }
+    if (*ended > 0) {
+      log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
+    }
+  }
+  return others != nullptr ? others->admit_others() : Status{};
+}
+
 /// The first admin token, for whoever can read the file.
 Status write_first_token(Gate& gate, const std::filesystem::path& path) {
   const Caller command{Principal{"", "daemon", Scope::Admin, {}, false}, "", ""};
@@ -97,7 +114,7 @@ Status open_gate(Gate& gate, const Settings& settings) {
   if (Status loaded = gate.load(); !loaded) {
     return loaded;
   }
-  if (settings.require_tokens && !gate.has_any()) {
+  if (settings.require_tokens && settings.serves_api && !gate.has_any()) {
     return write_first_token(gate, settings.data / "first-admin-token");
   }
   return {};
@@ -116,10 +133,12 @@ struct Daemon::Parts {
         blobs(std::move(blobs_in)),
         directory_lock(std::move(store_in.lock)),
         store(std::move(store_in.store)),
+        others(store_in.others),
         visible(make_visible_store(*store)),
         readiness(*store, *blobs),
         gate(std::move(gate_in)),
-        scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second),
+        scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second,
+                 [this] { return has_duty(Duty::Scrubbing); }),
         deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
         workers({*store, *blobs, *clock, budgets,
                  [this](const std::string& blob) { return scrubber.verify_columns(blob); }},
@@ -151,7 +170,38 @@ struct Daemon::Parts {
             webhook_guard,
             [this] { deliverer.wake(); }},
         dispatcher(api) {
-    add_all_routes(router, api);
+    settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
+    if (others != nullptr) {
+      api.keys_in_flight.share(others);
+      events.share([this](const std::string& words) { others->tell(words); });
+    }
+  }
+
+  [[nodiscard]] bool has_duty(Duty duty) const { return others == nullptr || others->has_duty(duty); }
+
+  /// What other daemons and workers did, as if it had been done here.
+  [[nodiscard]] Hints hints() {
+    Hints hints;
+    hints.job = [this](const std::string& id, std::string_view what) {
+      if (what == "queued" || what == "cancel") {
+        workers.wake();
+      }
+      bell.ring(id);
+      announce_job(api, id);
+      deliverer.wake();
+    };
+    hints.words = [this](const std::string& words) { events.add_words(words); };
+    hints.access = [this] {
+      if (const auto loaded = gate->load(); !loaded) {
+        log_warning("tokens were not read again", Json{{"detail", loaded.error().message}});
+      }
+    };
+    hints.lost = [this] {
+      events.forget();
+      workers.wake();
+      deliverer.wake();
+    };
+    return hints;
   }
 
   WorkerOptions maintained(WorkerOptions options) {
@@ -159,6 +209,7 @@ struct Daemon::Parts {
       metrics.count_attempt(kind, outcome, seconds);
     };
     options.maintenance.budgets = budgets;
+    options.maintenance.is_mine = [this] { return has_duty(Duty::Maintenance); };
     options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
     options.maintenance.each_turn = [this] { look_after_reserve(); };
     options.maintenance.each_tidy = [this] {
@@ -168,7 +219,10 @@ struct Daemon::Parts {
   }
 
   DelivererOptions delivery_options(const DestinationGuard& guard) {
-    DelivererOptions options{budgets, guard, {}, {}};
+    DelivererOptions options;
+    options.budgets = budgets;
+    options.guard = guard;
+    options.is_mine = [this] { return has_duty(Duty::Deliveries); };
     options.attempted = [this](const DueDelivery& what, std::string_view outcome, const std::string& error) {
       metrics.count_delivery(outcome);
       log_info("webhook attempted", Json{{"webhook", what.webhook.id},
@@ -226,6 +280,13 @@ struct Daemon::Parts {
     return found;
   }
 
+  /// Hears nothing more of other daemons.
+  void silence() {
+    if (others != nullptr) {
+      others->stop();
+    }
+  }
+
   /// Holds the reserve again once there is room for it.
   void look_after_reserve() {
     const auto space = blobs->space();
@@ -244,6 +305,7 @@ struct Daemon::Parts {
   std::unique_ptr<BlobStore> blobs;
   FileHandle directory_lock;
   std::unique_ptr<SqlStore> store;
+  Coordination* others;  ///< nullptr: this process has the store alone
   std::unique_ptr<Store> visible;
   Readiness readiness;
   std::unique_ptr<Gate> gate;
@@ -295,17 +357,15 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   log_info("store opened", opened->facts);
   SqlStore& store = *opened->store;
-  auto blobs = open_blob_directory(settings.data);
+  auto blobs = open_blobs(settings, *opened);
   if (!blobs) {
     return fail(blobs.error());
   }
   if (auto charged = charge_faults(store, settings.data / "faults"); !charged) {
     return fail(charged.error());
   }
-  if (auto ended = store.end_all_leases(); !ended) {
+  if (auto ended = end_leases_of_the_dead(store, opened->others); !ended) {
     return fail(ended.error());
-  } else if (*ended > 0) {
-    log_info("leases of an earlier daemon ended", Json{{"jobs", *ended}});
   }
   if (auto queued = store.queue_missing_pools(); !queued) {
     return fail(queued.error());
@@ -321,6 +381,10 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   WorkerOptions worker_options;
   settle_threads(settings, worker_options);
+  if (opened->others != nullptr) {
+    worker_options.lease_micros = kSharedLeaseMicros;
+    worker_options.renew_micros = kSharedLeaseMicros / 4;
+  }
   worker_options.grace_micros =
       static_cast<std::int64_t>(kGraceShare * 1e6 * static_cast<double>(settings.budgets.stop_seconds));
   worker_options.problem_document = [](const Error& error) { return problem_document(error); };
@@ -352,15 +416,23 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   hooks.known = [shared](const Route& route, const Request& request) {
     return shared->dispatcher.known(route, request);
   };
-  hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
+  if (settings.serves_api) {
+    hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
+  }
   hooks.complete = complete_problem;
   hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
   hooks.log = [shared](const AccessRecord& record) { log_request(shared->metrics, record); };
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
+  if (parts->others != nullptr) {
+    parts->others->listen(parts->hints());
+  }
   parts->workers.start();
   parts->scrubber.start();
-  parts->deliverer.start();
+  if (settings.serves_api) {
+    parts->deliverer.start();
+  }
   if (auto started = parts->http->start(); !started) {
+    parts->silence();
     parts->workers.stop();
     parts->deliverer.stop();
     return fail(started.error());
@@ -418,6 +490,7 @@ void Daemon::stop() {
   parts_->http->stop(grace);
   late_uploads.request_stop();
   jobs.join();
+  parts_->silence();
   (void)parts_->gate->flush_use(true);
   log_info("stopped");
 }

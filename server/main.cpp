@@ -3,6 +3,7 @@
 #include "server/configuration.hpp"
 #include "server/daemon.hpp"
 #include "server/manual_commands.hpp"
+#include "server/move_store.hpp"
 #include "server/observe/log.hpp"
 #include "server/process.hpp"
 #include "server/store/clock.hpp"
@@ -46,6 +47,18 @@ int serve(const Settings& settings) {
   daemon->reset();
   driftlab::server::stop_log();
   return 0;
+}
+
+/// Runs a worker: a daemon without an API beside the daemons of one database.
+int work(Settings settings) {
+  if (settings.store.empty() || settings.blobs.empty()) {
+    std::fprintf(stderr,
+                 "driftlabd: A worker works on the jobs of a PostgreSQL database (--store) whose recordings it reaches "
+                 "(--blobs).\n");
+    return 2;
+  }
+  settings.serves_api = false;
+  return serve(settings);
 }
 
 /// The settings as TOML that could be read again, each with its origin; or as JSON.
@@ -112,6 +125,20 @@ int tell(const char* what, const driftlab::Result<driftlab::server::StoreReport>
   return report->faults.empty() ? 0 : 1;
 }
 
+int tell_moved(const driftlab::Result<driftlab::server::MovedStore>& moved) {
+  if (!moved) {
+    std::fprintf(stderr, "driftlabd: %s\n", moved.error().message.c_str());
+    return moved.error().code == driftlab::ErrorCode::Conflict ||
+                   moved.error().code == driftlab::ErrorCode::InvalidArgument
+               ? 2
+               : 1;
+  }
+  std::printf("moved: %lld rows of %d tables and %lld recordings, %lld and %lld of them in this run; all compared\n",
+              static_cast<long long>(moved->rows), moved->tables, static_cast<long long>(moved->blobs),
+              static_cast<long long>(moved->new_rows), static_cast<long long>(moved->new_blobs));
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -137,6 +164,16 @@ int main(int argc, char** argv) {
   CLI::App* const restored = app.add_subcommand("restore", "Make --data, which must not be there, from a backup");
   std::string from;
   restored->add_option("--from", from, "Directory that `driftlabd backup` made")->required();
+  CLI::App* const migrate =
+      app.add_subcommand("migrate", "Move a lab whose daemons are stopped between --data and a PostgreSQL database");
+  std::string move_from;
+  std::string move_to;
+  migrate->add_option("--from", move_from, "Directory of an SQLite store, or postgresql://... of a database")
+      ->required();
+  migrate->add_option("--to", move_to, "The other of the two; empty, or what an earlier run has moved so far")
+      ->required();
+  const CLI::App* const worker = app.add_subcommand(
+      "worker", "Work on the jobs of --store, without an API; --listen answers /healthz, /readyz and /metrics");
   bool json = false;
   config->add_flag("--json", json, "As JSON, with bounds and meanings");
   try {
@@ -168,6 +205,9 @@ int main(int argc, char** argv) {
         "and --data as it is.\n");
     return 2;
   }
+  if (migrate->parsed()) {
+    return tell_moved(driftlab::server::move_store(settings, move_from, move_to));
+  }
   if (check->parsed()) {
     return tell("checked", driftlab::server::check_data(settings.data));
   }
@@ -178,5 +218,8 @@ int main(int argc, char** argv) {
   if (restored->parsed()) {
     return tell("restored", driftlab::server::restore(from, settings.data));
   }
-  return config->parsed() ? show(*configuration, json) : serve(configuration->settings);
+  if (worker->parsed()) {
+    return work(settings);
+  }
+  return config->parsed() ? show(*configuration, json) : serve(settings);
 }

@@ -3,7 +3,9 @@
 #include "core/signal/result.hpp"
 #include "schema/json/json.hpp"
 #include "server/settings.hpp"
+#include "server/store/blobs.hpp"
 #include "server/store/clock.hpp"
+#include "server/store/coordination.hpp"
 #include "server/store/files.hpp"
 #include "server/store/sql/sql_store.hpp"
 
@@ -15,6 +17,10 @@ struct OpenedStore {
   FileHandle lock;  ///< of the directory, where the store itself does not hold it
   std::unique_ptr<SqlStore> store;
   Json facts;  ///< what opening found, for the log
+  /// That of the store, for files that lie in it. Belongs to the store.
+  Database* database = nullptr;
+  /// Where several daemons have the store together; else nullptr. Belongs to the store.
+  Coordination* others = nullptr;
 };
 
 /// Locks the directory and opens the store. Rows and recordings belong together: a directory whose recordings belong to
@@ -22,6 +28,10 @@ struct OpenedStore {
 /// Errors: those of open_sqlite_store or open_postgres_store; Conflict (directory and store do not belong together);
 /// InvalidArgument (a driftlab that was built without PostgreSQL).
 [[nodiscard]] Result<OpenedStore> open_store(const Settings& settings, const Clock& clock, AuditListener audited = {});
+
+/// The recordings of a store that was opened by the same settings. Errors: those of open_blob_directory or
+/// open_shared_blob_directory.
+[[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blobs(const Settings& settings, OpenedStore& opened);
 
 /// The store, if it was made before: a command makes no new one by a typing error. Error also: NotFound.
 [[nodiscard]] Result<OpenedStore> open_existing_store(const Settings& settings, const Clock& clock);

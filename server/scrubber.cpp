@@ -98,6 +98,9 @@ void Scrubber::run(const std::stop_token& stop) {
                 std::chrono::duration<double>(static_cast<double>(bytes) / static_cast<double>(bytes_per_second_)));
   };
   while (rest(stop, 1s)) {
+    if (is_mine_ && !is_mine_()) {
+      continue;
+    }
     const auto hashes = store_.blob_hashes();
     for (const std::string& sha256 : hashes.value_or(std::vector<std::string>{})) {
       const auto state = verify_blob(blobs_, sha256, limits_, pace);

@@ -6,6 +6,7 @@
 #include "server/store/store.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stop_token>
@@ -17,8 +18,14 @@ namespace driftlab::server {
 class Scrubber {
  public:
   /// References must outlive this object. `bytes_per_second` 0: nothing is read in the background.
-  Scrubber(Store& store, BlobStore& blobs, DecodeLimits limits, std::int64_t bytes_per_second)
-      : store_(store), blobs_(blobs), limits_(limits), bytes_per_second_(bytes_per_second) {}
+  /// `is_mine`: whether this process reads, of several on the same files; empty: it is the only one.
+  Scrubber(Store& store, BlobStore& blobs, DecodeLimits limits, std::int64_t bytes_per_second,
+           std::function<bool()> is_mine = {})
+      : store_(store),
+        blobs_(blobs),
+        limits_(limits),
+        bytes_per_second_(bytes_per_second),
+        is_mine_(std::move(is_mine)) {}
   Scrubber(const Scrubber&) = delete;
   Scrubber& operator=(const Scrubber&) = delete;
   ~Scrubber() = default;
@@ -49,6 +56,7 @@ class Scrubber {
   BlobStore& blobs_;
   const DecodeLimits limits_;
   const std::int64_t bytes_per_second_;
+  const std::function<bool()> is_mine_;
   mutable std::mutex mutex_;
   Findings findings_;
   std::set<std::string> damaged_;

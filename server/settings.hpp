@@ -13,6 +13,10 @@ namespace driftlab::server {
 struct Settings {
   std::filesystem::path data = "driftlab-data";
   std::string store;  ///< postgresql://... of the database that keeps the rows; empty: an SQLite file in `data`
+  /// Where recordings are kept: empty: in `data`; a folder that several daemons and workers share; "database": in parts
+  /// in that of `store`.
+  std::string blobs;
+  int cache_megabytes = 10'000;  ///< of local copies of what lies in the database
   std::string listen = "127.0.0.1:8477";
   std::vector<std::string> allow_host;     ///< Host names answered for, beside the address and localhost
   std::vector<std::string> proxies;        ///< addresses whose many connections are those of many people
@@ -27,6 +31,8 @@ struct Settings {
   std::string log_level = "info";
   std::string log_file;  ///< empty: standard error
   Budgets budgets;
+  bool is_moving = false;  ///< opens a store that `driftlabd migrate` has under way
+  bool serves_api = true;  ///< false: a worker, which answers /healthz, /readyz and /metrics alone
 };
 
 struct ListenAddress {

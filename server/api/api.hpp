@@ -54,6 +54,9 @@ void announce_job(ApiContext& context, const std::string& job_id);
 /// Every route of the daemon.
 void add_all_routes(Router& router, ApiContext& context);
 
+/// Those of a worker: whether it lives, whether it can work, and its metrics.
+void add_health_routes(Router& router, ApiContext& context);
+
 /// Makes the answer of a plain route final: replays or remembers idempotent POSTs, maps errors to problems, adds an
 /// ETag, answers If-None-Match and keeps what depends on rows alone. Thread safe.
 class Dispatcher {

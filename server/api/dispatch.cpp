@@ -159,6 +159,9 @@ Response Dispatcher::run_idempotent(const Handler& handler, const Request& reque
   const std::string own = own_key(request, key);
   const auto flight = context_.keys_in_flight.take(own);
   if (!flight) {
+    return problem_response(flight.error());
+  }
+  if (*flight == nullptr) {
     return problem_response(HttpFault::IdempotencyInFlight, "A request with this Idempotency-Key is running.");
   }
   const std::string digest = sha256_hex(request.body);

@@ -11,9 +11,35 @@ constexpr std::size_t kMostKept = 1000;
 }  // namespace
 
 void EventLog::add(std::string_view topic, std::string_view type, const Json& data) {
+  std::string text = to_text(data);
+  const bool of_store = topic == "jobs" || topic == "results";
+  if (tell_ && !of_store) {
+    tell_(std::string(topic) + ' ' + std::string(type) + ' ' + text);
+  }
+  keep(std::string(topic), std::string(type), std::move(text));
+}
+
+void EventLog::add_words(const std::string& words) {
+  const std::size_t type = words.find(' ');
+  const std::size_t data = type == std::string::npos ? type : words.find(' ', type + 1);
+  if (data != std::string::npos) {
+    keep(words.substr(0, type), words.substr(type + 1, data - type - 1), words.substr(data + 1));
+  }
+}
+
+void EventLog::forget() {
   {
     const std::lock_guard lock(mutex_);
-    kept_.push_back({++latest_, std::string(topic), std::string(type), to_text(data)});
+    ++latest_;
+    kept_.clear();
+  }
+  bell_.ring(std::string(kSubject));
+}
+
+void EventLog::keep(std::string topic, std::string type, std::string data) {
+  {
+    const std::lock_guard lock(mutex_);
+    kept_.push_back({++latest_, std::move(topic), std::move(type), std::move(data)});
     if (kept_.size() > kMostKept) {
       kept_.pop_front();
     }

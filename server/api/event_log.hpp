@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -32,7 +33,15 @@ class EventLog {
   /// `run` tells this daemon's events from those of another run: letters and digits.
   EventLog(Bell& bell, std::string run) : bell_(bell), run_(std::move(run)) {}
 
+  /// Tells also `share`'s listener, unless it is of a topic that every daemon sees in the store by itself: jobs and
+  /// results.
   void add(std::string_view topic, std::string_view type, const Json& data);
+
+  /// What this daemon adds is told as words that `add_words` of another daemon understands. Before the first event.
+  void share(std::function<void(const std::string& words)> tell) { tell_ = std::move(tell); }
+  void add_words(const std::string& words);
+  /// Events of others may have been missed: every listener is told to read everything anew.
+  void forget();
 
   [[nodiscard]] std::int64_t latest() const;
   /// Events behind number `after`, at most `most`. `complete` is false where some of them are no longer kept.
@@ -47,8 +56,11 @@ class EventLog {
   [[nodiscard]] std::optional<std::int64_t> number_of(std::string_view id) const;
 
  private:
+  void keep(std::string topic, std::string type, std::string data);
+
   Bell& bell_;
   const std::string run_;
+  std::function<void(const std::string& words)> tell_;
   mutable std::mutex mutex_;
   std::deque<LoggedEvent> kept_;
   std::int64_t latest_ = 0;

@@ -47,6 +47,7 @@ namespace driftlab::server {
 #define DRIFTLAB_DECLARE_RESOURCE(add) void add(Router& router, ApiContext& context);
 DRIFTLAB_RESOURCES(DRIFTLAB_DECLARE_RESOURCE)
 #undef DRIFTLAB_DECLARE_RESOURCE
+void add_watch_routes(Router& router, ApiContext& context);
 
 namespace {
 
@@ -68,6 +69,11 @@ void set_scopes_of_contract(Router& router) {
 }
 
 }  // namespace
+
+void add_health_routes(Router& router, ApiContext& context) {
+  add_watch_routes(router, context);
+  set_scopes_of_contract(router);
+}
 
 void add_all_routes(Router& router, ApiContext& context) {
 #define DRIFTLAB_ADD_RESOURCE(add) add(router, context);

@@ -89,10 +89,7 @@ Result<Response> get_schema(const Request& request) {
 
 }  // namespace
 
-void add_service_routes(Router& router, ApiContext& context) {
-  router.add({"GET", "/", "frontPage", {}, Handler([](const Request&) -> Result<Response> {
-                return text_response("text/html; charset=utf-8", front_page());
-              })});
+void add_watch_routes(Router& router, ApiContext& context) {
   Route health{"GET", "/healthz", "health", {}, Handler([](const Request&) -> Result<Response> {
                  return json_response(200, Json{{"status", "alive"}, {"version", DRIFTLAB_VERSION}});
                })};
@@ -105,6 +102,13 @@ void add_service_routes(Router& router, ApiContext& context) {
                 response.volatile_body = true;
                 return response;
               })});
+}
+
+void add_service_routes(Router& router, ApiContext& context) {
+  router.add({"GET", "/", "frontPage", {}, Handler([](const Request&) -> Result<Response> {
+                return text_response("text/html; charset=utf-8", front_page());
+              })});
+  add_watch_routes(router, context);
   router.add({"GET", "/openapi.json", "contract", {}, Handler([](const Request&) -> Result<Response> {
                 return text_response("application/json", contract_file("openapi.json"));
               })});

@@ -158,6 +158,9 @@ class RecordingUpload final : public UploadSession {
     // From here to the reply that is remembered: of equal uploads at once one is recorded.
     const auto flight = context_.keys_in_flight.take(key);
     if (!flight) {
+      return fail(flight.error());
+    }
+    if (*flight == nullptr) {
       return problem_response(HttpFault::IdempotencyInFlight, "A request with this Idempotency-Key is running.");
     }
     auto known = context_.store.idempotent_reply(key);

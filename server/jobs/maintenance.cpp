@@ -102,14 +102,15 @@ void Maintenance::run() {
   std::unique_lock<std::mutex> guard(mutex_);
   while (!stopping_) {
     guard.unlock();
-    if (store_.rescue_expired().value_or(0) > 0 && rescued_) {
+    const bool mine = !options_.is_mine || options_.is_mine();
+    if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
       rescued_();
     }
-    const bool full = options_.is_nearly_full && options_.is_nearly_full();
+    const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
     if (full) {
       (void)sweep_blobs(store_, blobs_, clock_.now(), kMinuteMicros);
     }
-    if (std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {
+    if (mine && std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {
       tidied_at = std::chrono::steady_clock::now();
       (void)store_.forget_old_replies();
       (void)forget_old(store_, options_.budgets, clock_.now());

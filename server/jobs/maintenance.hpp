@@ -17,6 +17,8 @@ struct MaintenanceOptions {
   std::int64_t rescue_micros = 5'000'000;    ///< between looks for expired leases
   std::int64_t tidy_micros = 3'600'000'000;  ///< between removals of old replies and of files without rows
   Budgets budgets = {};
+  /// Whether this process does it, of several on one store; empty: it is the only one.
+  std::function<bool()> is_mine = {};
   std::function<bool()> is_nearly_full = {};  ///< then files without rows go at once
   std::function<void()> each_tidy = {};       ///< what else is forgotten, at each removal of old replies
   std::function<void()> each_turn = {};       ///< what else is looked after, at each look for expired leases

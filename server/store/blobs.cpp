@@ -6,6 +6,7 @@
 #include "server/store/files.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <cerrno>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <set>
 #include <system_error>
 
@@ -63,7 +65,9 @@ class IncomingFile final : public IncomingBlob {
 
 class BlobDirectory final : public BlobStore {
  public:
-  BlobDirectory(fs::path root, FileHandle lock) : root_(std::move(root)), lock_(std::move(lock)) {}
+  /// `incoming`: where this process writes. `names`: a file whose lock processes that share the root take.
+  BlobDirectory(fs::path root, fs::path incoming, fs::path names, std::vector<FileHandle> locks)
+      : root_(std::move(root)), incoming_(std::move(incoming)), shared_(std::move(names)), locks_(std::move(locks)) {}
 
   [[nodiscard]] Result<std::unique_ptr<IncomingBlob>> begin() override;
   [[nodiscard]] fs::path bytes_path(std::string_view sha256) const override {
@@ -83,9 +87,18 @@ class BlobDirectory final : public BlobStore {
  private:
   [[nodiscard]] Status remove_both(std::string_view sha256);
 
+  /// Held while final names appear or disappear.
+  struct NamesGuard {
+    std::unique_lock<std::mutex> here;
+    FileHandle everywhere;
+  };
+  [[nodiscard]] Result<NamesGuard> guard_names();
+
   fs::path root_;
-  FileHandle lock_;
-  std::mutex names_;  ///< held while final names appear or disappear
+  fs::path incoming_;
+  fs::path shared_;  ///< empty: the directory is this process's alone
+  std::vector<FileHandle> locks_;
+  std::mutex names_;
   std::atomic<std::uint64_t> counter_{0};
 };
 
@@ -165,6 +178,33 @@ Status move_pyramid(const fs::path& from, const fs::path& to) {
   return rename_durably(columns_checksum_path(from), columns_checksum_path(to));
 }
 
+/// Waits for the lock of a file that is there or made.
+Result<FileHandle> wait_for_lock(const fs::path& path, int kind) {
+  FileHandle file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (!file) {
+    return fail(file_error(errno, "open the lock file", path));
+  }
+  while (::flock(file.get(), kind) != 0) {
+    if (errno != EINTR) {
+      return fail(file_error(errno, "lock", path));
+    }
+  }
+  return file;
+}
+
+Result<BlobDirectory::NamesGuard> BlobDirectory::guard_names() {
+  NamesGuard guard{std::unique_lock<std::mutex>(names_), FileHandle()};
+  if (shared_.empty()) {
+    return guard;
+  }
+  auto locked = wait_for_lock(shared_, LOCK_EX);
+  if (!locked) {
+    return fail(locked.error());
+  }
+  guard.everywhere = std::move(*locked);
+  return guard;
+}
+
 Status BlobDirectory::place(const IncomingFile& incoming) {
   const fs::path from = incoming.columns_path();
   const fs::path columns = columns_path(incoming.sha256());
@@ -177,7 +217,10 @@ Status BlobDirectory::place(const IncomingFile& incoming) {
       return summed;
     }
   }
-  const std::lock_guard<std::mutex> guard(names_);
+  const auto guard = guard_names();
+  if (!guard) {
+    return fail(guard.error());
+  }
   if (!decoded && ::access(columns.c_str(), F_OK) != 0) {
     return fail(ErrorCode::Internal, "An upload was kept before its columns were written.");
   }
@@ -198,7 +241,7 @@ Status BlobDirectory::place(const IncomingFile& incoming) {
 }
 
 Result<std::unique_ptr<IncomingBlob>> BlobDirectory::begin() {
-  fs::path path = root_ / "incoming" / std::to_string(counter_.fetch_add(1));
+  fs::path path = incoming_ / std::to_string(counter_.fetch_add(1));
   FileHandle file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   if (!file) {
     return fail(file_error(errno, "make", path));
@@ -221,12 +264,18 @@ Status BlobDirectory::remove_both(std::string_view sha256) {
 }
 
 Status BlobDirectory::remove(std::string_view sha256) {
-  const std::lock_guard<std::mutex> guard(names_);
+  const auto guard = guard_names();
+  if (!guard) {
+    return fail(guard.error());
+  }
   return remove_both(sha256);
 }
 
 Result<bool> BlobDirectory::remove_if_older(std::string_view sha256, UtcMicros before) {
-  const std::lock_guard<std::mutex> guard(names_);
+  const auto guard = guard_names();
+  if (!guard) {
+    return fail(guard.error());
+  }
   for (const fs::path& path : {bytes_path(sha256), columns_path(sha256)}) {
     if (modified_at(path).value_or(before - 1) >= before) {
       return false;
@@ -267,6 +316,42 @@ Result<BlobStore::Space> BlobDirectory::space() const {
                total > 0.0 ? static_cast<double>(found.f_bavail) / total : 0.0};
 }
 
+/// Folders of processes that are gone, whose locks (NAME.lock) nobody holds.
+Status clear_abandoned(const fs::path& incoming) {
+  std::error_code error;
+  for (fs::directory_iterator entry(incoming, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    const fs::path lock = entry->path();
+    if (lock.extension() != ".lock" || !wait_for_lock(lock, LOCK_EX | LOCK_NB)) {
+      continue;
+    }
+    fs::remove_all(incoming / lock.stem(), error);
+    if (Status removed = remove_file(lock); !removed) {
+      return removed;
+    }
+  }
+  return error ? Status(fail(file_error(error.value(), "clear", incoming))) : Status{};
+}
+
+struct OwnIncoming {
+  fs::path folder;
+  FileHandle lock;
+};
+
+/// A folder of this process's own, locked before it is there.
+Result<OwnIncoming> own_incoming(const fs::path& incoming) {
+  std::random_device device;
+  const std::string name = std::to_string(::getpid()) + "-" + std::to_string(device()) + std::to_string(device());
+  auto lock = wait_for_lock(incoming / (name + ".lock"), LOCK_EX);
+  if (!lock) {
+    return fail(lock.error());
+  }
+  if (Status made = make_directories(incoming / name); !made) {
+    return fail(made.error());
+  }
+  return OwnIncoming{incoming / name, std::move(*lock)};
+}
+
 }  // namespace
 
 fs::path pyramid_path(const fs::path& columns) {
@@ -288,14 +373,39 @@ Result<std::unique_ptr<BlobStore>> open_blob_directory(const fs::path& root) {
   std::error_code error;
   for (fs::directory_iterator entry(root / "incoming", error); !error && entry != fs::directory_iterator();
        entry.increment(error)) {
-    if (Status removed = remove_file(entry->path()); !removed) {
-      return fail(removed.error());
-    }
+    fs::remove_all(entry->path(), error);
   }
   if (error) {
     return fail(file_error(error.value(), "clear", root / "incoming"));
   }
-  return std::make_unique<BlobDirectory>(root, std::move(*lock));
+  std::vector<FileHandle> locks;
+  locks.push_back(std::move(*lock));
+  return std::make_unique<BlobDirectory>(root, root / "incoming", fs::path(), std::move(locks));
+}
+
+Result<std::unique_ptr<BlobStore>> open_shared_blob_directory(const fs::path& root) {
+  for (const char* folder : {"blobs", "columns", "incoming"}) {
+    if (Status made = make_directories(root / folder); !made) {
+      return fail(made.error());
+    }
+  }
+  auto together = wait_for_lock(root / "blobs.lock", LOCK_SH | LOCK_NB);
+  if (!together) {
+    return fail(ErrorCode::Conflict,
+                "A driftlab daemon has the directory " + root.string() + " alone, as its --data; name another one.",
+                {{"path", root.string()}});
+  }
+  if (Status cleared = clear_abandoned(root / "incoming"); !cleared) {
+    return fail(cleared.error());
+  }
+  auto own = own_incoming(root / "incoming");
+  if (!own) {
+    return fail(own.error());
+  }
+  std::vector<FileHandle> locks;
+  locks.push_back(std::move(*together));
+  locks.push_back(std::move(own->lock));
+  return std::make_unique<BlobDirectory>(root, own->folder, root / "names.lock", std::move(locks));
 }
 
 }  // namespace driftlab::server

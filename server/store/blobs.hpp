@@ -78,4 +78,9 @@ class BlobStore {
 /// while it lives. Errors: Io; Conflict where another daemon has the directory.
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blob_directory(const std::filesystem::path& root);
 
+/// The same in a directory that several daemons and workers share, on this machine or on a network file system with
+/// locks (flock). Uploads of a process that is gone are cleared; those of others stay. Errors: Io; Conflict where a
+/// daemon has the directory alone.
+[[nodiscard]] Result<std::unique_ptr<BlobStore>> open_shared_blob_directory(const std::filesystem::path& root);
+
 }  // namespace driftlab::server

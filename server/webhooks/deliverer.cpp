@@ -75,7 +75,8 @@ std::optional<DueDelivery> Deliverer::take() {
   std::unique_lock<std::mutex> guard(mutex_);
   while (!stopping_) {
     // Asked under the lock, so that no two threads take the same; it is one look into an index.
-    auto due = store_.due(busy_).value_or(std::nullopt);
+    const bool mine = !options_.is_mine || options_.is_mine();
+    auto due = mine ? store_.due(busy_).value_or(std::nullopt) : std::nullopt;
     if (due) {
       busy_.push_back(due->webhook.id);
       return due;

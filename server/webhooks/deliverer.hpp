@@ -26,6 +26,8 @@ namespace driftlab::server {
 struct DelivererOptions {
   Budgets budgets = {};
   DestinationGuard guard = {};
+  /// Whether this process delivers, of several on one store; empty: it is the only one.
+  std::function<bool()> is_mine = {};
   /// Told of every attempt: `delivered`, `failed` or `given_up`, and why it failed. May be empty.
   std::function<void(const DueDelivery& what, std::string_view outcome, const std::string& error)> attempted = {};
   /// Told of every webhook that was disabled. May be empty.

@@ -48,6 +48,9 @@ class Life(JobTest):
         self.assertEqual([fit["model"] for fit in channel["fits"]].count("WN"), 1)
         criteria = [fit["wic"] for fit in channel["fits"] if fit["wic"] is not None]
         self.assertEqual(criteria, sorted(criteria))
+        behind = [fit["distance_2p"] for fit in channel["fits"]]
+        self.assertEqual((min(behind), [fit["closest"] for fit in channel["fits"]].count(True)), (0, 1))
+        self.assertEqual([distance <= 6 for distance in behind], [fit["plausible"] for fit in channel["fits"]])
         listed = self.daemon.items(f"/v1/fits?job={job['id']}")
         self.assertEqual(len(listed), len(channel["fits"]))
         self.assertEqual({fit["rank"] for fit in listed}, set(range(len(listed))))

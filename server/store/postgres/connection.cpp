@@ -2,6 +2,8 @@
 
 #include "server/store/postgres/text_codec.hpp"
 
+#include <poll.h>
+
 #include <array>
 #include <charconv>
 #include <cstring>
@@ -216,6 +218,28 @@ void PostgresConnection::roll_back() {
     (void)execute("ROLLBACK");
     failure_ = failure;
   }
+}
+
+Result<std::vector<std::string>> PostgresConnection::notifications(std::chrono::milliseconds longest) {
+  std::vector<std::string> payloads;
+  const auto take = [&] {
+    while (PGnotify* const notice = PQnotifies(handle_)) {
+      payloads.emplace_back(decode_text(notice->extra));
+      PQfreemem(notice);
+    }
+  };
+  take();
+  if (payloads.empty()) {
+    ::pollfd waiting{PQsocket(handle_), POLLIN, 0};
+    if (waiting.fd >= 0 && ::poll(&waiting, 1, static_cast<int>(longest.count())) > 0 && PQconsumeInput(handle_) == 0) {
+      return fail(postgres_error(kConnectionLost, PQerrorMessage(handle_), name_));
+    }
+    take();
+  }
+  if (is_broken()) {
+    return fail(postgres_error(kConnectionLost, PQerrorMessage(handle_), name_));
+  }
+  return payloads;
 }
 
 Result<std::string> PostgresConnection::prepared(const std::string& sql, const std::vector<BoundValue>& values) {

@@ -6,6 +6,7 @@
 
 #include <libpq-fe.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,6 +45,9 @@ class PostgresConnection final : public Connection {
   [[nodiscard]] Status commit();
   /// Undoes what was done since `begin`.
   void roll_back();
+
+  /// What was notified of on the channels that this connection listens on; waits `longest` for the first. Error: Io.
+  [[nodiscard]] Result<std::vector<std::string>> notifications(std::chrono::milliseconds longest);
 
   /// The server's clock at `begin`.
   [[nodiscard]] UtcMicros begun_at() const { return begun_at_; }

@@ -7,9 +7,17 @@ namespace driftlab::server {
 namespace {
 
 /// One lock for each schema; the first number is "drft".
-constexpr std::string_view kTake = "SELECT pg_try_advisory_lock(1685218932, hashtext(current_schema()))::INT";
+constexpr std::string_view kTakeAlone = "SELECT pg_try_advisory_lock(1685218932, hashtext(current_schema()))::INT";
+constexpr std::string_view kTakeTogether =
+    "SELECT pg_try_advisory_lock_shared(1685218932, hashtext(current_schema()))::INT";
+constexpr std::string_view kEndAlone = "SELECT pg_advisory_unlock(1685218932, hashtext(current_schema()))::INT";
 constexpr std::string_view kStillThere = "SELECT 1";
 constexpr std::chrono::seconds kPatience{3};
+constexpr std::chrono::seconds kPatienceTogether{20};
+
+Result<bool> is_granted(PostgresConnection& connection, std::string_view sql) {
+  return connection.query_integer(sql).map([](std::optional<std::int64_t> row) { return row.value_or(0) != 0; });
+}
 
 }  // namespace
 
@@ -22,7 +30,8 @@ Status DaemonLock::hold() {
 }
 
 Status DaemonLock::hold_at_start() {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto patience = kind_ == Kind::Alone ? kPatience : kPatienceTogether;
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   while (true) {
     Status held = hold();
     if (held || held.error().code != ErrorCode::Conflict || std::chrono::steady_clock::now() >= deadline) {
@@ -32,21 +41,48 @@ Status DaemonLock::hold_at_start() {
   }
 }
 
+Status DaemonLock::admit_others() {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  const bool alone_now = kind_ == Kind::Together && starting_ && came_first_;
+  starting_ = false;
+  if (!alone_now || !connection_) {
+    return {};
+  }
+  for (const std::string_view step : {kTakeTogether, kEndAlone}) {
+    if (const auto done = is_granted(*connection_, step); !done) {
+      return fail(done.error());
+    }
+  }
+  return {};
+}
+
+Result<bool> DaemonLock::try_lock(PostgresConnection& connection) {
+  const bool alone = kind_ == Kind::Alone || starting_;
+  const auto first = alone ? is_granted(connection, kTakeAlone) : Result<bool>(false);
+  if (!first || *first) {
+    came_first_ = came_first_ || (first && *first && starting_);
+    return first;
+  }
+  return kind_ == Kind::Together ? is_granted(connection, kTakeTogether) : Result<bool>(false);
+}
+
 Status DaemonLock::take() {
   connection_.reset();
+  came_first_ = came_first_ && !starting_;
   auto connection = open_();
   if (!connection) {
     return fail(connection.error());
   }
-  const auto taken = (*connection)->query_integer(kTake);
+  const auto taken = try_lock(**connection);
   if (!taken) {
     return fail(taken.error());
   }
-  if (taken->value_or(0) == 0) {
-    return fail(ErrorCode::Conflict,
-                "Another daemon works with the database " + (*connection)->name() +
-                    "; several of them on one database need recordings in a place that all of them reach, which this "
-                    "driftlab cannot yet.",
+  if (!*taken) {
+    const char* const way_out =
+        kind_ == Kind::Alone
+            ? "; several of them on one database need recordings in a place that all of them reach (--blobs)."
+            : ", and keeps the recordings in its own --data; start that with --blobs too.";
+    return fail(ErrorCode::Conflict, "Another daemon works with the database " + (*connection)->name() + way_out,
                 {{"database", (*connection)->name()}});
   }
   connection_ = std::move(*connection);

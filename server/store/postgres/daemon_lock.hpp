@@ -1,8 +1,10 @@
 #pragma once
-/// The right to be the only daemon of a database: an advisory lock that a connection of its own holds.
+/// The right to work with a database: an advisory lock that a connection of its own holds.
 ///
-/// The server ends it with the connection. Where that breaks, the lock is taken again when somebody asks; what another
-/// daemon wrote meanwhile is fenced off like the work of any lost lease.
+/// A daemon whose recordings only it can reach holds the lock alone. Daemons and workers that share their recordings
+/// hold it together; the first of them has it alone until it has put the store in order (`admit_others`). The server
+/// ends the lock with the connection. Where that breaks, the lock is taken again when somebody asks; what others wrote
+/// meanwhile is fenced off like the work of any lost lease.
 #include "core/signal/result.hpp"
 #include "server/store/postgres/connection_pool.hpp"
 
@@ -13,18 +15,29 @@ namespace driftlab::server {
 
 class DaemonLock {
  public:
-  explicit DaemonLock(ConnectionPool::Opener open) : open_(std::move(open)) {}
+  enum class Kind { Alone, Together };
+
+  DaemonLock(ConnectionPool::Opener open, Kind kind) : open_(std::move(open)), kind_(kind) {}
   /// Takes the lock, or sees that it still holds. Errors: Conflict (another daemon has it); Io. Thread safe.
   [[nodiscard]] Status hold();
-  /// The same for the start of a daemon: waits a moment for a connection that has just lost its daemon to end.
+  /// The same for the start of a daemon: waits a moment for a connection that has just lost its daemon to end, and for
+  /// a first one that puts the store in order.
   [[nodiscard]] Status hold_at_start();
+  /// Whether nobody else held it at the start. Of the kind Together, nobody comes before `admit_others` then.
+  [[nodiscard]] bool came_first() const { return came_first_; }
+  /// Errors: Io.
+  [[nodiscard]] Status admit_others();
 
  private:
   [[nodiscard]] Status take();
+  [[nodiscard]] Result<bool> try_lock(PostgresConnection& connection);
 
   ConnectionPool::Opener open_;
+  const Kind kind_;
   std::mutex mutex_;
   std::unique_ptr<PostgresConnection> connection_;
+  bool starting_ = true;
+  bool came_first_ = false;
 };
 
 }  // namespace driftlab::server

@@ -1,18 +1,48 @@
 #include "server/store/postgres/postgres_store.hpp"
 
 #include "server/store/postgres/migrations.hpp"
+#include "server/store/postgres/postgres_coordination.hpp"
 #include "server/store/postgres/postgres_database.hpp"
 
 #include <random>
 
 namespace driftlab::server {
+namespace {
+
+/// Sixteen hexadecimal digits that no other process has.
+std::string random_word() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::random_device device;
+  std::uniform_int_distribution<std::size_t> digit(0, kDigits.size() - 1);
+  std::string word(16, '0');
+  for (char& letter : word) {
+    letter = kDigits[digit(device)];
+  }
+  return word;
+}
+
+/// A connection by which triggers of the database know whose transaction they run in.
+Result<std::unique_ptr<PostgresConnection>> open_marked(const std::string& uri, const std::string& application,
+                                                        const std::string& origin) {
+  auto connection = PostgresConnection::open(uri, application);
+  if (connection) {
+    if (auto marked = (*connection)->execute("SET driftlab.origin = '" + origin + "'"); !marked) {
+      return fail(marked.error());
+    }
+  }
+  return connection;
+}
+
+}  // namespace
 
 PostgresStore::PostgresStore(std::unique_ptr<Database> database, PostgresFacts facts, std::vector<Migration> migrations,
-                             std::unique_ptr<DaemonLock> lock, std::uint64_t jitter_seed, AuditListener audited)
+                             std::unique_ptr<DaemonLock> lock, std::unique_ptr<Coordination> coordination,
+                             std::uint64_t jitter_seed, AuditListener audited)
     : SqlStore(std::move(database), jitter_seed, std::move(audited)),
       facts_(std::move(facts)),
       migrations_(std::move(migrations)),
-      lock_(std::move(lock)) {}
+      lock_(std::move(lock)),
+      coordination_(std::move(coordination)) {}
 
 Status PostgresStore::ping() {
   if (lock_) {
@@ -24,12 +54,13 @@ Status PostgresStore::ping() {
 }
 
 Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& uri, PostgresOptions options) {
-  const ConnectionPool::Opener open = [uri, application = options.application] {
-    return PostgresConnection::open(uri, application);
+  const std::string origin = random_word();
+  const ConnectionPool::Opener open = [uri, application = options.application, origin] {
+    return open_marked(uri, application, origin);
   };
   std::unique_ptr<DaemonLock> lock;
-  if (options.exclusive) {
-    lock = std::make_unique<DaemonLock>(open);
+  if (options.lock) {
+    lock = std::make_unique<DaemonLock>(open, *options.lock);
     if (Status held = lock->hold_at_start(); !held) {
       return fail(held.error());
     }
@@ -54,10 +85,14 @@ Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& ur
     facts = {std::to_string(version / 10000) + "." + std::to_string(version % 10000), (*connection)->name(),
              migrated->from, migrated->to, identity->value_or("")};
   }
+  std::unique_ptr<Coordination> coordination;
+  if (options.lock == DaemonLock::Kind::Together) {
+    coordination = std::make_unique<PostgresCoordination>(open, *lock, origin);
+  }
   const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
   auto database = std::make_unique<PostgresDatabase>(open, options.connections, options.clock, seed);
   return std::make_unique<PostgresStore>(std::move(database), std::move(facts), std::move(migrations), std::move(lock),
-                                         seed, std::move(options.audited));
+                                         std::move(coordination), seed, std::move(options.audited));
 }
 
 }  // namespace driftlab::server

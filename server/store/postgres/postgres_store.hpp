@@ -6,6 +6,7 @@
 /// answer is kept in memory (Store::changes).
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
+#include "server/store/coordination.hpp"
 #include "server/store/postgres/daemon_lock.hpp"
 #include "server/store/sql/migration.hpp"
 #include "server/store/sql/sql_store.hpp"
@@ -21,8 +22,9 @@ namespace driftlab::server {
 struct PostgresOptions {
   int connections = 16;                   ///< at a time; a daemon needs no more than it has threads that ask
   std::string application = "driftlabd";  ///< as pg_stat_activity names it
-  /// Hold the database alone, against other daemons (DaemonLock).
-  bool exclusive = false;
+  /// Hold the database alone against other daemons, or together with those that do so too (DaemonLock); nothing:
+  /// without a lock, for tests.
+  std::optional<DaemonLock::Kind> lock;
   /// Seeds the jitter of retry delays and of reconnecting; nothing: from the operating system.
   std::optional<std::uint64_t> jitter_seed;
   /// Another clock than that of the database, for tests. It must outlive the store.
@@ -45,8 +47,12 @@ struct PostgresFacts {
 class PostgresStore final : public SqlStore {
  public:
   PostgresStore(std::unique_ptr<Database> database, PostgresFacts facts, std::vector<Migration> migrations,
-                std::unique_ptr<DaemonLock> lock, std::uint64_t jitter_seed, AuditListener audited);
+                std::unique_ptr<DaemonLock> lock, std::unique_ptr<Coordination> coordination, std::uint64_t jitter_seed,
+                AuditListener audited);
+  using SqlStore::database;  // for what lies in the database beside the rows of the store
   [[nodiscard]] const PostgresFacts& facts() const { return facts_; }
+  /// What daemons on one database owe each other; nullptr unless the lock is held together. Lives as long as the store.
+  [[nodiscard]] Coordination* coordination() { return coordination_.get(); }
   /// Also that the database has not been brought to another schema since, nor taken over by another daemon. Errors:
   /// Conflict; Io.
   [[nodiscard]] Status ping() override;
@@ -54,7 +60,8 @@ class PostgresStore final : public SqlStore {
  private:
   PostgresFacts facts_;
   std::vector<Migration> migrations_;
-  std::unique_ptr<DaemonLock> lock_;  ///< nullptr: shared
+  std::unique_ptr<DaemonLock> lock_;  ///< nullptr: nobody is kept out
+  std::unique_ptr<Coordination> coordination_;
 };
 
 /// Opens the database at `uri` (postgresql://USER@HOST:PORT/DATABASE) and brings it to the schema of this binary.

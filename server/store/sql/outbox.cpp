@@ -1,4 +1,5 @@
 /// Deliveries to webhooks: queued where jobs end, taken when they are due, written down when they were answered.
+#include "core/signal/with_count.hpp"
 #include "server/store/sql/webhook_tables.hpp"
 
 #include <nlohmann/json.hpp>
@@ -272,7 +273,8 @@ Result<bool> record_attempt(Connection& connection, const WebhookDelivery& deliv
       return false;
     }
     if (why.empty() && *given_up >= outcome.give_ups_until_disabled) {
-      why = std::to_string(*given_up) + " deliveries in a row were given up; the last attempt: " + outcome.error;
+      why = with_count(*given_up, "delivery was given up", "deliveries in a row were given up") +
+            "; the last attempt: " + outcome.error;
     }
   }
   if (why.empty()) {

@@ -49,6 +49,7 @@ class SqliteStore final : public SqlStore {
  public:
   SqliteStore(std::unique_ptr<SqliteDatabase> database, SqliteFacts facts, std::uint64_t jitter_seed,
               AuditListener audited);
+  using SqlStore::database;  // for a copy of every row into another store
   [[nodiscard]] const SqliteFacts& facts() const { return facts_; }
   /// A consistent copy of the database while it is in use (VACUUM INTO from a reader). Errors: DiskFull, Io.
   [[nodiscard]] Status copy_to(const std::filesystem::path& target);

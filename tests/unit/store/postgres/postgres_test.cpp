@@ -191,7 +191,7 @@ TEST_F(PostgresStoreTest, AuditedWritesOfSeveralDaemonsAreOneChain) {
 
 TEST_F(PostgresStoreTest, ADaemonThatWantsTheDatabaseAloneKeepsOthersOut) {
   PostgresOptions alone;
-  alone.exclusive = true;
+  alone.lock = DaemonLock::Kind::Alone;
   {
     const auto first = open(alone);
     const auto second = open_postgres_store(uri_, alone);

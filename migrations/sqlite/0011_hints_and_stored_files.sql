@@ -1,0 +1,1 @@
+-- Hints for other daemons and stored files in parts are of databases that several daemons share: nothing to do here.

@@ -1,0 +1,144 @@
+"""`driftlabd migrate`: a lab goes from SQLite to PostgreSQL and back with everything, also where it is cut off on the way."""
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+from typing import Any
+
+import daemon as daemons
+import postgres
+import samples
+from daemon import Daemon
+from store_test import start
+from suite import SKIPPED
+
+if postgres.programs() is None or "built without PostgreSQL" in start(Path("/nonexistent"), "postgresql://127.0.0.1:1/x").stderr:
+    print("MIGRATE NOT TESTED: there is no PostgreSQL.")
+    raise SystemExit(SKIPPED)
+
+LISTS = ("/v1/devices", "/v1/recordings", "/v1/jobs", "/v1/fits", "/v1/models", "/v1/regression-anchors", "/v1/audit")
+
+
+class Migrate(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.data = self.folder / "data"
+        self.store = postgres.cluster().store_of(self.folder)
+
+    def fill(self) -> dict[str, Any]:
+        """A lab with something of most kinds; everything that its lists say."""
+        with Daemon(self.data) as daemon:
+            for seed in range(3):
+                recording = daemon.upload(samples.gyro_csv(4096, seed=seed), rate_hz=100, columns=samples.GYRO_Z, condition="static")
+                self.assertEqual(recording.status, 201, recording.describe())
+                job = daemon.characterise(recording.json["id"], models=["WN", "WN+RW"]).json["id"]
+                self.assertEqual(daemon.finished(job)["state"], "succeeded")
+            made = daemon.post("/v1/tokens", {"name": "first", "scope": "admin"})
+            daemon.token = made.json["secret"]
+            self.token = daemon.token
+            self.assertEqual(daemon.post("/v1/devices", {"name": "süß"}, {"Idempotency-Key": "k"}).status, 201)
+            said = self.everything(daemon)
+            self.assertEqual(daemon.terminate(), 0)
+        return said
+
+    @staticmethod
+    def everything(daemon: Daemon) -> dict[str, Any]:
+        for job in daemon.items("/v1/jobs"):
+            daemon.finished(job["id"])  # a pooling follows the last characterisation by itself
+        said: dict[str, Any] = {target: daemon.items(target) for target in LISTS}
+        for recording in said["/v1/recordings"]:
+            said[recording["id"]] = daemon.get(f"/v1/recordings/{recording['id']}/content").body
+        for job in said["/v1/jobs"]:
+            result = daemon.get(f"/v1/jobs/{job['id']}/result")
+            said[job["id"]] = result.body if result.status == 200 else result.json["code"]
+        return said
+
+    def migrate(self, source: Path | str, target: Path | str, *more: str) -> subprocess.CompletedProcess[str]:
+        settings = {name: value for name, value in os.environ.items() if not name.startswith("DRIFTLAB_")}
+        return subprocess.run([daemons.PROGRAM, "migrate", "--from", str(source), "--to", str(target), *more], capture_output=True,
+                              text=True, timeout=daemons.PATIENCE_S, env=settings)
+
+    def moved(self, *arguments: Any) -> str:
+        ran = self.migrate(*arguments)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("all compared", ran.stdout)
+        return ran.stdout
+
+    def test_there_and_back_it_is_the_same_lab(self) -> None:
+        before = self.fill()
+        for name, blobs in (("folder", str(self.folder / "shared")), ("database", "database")):
+            with self.subTest(blobs=name):
+                store = postgres.cluster().store_of(self.folder / name)
+                local = self.folder / f"local-{name}"
+                more = ("--blobs", blobs, "--data", str(local))
+                self.moved(self.data, store, *more)
+                shutil.rmtree(local)
+                with Daemon(local, arguments=("--store", store, "--blobs", blobs)) as daemon:
+                    daemon.token = self.token
+                    self.assertEqual(self.everything(daemon), before)
+                    replay = daemon.post("/v1/devices", {"name": "süß"}, {"Idempotency-Key": "k"})
+                    self.assertEqual(replay.headers.get("idempotency-replayed"), "true", replay.describe())
+                    recording = before["/v1/recordings"][0]["id"]
+                    again = daemon.characterise(recording, models=["WN", "WN+GM"]).json["id"]  # numbers go on behind those that came
+                    self.assertEqual(daemon.finished(again)["state"], "succeeded")
+                    after = self.everything(daemon)
+                    self.assertEqual(daemon.terminate(), 0)
+                back = self.folder / f"back-{name}"
+                self.moved(store, back, *more)
+                with Daemon(back) as daemon:
+                    daemon.token = self.token
+                    self.assertEqual(self.everything(daemon), after)
+                    self.assertEqual(daemon.terminate(), 0)
+                self.assertEqual(subprocess.run([daemons.PROGRAM, "check", "--data", str(back)], capture_output=True).returncode, 0)
+
+    def test_a_move_that_was_killed_goes_on(self) -> None:
+        self.fill()
+        arguments = ("--blobs", "database", "--data", str(self.folder / "local"))
+        command = [daemons.PROGRAM, "migrate", "--from", str(self.data), "--to", self.store, *arguments]
+        killed = 0
+        for delay in (0.2, 0.3, 0.5, 0.8):
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            if process.poll() is None:
+                process.send_signal(signal.SIGKILL)
+                killed += 1
+            process.wait()
+            if (self.data / "moving").exists():
+                refused = start(self.data, "")
+                self.assertIn("is being moved", refused.stderr)
+        self.assertGreater(killed, 0)
+        ran = self.migrate(self.data, self.store, *arguments)
+        if ran.returncode != 0:  # one of them had ended before it was killed
+            self.assertIn("holds rows already", ran.stderr)
+        self.assertFalse((self.data / "moving").exists())
+        with Daemon(self.folder / "local", arguments=("--store", self.store, "--blobs", "database")) as daemon:
+            daemon.token = self.token
+            self.assertEqual(len(daemon.items("/v1/recordings")), 3)
+
+    def test_what_cannot_be_moved_is_one_sentence(self) -> None:
+        self.fill()
+        local = ("--blobs", "database", "--data", str(self.folder / "local"))
+        for arguments, said in (((self.data, self.folder / "other"), "name one of each"),
+                                ((self.store, self.store), "name one of each"),
+                                ((self.data, "postgresql://127.0.0.1:1/x", *local), "does not answer")):
+            ran = self.migrate(*arguments)
+            self.assertIn(ran.returncode, (1, 2))
+            self.assertIn(said, ran.stderr)
+        with Daemon(self.data):
+            self.assertIn("uses the directory", self.migrate(self.data, self.store, *local).stderr)
+        with Daemon(self.folder / "a", arguments=("--store", self.store, "--blobs", "database")) as daemon:
+            self.assertIn("stop them", self.migrate(self.data, self.store, *local).stderr)
+            self.assertEqual(daemon.post("/v1/devices", {"name": "other"}).status, 201)
+        self.assertIn("holds rows already", self.migrate(self.data, self.store, *local).stderr)
+        with Daemon(self.data) as daemon:
+            self.assertEqual(daemon.get("/v1/devices", Authorization=f"Bearer {self.token}").status, 200, "the source stays as it is")
+
+
+if __name__ == "__main__":
+    unittest.main()
