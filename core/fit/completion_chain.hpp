@@ -1,0 +1,181 @@
+#pragma once
+/// Backward part of a completion sweep (completion.hpp): what all later samples say about the states, in the
+/// information form of the Kalman filter. Part of completion.cpp alone.
+#include "core/fit/completion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace driftlab::completion {
+
+/// Precisions closer than this to that of an endless run of good samples are taken as it.
+inline constexpr double kAsEndless = 1e-7;
+/// Samples after which that run must have settled, to be used at all.
+inline constexpr std::size_t kLongestRun = 20000;
+inline constexpr double kSettledRun = 1e-13;
+
+template <int N>
+using Vector = std::array<double, static_cast<std::size_t>(N)>;
+template <int N>
+using Matrix = std::array<Vector<N>, static_cast<std::size_t>(N)>;
+
+/// Log-likelihood of later samples as a function of the state: -x' precision x/2 + x' shift.
+template <int N>
+struct Information {
+  Matrix<N> precision{};
+  Vector<N> shift{};
+  bool endless = false;  ///< the precision is that of an endless run of good samples
+};
+
+/// The states of one model, and how information moves back over one sample of a series of `samples`.
+template <int N, bool Quantized>
+class Chain {
+ public:
+  Chain(const CompletionLaw& law, std::size_t samples) {
+    const LinearStates& states = law.states;
+    for (int k = 0; k < N; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      transition_[at] = states.transition[at];
+      noise_[at] = states.noise[at];
+      start_[at] = states.start[at];
+    }
+    error_ = states.error;
+    variance_ = states.white + states.error;
+    // The filter's own variances are the model's; the core says by how much residuals are wider or narrower.
+    for (std::size_t k = 0; k < law.mixture.ratio.size(); ++k) {
+      size_[k] = law.mixture.ratio[k] * law.unit / law.mixture.core;
+    }
+    settle(samples);
+  }
+
+  static constexpr double sight(int k) { return Quantized && k == N - 1 ? -1.0 : 1.0; }
+  [[nodiscard]] double variance() const { return variance_; }
+  [[nodiscard]] double error() const { return error_; }
+  [[nodiscard]] const Vector<N>& transition() const { return transition_; }
+  [[nodiscard]] const Vector<N>& noise() const { return noise_; }
+  [[nodiscard]] const Vector<N>& start() const { return start_; }
+
+  /// From the information about x_{t+1} in samples after t to that about x_t in samples from t on. Where it has the
+  /// precision of an endless run and the sample is good only the shift moves, and that linearly.
+  void back(Information<N>& information, double y, std::uint8_t state) const {
+    if (!information.endless || state != kGoodSample) {
+      move(information, y, state);
+      information.endless = settled_ && near_endless(information.precision);
+      return;
+    }
+    Vector<N> shift{};
+    for (int r = 0; r < N; ++r) {
+      double sum = from_sample_[r] * y;
+      for (int c = 0; c < N; ++c) {
+        sum += from_shift_[r][c] * information.shift[c];
+      }
+      shift[r] = sum;
+    }
+    information.shift = shift;
+  }
+
+ private:
+  void move(Information<N>& information, double y, std::uint8_t state) const {
+    const bool absent = state == kAbsentSample;
+    const double spread = variance_ + (state == kGoodSample || absent ? 0.0 : size_[state - 1U]);
+    const double weight = absent ? 0.0 : 1.0 / spread;
+    const double carried = Quantized && !absent ? error_ * weight : 0.0;  // share of the sample's noise that is a_t
+    auto& p = information.precision;
+    auto& h = information.shift;
+    for (int i = 0; i < N; ++i) {  // integrate the noise of each state out
+      const double q = Quantized && i == N - 1 ? error_ * (1.0 - carried) : noise_[i];
+      const double gain = q / (1.0 + q * p[i][i]);
+      const Vector<N> column = p[i];
+      const double own = h[i];
+      for (int r = 0; r < N; ++r) {
+        const double scaled = gain * column[r];
+        for (int c = 0; c <= r; ++c) {
+          p[r][c] -= scaled * column[c];
+          p[c][r] = p[r][c];
+        }
+        h[r] -= scaled * own;
+      }
+    }
+    // NOLINTBEGIN(misc-const-correctness): assigned where the series is quantized
+    Vector<N> link{};
+    double last = 0.0;
+    double last_shift = 0.0;
+    // NOLINTEND(misc-const-correctness)
+    if constexpr (Quantized) {
+      last = p[N - 1][N - 1];
+      for (int r = 0; r < N; ++r) {
+        link[r] = carried * transition_[r] * p[r][N - 1];
+        h[r] -= carried * y * p[r][N - 1];
+      }
+      last_shift = carried * h[N - 1];
+    }
+    const double seen = weight + carried * carried * last;
+    const double pull = weight * y - last_shift;
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c <= r; ++c) {
+        p[r][c] = transition_[r] * transition_[c] * p[r][c] + seen * sight(r) * sight(c);
+        if constexpr (Quantized) {
+          p[r][c] -= link[r] * sight(c) + sight(r) * link[c];
+        }
+        p[c][r] = p[r][c];
+      }
+      h[r] = transition_[r] * h[r] + sight(r) * pull;
+    }
+  }
+
+  /// The precision of an endless run of good samples, and how the shift moves over one of them. A run that settles only
+  /// after a good part of the series would save nothing.
+  void settle(std::size_t samples) {
+    Information<N> endless;
+    const std::size_t longest = std::min(kLongestRun, samples / 4);
+    for (std::size_t step = 0; step < longest && !settled_; ++step) {
+      const Matrix<N> before = endless.precision;
+      move(endless, 0.0, kGoodSample);
+      settled_ = true;
+      for (int r = 0; r < N; ++r) {
+        settled_ =
+            settled_ && std::fabs(endless.precision[r][r] - before[r][r]) <= kSettledRun * endless.precision[r][r];
+      }
+    }
+    endless_ = endless.precision;
+    for (int c = 0; c <= N; ++c) {
+      Information<N> probe;
+      probe.precision = endless_;
+      if (c < N) {
+        probe.shift[c] = 1.0;
+      }
+      move(probe, c < N ? 0.0 : 1.0, kGoodSample);
+      for (int r = 0; r < N; ++r) {
+        (c < N ? from_shift_[r][c] : from_sample_[r]) = probe.shift[r];
+      }
+    }
+  }
+
+  [[nodiscard]] bool near_endless(const Matrix<N>& precision) const {
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c <= r; ++c) {
+        const double off = precision[r][c] - endless_[r][c];
+        if (!(off * off <= kAsEndless * kAsEndless * endless_[r][r] * endless_[c][c])) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  Vector<N> transition_{};
+  Vector<N> noise_{};
+  Vector<N> start_{};
+  double error_ = 0.0;
+  double variance_ = 0.0;
+  std::array<double, OutlierMixture::kMostSizes> size_{};
+  Matrix<N> endless_{};
+  Matrix<N> from_shift_{};
+  Vector<N> from_sample_{};
+  bool settled_ = false;
+};
+
+}  // namespace driftlab::completion
