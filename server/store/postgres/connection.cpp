@@ -26,6 +26,12 @@ constexpr const char* kSettings =
 constexpr const char* kTime = "; SELECT (extract(epoch FROM clock_timestamp()) * 1000000)::BIGINT";
 constexpr const char* kConnectionLost = "08006";
 
+/// The server ended the connection, or libpq itself gave up (it states no code). Its status may still say that all is
+/// well: the end of the stream is seen by the next read.
+bool is_lost(std::string_view sqlstate) {
+  return sqlstate.starts_with("08") || sqlstate == "57P01" || sqlstate == "57P02" || sqlstate == "57P03";
+}
+
 void ignore_notice(void* /*unused*/, const PGresult* /*unused*/) {}
 
 template <class Number>
@@ -181,7 +187,8 @@ Result<PostgresResult> PostgresConnection::accept(PostgresResult result) {
     return result;
   }
   const char* const given = result ? PQresultErrorField(result.get(), PG_DIAG_SQLSTATE) : nullptr;
-  const std::string state = given != nullptr ? given : is_broken() ? kConnectionLost : "XX000";
+  const std::string state = given != nullptr ? given : kConnectionLost;
+  lost_ = lost_ || is_lost(state);
   const char* const primary = result ? PQresultErrorField(result.get(), PG_DIAG_MESSAGE_PRIMARY) : nullptr;
   if (failure_.empty()) {
     failure_ = state;

@@ -54,7 +54,7 @@ class PostgresConnection final : public Connection {
   /// The SQLSTATE of the first statement that failed since `begin`; empty: none did. 08006 where the connection broke.
   [[nodiscard]] const std::string& failure() const { return failure_; }
   /// No statement can be run any more.
-  [[nodiscard]] bool is_broken() const { return PQstatus(handle_) != CONNECTION_OK; }
+  [[nodiscard]] bool is_broken() const { return lost_ || PQstatus(handle_) != CONNECTION_OK; }
   [[nodiscard]] int server_version() const { return PQserverVersion(handle_); }
   /// `"driftlab" on db.example:5432`; never a password.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -73,6 +73,7 @@ class PostgresConnection final : public Connection {
   [[nodiscard]] std::unique_ptr<EngineStatement> make_statement(std::string_view sql) override;
 
   PGconn* handle_;
+  bool lost_ = false;  ///< a statement said so
   std::string name_;
   std::string failure_;
   UtcMicros begun_at_ = 0;

@@ -1,16 +1,15 @@
 #include "server/store/postgres/daemon_lock.hpp"
 
+#include "server/store/postgres/advisory_locks.hpp"
+
 #include <chrono>
 #include <thread>
 
 namespace driftlab::server {
 namespace {
 
-/// One lock for each schema; the first number is "drft".
-constexpr std::string_view kTakeAlone = "SELECT pg_try_advisory_lock(1685218932, hashtext(current_schema()))::INT";
-constexpr std::string_view kTakeTogether =
-    "SELECT pg_try_advisory_lock_shared(1685218932, hashtext(current_schema()))::INT";
-constexpr std::string_view kEndAlone = "SELECT pg_advisory_unlock(1685218932, hashtext(current_schema()))::INT";
+using namespace advisory_locks;
+
 constexpr std::string_view kStillThere = "SELECT 1";
 constexpr std::chrono::seconds kPatience{3};
 constexpr std::chrono::seconds kPatienceTogether{20};

@@ -1,11 +1,10 @@
 #include "server/store/postgres/migrations.hpp"
 
+#include "server/store/postgres/advisory_locks.hpp"
+
 namespace driftlab::server {
 namespace {
 
-/// The key of the lock is "drft".
-constexpr std::string_view kBegin =
-    "BEGIN; SET LOCAL statement_timeout = 0; SET LOCAL lock_timeout = 0; SELECT pg_advisory_xact_lock(1685218932)";
 constexpr std::string_view kReadOnly =
     "SELECT 1 WHERE pg_is_in_recovery() OR current_setting('transaction_read_only') = 'on'";
 constexpr std::string_view kHasSchema = "SELECT 1 WHERE current_schema() IS NOT NULL";
@@ -97,7 +96,7 @@ Result<PostgresSchema> apply_missing(PostgresConnection& connection, const std::
 }  // namespace
 
 Result<PostgresSchema> migrate(PostgresConnection& connection, const std::vector<Migration>& migrations) {
-  if (Status begun = connection.begin(kBegin); !begun) {
+  if (Status begun = connection.begin(advisory_locks::kBeginMigration); !begun) {
     return fail(begun.error());
   }
   auto outcome = apply_missing(connection, migrations);

@@ -1,12 +1,14 @@
 #include "server/store/postgres/postgres_coordination.hpp"
 
-#include <array>
+#include "server/store/postgres/advisory_locks.hpp"
+
 #include <condition_variable>
 
 namespace driftlab::server {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace advisory_locks;
 
 constexpr auto kPause = 1s;        // between attempts to reach a database that does not answer
 constexpr auto kAccessEvery = 2s;  // Hints::access
@@ -14,15 +16,6 @@ constexpr auto kLook = 200ms;      // longest wait for a notification before the
 constexpr std::size_t kLongestWords = 7900;
 
 constexpr std::string_view kStillThere = "SELECT 1";
-/// By duty; the first number is "drft" and 1, 2, 3.
-constexpr std::array<std::string_view, 3> kTakeDuty = {
-    "SELECT pg_try_advisory_lock(1685218933, hashtext(current_schema()))::INT",
-    "SELECT pg_try_advisory_lock(1685218934, hashtext(current_schema()))::INT",
-    "SELECT pg_try_advisory_lock(1685218935, hashtext(current_schema()))::INT"};
-constexpr std::string_view kTakeKey =
-    "SELECT pg_try_advisory_lock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";
-constexpr std::string_view kGiveBackKey =
-    "SELECT pg_advisory_unlock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";
 constexpr std::string_view kTell = "SELECT 1 FROM (SELECT pg_notify('driftlab_' || md5(current_schema()), ?1)) AS told";
 constexpr std::string_view kChannel = "SELECT 'driftlab_' || md5(current_schema())";
 

@@ -216,6 +216,21 @@ TEST_F(PostgresStoreTest, BrokenConnectionsAreReplacedUnnoticed) {
   EXPECT_TRUE(store->ping());
 }
 
+// The first request after a restart met a connection that libpq still called good, and was answered with an error.
+TEST_F(PostgresStoreTest, ARestartOfTheServerIsUnnoticed) {
+  const auto store = open();
+  const Device device = add_device(*store);
+  for (int i = 0; i < 4; ++i) {
+    cluster().stop(i % 2 == 0 ? SIGQUIT : SIGINT);
+    cluster().start();
+    const auto read = store->device(device.id);
+    ASSERT_TRUE(read) << read.error().message;
+    cluster().stop(i % 2 == 0 ? SIGINT : SIGQUIT);
+    cluster().start();
+    add_device(*store, "device " + std::to_string(i));
+  }
+}
+
 TEST_F(PostgresStoreTest, AServerThatIsGoneIsSaidInOneSentenceAndComesBack) {
   const auto store = open();
   const Device device = add_device(*store);

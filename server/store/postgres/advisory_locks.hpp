@@ -1,0 +1,33 @@
+#pragma once
+/// Every advisory lock that driftlab takes in a PostgreSQL database. Numbers begin with "drft" (0x64726674), and
+/// further ones count up, so that other users of the database are not met by chance. Those of a schema carry its name's
+/// hash.
+#include <array>
+#include <string_view>
+
+namespace driftlab::server::advisory_locks {
+
+/// Migrations wait for each other, in every schema; until the transaction ends.
+inline constexpr std::string_view kBeginMigration =
+    "BEGIN; SET LOCAL statement_timeout = 0; SET LOCAL lock_timeout = 0; SELECT pg_advisory_xact_lock(1685218932)";
+
+/// The right to work with a schema: alone, or together with others (DaemonLock).
+inline constexpr std::string_view kTakeAlone =
+    "SELECT pg_try_advisory_lock(1685218932, hashtext(current_schema()))::INT";
+inline constexpr std::string_view kTakeTogether =
+    "SELECT pg_try_advisory_lock_shared(1685218932, hashtext(current_schema()))::INT";
+inline constexpr std::string_view kEndAlone = "SELECT pg_advisory_unlock(1685218932, hashtext(current_schema()))::INT";
+
+/// Duties that one of several daemons has, in the order of Duty.
+inline constexpr std::array<std::string_view, 3> kTakeDuty = {
+    "SELECT pg_try_advisory_lock(1685218933, hashtext(current_schema()))::INT",
+    "SELECT pg_try_advisory_lock(1685218934, hashtext(current_schema()))::INT",
+    "SELECT pg_try_advisory_lock(1685218935, hashtext(current_schema()))::INT"};
+
+/// Idempotency keys under way; one number of 64 bits each, ?1 the key.
+inline constexpr std::string_view kTakeKey =
+    "SELECT pg_try_advisory_lock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";
+inline constexpr std::string_view kGiveBackKey =
+    "SELECT pg_advisory_unlock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";
+
+}  // namespace driftlab::server::advisory_locks
