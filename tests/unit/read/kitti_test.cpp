@@ -12,10 +12,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using namespace driftlab::testing;
 
-double cell(const Outcome& outcome, std::size_t column, std::size_t row) {
-  return std::bit_cast<double>(outcome.bits[column][row]);
-}
-
 TEST(Kitti, ReadsTheMomentsInTheOrderOfTheirNumbers) {
   auto files = kitti_files(12);
   std::swap(files.front(), files[11]);

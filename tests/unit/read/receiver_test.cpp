@@ -13,10 +13,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using namespace driftlab::testing;
 
-double cell(const Outcome& outcome, std::size_t column, std::size_t row) {
-  return std::bit_cast<double>(outcome.bits[column][row]);
-}
-
 TEST(Nmea, PutsTheSentencesOfAMomentIntoOneRowAndGoesOnOverMidnight) {
   const Outcome outcome = decode_bytes(nmea());
   ASSERT_FALSE(outcome.error) << outcome.message;

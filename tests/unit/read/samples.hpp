@@ -69,6 +69,11 @@ struct Outcome {
   }
 };
 
+/// A value of the table that came out.
+inline double cell(const Outcome& outcome, std::size_t column, std::size_t row) {
+  return std::bit_cast<double>(outcome.bits[column][row]);
+}
+
 // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
 inline void PrintTo(const Outcome& outcome, std::ostream* out) {
   if (outcome.error) {
