@@ -1,7 +1,7 @@
 // Every page: nothing for axe to find in either theme, nothing in the console, nothing wider than a phone. With
 // $DRIFTLAB_SCREENS each is also pictured at 390, 1440 and 2560 px, light and dark, for a person to look at.
 import assert from 'node:assert/strict';
-import {mkdirSync, writeFileSync} from 'node:fs';
+import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fillDrive, fillLine, receiver, told} from './lab.mjs';
@@ -28,7 +28,7 @@ before(async () => {
   await daemon.finished(outages.id);
   const other = await daemon.upload(await (await fetch(`${daemon.address}/v1/samples/iphone5s-z?seed=8&condition=static`)).text(), {device: 'phone-07', condition: 'static', rate_hz: 100, id: 'run-8'});
   await daemon.characterise(other.id);
-  const regress = await daemon.json('/v1/jobs', {kind: 'regress', inputs: {device: 'phone-07', baseline: {recordings: [{recording: ids[0]}]}, candidate: {recordings: [{recording: other.id}]}}});
+  const regress = await daemon.json('/v1/jobs', {kind: 'regress', inputs: {device: 'phone-07', baseline: {recordings: [{recording: ids[0]}]}, candidate: {recordings: [{recording: ids[1]}]}}});
   await daemon.finished(regress.id);
   const [listens, refuses] = [await receiver(204), await receiver(410)];
   const webhook = await daemon.json('/v1/webhooks', {url: listens.url, description: 'firmware pipeline', events: ['regression.ended', 'job.ended']});
@@ -89,6 +89,44 @@ test('no page is wider than a phone', async () => {
     if (width > 390) wide.push(`${name}: ${width}`);
   }
   assert.deepEqual(wide, []);
+  await page.context().close();
+});
+
+test('figures that a page draws itself are saved as files and read as tables', async () => {
+  const page = await open(browser, daemon, paths.outage);
+  const reader = await browser.newPage();  // no policy of the daemon's keeps it from parsing a document with a style
+  for (const [title, name, marks] of [['Drive', 'outage-drive', 'polyline'], ['Outage 1, end', 'outage-1-end', 'ellipse'], ['Horizontal error by filter', 'outage-errors', 'circle'], ['Does the filter know', 'outage-nees', 'circle'], ['Where the gain comes from', 'outage-gain', 'line']]) {
+    const panel = page.locator('section.panel', {has: page.getByRole('heading', {name: title})});
+    const saved = async button => { const [download] = await Promise.all([page.waitForEvent('download'), panel.getByRole('button', {name: button}).click()]); return [download.suggestedFilename(), readFileSync(await download.path(), 'utf8')]; };
+    const [svgName, svg] = await saved('SVG');
+    assert.equal(svgName, `${name}.svg`);
+    const faults = await reader.evaluate(([text, tag]) => { const parsed = new DOMParser().parseFromString(text, 'image/svg+xml'); return [parsed.querySelector('parsererror')?.textContent ?? '', parsed.querySelectorAll(tag).length, text.includes('var(--')]; }, [svg, marks]);
+    assert.equal(faults[0], '', title);
+    assert.ok(faults[1] > 0, `${title}: ${marks}`);
+    assert.equal(faults[2], false, `${title}: colours are those of the light theme`);
+    assert.match(svg, /driftlab, job_\w+, algorithm \d+, seed 1/, title);
+    const [, csvText] = await saved('CSV');
+    await panel.getByRole('button', {name: 'Table'}).click();
+    assert.equal(await panel.locator('.table-view tbody tr').count(), csvText.trim().split('\n').length - 1, title);
+  }
+  assert.deepEqual(page.loud, []);
+  await reader.close();
+  await page.context().close();
+});
+
+test('a device’s page leads to its comparison and exports its model as the command line does', async () => {
+  const page = await open(browser, daemon, paths.device);
+  await page.getByRole('button', {name: 'Export model'}).click();
+  const drawer = page.getByRole('dialog');
+  await drawer.getByText('gyroscope_noise_density').first().waitFor();
+  assert.equal((await drawer.locator('pre').innerText()).trimEnd(), (await (await fetch(`${daemon.address}/v1/exports/kalibr?device=phone-07`, {headers: {Accept: 'text/plain'}})).text()).trimEnd());
+  await drawer.getByLabel('Program').selectOption('gazebo');
+  await drawer.getByText('<stddev>').first().waitFor();
+  assert.deepEqual(await accessibilityFaults(page), []);
+  await page.keyboard.press('Escape');
+  await page.getByRole('link', {name: 'Compare'}).click();
+  await page.waitForURL(/compare\?with=rec_\w+,rec_/);
+  assert.deepEqual(page.loud, []);
   await page.context().close();
 });
 

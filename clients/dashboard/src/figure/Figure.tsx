@@ -160,7 +160,7 @@ export function Figure(props: FigureProps): JSX.Element {
   const body = <>
     <div class="ptop"><h2>{title}</h2>{props.controls}{props.sub && <span class="sub">{props.sub}</span>}
       <Tools title={title} tableShown={tableShown} onTable={() => setTableShown(!tableShown)} curl={props.curl} how={props.how}
-        onSvg={() => { if (svg.current) save(`${name}.svg`, 'image/svg+xml', svgText(svg.current, `${title}. ${props.describe}`, props.source)); }}
+        onSvg={() => { if (svg.current) save(`${name}.svg`, 'image/svg+xml', svgText([svg.current], `${title}. ${props.describe}`, props.source)); }}
         onCsv={() => save(`${name}.csv`, 'text/csv', csvOf(table()))} />
     </div>
     {props.readout && <div class="readout">{x === null ? props.quietReadout ?? <span>Move over the figure, or focus it and use the arrow keys.</span> : props.readout(x)}</div>}

@@ -13,34 +13,38 @@ function inLight(text: string): string {
   return coloured;
 }
 
-export function svgText(svg: SVGSVGElement, title: string, source: string): string {
-  const copy = svg.cloneNode(true) as SVGSVGElement;
-  for (const gone of [...copy.querySelectorAll('[data-cursor]')]) gone.remove();
-  const width = svg.viewBox.baseVal.width;
-  const height = svg.viewBox.baseVal.height;
-  copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
-  copy.setAttribute('viewBox', `0 0 ${width} ${height + 20}`);
-  copy.setAttribute('width', String(width));
-  copy.setAttribute('height', String(height + 20));
-  for (const name of ['tabindex', 'class', 'aria-label', 'aria-describedby', 'aria-roledescription']) copy.removeAttribute(name);
-  copy.setAttribute('role', 'img');
-  const make = (name: string, text: string): SVGElement => {
-    const element = document.createElementNS('http://www.w3.org/2000/svg', name) as SVGElement;
-    element.textContent = text;
-    return element;
-  };
-  const ground = make('rect', '');
-  ground.setAttribute('width', String(width));
-  ground.setAttribute('height', String(height + 20));
-  ground.setAttribute('fill', '#ffffff');
-  const line = make('text', source);
-  line.setAttribute('class', 's');
-  line.setAttribute('x', '0');
-  line.setAttribute('y', String(height + 14));
-  copy.querySelector('title')?.remove();
-  copy.prepend(make('title', title), make('style', TEXT_STYLES), ground);
-  copy.append(line);
-  return inLight(new XMLSerializer().serializeToString(copy));
+const SVG = 'http://www.w3.org/2000/svg';
+const FOOT = 20;
+const BESIDE = 16;
+
+function make(name: string, text: string, attributes: Record<string, string | number> = {}): SVGElement {
+  const element = document.createElementNS(SVG, name);
+  element.textContent = text;
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  return element;
+}
+
+// One drawing as a file, or several side by side.
+export function svgText(drawings: readonly SVGSVGElement[], title: string, source: string): string {
+  const file = make('svg', '', {role: 'img'});
+  let width = 0;
+  let height = 0;
+  for (const drawing of drawings) {
+    const {x, y, width: wide, height: high} = drawing.viewBox.baseVal;
+    const copy = drawing.cloneNode(true) as SVGSVGElement;
+    for (const gone of [...copy.querySelectorAll('[data-cursor]')]) gone.remove();
+    copy.querySelector('title')?.remove();
+    const left = width === 0 ? 0 : width + BESIDE;
+    const part = make('g', '', left - x === 0 && y === 0 ? {} : {transform: `translate(${left - x} ${-y})`});
+    part.append(...copy.childNodes);
+    file.append(part);
+    width = left + wide;
+    height = Math.max(height, high);
+  }
+  for (const [key, value] of Object.entries({viewBox: `0 0 ${width} ${height + FOOT}`, width, height: height + FOOT})) file.setAttribute(key, String(value));
+  file.prepend(make('title', title), make('style', TEXT_STYLES), make('rect', '', {width, height: height + FOOT, fill: '#ffffff'}));
+  file.append(make('text', source, {class: 's', x: 0, y: height + FOOT - 6}));
+  return inLight(new XMLSerializer().serializeToString(file));
 }
 
 export interface Table { heading: string[]; rows: (string | number | null)[][] }

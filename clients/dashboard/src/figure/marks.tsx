@@ -55,9 +55,10 @@ export function Points({series, place}: {series: Series; place: Area}): JSX.Elem
     const low = series.low?.[i];
     const high = series.high?.[i];
     const to = (v: number | null | undefined, open: number): number => round(finite(v) && (!log || v > 0) ? place.y(v) : open);
+    const colour = series.colours?.[i] ?? series.colour;
     return <g key={i}>
-      {(finite(low) || finite(high)) && <line x1={x} x2={x} y1={to(low, place.bottom)} y2={to(high, place.top)} stroke={series.colour} stroke-width="1.3" />}
-      <MarkAt mark={mark} x={x} y={round(place.y(series.y[i]!))} colour={series.colour} />
+      {(finite(low) || finite(high)) && <line x1={x} x2={x} y1={to(low, place.bottom)} y2={to(high, place.top)} stroke={colour} stroke-width="1.3" />}
+      <MarkAt mark={mark} x={x} y={round(place.y(series.y[i]!))} colour={colour} />
     </g>;
   })}</g>;
 }

@@ -15,6 +15,7 @@ export interface Series {
   line?: boolean;        // joined
   bars?: boolean;        // from the foot of the plot, as wide as the points are apart
   colour: string;        // a token: var(--model)
+  colours?: readonly string[];  // of each point, where they differ
   band?: string;         // fill between low and high, a token
   width?: number;
   dash?: string;

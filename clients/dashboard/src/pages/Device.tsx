@@ -18,6 +18,7 @@ import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {qualityWords} from './Recording';
 import {colours, type ParameterTable, type Trends} from './device/documents';
+import {ExportModel} from './device/ExportModel';
 import {Parameters} from './device/Table';
 import {SheetLine} from './device/SheetLine';
 import {TrendFrame} from './device/TrendPanel';
@@ -73,7 +74,8 @@ function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.
   </Panel>;
 }
 
-function Results({device, summary}: {device: Device; summary: DeviceSummary}): JSX.Element {
+// `onCompared`: told which recordings a comparison would show, the first of each condition.
+function Results({device, summary, onCompared}: {device: Device; summary: DeviceSummary; onCompared: (recordings: string) => void}): JSX.Element {
   const {query} = usePlace();
   const axes = summary.channels.filter(channel => channel.axis && ['angular_rate', 'specific_force'].includes(channel.quantity));
   const wanted = `${query.get('sensor') ?? ''}:${query.get('axis') ?? ''}`;
@@ -85,8 +87,11 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
   const path = asked && reference ? `${asked}&reference=${encodeURIComponent(reference)}` : asked;
   const read = useRead<ParameterTable>(path, undefined);
   const trends = useRead<Trends>(asked ? asked.replace('/v1/parameter-tables', '/v1/trends') : null);
+  const compared = (read.data?.rows ?? []).map(row => row.recordings[0]).slice(0, CONDITIONS).join(',');
+  const colour = useMemo(() => new Map(read.data ? colours(read.data.rows).map((one, i) => [read.data!.rows[i]!.label, one] as const) : []), [read.data]);
   const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
-  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (read.data) go(`/compare?with=${read.data.rows.map(row => row.recordings[0]).slice(0, 8).join(',')}`); }});
+  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (compared) go(`/compare?with=${compared}`); }});
+  useEffect(() => onCompared(compared), [compared]);
   if (!chosen || !path) return <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
   const text = async (type: string, extension: string): Promise<void> => save(`${device.name}-${chosen.axis}.${extension}`, type, await (await ask(path, {headers: {Accept: type}})).text());
   const selected = (query.get('sel') ?? '').split('|').filter(Boolean);
@@ -109,7 +114,7 @@ function Results({device, summary}: {device: Device; summary: DeviceSummary}): J
       <Overlay table={read.data} rows={read.data.rows.map((_, i) => i).filter(i => selected.length === 0 || selected.includes(read.data!.rows[i]!.label))} />
       <Panel title={`Trends against ${against === 'rate' ? 'rate' : 'angular acceleration'}`} controls={<Segments label="Against" options={[['rate', '|rate|'], ['acceleration', '|acceleration|']] as const} value={against === 'rate' ? 'rate' : 'acceleration'} onChange={value => choose({trend: value === 'rate' ? null : value})} />}>
         {trends.problem ? <Refusal problem={trends.problem} again={trends.again} /> : !trends.data ? <Hairlines /> : shown.length === 0 ? <p class="sec">One condition shows no trend. Record this device while it turns at a known rate.</p>
-          : <><div class="small-multiples">{shown.map(trend => <TrendFrame key={trend.parameter} trend={trend} device={device.name} />)}</div><p class="note">Zero is on every axis. “Moves” rejects equality at 5 %; “rises” or “falls” only where the trend itself does. … not identified.</p></>}
+          : <><div class="small-multiples">{shown.map(trend => <TrendFrame key={trend.parameter} trend={trend} device={device.name} colour={colour} />)}</div><p class="note">Zero is on every axis. “Moves” rejects equality at 5 %; “rises” or “falls” only where the trend itself does. … not identified.</p></>}
       </Panel>
     </div>}
     <Recordings device={device} axis={chosen.axis} />
@@ -133,6 +138,7 @@ export default function DevicePage(): JSX.Element {
   const name = parts[1] ?? '';
   const read = useRead<Device>(`/v1/devices/${encodeURIComponent(name)}`);
   const [waits, setWaits] = useState(true);
+  const [compared, setCompared] = useState('');
   const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits ? WAITS_MS : undefined);
   // Until there is a first result the page looks for one.
   useEffect(() => { if (summary.data) setWaits(summary.data.channels.length === 0); }, [summary.data]);
@@ -140,7 +146,7 @@ export default function DevicePage(): JSX.Element {
   return <Shown read={read}>{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
-      actions={<><a class="btn" href={`/upload`}>Add recordings</a><a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a><Report /></>} />
-    <Shown read={summary}>{found => <>{found.channels.length > 0 ? <Results device={device} summary={found} /> : <><Results device={device} summary={found} /><Recordings device={device} axis={null} /></>}</>}</Shown>
+      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /></>} />
+    <Shown read={summary}>{found => <>{found.channels.length > 0 ? <Results device={device} summary={found} onCompared={setCompared} /> : <><Results device={device} summary={found} onCompared={setCompared} /><Recordings device={device} axis={null} /></>}</>}</Shown>
   </>}</Shown>;
 }

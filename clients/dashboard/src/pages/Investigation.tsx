@@ -5,14 +5,15 @@ import type {Device, List, Quantity, Recording} from '../api/documents';
 import {writeNumber, writeQuantity} from '../format/number';
 import {writeWhen} from '../format/time';
 import {capital, countWord, listWords, plural, processName, symbolOf, writeSentence, writeUnit} from '../format/words';
-import {csvOf, save} from '../figure/export';
+import {Drawn} from '../figure/Drawn';
+import {csvOf, save, type Table} from '../figure/export';
 import {curlOf, Tools} from '../figure/Figure';
 import {choose, pageOf, usePlace} from '../route';
 import {Head, MadeBy, Report} from '../shell/Head';
 import {Panel, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Checks} from './investigation/Checks';
-import {axisOf, causeName, columnOf, type Finding, type Investigation} from './investigation/documents';
+import {axisOf, causeName, checkKind, columnOf, type Finding, type Investigation} from './investigation/documents';
 import {Measured} from './investigation/Measured';
 
 const MOST_BAR = 1000;
@@ -59,6 +60,8 @@ function NotExamined({found}: {found: Investigation}): JSX.Element {
     <tbody>{rows.map(([need, causes]) => <tr key={need}><th scope="row">{capital(need)}</th><td class="sec">{[...causes].map(causeName).join(', ')}</td><td class="n">{causes.size}</td></tr>)}</tbody></table>}</Panel>;
 }
 
+const checkTable = (found: Investigation, names: ReadonlyMap<string, string>): Table => ({heading: ['recording', 'column', 'check', 'p', 'p corrected', 'failed', 'fails still'], rows: found.checks.map(check => [check.recording ? names.get(check.recording) ?? check.recording : 'whole study', columnOf(check.channel), checkKind(check), check.p, check.p_adjusted, check.failed ? 'yes' : 'no', check.failed_after ? 'yes' : 'no'])});
+
 function Found({found}: {found: Investigation}): JSX.Element {
   const {query} = usePlace();
   const device = useRead<Device>(`/v1/devices/${found.device}`);
@@ -91,7 +94,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
       <ul class="rows plain">{list.map((finding, j) => <FindingRow key={j} finding={finding} names={names} total={ids.size} />)}</ul>
     </Panel>)}
     <div class="grid two">
-      <Panel title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`}><Checks found={found} names={names} /></Panel>
+      <Drawn name={`${found.id}-checks`} title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`} source={`driftlab, ${found.id}`} curl={curlOf(`/v1/investigations/${found.id}`)} table={() => checkTable(found, names)}><Checks found={found} names={names} /></Drawn>
       <NotExamined found={found} />
     </div>
     {(found.notes ?? []).map(note => <p key={note} class="note">{note}</p>)}

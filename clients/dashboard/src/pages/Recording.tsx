@@ -152,6 +152,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
       actions={<>
         {channels.length > 1 && <Segments label="Channel" options={channels.map(one => [one.result.channel, label(one)] as const)} value={channel?.result.channel ?? ''} onChange={select} />}
         <a class="btn" href={`/compare?with=${recording.id}`}>Compare <kbd>c</kbd></a>
+        <a class="btn" href={`/investigations?device=${encodeURIComponent(deviceName)}`}>Investigate</a>
         <Report />
       </>} />
     {newer && <p class="note" role="status">Newer result. <button type="button" class="link" onClick={() => { setNewer(false); read.again(); }}>Show it</button></p>}

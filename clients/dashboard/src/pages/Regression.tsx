@@ -2,16 +2,17 @@
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
 import {useJobEvents, useRead} from '../api/client';
-import type {Job, Nullable} from '../api/documents';
-import {writeNumber, writeP, writeTick} from '../format/number';
+import type {Job, Nullable, Recording} from '../api/documents';
+import {writeNumber, writeP, writeQuantity, writeTick, type Written} from '../format/number';
 import {writeDuration} from '../format/time';
-import {conditionName, plural} from '../format/words';
+import {conditionName, plural, writeSentence} from '../format/words';
 import {curlOf, defaultReadout, Figure} from '../figure/Figure';
 import type {Plot, Series} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head, MadeBy, Report, Verdict} from '../shell/Head';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
+import {columnName} from './device/documents';
 import type {Regression as Document, Test, Unit} from './regression/documents';
 
 const COLOURS: Record<string, string> = {beyond: 'var(--robust)', worse_within_margin: 'var(--measured)', open: 'var(--measured)', ok: 'var(--measured)', improved: 'var(--model)'};
@@ -31,13 +32,22 @@ function ratioPlots(tests: readonly Test[]): Plot[] {
   return [{id: 'ratio', height: 220, x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: 'candidate ÷ baseline, Allan deviation', write: writeTick}, rules: [1], series: [...series, limit]}];
 }
 
+const ratioOf = (test: Test): Written => writeQuantity({value: test.ratio, ci95: [test.ci[0] ?? null, test.ci[1] ?? null], unit: ''});
+const parameterName = ({name = ''}: Test): string => { const {process, symbol} = columnName(name); return `${process} ${symbol}`; };
+
 function Tests({unit}: {unit: Unit}): JSX.Element {
   const parameters = unit.tests.filter(test => test.kind === 'parameter');
   return <Panel title="Parameters" sub={unit.structure.changed ? 'not compared: no model describes both arms' : unit.structure.pooled ?? ''}>
-    {parameters.length === 0 ? <p class="sec">None is compared; the scales decide.</p> : <table><thead><tr><th scope="col">parameter</th><th scope="col" class="n">candidate ÷ baseline</th><th scope="col">interval</th><th scope="col" class="n">margin</th><th scope="col">word</th></tr></thead>
-      <tbody>{parameters.map(test => <tr key={test.name}><th scope="row">{test.name}</th><td class="n"><b>{test.ratio === null ? '…' : writeNumber(test.ratio, 4)}</b></td><td class="ci">[{test.ci.map(end => end === null ? '…' : writeNumber(end, 4)).join(', ')}]</td><td class="n">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
+    {parameters.length === 0 ? <p class="sec">None is compared; the scales decide.</p> : <table class="stacked"><thead><tr><th scope="col">parameter</th><th scope="col" class="n">candidate ÷ baseline</th><th scope="col">interval</th><th scope="col" class="n">margin</th><th scope="col">word</th></tr></thead>
+      <tbody>{parameters.map(test => <tr key={test.name}><th scope="row">{parameterName(test)}</th><td class="n" data-label="candidate ÷ baseline"><b>{ratioOf(test).value}</b></td><td class="ci">{ratioOf(test).interval}</td><td class="n nowrap" data-label="margin">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
     <p class="note">Structure: {unit.structure.baseline ?? '…'} before, {unit.structure.candidate ?? '…'} after{unit.structure.p !== undefined && unit.structure.p !== null ? `, ${writeP(unit.structure.p)}` : ''}.</p>
   </Panel>;
+}
+
+// A recording by its name; by its id until that is known, or where it is gone.
+function RecordingLink({id}: {id: string}): JSX.Element {
+  const read = useRead<Recording>(`/v1/recordings/${id}`);
+  return <><a href={pageOf('recordings', id)}>{read.data?.metadata.id ?? id}</a>{read.data && <span class="sec"> {conditionName(read.data.metadata.condition)}{read.data.duration_s !== null && `, ${writeDuration(read.data.duration_s)}`}</span>}</>;
 }
 
 function Shown({document}: {document: Document}): JSX.Element {
@@ -56,9 +66,9 @@ function Shown({document}: {document: Document}): JSX.Element {
         readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
         how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl></>} />
       <div class="stack"><Tests unit={unit} />
-        <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}>{finding.verdict !== 'ok' && <span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>}{finding.sentence}</li>)}{document.comparability.map(each => <li key={each.item}>{each.sentence}</li>)}</ul>}
+        <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}>{finding.verdict !== 'ok' && <span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>}{writeSentence(finding.sentence!)}</li>)}{document.comparability.map(each => <li key={each.item}>{writeSentence(each.sentence)}</li>)}</ul>}
           {document.versus_previous && <p class="note">Against {document.versus_previous.label}: {document.versus_previous.sentence}</p>}</Panel>
-        <Panel title="Recordings" sub={`${plural(document.arms.baseline.sessions.length, 'session')} before, ${document.arms.candidate.sessions.length} after`}><ul class="rows plain">{[...new Set(recordings)].map(id => <li key={id}><a href={pageOf('recordings', id)}>{id}</a></li>)}</ul>{document.arms.excluded.map(each => <p key={each.recording} class="note">Left out: {each.recording}, {each.reason}</p>)}</Panel></div>
+        <Panel title="Recordings" sub={`${plural(document.arms.baseline.sessions.length, 'session')} before, ${document.arms.candidate.sessions.length} after`}><ul class="rows plain">{[...new Set(recordings)].map(id => <li key={id}><RecordingLink id={id} /></li>)}</ul>{document.arms.excluded.map(each => <p key={each.recording} class="note">Left out: <RecordingLink id={each.recording} />, {each.reason}</p>)}</Panel></div>
     </div>}
   </>;
 }

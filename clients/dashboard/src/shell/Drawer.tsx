@@ -23,8 +23,8 @@ export function Drawer(): JSX.Element | null {
   // In the frame in which it appears: an Esc that follows at once must find the drawer in focus.
   useLayoutEffect(() => { if (open) heading.current?.focus(); }, [open]);
   if (!open) return null;
-  return <aside class="drawer" role="dialog" aria-label={open.title} onKeyDown={event => { if (event.key === 'Escape') { event.stopPropagation(); closeDrawer(); } }}>
+  return <div class="drawer" role="dialog" aria-label={open.title} onKeyDown={event => { if (event.key === 'Escape') { event.stopPropagation(); closeDrawer(); } }}>
     <div class="row"><h2 tabIndex={-1} ref={heading}>{open.title}</h2><button type="button" class="btn right" onClick={closeDrawer}>Close</button></div>
     {open.content()}
-  </aside>;
+  </div>;
 }

@@ -18,7 +18,7 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
   const at = new Map<string, Check>(found.checks.map(check => [`${check.recording ?? ''}\u0001${columnOf(check.channel)}\u0001${checkKind(check)}`, check] as const));
   const failed = found.checks.filter(check => check.failed);
   return <>
-    <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg width={LEFT + kinds.length * CELL + 70} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
+    <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg viewBox={`0 0 ${LEFT + kinds.length * CELL + 70} ${TOP + rows.length * CELL + 6}`} width={LEFT + kinds.length * CELL + 70} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
       {kinds.map((kind, i) => <text key={kind} class="s" transform={`translate(${LEFT + i * CELL + 14},${TOP - 8}) rotate(-52)`}>{kind}</text>)}
       {rows.map((row, j) => {
         const [recording = '', column = ''] = row.split('\u0001');

@@ -1,7 +1,7 @@
 // The drive in metres, north up, with its outages as thick strokes and the chosen one enlarged.
 import type {JSX} from 'preact';
 import {writeTick} from '../../format/number';
-import type {Evaluation, Filter, Path, Track} from './documents';
+import {at95, type Evaluation, type Filter, type Path, type Track} from './documents';
 
 const WIDTH = 420;
 const HEIGHT = 460;
@@ -28,6 +28,15 @@ function barLength(scale: number, most: number): number {
   return [5, 2, 1].map(digit => digit * power).find(length => length <= rough) ?? power;
 }
 
+// What a filter believes of its own error at the end of an outage, around where it believes to be.
+function Belief({filter, outage, path, indices, zoom, colour}: {filter: Filter; outage: number; path: Path; indices: number[]; zoom: View; colour: string}): JSX.Element | null {
+  const last = indices[indices.length - 1];
+  const ellipse = at95(filter.outages[outage]!.predicted.ellipses);
+  if (last === undefined || !ellipse) return null;
+  const [x, y] = [zoom.x(path.east_m[last]!), zoom.y(path.north_m[last]!)];
+  return <ellipse cx={x} cy={y} rx={ellipse.semi_major_m * zoom.scale} ry={ellipse.semi_minor_m * zoom.scale} transform={`rotate(${ellipse.major_axis_azimuth_deg - 90} ${x} ${y})`} fill="none" stroke={colour} stroke-width="1.2" />;
+}
+
 export function DriveMap({evaluation, outage, left, right}: {evaluation: Evaluation; outage: number; left: Filter; right: Filter}): JSX.Element {
   const {trajectory} = evaluation;
   const all = trajectory.time_s.map((_, i) => i);
@@ -42,7 +51,7 @@ export function DriveMap({evaluation, outage, left, right}: {evaluation: Evaluat
   });
   const inset = {left: WIDTH * 0.28, top: HEIGHT * 0.22, size: WIDTH * 0.46};
   const zoom = viewOf([...near.map(i => truth.east_m[i]!), ...filters.flatMap(({path, indices}) => indices.map(i => path.east_m[i]!))],
-    [...near.map(i => truth.north_m[i]!), ...filters.flatMap(({path, indices}) => indices.map(i => path.north_m[i]!))], inset.left + 26, inset.top + 22, inset.size - 52, inset.size - 66);
+    [...near.map(i => truth.north_m[i]!), ...filters.flatMap(({path, indices}) => indices.map(i => path.north_m[i]!))], inset.left + 26, inset.top + 22, inset.size - 52, inset.size - 80);
   const bar = barLength(view.scale, 110);
   const zoomBar = barLength(zoom.scale, 60);
   const middle = near[Math.floor(near.length / 2)] ?? 0;
@@ -61,10 +70,12 @@ export function DriveMap({evaluation, outage, left, right}: {evaluation: Evaluat
     <line x1={atX} y1={atY} x2={inset.left + inset.size / 2} y2={inset.top + inset.size / 2} stroke="var(--focus)" stroke-width="0.8" opacity="0.6" />
     <rect x={inset.left} y={inset.top} width={inset.size} height={inset.size} fill="var(--surface)" stroke="var(--hair)" />
     <polyline points={points(truth, near, zoom)} fill="none" stroke="var(--rule)" stroke-width="2.5" />
-    {filters.map(({filter, path, indices}, i) => <polyline key={filter.name} points={points(path, indices, zoom)} fill="none" stroke={i === 0 ? 'var(--robust)' : 'var(--model)'} stroke-width="1.6" />)}
+    {filters.map(({filter, path, indices}, i) => { const colour = i === 0 ? 'var(--robust)' : 'var(--model)'; return <g key={filter.name}><polyline points={points(path, indices, zoom)} fill="none" stroke={colour} stroke-width="1.6" />
+      <Belief filter={filter} outage={outage} path={path} indices={indices} zoom={zoom} colour={colour} /></g>; })}
     <line class="ax" x1={inset.left + 12} x2={inset.left + 12 + zoomBar * zoom.scale} y1={inset.top + 20} y2={inset.top + 20} /><text class="s" x={inset.left + 12} y={inset.top + 14}>{writeTick(zoomBar)} m</text>
-    <text class="s" x={inset.left + 10} y={inset.top + inset.size - 24} style={{fill: 'var(--robust)'}}>{left.name}</text>
-    <text class="s" x={inset.left + 10} y={inset.top + inset.size - 10} style={{fill: 'var(--model)'}}>{right.name}, first run</text>
+    <text class="s" x={inset.left + 10} y={inset.top + inset.size - 37} style={{fill: 'var(--robust)'}}>{left.name}</text>
+    <text class="s" x={inset.left + 10} y={inset.top + inset.size - 24} style={{fill: 'var(--model)'}}>{right.name}</text>
+    <text class="s" x={inset.left + 10} y={inset.top + inset.size - 10}>first run, 95 % ellipse at its end</text>
     <path class="ax" d={`M20,${HEIGHT - 18}v-5v5h${bar * view.scale}v-5`} /><text x={20 + bar * view.scale / 2} y={HEIGHT - 26} text-anchor="middle">{writeTick(bar)} m</text>
     <text x={WIDTH - 22} y={HEIGHT - 18} text-anchor="end">N ↑</text>
   </svg>;

@@ -15,3 +15,5 @@ export interface Evaluation {
   claims: {claim: string; supported: boolean; because: string}[]; trajectory: Path; tracks?: Track[];
 }
 export interface StoredEvaluation { id: string; scenario_name: string; runs: number; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: {detail: string} | null; evaluation: Evaluation | null }
+
+export const at95 = (ellipses: readonly Ellipse[]): Ellipse | undefined => ellipses.find(each => Math.abs(each.fraction - 0.95) < 0.01);
