@@ -148,10 +148,10 @@ void say_closest(const ReportedChannel& channel, Verdict& verdict) {
   const ReportedFit& best = channel.fits.front();
   const auto distances = distances_2p(channel);
   const auto closest = std::find(distances.begin(), distances.end(), std::optional<double>(0.0));
-  if (distances.front() && closest != distances.end()) {
+  if (const std::optional<double>& behind = distances.front(); behind && closest != distances.end()) {
     verdict.details.push_back(best.model + " is ranked first by the criterion; " +
                               channel.fits[static_cast<std::size_t>(closest - distances.begin())].model +
-                              " is closer to the data, by " + significant(*distances.front()) +
+                              " is closer to the data, by " + significant(*behind) +
                               " in distance + 2p, of which 6 are chance.");
   }
 }

@@ -240,9 +240,9 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
   const auto distances = distances_2p(reported(identity.column, identity.role, channel));
   for (std::size_t i = 0; i < channel.fits.size(); ++i) {
     Json fit = to_json(reported(channel.fits[i], unit));
-    if (distances[i]) {
-      fit["distance_2p"] = number(*distances[i]);
-      fit["closest"] = *distances[i] == 0.0;
+    if (const std::optional<double>& distance = distances[i]) {
+      fit["distance_2p"] = number(*distance);
+      fit["closest"] = *distance == 0.0;
     }
     fits.push_back(std::move(fit));
   }
