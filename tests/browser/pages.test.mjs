@@ -116,6 +116,14 @@ test('figures that a page draws itself are saved as files and read as tables', a
 
 test('a device’s page leads to its comparison and exports its model as the command line does', async () => {
   const page = await open(browser, daemon, paths.device);
+  const {items: attention} = await daemon.json('/v1/attention?device=phone-07&limit=500');
+  const {items: recordings} = await daemon.json('/v1/recordings?device=phone-07');
+  for (const recording of recordings) {
+    const about = attention.find(one => one.recording === recording.id);
+    const words = await page.locator('.list-of-recordings tr', {hasText: recording.metadata.id}).innerText();
+    assert.ok(words.includes(about ? about.verdict : 'fits'), words);
+  }
+  assert.ok(attention.some(one => one.recording) && recordings.length > attention.filter(one => one.recording).length, 'both kinds are there');
   await page.getByRole('button', {name: 'Export model'}).click();
   const drawer = page.getByRole('dialog');
   await drawer.getByText('gyroscope_noise_density').first().waitFor();

@@ -2,11 +2,11 @@
 import type {JSX} from 'preact';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {useRead, ask} from '../api/client';
-import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
+import type {Attention, Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
 import {writeTick} from '../format/number';
 import {writeDuration, writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
-import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
+import {conditionName, plural, sensorOf, writeSentence, writeUnit} from '../format/words';
 import {copy, curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
 import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
@@ -56,17 +56,26 @@ function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}
     readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} note="Rates are one ordered ramp, angular accelerations another, dashed with open marks." />;
 }
 
+// What the newest result of a recording says: the sentence where it must be read. Of the gravest channel where there are several.
+function ResultCell({recording, attention}: {recording: Recording; attention: List<Attention> | undefined}): JSX.Element {
+  const about = attention?.items.find(one => one.recording === recording.id);
+  if (recording.latest_job === null) return <>not characterised</>;
+  if (about) return <><span class={`g ${about.level === 'wrong' ? 'bad' : 'warn'}`} aria-hidden="true">{about.level === 'wrong' ? '✗' : '△'} </span>{writeSentence(about.verdict)}</>;
+  return <>{attention && !attention.next_cursor ? 'fits' : '…'}</>;
+}
+
 function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.Element {
   const {query} = usePlace();
   const after = query.get('after');
   const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
+  const attention = useRead<List<Attention>>(`/v1/attention?device=${device.id}&limit=500`);
   return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
     <Shown read={read}>{list => <>
       <div class="scroll"><table class="stacked list-of-recordings">
-        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">length</th><th scope="col">quality</th><th scope="col">uploaded</th></tr></thead>
+        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">length</th><th scope="col">quality</th><th scope="col">result</th><th scope="col">uploaded</th></tr></thead>
         <tbody>{list.items.map(recording => <tr key={recording.id}>
           <th scope="row"><a href={pageOf('recordings', recording.id)}>{recording.metadata.id ?? recording.id}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
-          <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec">{writeWhen(recording.created_at)}</td>
+          <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec"><ResultCell recording={recording} attention={attention.data} /></td><td class="sec">{writeWhen(recording.created_at)}</td>
         </tr>)}</tbody></table></div>
       {(list.items.length > PRINTED || list.next_cursor) && <p class="print-only note">The newest {PRINTED} of {list.next_cursor ? `more than ${list.items.length}` : list.items.length} recordings; the page has all.</p>}
       {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
