@@ -47,6 +47,8 @@ Json to_json(const Job& job) {
                 {"created_at", rfc3339(job.created_at)},
                 {"started_at", time_or_null(job.started_at)},
                 {"finished_at", time_or_null(job.finished_at)},
+                {"device_name", job.device_name.empty() ? Json(nullptr) : Json(job.device_name)},
+                {"recording_name", job.recording_name.empty() ? Json(nullptr) : Json(job.recording_name)},
                 {"request", stored(job.request_json)}};
   document["result"] =
       job.state == JobState::Succeeded ? Json{{"href", "/v1/jobs/" + job.id + "/result"}} : Json(nullptr);

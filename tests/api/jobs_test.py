@@ -111,6 +111,18 @@ class Life(JobTest):
         self.assertEqual((again.body, again.headers["idempotency-replayed"]), (first.body, "true"))
         self.problem(422, "idempotency_key_reused", self.daemon.characterise(recording, models=["WN+GM"], headers=key))
 
+    def test_a_job_names_what_it_is_about(self) -> None:
+        recording, other = self.recording(31, device="named-1", id="rest"), self.recording(32, device="named-1")
+        queued = self.expect(202, self.daemon.characterise(recording, models=["WN"])).json
+        one = self.daemon.finished(queued["id"])
+        for document in (queued, one, self.daemon.characterise(recording, models=["WN"]).json, next(j for j in self.daemon.items("/v1/jobs") if j["id"] == one["id"])):
+            self.assertEqual((document["device_name"], document["recording_name"]), ("named-1", "rest"))
+        both = self.daemon.finished(self.daemon.characterise(recording, other, models=["WN"]).json["id"])
+        self.assertEqual((both["device_name"], both["recording_name"]), ("named-1", None))
+        elsewhere = self.recording(33, device="named-2")
+        several = self.daemon.finished(self.daemon.characterise(recording, elsewhere, models=["WN"]).json["id"])
+        self.assertEqual((several["device_name"], several["recording_name"]), (None, None))
+
     def test_failed_job_tells_its_problem_and_may_be_queued_again(self) -> None:
         recording = self.recording(5, samples_=5)  # enough to be a recording, too few for the analysis
         # Waiting on the POST must not queue it again and again.

@@ -1564,6 +1564,10 @@ class Job(TypedDict):
     started_at: str | None
     # Set if and only if the state is final.
     finished_at: str | None
+    # Of the device that the request is about; null where that is none or several.
+    device_name: str | None
+    # Of the recording that the request is about; null where that is none, several or one without a name.
+    recording_name: str | None
     # What was asked for, complete: equal requests are one job.
     request: JobRequestMember
     # Where the result is, once the job has succeeded.

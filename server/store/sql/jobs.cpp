@@ -13,10 +13,17 @@ namespace {
 constexpr std::string_view kForgetEnded =
     "DELETE FROM jobs WHERE state IN ('failed', 'cancelled', 'dead') AND finished_at < ?";
 
-constexpr std::string_view kSelect = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs";
-constexpr std::string_view kById = "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE id = ?";
+/// What a job is about: the name of the one device, and of the one recording, that its request names.
+#define DRIFTLAB_NAMED_JOBS                                                                                       \
+  "SELECT " DRIFTLAB_JOB_COLUMNS                                                                                  \
+  ", coalesce((SELECT CASE WHEN count(*) = 1 THEN min(devices.name) END FROM job_devices JOIN devices ON "        \
+  "devices.id = job_devices.device_id WHERE job_devices.job_id = jobs.id), ''), "                                 \
+  "coalesce((SELECT CASE WHEN count(*) = 1 THEN min(recordings.name) END FROM job_recordings JOIN recordings ON " \
+  "recordings.id = job_recordings.recording_id WHERE job_recordings.job_id = jobs.id), '') FROM jobs"
+constexpr std::string_view kSelect = DRIFTLAB_NAMED_JOBS;
+constexpr std::string_view kById = DRIFTLAB_NAMED_JOBS " WHERE id = ?";
 constexpr std::string_view kEqualJob =
-    "SELECT " DRIFTLAB_JOB_COLUMNS " FROM jobs WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
+    DRIFTLAB_NAMED_JOBS " WHERE unique_key = ? AND state IN ('queued', 'running', 'succeeded')";
 constexpr std::string_view kInsert =
     "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at) "
     "VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?7)";
@@ -108,6 +115,17 @@ Job read_job(const Statement& row) {
   return job;
 }
 
+namespace {
+
+Job read_named_job(const Statement& row) {
+  Job job = read_job(row);
+  job.device_name = row.text(18);
+  job.recording_name = row.text(19);
+  return job;
+}
+
+}  // namespace
+
 Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros now) {
   if (job.priority < 0 || job.priority > 9) {
     return fail(ErrorCode::InvalidArgument, "A priority is a number from 0 to 9.", {{"parameter", "priority"}});
@@ -117,7 +135,7 @@ Result<EnqueuedJob> enqueue(Connection& connection, const NewJob& job, UtcMicros
   }
   Statement equal = connection.prepare(kEqualJob);
   equal.bind(job.unique_key);
-  Result<std::vector<Job>> existing = all_rows(equal, read_job);  // one at most
+  Result<std::vector<Job>> existing = all_rows(equal, read_named_job);  // one at most
   if (!existing) {
     return fail(existing.error());
   }
@@ -147,7 +165,7 @@ Result<Job> job(Connection& connection, std::string_view id) {
   Statement statement = connection.prepare(kById);
   statement.bind(id);
   Result<Job> found =
-      one_row(statement, read_job,
+      one_row(statement, read_named_job,
               {ErrorCode::NotFound, "There is no job \"" + std::string(id) + "\".", {{"job", std::string(id)}}});
   if (!found) {
     return found;
@@ -172,7 +190,7 @@ Result<std::vector<Job>> jobs(Connection& connection, const JobFilter& filter, c
               filter.device_id);
   query.holds(kScenario, filter.scenario);
   query.made_since("job", filter.since);
-  return query.visible_jobs(page).read_page(connection, page, read_job);
+  return query.visible_jobs(page).read_page(connection, page, read_named_job);
 }
 
 Result<std::vector<JobEvent>> events_after(Connection& connection, std::string_view job_id, std::int64_t sequence,

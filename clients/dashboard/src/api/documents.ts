@@ -71,7 +71,7 @@ export interface Spectrogram { unit: string; dt_s: number; samples: number; firs
 export interface StoredProblem { title?: string; detail: string; type?: string; retryable?: boolean }
 export interface Job {
   id: string; kind: string; state: string; stage: string | null; progress: number; attempt: number; cancel_requested: boolean;
-  created_at: string; started_at: string | null; finished_at: string | null;
+  created_at: string; started_at: string | null; finished_at: string | null; device_name: string | null; recording_name: string | null;
   request: {kind: string; inputs: {recordings?: {id: string; revision: number; name?: string}[]; study?: string; device?: string; axis?: string; scenario?: unknown; document?: {id: string}; baseline?: {label?: string | null}; candidate?: {label?: string | null}}; parameters: {seed?: number; runs?: number; question?: string}; algorithm_version: number};
   result: {href: string} | null; problem: StoredProblem | null; failed_attempts: StoredProblem[];
 }

@@ -15,14 +15,15 @@ const STATES: Record<string, [string, string]> = {succeeded: ['✓', 'good'], fa
 const WIDTH = 520;
 const SURE_S = 5;
 
+// What a job is about: its scenario or its device, with the recording or how many there are.
 export function what(job: Job): string {
   const {inputs, parameters} = job.request;
   if (inputs.scenario !== undefined) return `scenario ${typeof inputs.scenario === 'string' ? inputs.scenario : 'of its own'}${parameters.runs ? `, ${parameters.runs} runs` : ''}`;
-  if (inputs.candidate) return `${inputs.candidate.label || 'candidate'} against ${inputs.baseline?.label || 'the baseline'}`;
-  if (job.kind === 'drive_evaluation') return `${parameters.question ?? 'run'} ${inputs.document?.id ?? ''}`.trim();
-  const names = inputs.recordings?.map(one => one.name).filter(name => name && !name.startsWith('rec_')) ?? [];
-  if (inputs.recordings) return names.length > 0 && names.length < 4 ? names.join(', ') : plural(inputs.recordings.length, 'recording');
-  return inputs.axis ? `axis ${inputs.axis}` : '–';
+  const count = inputs.recordings?.length ?? 0;
+  const more = inputs.candidate ? `${inputs.candidate.label || 'candidate'} against ${inputs.baseline?.label || 'the baseline'}`
+    : job.kind === 'drive_evaluation' ? `${parameters.question ?? 'run'} ${inputs.document?.id ?? ''}`.trim()
+    : count > 0 ? job.recording_name ?? plural(count, 'recording') : inputs.axis ? `axis ${inputs.axis}` : '';
+  return [job.device_name, more].filter(Boolean).join(', ') || '–';
 }
 
 export function resultPage(job: Job): string {
