@@ -179,10 +179,14 @@ Status insert_rows(Database& database, const Table& table, const std::vector<Row
 /// New rows get numbers behind those that were copied.
 Status set_sequence(Database& database, const Table& table) {
   const auto key = last_key(database, table);
-  if (!key || !*key || table.keys.front() != "sequence") {
-    return key ? Status{} : fail(key.error());
+  if (!key) {
+    return fail(key.error());
   }
-  const std::int64_t newest = std::get<std::int64_t>((*key)->front());
+  const std::optional<Row>& last = *key;
+  if (!last || table.keys.front() != "sequence") {
+    return {};
+  }
+  const std::int64_t newest = std::get<std::int64_t>(last->front());
   return database
       .write(WriteKind::Fenced,
              [&](Connection& connection) -> Result<int> {

@@ -57,7 +57,7 @@ Status DaemonLock::admit_others() {
 
 Result<bool> DaemonLock::try_lock(PostgresConnection& connection) {
   const bool alone = kind_ == Kind::Alone || starting_;
-  const auto first = alone ? is_granted(connection, kTakeAlone) : Result<bool>(false);
+  auto first = alone ? is_granted(connection, kTakeAlone) : Result<bool>(false);
   if (!first || *first) {
     came_first_ = came_first_ || (first && *first && starting_);
     return first;

@@ -188,7 +188,8 @@ Status DatabaseBlobs::fetch_into(const std::string& sha256, std::string_view kin
   if (!found) {
     return fail(found.error());
   }
-  if (!*found) {
+  const std::optional<Found>& file = *found;
+  if (!file) {
     return fail(ErrorCode::NotFound, "The database has no such file.", {{"blob", sha256}});
   }
   if (Status made = make_directories(path.parent_path()); !made) {
@@ -199,9 +200,9 @@ Status DatabaseBlobs::fetch_into(const std::string& sha256, std::string_view kin
   {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
     for (std::int64_t number = 0;; ++number) {
-      auto part = database_.read([&](Connection& connection) -> Result<std::optional<std::string>> {
+      const auto part = database_.read([&](Connection& connection) -> Result<std::optional<std::string>> {
         Statement statement = connection.prepare(kPart);
-        statement.bind((*found)->id, number);
+        statement.bind(file->id, number);
         const auto row = statement.step();
         if (!row) {
           return fail(row.error());
@@ -211,11 +212,12 @@ Status DatabaseBlobs::fetch_into(const std::string& sha256, std::string_view kin
       if (!part) {
         return fail(part.error());
       }
-      if (!*part) {
+      const std::optional<std::string>& bytes = *part;
+      if (!bytes) {
         break;
       }
-      digest.update(std::as_bytes(std::span((*part)->data(), (*part)->size())));
-      stream.write((*part)->data(), static_cast<std::streamsize>((*part)->size()));
+      digest.update(std::as_bytes(std::span(bytes->data(), bytes->size())));
+      stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
     }
     stream.close();
     if (!stream) {
@@ -223,7 +225,7 @@ Status DatabaseBlobs::fetch_into(const std::string& sha256, std::string_view kin
       return fail(file_error(errno == 0 ? EIO : errno, "write", temporary));
     }
   }
-  if (digest.finish() != (*found)->sha256) {
+  if (digest.finish() != file->sha256) {
     (void)remove_file(temporary);
     return fail(ErrorCode::Io, "A file in the database is damaged.", {{"blob", sha256}, {"file", std::string(kind)}});
   }
@@ -355,7 +357,7 @@ Status DatabaseBlobs::remove(std::string_view sha256) {
 }
 
 Result<bool> DatabaseBlobs::remove_if_older(std::string_view sha256, UtcMicros before) {
-  const auto removed = database_.write(WriteKind::Serial, [&](Connection& connection) -> Result<bool> {
+  auto removed = database_.write(WriteKind::Serial, [&](Connection& connection) -> Result<bool> {
     const Status gone = connection.prepare(kRemoveOld).bind(sha256, before).run();
     return gone ? Result<bool>(connection.changes() > 0) : fail(gone.error());
   });

@@ -25,7 +25,9 @@ class PostgresCoordination final : public Coordination {
   /// `lock` must outlive this object.
   PostgresCoordination(ConnectionPool::Opener open, DaemonLock& lock, std::string origin)
       : open_(std::move(open)), lock_(lock), origin_(std::move(origin)) {}
-  ~PostgresCoordination() override { stop(); }
+  PostgresCoordination(const PostgresCoordination&) = delete;
+  PostgresCoordination& operator=(const PostgresCoordination&) = delete;
+  ~PostgresCoordination() override { PostgresCoordination::stop(); }
 
   [[nodiscard]] bool came_first() const override { return lock_.came_first(); }
   [[nodiscard]] Status admit_others() override { return lock_.admit_others(); }

@@ -66,8 +66,7 @@ Result<std::unique_ptr<PostgresStore>> open_postgres_store(const std::string& ur
     }
   }
   PostgresFacts facts;
-  std::vector<Migration> migrations =
-      options.migrations ? std::move(*options.migrations) : embedded_postgres_migrations();
+  std::vector<Migration> migrations = options.migrations ? *options.migrations : embedded_postgres_migrations();
   {
     const auto connection = open();
     if (!connection) {

@@ -120,8 +120,10 @@ Status describe_result(Connection& connection, const EndedJob& job, Json& data) 
     data["result"] = text.empty() ? "/v1/jobs/" + job.id + "/result" : "/v1/investigations/" + text;
   } else {
     const Json document = Json::parse(text, nullptr, false);
-    const bool judged = document.is_object() && document.contains("verdict");
-    data["verdict"] = judged && document["verdict"] != "" ? document["verdict"] : Json(nullptr);
+    const auto verdict = document.is_object() ? document.find("verdict") : document.end();
+    const bool judged =
+        verdict != document.end() && verdict->is_string() && !verdict->get_ref<const std::string&>().empty();
+    data["verdict"] = judged ? *verdict : Json(nullptr);
     data["result"] = "/v1/regressions/" + job.id;
   }
   return {};

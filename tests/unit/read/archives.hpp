@@ -60,11 +60,15 @@ inline std::vector<std::pair<std::string, std::string>> kitti_files(std::size_t 
   for (std::size_t i = 0; i < count; ++i) {
     const std::string tenth = std::to_string(i % 10);
     const std::string second = std::to_string(10 + i / 10);
-    stamps += "2011-09-26 13:02:" + second + "." + tenth + "00000000\n";
+    stamps.append("2011-09-26 13:02:").append(second).append(".").append(tenth).append("00000000\n");
     const std::string number = std::to_string(i);
+    std::string name = folder + "oxts/data/";
+    name.append(10 - number.size(), '0').append(number).append(".txt");
+    std::string latitude = "49.";
+    latitude.append(5 - number.size(), '0').append(number);
     // 11 to 13 are the acceleration, 17 to 19 the rates about the unit's axes
-    files.emplace_back(folder + "oxts/data/" + std::string(10 - number.size(), '0') + number + ".txt",
-                       "49." + std::string(5 - number.size(), '0') + number +
+    files.emplace_back(std::move(name),
+                       latitude +
                            " 8.4 112.8 0.03 0.007 -0.3 -3.5 10.5 11 0.1 0 0.5 -0.25 9.8125 0.6 -0.2 9.7 "
                            "0.125 -0.5 0.0625 0.2 0.3 0.4 0.05 0.02 4 11 6 6 6\n");
   }
