@@ -149,10 +149,10 @@ TEST_F(PostgresCoordinationTest, AKeyIsOnesUntilItIsGivenBackAndWhereItsConnecti
 }
 
 TEST_F(PostgresCoordinationTest, TheOthersHearOfJobsTokensAndWords) {
+  Ear of_first;  // outlives who tells it
+  Ear of_second;
   const auto first = open_first();
   const auto second = open();
-  Ear of_first;
-  Ear of_second;
   first->coordination()->listen(of_first.hints());
   second->coordination()->listen(of_second.hints());
   // A connection that listens hears what is committed later: words are told until they are heard.
@@ -177,8 +177,8 @@ TEST_F(PostgresCoordinationTest, TheOthersHearOfJobsTokensAndWords) {
 }
 
 TEST_F(PostgresCoordinationTest, AListenerThatWasCutOffSaysSo) {
-  const auto store = open_first();
   Ear ear;
+  const auto store = open_first();
   store->coordination()->listen(ear.hints());
   EXPECT_TRUE(ear.hears("access")) << "also without a hint, every two seconds";
   ASSERT_TRUE(cut_connections());
