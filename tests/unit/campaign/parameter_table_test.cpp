@@ -111,7 +111,7 @@ TEST(ParameterTable, ComparesWithTheRowAskedFor) {
   };
   const std::vector<TableSource> sources{row("static", 1.0), row("constant_rate:z:1:deg/s", 2.0)};
   TableRequest wanted = request(TableMethod::Av);
-  const ReportedValue& up = table(wanted, sources).rows[1].cells[0].ratio;
+  const ReportedValue up = table(wanted, sources).rows[1].cells[0].ratio;
   // Half-widths of ln 1.05 each make sqrt(2) ln 1.05 for the ratio.
   const double factor = std::exp(std::sqrt(2.0) * std::log(1.05));
   EXPECT_NEAR(*up.value, 2.0, 1e-12);
