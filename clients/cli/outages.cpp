@@ -1,3 +1,5 @@
+#include "schema/text/outages.hpp"
+
 #include "clients/cli/cli.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/progress.hpp"

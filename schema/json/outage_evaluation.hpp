@@ -1,5 +1,5 @@
 #pragma once
-/// The outage evaluation as a document (spec/results.md; schema/outage-evaluation.schema.json), and as text.
+/// The outage evaluation as a document (spec/results.md; schema/outage-evaluation.schema.json).
 #include "core/analysis/evaluate_outages.hpp"
 #include "schema/json/json.hpp"
 
@@ -13,8 +13,5 @@ namespace driftlab {
 [[nodiscard]] OutageOptions outage_options_from_json(const Json& parameters, const std::string& pointer,
                                                      Faults& faults);
 [[nodiscard]] Json to_json(const OutageOptions& options);
-
-/// The comparison as aligned plain text: filters, outages, paired differences, attribution, claims.
-[[nodiscard]] std::string outage_text(const OutageReport& report);
 
 }  // namespace driftlab

@@ -138,7 +138,7 @@ TEST(ScenarioDocument, ARecordedDriveLooksWhereItGoesAndKeepsItsLength) {
   EXPECT_EQ(named.error().fields.front().name, "/trajectory/recorded/heading_deg");
 }
 
-TEST(EvaluationDocument, HoldsEllipsesAndText) {
+TEST(EvaluationDocument, HoldsEllipsesAndClaims) {
   OutageScenario scenario = *paper_scenario("paper");
   scenario.drive.duration_s = 102.0;
   std::erase_if(scenario.drive.segments, [](const Segment& s) { return s.start_s > 100.0; });
@@ -152,10 +152,6 @@ TEST(EvaluationDocument, HoldsEllipsesAndText) {
   EXPECT_EQ(outage["errors"]["north_m"].size(), 3U);
   EXPECT_GT(outage["predicted"]["ellipses"][1]["semi_major_m"], outage["predicted"]["ellipses"][0]["semi_major_m"]);
   EXPECT_EQ(document["claims"].size(), 6U);
-  const std::string text = outage_text(report);
-  for (const char* const word : {"M_stat(Neq)+RW", "switching", "NEES", "supported:"}) {
-    EXPECT_NE(text.find(word), std::string::npos) << word;
-  }
 }
 
 }  // namespace

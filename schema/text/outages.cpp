@@ -1,17 +1,16 @@
+#include "schema/text/outages.hpp"
+
+#include "core/signal/angle.hpp"
 #include "core/signal/with_count.hpp"
-#include "schema/json/outage_evaluation.hpp"
+#include "schema/text/printed.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <vector>
 
 namespace driftlab {
 namespace {
 
-std::string decimal(double value, int decimals) {
-  char buffer[64];
-  const int length = std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-  return {buffer, static_cast<std::size_t>(length)};
-}
+std::string decimal(double value, int decimals) { return printed("%.*f", decimals, value); }
 
 /// value [low, high]
 std::string with_interval(const Estimate& estimate, double factor, int decimals) {
@@ -23,7 +22,7 @@ std::string with_interval(const Estimate& estimate, double factor, int decimals)
 using Rows = std::vector<std::vector<std::string>>;
 
 /// Columns as wide as their widest cell; the first is flush left, the others right.
-std::string aligned(const Rows& rows) {
+std::string in_columns(const Rows& rows) {
   std::vector<std::size_t> width;
   for (const auto& row : rows) {
     width.resize(std::max(width.size(), row.size()), 0);
@@ -50,7 +49,6 @@ std::string filters_text(const OutageEvaluation& evaluation) {
   for (const char* const title : {"NEES (2)", "in 50 %", "in 95 %", "heading [deg]", "tilt [deg]"}) {
     rows.front().emplace_back(title);
   }
-  constexpr double kToDegrees = 57.29577951308232;
   for (const FilterEvaluation& filter : evaluation.filters) {
     std::vector<std::string> row{filter.name, std::to_string(filter.states),
                                  with_interval(filter.mean_error_m, 1.0, 2)};
@@ -60,11 +58,11 @@ std::string filters_text(const OutageEvaluation& evaluation) {
     row.push_back(with_interval(filter.nees, 1.0, 2));
     row.push_back(decimal(filter.coverage50, 2));
     row.push_back(decimal(filter.coverage95, 2));
-    row.push_back(decimal(filter.heading_rms_rad * kToDegrees, 2));
-    row.push_back(decimal(filter.tilt_rms_rad * kToDegrees, 3));
+    row.push_back(decimal(filter.heading_rms_rad / kDegree, 2));
+    row.push_back(decimal(filter.tilt_rms_rad / kDegree, 3));
     rows.push_back(std::move(row));
   }
-  return aligned(rows);
+  return in_columns(rows);
 }
 
 void add_pair(Rows& rows, std::string title, const PairedDifference& pair) {
@@ -97,7 +95,7 @@ std::string outage_text(const OutageReport& report) {
   if (const auto pair = evaluation.difference("M_dyn(GMWM)", "M_dyn(AV)")) {
     add_pair(rows, "M_dyn(GMWM) - M_dyn(AV)", *pair);
   }
-  text.append(aligned(rows));
+  text.append(in_columns(rows));
 
   if (const auto& parts = report.attribution) {
     text.append("\nWhere the gain of M_dyn(GMWM) over M_stat(AV) comes from\n");
@@ -107,7 +105,7 @@ std::string outage_text(const OutageReport& report) {
     add_pair(split, "switching (M_dyn(GMWM) - M_stat(GMWM))", parts->switching);
     add_pair(split, "all together", parts->total);
     add_pair(split, "switching of Allan-variance noise alone (M_dyn(AV) - M_stat(AV))", parts->switching_av);
-    text.append(aligned(split));
+    text.append(in_columns(split));
   }
   if (!report.claims.empty()) {
     text.append("\nThe paper's claims in this simulation\n");
