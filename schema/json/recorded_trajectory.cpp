@@ -1,44 +1,19 @@
 #include "schema/json/recorded_trajectory.hpp"
 
+#include "core/navigate/look_ahead.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace driftlab {
 namespace {
 
-constexpr double kSlow = 0.5;  ///< [m/s]: below it a velocity has no direction worth following
 constexpr std::size_t kMostPoses = 100000;
 constexpr std::array kAngles{"roll_deg", "pitch_deg", "heading_deg"};
 
 bool is_vector(const Json& value) {
   return value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() && value[2].is_number();
-}
-
-/// Angles of a vehicle that looks where it goes.
-void look_ahead(std::vector<RecordedPose>& poses, bool pitch, bool heading) {
-  const auto level = [](const RecordedPose& p) { return std::hypot(p.velocity_ned_m_s.x(), p.velocity_ned_m_s.y()); };
-  EulerAngles held;
-  for (const RecordedPose& pose : poses) {  // before it moves it looks where it will go
-    if (level(pose) >= kSlow) {
-      held.heading_rad = std::atan2(pose.velocity_ned_m_s.y(), pose.velocity_ned_m_s.x());
-      break;
-    }
-  }
-  for (RecordedPose& pose : poses) {
-    if (level(pose) >= kSlow) {
-      held.heading_rad = std::atan2(pose.velocity_ned_m_s.y(), pose.velocity_ned_m_s.x());
-      held.pitch_rad = std::atan2(-pose.velocity_ned_m_s.z(), level(pose));
-    }
-    if (heading) {
-      pose.attitude.heading_rad = held.heading_rad;
-    }
-    if (pitch) {
-      pose.attitude.pitch_rad = held.pitch_rad;
-    }
-  }
 }
 
 }  // namespace
@@ -82,7 +57,7 @@ std::vector<RecordedPose> recorded_from_json(const Json& document, const std::st
     poses[i].velocity_ned_m_s = {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
     poses[i].attitude = {angle(0), angle(1), angle(2)};
   }
-  look_ahead(poses, angles[1] == nullptr, angles[2] == nullptr);
+  look_ahead(poses, {.pitch = angles[1] == nullptr, .heading = angles[2] == nullptr});
   return poses;
 }
 
