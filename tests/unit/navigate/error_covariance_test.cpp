@@ -57,6 +57,8 @@ ScalarMeasurement measurement(Random& random, int coordinate, double variance) {
 }
 
 TEST(ErrorCovariance, AnUpdateIsTheTextbooksInJosephsForm) {
+  // The page promised Joseph's form and the code had it multiplied out, P - k (P h)^T - (P h) k^T + s k k^T, which left
+  // an eigenvalue of -8e-14 of the largest after a measurement far better than what was known.
   // Both compute with roundings of 1e-16 of the entries, which are of size 1; 100 of them.
   Random random(5);
   for (int i = 0; i < 20; ++i) {
