@@ -28,7 +28,6 @@ constexpr double kHopeless = 4.0;
 /// Components after which the periodogram is asked for lines, if the model is rejected.
 constexpr std::size_t kBeforeLines = 2;
 constexpr std::size_t kSpare = 4;  // scales that a model must leave
-constexpr std::array<double, 5> kDiscrepancies{0.0, 0.01, 0.02, 0.05, 0.1};
 /// Of a resonance at a line, where its polishing starts.
 constexpr std::array<double, 5> kQualities{0.7, 1.5, 4.0, 12.0, 40.0};
 
@@ -287,7 +286,7 @@ CompositeSearchResult search_composite(const CompositeBasis& basis, const Compos
   result.curve = covariance.of_mixture();
   std::vector<CompositeFit> seen;
   CompositeFit best;
-  for (const double delta : kDiscrepancies) {
+  for (const double delta : kDiscrepancyLadder) {
     if (control.stop.stop_requested()) {
       return result;
     }

@@ -11,18 +11,23 @@
 /// probability of 0.01 of chi-square(scales - parameters), and where four degrees of freedom at least are left.
 ///
 /// Where nothing is accepted, the search is repeated with a discrepancy delta of the variances
-/// (core/fit/discrepancy.hpp), the first of 0.5, 1, 2, 5 and 10 % at which L of some model is below its degrees of
-/// freedom by that measure: the model then describes the curve within delta, and L is no test.
+/// (core/fit/discrepancy.hpp), the first of 1, 2, 5 and 10 % (`kDiscrepancyLadder`) at which L of some model is below
+/// its degrees of freedom by that measure: the model then describes the curve within delta, and L is no test.
 #include "core/fit/composite_covariance.hpp"
 #include "core/fit/composite_fit.hpp"
 #include "core/signal/progress.hpp"
 
+#include <array>
 #include <vector>
 
 namespace driftlab {
 
 /// A model of more says nothing to anybody.
 inline constexpr std::size_t kMostCompositeParameters = 12;
+
+/// The discrepancies that are tried, one after the other, until a model describes the curve: relative errors of the
+/// variances. The first asks whether a model is right.
+inline constexpr std::array kDiscrepancyLadder{0.0, 0.01, 0.02, 0.05, 0.1};
 
 struct CompositeFit {
   Composite model;

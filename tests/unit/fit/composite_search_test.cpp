@@ -7,11 +7,42 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <numeric>
+#include <sstream>
+#include <string>
 
 namespace driftlab {
 namespace {
+
+/// A page of the source tree.
+std::string page_text(const std::string& path) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests read their environment before they start anything
+  const char* const root = std::getenv("DRIFTLAB_SOURCE");
+  std::ifstream in(root != nullptr ? std::string(root) + "/" + path : path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(CompositeSearch, ItsDiscrepanciesAreThoseOfThePage) {
+  // The header spoke of a step of 0.5 %, which is not tried; the page and the code had 1, 2, 5 and 10.
+  std::string steps;
+  for (std::size_t i = 1; i < kDiscrepancyLadder.size(); ++i) {
+    steps += i == 1 ? "" : i + 1 < kDiscrepancyLadder.size() ? ", " : " or ";
+    steps += std::to_string(std::lround(100.0 * kDiscrepancyLadder[i]));
+  }
+  std::string page = page_text("schema/docs/analysis.md");
+  std::replace(page.begin(), page.end(), '\n', ' ');
+  const std::size_t told = page.find("comes within `discrepancy` (");
+  ASSERT_NE(told, std::string::npos);
+  std::string said = page.substr(page.find('(', told) + 1, 40);
+  said.erase(std::unique(said.begin(), said.end(), [](char a, char b) { return a == ' ' && b == ' '; }), said.end());
+  EXPECT_EQ(said.substr(0, said.find(" %")), steps);
+}
 
 constexpr double kDt = 0.01;
 constexpr std::size_t kSamples = 90'000;
