@@ -1,5 +1,6 @@
 #include "core/datasheet/plausible_units.hpp"
 
+#include "core/signal/angle.hpp"
 #include "core/signal/number.hpp"
 
 #include <algorithm>
@@ -35,8 +36,7 @@ double median(std::vector<double> values) {
 std::vector<Candidate> candidates(Quantity quantity, const Unit& said, const std::optional<KnownSensor>& sensor) {
   std::vector<Candidate> all;
   if (quantity == Quantity::AngularRate) {
-    const double degree = std::numbers::pi / 180.0;
-    all = {{"rad/s", 1.0}, {"deg/s", degree}, {"mdeg/s", degree * 1e-3}};
+    all = {{"rad/s", 1.0}, {"deg/s", kDegree}, {"mdeg/s", kDegree * 1e-3}};
   } else {
     all = {{"m/s^2", 1.0}, {"g", kStandardGravity}, {"mg", kStandardGravity * 1e-3}};
   }

@@ -9,6 +9,7 @@
 /// What is stated of a program's convention is fact read from its documentation or source, named in `source`; nothing
 /// of its text is used.
 #include "core/export/imu_noise.hpp"
+#include "core/signal/angle.hpp"
 
 #include <span>
 #include <string>
@@ -78,8 +79,8 @@ struct ExportTarget {
 [[nodiscard]] std::vector<NoiseFigure> scaled(std::vector<NoiseFigure> figures, double factor);
 
 /// deg/h in one rad/s, and deg/sqrt(h) in one rad/s/sqrt(Hz); m/s/sqrt(h) in one m/s^2/sqrt(Hz).
-inline constexpr double kDegreesPerHour = 3600.0 * 57.295779513082320877;
-inline constexpr double kDegreesPerRootHour = 60.0 * 57.295779513082320877;
+inline constexpr double kDegreesPerHour = 3600.0 / kDegree;
+inline constexpr double kDegreesPerRootHour = 60.0 / kDegree;
 inline constexpr double kMetresPerSecondPerRootHour = 60.0;
 
 }  // namespace driftlab

@@ -1,5 +1,7 @@
 #include "core/fit/noise_equivalents.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -7,7 +9,7 @@
 namespace driftlab {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegrees = 1.0 / kDegree;  ///< in one radian
 
 /// Symbols of the channel's own unit in the conventions below.
 struct Symbols {

@@ -13,7 +13,7 @@
 namespace driftlab {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr double kEulerGamma = 0.57721566490153286061;
 
 /// Ten-point Gauss-Legendre rule on [low, high].

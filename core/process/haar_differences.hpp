@@ -2,6 +2,7 @@
 /// Second differences of a lag function, which give the covariance of the Haar wavelet coefficients of a process
 /// (Percival 1995).
 #include <cmath>
+#include <numbers>
 
 namespace driftlab {
 
@@ -26,11 +27,10 @@ struct ScaledPhase {
   double cosine;
 };
 [[nodiscard]] inline ScaledPhase scaled_phase(double frequency, double m) {
-  constexpr double kPi = 3.14159265358979323846;
   const double high = frequency * m;
   const double low = std::fma(frequency, m, -high);
   const double turn = std::remainder(high, 2.0) + low;
-  return {std::sin(kPi * turn), std::cos(kPi * turn)};
+  return {std::sin(std::numbers::pi * turn), std::cos(std::numbers::pi * turn)};
 }
 
 }  // namespace driftlab

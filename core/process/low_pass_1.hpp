@@ -12,10 +12,10 @@
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
+#include "core/signal/turns.hpp"
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -73,9 +73,6 @@ struct LowPass1 {
     const double beta = kTurn * corner_hz;
     return {n * std::sqrt(std::tanh(0.5 * beta * dt_s) / dt_s), beta};
   }
-
- private:
-  static constexpr double kTurn = 2.0 * std::numbers::pi;
 };
 
 }  // namespace driftlab

@@ -1,14 +1,13 @@
 #include "core/process/low_pass_2.hpp"
 
 #include "core/process/damped_oscillation.hpp"
+#include "core/signal/turns.hpp"
 
 #include <cmath>
 #include <numbers>
 
 namespace driftlab {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 DampedOscillation unit_of(const LowPass2& process, double dt_s) {
   return {kTurn * process.corner_hz * dt_s, std::numbers::sqrt2 / 2.0};

@@ -1,16 +1,14 @@
 #include "core/process/resonance.hpp"
 
 #include "core/process/damped_oscillation.hpp"
+#include "core/signal/turns.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace driftlab {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 DampedOscillation unit_of(const Resonance& process, double dt_s) {
   return {kTurn * process.frequency_hz * dt_s, process.quality};

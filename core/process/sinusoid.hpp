@@ -7,9 +7,11 @@
 #include "core/process/parameter.hpp"
 #include "core/process/random.hpp"
 #include "core/process/state_space.hpp"
+#include "core/signal/turns.hpp"
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -36,13 +38,12 @@ struct Sinusoid {
     return 0.5 * amplitude * amplitude * wide * wide * ratio * ratio;
   }
   void haar_gradient(double m, double dt_s, std::span<double> out) const {
-    constexpr double kPi = 3.14159265358979323846;
     const ScaledPhase wide = scaled_phase(frequency_hz * dt_s, m);
     const ScaledPhase narrow = scaled_phase(frequency_hz * dt_s, 1.0);
     const double ratio = wide.sine / (m * narrow.sine);
     out[0] = amplitude * wide.sine * wide.sine * ratio * ratio;
     const double slope = 4.0 * m * wide.cosine - 2.0 * wide.sine * narrow.cosine / narrow.sine;
-    out[1] = 0.5 * amplitude * amplitude * kPi * dt_s * wide.sine * ratio * ratio * slope;
+    out[1] = 0.5 * amplitude * amplitude * std::numbers::pi * dt_s * wide.sine * ratio * ratio * slope;
   }
   [[nodiscard]] std::optional<double> spectral_density(double /*f_hz*/, double /*dt_s*/) const { return std::nullopt; }
   [[nodiscard]] std::optional<double> autocovariance(double lag, double dt_s) const {
@@ -69,8 +70,7 @@ struct Sinusoid {
     return model;
   }
   void add_path(Random& random, double dt_s, std::span<double> out) const {
-    constexpr double kPi = 3.14159265358979323846;
-    const double phase = 2.0 * kPi * random.uniform();
+    const double phase = kTurn * random.uniform();
     for (std::size_t t = 0; t < out.size(); ++t) {
       const ScaledPhase turn = scaled_phase(2.0 * frequency_hz * dt_s, static_cast<double>(t));
       out[t] += amplitude * (turn.sine * std::cos(phase) + turn.cosine * std::sin(phase));

@@ -1,5 +1,6 @@
 #include "schema/json/regression.hpp"
 
+#include "core/signal/angle.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 
@@ -154,7 +155,7 @@ Json to_json(const regression::Settings& settings, std::size_t looks) {
                 {"sigma", number(settings.margin_sigma_percent)},
                 {"slow", number(settings.margin_slow_percent)},
                 {"bias",
-                 {{"gyroscope", number(settings.bias.gyroscope / kRegressionDegS)},
+                 {{"gyroscope", number(settings.bias.gyroscope / kDegree)},
                   {"accelerometer", number(settings.bias.accelerometer / kRegressionMg)}}},
                 {"scale_factor",
                  {{"gyroscope", number(settings.scale_factor.gyroscope / kRegressionPpm)},

@@ -12,8 +12,7 @@
 
 namespace driftlab {
 
-/// Units in which margins of a bias and of a scale factor are written: deg/s [rad/s], mg [m/s^2] and ppm.
-inline constexpr double kRegressionDegS = 0.017453292519943295;
+/// Units in which margins of a bias and of a scale factor are written, beside deg/s: mg [m/s^2] and ppm.
 inline constexpr double kRegressionMg = 9.80665e-3;
 inline constexpr double kRegressionPpm = 1e-6;
 

@@ -1,11 +1,11 @@
 /// Reads what a regression run is asked.
 #include "core/read/text_shape.hpp"
+#include "core/signal/angle.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/regression.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -38,7 +38,7 @@ void regression_read_margin(const Json& document, const std::string& pointer, re
   settings.margin_slow_percent = reader.real("slow").value_or(settings.margin_slow_percent);
   if (const Json* const bias = reader.member("bias")) {
     ObjectReader margins(*bias, reader.pointer("bias"), faults);
-    settings.bias.gyroscope = kRegressionDegS * margins.real("gyroscope").value_or(0.0);
+    settings.bias.gyroscope = kDegree * margins.real("gyroscope").value_or(0.0);
     settings.bias.accelerometer = kRegressionMg * margins.real("accelerometer").value_or(0.0);
     margins.reject_unknown();
     if (settings.bias.gyroscope < 0.0 || settings.bias.accelerometer < 0.0) {

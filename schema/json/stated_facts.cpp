@@ -1,5 +1,6 @@
 #include "schema/json/stated_facts.hpp"
 
+#include "core/signal/angle.hpp"
 #include "core/signal/unit.hpp"
 #include "schema/json/regression.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 
 /// Members of `full_scale` with what one unit of them is in SI.
 constexpr std::array<std::tuple<const char*, std::optional<double> regression::FullScales::*, double>, 2> kFullScales{
-    {{"gyroscope", &regression::FullScales::gyroscope, kRegressionDegS},
+    {{"gyroscope", &regression::FullScales::gyroscope, kDegree},
      {"accelerometer", &regression::FullScales::accelerometer, kStandardGravity}}};
 
 }  // namespace

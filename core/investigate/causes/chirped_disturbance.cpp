@@ -8,6 +8,7 @@
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/narrow_band.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/signal/turns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,6 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kPiece = 4.0;  ///< [s], but no more than kMostSamples
 constexpr std::size_t kMostSamples = 512;
 constexpr std::size_t kMostPieces = 1500;

@@ -1,8 +1,9 @@
 #include "core/investigate/causes/evidence.hpp"
 
+#include "core/signal/angle.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab::investigate {
 
@@ -10,7 +11,7 @@ LabUnit level_unit(const Unit& channel, std::string_view suffix) {
   LabUnit unit;
   switch (channel.dimension) {
     case Dimension::AngularRate:
-      unit = {"deg/s", 180.0 / std::numbers::pi};
+      unit = {"deg/s", 1.0 / kDegree};
       break;
     case Dimension::SpecificForce:
       unit = {"m/s^2", 1.0};

@@ -7,15 +7,14 @@
 #include "core/investigate/causes/lines.hpp"
 #include "core/investigate/causes/narrow_band.hpp"
 #include "core/investigate/causes/units.hpp"
+#include "core/signal/turns.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab::investigate {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kFarthest = 0.45;  ///< [Hz]
 constexpr double kLowest = 1.0;     ///< [Hz]: below, slow noise has company of its own
 constexpr double kBeside = 12.0;    ///< score of the two lines beside the carrier

@@ -1,20 +1,14 @@
 #include "core/investigate/causes/narrow_band.hpp"
 
 #include "core/process/distributions.hpp"
+#include "core/signal/turns.hpp"
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace driftlab::investigate {
-namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
-}  // namespace
-
 double Sweep::phase(double t) const { return kTurn * (f_hz * t + 0.5 * slope_hz_s * t * t); }
 
 Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t block) {

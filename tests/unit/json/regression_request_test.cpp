@@ -1,3 +1,4 @@
+#include "core/signal/angle.hpp"
 #include "schema/json/regression.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ TEST(RegressionRequest, ReadsFullScalesAndMarginsOfTheScaleFactor) {
   EXPECT_DOUBLE_EQ(run.settings.scale_factor.gyroscope, 5e-4);
   EXPECT_EQ(run.settings.scale_factor.accelerometer, 0.0);
   const StatedFacts& stated = run.candidate.recordings.at(0).stated;
-  EXPECT_DOUBLE_EQ(stated.full_scale.gyroscope.value_or(0.0), 250.0 * kRegressionDegS);
+  EXPECT_DOUBLE_EQ(stated.full_scale.gyroscope.value_or(0.0), 250.0 * kDegree);
   Json kept = Json::object();  // as a state file or a job holds it
   add_stated_facts(stated, kept);
   regression::ComparedRecording recording;
