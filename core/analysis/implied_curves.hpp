@@ -5,6 +5,7 @@
 /// The laws are those of the fit (core/process/process.hpp), so that a page holds no second copy of them. Processes are
 /// independent: variances and densities add.
 #include "core/process/model.hpp"
+#include "core/signal/unit.hpp"
 
 #include <optional>
 #include <span>
@@ -30,6 +31,36 @@ struct ImpliedCurves {
 /// At tau = m dt for every m of `halves` (whole numbers from 1) and at every frequency of `f_hz`, 0 < f <= 1/(2 dt).
 [[nodiscard]] ImpliedCurves implied_curves(const Model& model, double dt_s, std::span<const double> halves,
                                            std::span<const double> f_hz);
+
+/// An Allan deviation as it was measured, with the ends of its intervals; what is not known is empty. Lists of one
+/// length.
+struct MeasuredDeviation {
+  std::vector<double> tau_s;                     ///< whole multiples of dt
+  std::vector<std::optional<double>> deviation;  ///< [channel unit]
+  std::vector<std::optional<double>> low;
+  std::vector<std::optional<double>> high;
+};
+
+/// What is measured over what is implied, at the times that were measured.
+struct MeasuredOverModel {
+  std::vector<double> tau_s;
+  std::vector<double> deviation;             ///< implied [channel unit]
+  std::vector<std::optional<double>> ratio;  ///< measured over implied; empty where either is not there
+  std::vector<std::optional<double>> low;    ///< the ends of the measured intervals over the same
+  std::vector<std::optional<double>> high;
+};
+
+/// A fit beside the curve that it was fitted to, in the channel's own unit.
+struct ImpliedBeside {
+  /// Eight averaging times to the octave up to a quarter beyond the longest measured one; 160 frequencies, evenly
+  /// spaced in the logarithm, from 1/(2 tau) of that to 1/(2 dt).
+  ImpliedCurves curves;
+  MeasuredOverModel at_measured;
+};
+
+/// `model` is SI, the result is in `unit`, that of `measured`, which has at least one time. O(times x processes).
+[[nodiscard]] ImpliedBeside implied_beside(const Model& model, const Unit& unit, double dt_s,
+                                           const MeasuredDeviation& measured);
 
 /// Whole numbers from 1 to `largest`, about `per_octave` of them between each and its double.
 [[nodiscard]] std::vector<double> octave_grid(double largest, int per_octave);

@@ -1,85 +1,67 @@
 #include "schema/json/channel_summary.hpp"
 
-#include "core/analysis/implied_curves.hpp"
+#include "core/campaign/absent_process.hpp"
 #include "schema/json/error_model.hpp"
+#include "schema/json/figure_values.hpp"
 #include "schema/json/reported_channel.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <utility>
+#include <vector>
 
 namespace driftlab {
 namespace {
 
-constexpr int kCurvePointsPerOctave = 8;
-constexpr int kSpectrumPoints = 160;
-
-Json numbers(const std::vector<double>& values, double factor) {
+template <class Value>
+Json listed(const std::vector<Value>& values) {
   Json list = Json::array();
-  for (const double value : values) {
-    list.push_back(number(value * factor));
+  for (const std::optional<double> value : values) {
+    list.push_back(value ? number(*value) : Json(nullptr));
   }
   return list;
 }
 
-Json numbers(const std::vector<std::optional<double>>& values, double factor) {
-  Json list = Json::array();
-  for (const std::optional<double>& value : values) {
-    list.push_back(value ? number(*value * factor) : Json(nullptr));
-  }
-  return list;
-}
-
-/// Frequencies of one length of logarithm from 1/(2 tau) of the longest time to half the rate.
-std::vector<double> frequencies(double longest_s, double dt_s) {
-  std::vector<double> grid;
-  const double low = std::log(0.5 / longest_s);
-  const double high = std::log(0.5 / dt_s);
-  for (int i = 0; i < kSpectrumPoints; ++i) {
-    grid.push_back(std::exp(low + (high - low) * i / (kSpectrumPoints - 1)));
-  }
-  return grid;
-}
-
-/// The processes of a fit without those that it has nothing of: their level is 0, and was not given.
+/// The processes of a fit without those that it has nothing of.
 Json present(const Json& processes) {
   Json kept = Json::array();
-  for (const Json& process : processes) {
-    bool none = false;
-    const Json reasons = process.value("reasons", Json::object());
-    for (const Json& reason : reasons) {
-      none = none || absence_of(reason.get<std::string>()) == Absence::NoneFound;
-    }
-    if (!none) {
-      kept.push_back(process);
+  const std::vector<ReportedProcess> told = processes_from_json(processes);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (!none_found(told[i])) {
+      kept.push_back(processes[i]);
     }
   }
   return kept;
 }
 
-/// The part of an implied document that is taken at the times that were measured.
-Json at_measured(const Model& model, const Json& allan, double dt_s, double factor) {
-  std::vector<double> halves;
-  for (const Json& tau : allan.at("tau_s")) {
-    halves.push_back(std::round(tau.get<double>() / dt_s));
-  }
-  const ImpliedCurves curves = implied_curves(model, dt_s, halves, {});
-  Json deviation = Json::array();
-  Json ratio = Json::array();
+Json to_json(const MeasuredOverModel& at_measured) {
   Json ci95 = Json::array();
-  for (std::size_t i = 0; i < halves.size(); ++i) {
-    const double implied = curves.deviation[i] * factor;
-    const auto over = [&](const Json& measured) {
-      return measured.is_number() && implied > 0.0 ? number(measured.get<double>() / implied) : Json(nullptr);
-    };
-    deviation.push_back(number(implied));
-    ratio.push_back(over(allan.at("deviation").at(i)));
-    ci95.push_back(Json::array({over(allan.at("ci95").at(i).at(0)), over(allan.at("ci95").at(i).at(1))}));
+  for (std::size_t i = 0; i < at_measured.ratio.size(); ++i) {
+    ci95.push_back(listed(std::vector{at_measured.low[i], at_measured.high[i]}));
   }
-  return Json{{"tau_s", allan.at("tau_s")},
-              {"deviation", std::move(deviation)},
-              {"measured_over_model", std::move(ratio)},
+  return Json{{"tau_s", listed(at_measured.tau_s)},
+              {"deviation", listed(at_measured.deviation)},
+              {"measured_over_model", listed(at_measured.ratio)},
               {"ci95", std::move(ci95)}};
+}
+
+Json to_json(const ImpliedBeside& implied, const Unit& unit) {
+  Json deviations = Json::array();
+  Json densities = Json::array();
+  for (const ImpliedComponent& component : implied.curves.components) {
+    deviations.push_back(Json{{"process", component.process}, {"deviation", listed(component.deviation)}});
+    densities.push_back(Json{{"process", component.process}, {"density", listed(component.density)}});
+  }
+  return Json{{"unit", unit.symbol},
+              {"allan",
+               {{"tau_s", listed(implied.curves.tau_s)},
+                {"deviation", listed(implied.curves.deviation)},
+                {"components", std::move(deviations)}}},
+              {"spectrum",
+               {{"f_hz", listed(implied.curves.f_hz)},
+                {"density", listed(implied.curves.density)},
+                {"components", std::move(densities)}}},
+              {"ratio", to_json(implied.at_measured)}};
 }
 
 }  // namespace
@@ -135,36 +117,25 @@ std::optional<Model> model_of(const Json& fit, Dimension dimension) {
   return model;
 }
 
-Json implied_by(const Json& fit, const Json& channel) {
+MeasuredDeviation deviation_from_json(const Json& allan) {
+  const Json& ci95 = allan.at("ci95");
+  return {allan.at("tau_s").get<std::vector<double>>(), values_of(allan.at("deviation")), ends_of(ci95, 0),
+          ends_of(ci95, 1)};
+}
+
+std::optional<ImpliedBeside> implied_from_json(const Json& fit, const Json& channel) {
   const auto unit = parse_unit(channel.at("unit").get<std::string>());
-  const double dt_s = channel.at("dt_s").get<double>();
-  const Json& allan = channel.at("allan");
-  if (!unit || allan.at("tau_s").empty()) {
-    return nullptr;
-  }
-  const std::optional<Model> fitted = model_of(fit, unit->dimension);
-  if (!fitted) {
-    return nullptr;
-  }
-  const Model& model = *fitted;
-  const double longest = allan.at("tau_s").back().get<double>();
-  const ImpliedCurves curves = implied_curves(model, dt_s, octave_grid(longest * 1.25 / dt_s, kCurvePointsPerOctave),
-                                              frequencies(longest, dt_s));
-  const double factor = 1.0 / unit->factor;
-  Json deviations = Json::array();
-  Json densities = Json::array();
-  for (const ImpliedComponent& component : curves.components) {
-    deviations.push_back(Json{{"process", component.process}, {"deviation", numbers(component.deviation, factor)}});
-    densities.push_back(Json{{"process", component.process}, {"density", numbers(component.density, factor * factor)}});
-  }
-  return Json{{"unit", unit->symbol},
-              {"allan", Json{{"tau_s", numbers(curves.tau_s, 1.0)},
-                             {"deviation", numbers(curves.deviation, factor)},
-                             {"components", std::move(deviations)}}},
-              {"spectrum", Json{{"f_hz", numbers(curves.f_hz, 1.0)},
-                                {"density", numbers(curves.density, factor * factor)},
-                                {"components", std::move(densities)}}},
-              {"ratio", at_measured(model, allan, dt_s, factor)}};
+  const MeasuredDeviation measured = deviation_from_json(channel.at("allan"));
+  const std::optional<Model> model =
+      unit && !measured.tau_s.empty() ? model_of(fit, unit->dimension) : std::optional<Model>();
+  return model ? std::optional(implied_beside(*model, *unit, channel.at("dt_s").get<double>(), measured))
+               : std::nullopt;
+}
+
+Json implied_by(const Json& fit, const Json& channel) {
+  const auto implied = implied_from_json(fit, channel);
+  return implied ? to_json(*implied, parse_unit(channel.at("unit").get<std::string>()).value_or(Unit{}))
+                 : Json(nullptr);
 }
 
 }  // namespace driftlab

@@ -1,5 +1,6 @@
 #pragma once
 /// What stored results say and imply, as documents (GET /v1/recordings/{id}/characterisation, /v1/fits/{id}/implied).
+#include "core/analysis/implied_curves.hpp"
 #include "core/campaign/verdict.hpp"
 #include "core/process/model.hpp"
 #include "schema/json/json.hpp"
@@ -21,6 +22,12 @@ namespace driftlab {
 
 /// The error model of a fit, without the processes that it has nothing of; nothing where it leaves a parameter open.
 [[nodiscard]] std::optional<Model> model_of(const Json& fit, Dimension dimension);
+
+/// The Allan deviation of a channel as the document has it, in the channel's own unit.
+[[nodiscard]] MeasuredDeviation deviation_from_json(const Json& allan);
+
+/// The same as numbers; nothing where implied_by is null.
+[[nodiscard]] std::optional<ImpliedBeside> implied_from_json(const Json& fit, const Json& channel);
 
 /// What a fit of that channel implies: curves on a grid, the deviation at the times that were measured, and the
 /// measured deviation over it. Null where the fit leaves a parameter open. `fit`: one member of `fits`, or a stored

@@ -2,29 +2,24 @@
 
 #include "core/signal/significant.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace driftlab {
 
 std::optional<double> value_of(const Json& value) {
   return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
-Values values_of(const Json& list, double factor) {
+Values values_of(const Json& list) {
   Values values;
   for (const Json& value : list) {
-    const auto one = value_of(value);
-    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
+    values.push_back(value_of(value));
   }
   return values;
 }
 
-Values ends_of(const Json& intervals, std::size_t end, double factor) {
+Values ends_of(const Json& intervals, std::size_t end) {
   Values values;
   for (const Json& interval : intervals) {
-    const auto one = interval.is_array() && interval.size() > end ? value_of(interval[end]) : std::nullopt;
-    values.push_back(one ? std::optional(*one * factor) : std::nullopt);
+    values.push_back(interval.is_array() && interval.size() > end ? value_of(interval[end]) : std::nullopt);
   }
   return values;
 }
@@ -35,16 +30,6 @@ std::vector<double> numbers_of(const Json& list) {
     values.push_back(value.is_number() ? value.get<double>() : 0.0);
   }
   return values;
-}
-
-Values over(const Values& values, const Values& base) {
-  Values ratio;
-  for (std::size_t i = 0; i < values.size() && i < base.size(); ++i) {
-    const auto& value = values[i];
-    const auto& unit = base[i];
-    ratio.push_back(value && unit && *unit > 0.0 ? std::optional(*value / *unit) : std::nullopt);
-  }
-  return ratio;
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

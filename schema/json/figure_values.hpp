@@ -1,5 +1,6 @@
 #pragma once
 /// Numbers and words of documents as figures take them.
+#include "core/analysis/drawn_values.hpp"
 #include "schema/json/json.hpp"
 
 #include <cstddef>
@@ -9,18 +10,13 @@
 
 namespace driftlab {
 
-using Values = std::vector<std::optional<double>>;
-
 /// The number, or nothing where the document has none.
 [[nodiscard]] std::optional<double> value_of(const Json& value);
-[[nodiscard]] Values values_of(const Json& list, double factor = 1.0);
+[[nodiscard]] Values values_of(const Json& list);
 /// One end (0 or 1) of each interval.
-[[nodiscard]] Values ends_of(const Json& intervals, std::size_t end, double factor = 1.0);
+[[nodiscard]] Values ends_of(const Json& intervals, std::size_t end);
 /// Numbers that are all there; 0 for one that is not.
 [[nodiscard]] std::vector<double> numbers_of(const Json& list);
-
-/// Each value over that of `base`; nothing where either is missing or the base is not positive.
-[[nodiscard]] Values over(const Values& values, const Values& base);
 
 [[nodiscard]] std::string replaced(std::string text, const std::string& what, const std::string& by);
 /// As in print: deg/√h, m/s².

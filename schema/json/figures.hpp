@@ -14,10 +14,6 @@ struct NamedFigure {
   figure::Figure figure;
 };
 
-/// The Allan deviation of one member of `channels` of a characterisation document with its best model: points with
-/// intervals, robust estimate, model and components, and measured over model below; what the pages draw.
-[[nodiscard]] figure::Figure allan_figure(const Json& channel, const std::string& recording);
-
 /// Of a characterisation (one a channel), an investigation (spectrum and wavelet deviation of each channel with a
 /// series), a regression run (one a unit; `channel` is its axis), an outage evaluation (errors by outage) or a
 /// parameter table (one a parameter). `channel`: of these alone; empty: all. Errors: InvalidArgument (a document of

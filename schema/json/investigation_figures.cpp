@@ -1,8 +1,9 @@
 #include "schema/json/investigation_figures.hpp"
 
+#include "core/analysis/drawn_values.hpp"
+#include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
-#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -95,13 +96,9 @@ Figure wavelets(const Json& series, const std::string& title) {
     simulated.colour = figure::palette::kModel;
     Series measured{
         .name = "measured", .x = simulated.x, .y = over(values_of(wavelet.at(member)), median), .mark = Mark::Dot};
-    Plot plot{.x = {ScaleKind::Log, "scale, s"}, .y = {ScaleKind::Log, name}};
+    Plot plot{.x = {ScaleKind::Log, "scale, s"}};
     plot.series = {std::move(simulated), std::move(measured)};
-    double far = 2.0;
-    for (const auto& value : plot.series.back().y) {
-      far = value && *value > 0.0 ? std::max({far, *value * 1.1, 1.1 / *value}) : far;
-    }
-    plot.y.domain = {1.0 / far, far};
+    plot.y = figure::ratio_axis(name, reach_of_ratios(plot.series.back().y, 1.1, 2.0));
     for (Series& one : plot.series) {
       one.key = plots.empty();
     }

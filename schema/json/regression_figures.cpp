@@ -1,9 +1,9 @@
 #include "schema/json/regression_figures.hpp"
 
+#include "core/analysis/drawn_values.hpp"
+#include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace driftlab {
@@ -28,7 +28,6 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
     }
     Series change{.name = "change", .detail = "95 %, all at once"};
     Series margin{.name = "margin"};
-    double far = std::log(1.2);
     for (const Json& test : unit.at("tests")) {
       const auto tau = value_of(test.value("tau_s", Json(nullptr)));
       if (!tau) {
@@ -40,9 +39,6 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
       change.high.push_back(value_of(test.at("ci")[1]));
       margin.x.push_back(*tau);
       margin.y.push_back(value_of(test.at("margin")));
-      for (const auto& value : {change.y.back(), change.low.back(), change.high.back(), margin.y.back()}) {
-        far = value && *value > 0.0 ? std::max(far, std::abs(std::log(*value))) : far;
-      }
     }
     if (change.x.empty()) {
       continue;
@@ -51,9 +47,12 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
     margin.line = true;
     margin.colour = figure::palette::kRobust;
     margin.dash = {5.0, 3.0};
-    const double limit = std::exp(1.1 * far);
-    Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"},
-              .y = {ScaleKind::Log, "candidate ÷ baseline", std::pair{1.0 / limit, limit}}};
+    double far = farthest_log({1.2}, 0.0);  // an axis of changes shows 20 % at least
+    for (const Values* const values : {&change.y, &change.low, &change.high, &margin.y}) {
+      far = farthest_log(*values, far);
+    }
+    const double limit = end_of_ratios(far, 1.1);
+    Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .y = figure::ratio_axis("candidate ÷ baseline", limit)};
     plot.y.ticks = limit > 2.2   ? std::vector{0.5, 1.0, 2.0}
                    : limit > 1.6 ? std::vector{0.67, 1.0, 1.5}
                                  : std::vector{0.8, 0.9, 1.0, 1.1, 1.25};

@@ -53,9 +53,7 @@ ReportedFit fit_from_json(const Json& document) {
   ReportedFit fit;
   fit.model = document.at("model").get<std::string>();
   fit.robust = document.value("robust", false);
-  for (const Json& process : document.at("processes")) {
-    fit.processes.push_back(process_from_json(process));
-  }
+  fit.processes = processes_from_json(document.at("processes"));
   fit.objective = finite_member(document, "objective", kNotKnown);
   fit.wic = finite_member(document, "wic", kNotKnown);
   fit.equation_8 = finite_member(document, "equation_8", kNotKnown);
@@ -189,6 +187,14 @@ std::vector<ReportedFit> fits_from_json(const Json& fits) {
   std::vector<ReportedFit> read;
   for (const Json& fit : fits) {
     read.push_back(fit_from_json(fit));
+  }
+  return read;
+}
+
+std::vector<ReportedProcess> processes_from_json(const Json& processes) {
+  std::vector<ReportedProcess> read;
+  for (const Json& process : processes) {
+    read.push_back(process_from_json(process));
   }
   return read;
 }

@@ -13,6 +13,9 @@ namespace driftlab {
 /// into an error.
 [[nodiscard]] std::vector<ReportedFit> fits_from_json(const Json& fits);
 
+/// The `processes` of one of them. Throws likewise.
+[[nodiscard]] std::vector<ReportedProcess> processes_from_json(const Json& processes);
+
 /// N, B, ... with null where there is no value; the reasons for it are added to `reasons`.
 [[nodiscard]] Json to_json(const ReportedValues& values, Json& reasons);
 

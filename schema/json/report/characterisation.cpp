@@ -1,7 +1,7 @@
 /// The report of a characterisation: of a recording, or of the recordings of a device.
 #include "schema/figure/drawing.hpp"
 #include "schema/json/channel_summary.hpp"
-#include "schema/json/figures.hpp"
+#include "schema/json/characterisation_figures.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
 
