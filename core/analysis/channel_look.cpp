@@ -3,6 +3,7 @@
 #include "core/analysis/implied_curves.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace driftlab {
@@ -91,6 +92,15 @@ Result<BinnedSpectrum> ChannelLook::spectrum(FrequencyScale scale, std::size_t b
 }
 
 std::optional<RobustHistogram> ChannelLook::histogram(std::size_t bins) const { return robust_histogram(run_, bins); }
+
+std::vector<double> ChannelLook::Ratio::log10() const {
+  std::vector<double> logs;
+  logs.reserve(spectrogram.density.size());
+  for (const double ratio : spectrogram.density) {
+    logs.push_back(std::log10(ratio));
+  }
+  return logs;
+}
 
 Result<ChannelLook::Ratio> ChannelLook::ratio(const Model* model, std::size_t cells, std::size_t bands) const {
   if (run_.size() < kFewest) {

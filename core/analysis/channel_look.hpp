@@ -40,6 +40,8 @@ class ChannelLook {
   struct Ratio {
     Spectrogram spectrogram;  ///< its density divided by that expected
     bool of_model = false;
+    /// log10 of the ratio, cell by cell.
+    [[nodiscard]] std::vector<double> log10() const;
   };
   [[nodiscard]] Result<Ratio> ratio(const Model* model, std::size_t cells, std::size_t bands) const;
 

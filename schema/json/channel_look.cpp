@@ -1,6 +1,6 @@
 #include "schema/json/channel_look.hpp"
 
-#include <cmath>
+#include "schema/json/rounded.hpp"
 
 namespace driftlab {
 namespace {
@@ -60,11 +60,12 @@ Json spectrogram_to_json(const ChannelLook& look, const ChannelLook::Ratio& rati
   Json document = head_of(look);
   const Spectrogram& found = ratio.spectrogram;
   const std::size_t bands = found.frequency_hz.size();
+  const std::vector<double> logs = ratio.log10();
   Json rows = Json::array();
   for (std::size_t cell = 0; cell < found.time_s.size(); ++cell) {
     Json row = Json::array();
     for (std::size_t band = 0; band < bands; ++band) {
-      row.push_back(number(std::round(1000.0 * std::log10(found.density[cell * bands + band])) / 1000.0));
+      row.push_back(rounded(logs[cell * bands + band], 3));
     }
     rows.push_back(std::move(row));
   }

@@ -2,19 +2,14 @@
 
 #include "core/campaign/channel_closeness.hpp"
 #include "core/fit/noise_equivalents.hpp"
+#include "core/fit/robust_efficiency.hpp"
 #include "core/process/registry.hpp"
+#include "core/variance/deviation.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace driftlab {
 namespace {
-
-Interval root(const Interval& variance) {
-  return {std::sqrt(std::max(variance.low, 0.0)), std::sqrt(std::max(variance.high, 0.0))};
-}
 
 /// Of an Allan curve, and of what estimates it at the longest tau.
 template <class Curve>
@@ -25,8 +20,8 @@ Json allan_json(const Curve& curve, double factor) {
   Json edf = Json::array();
   for (std::size_t i = 0; i < curve.tau_s.size(); ++i) {
     tau.push_back(number(curve.tau_s[i]));
-    deviation.push_back(number(std::sqrt(curve.variance[i]) * factor));
-    ci95.push_back(interval(root(curve.ci95[i]), factor));
+    deviation.push_back(number(deviation_of(curve.variance[i]) * factor));
+    ci95.push_back(interval(deviation_of(curve.ci95[i]), factor));
     edf.push_back(number(curve.edf[i]));
   }
   return Json{{"tau_s", std::move(tau)},
@@ -35,25 +30,22 @@ Json allan_json(const Curve& curve, double factor) {
               {"edf", std::move(edf)}};
 }
 
-/// Robust variances, null where the estimator has no root. `efficiency` is the mean over the scales where it has one.
+/// Robust variances, null where the estimator has no root.
 Json robust_json(const HaarCurve& curve, double square_factor) {
+  const std::optional<double> efficiency = mean_robust_efficiency(curve);
   Json variance = Json::array();
   Json ci95 = Json::array();
   Json efficiencies = Json::array();
-  double sum = 0.0;
-  int defined = 0;
   for (std::size_t i = 0; i < curve.robust_variance.size(); ++i) {
     const std::optional<double>& value = curve.robust_variance[i];
     variance.push_back(value ? number(*value * square_factor) : Json(nullptr));
     ci95.push_back(value ? interval(curve.robust_ci95[i], square_factor) : Json(nullptr));
     efficiencies.push_back(value ? number(curve.robust_efficiency[i]) : Json(nullptr));
-    sum += value ? curve.robust_efficiency[i] : 0.0;
-    defined += value ? 1 : 0;
   }
   return Json{{"method", curve.robust_sample_wise ? "sample_wise" : "coefficient_wise"},
               {"variance", std::move(variance)},
               {"ci95", std::move(ci95)},
-              {"efficiency", defined > 0 ? number(sum / defined) : Json(nullptr)},
+              {"efficiency", efficiency ? number(*efficiency) : Json(nullptr)},
               {"efficiency_by_scale", std::move(efficiencies)}};
 }
 
@@ -92,7 +84,7 @@ Json psd_json(const PowerSpectrum& spectrum, double factor) {
   }
   for (const SpectrumLine& line : spectrum.lines) {
     document["lines"].push_back({{"frequency_hz", number(line.frequency_hz)},
-                                 {"amplitude", number(line.amplitude * std::fabs(factor))},
+                                 {"amplitude", number(line.amplitude * factor)},
                                  {"excess", number(line.excess)}});
   }
   return document;
@@ -118,8 +110,9 @@ Json limits_json(const AllanParameters& parameters, Dimension dimension) {
   Json document = Json::object();
   const auto add = [&](const char* name, const std::optional<Estimate>& estimate, double limit, int halves) {
     const ParameterUnit unit = lab_unit(dimension, halves);
-    if (!estimate && std::isfinite(limit)) {
-      document[name] = Json{{"value", number(limit * unit.per_si)}, {"unit", unit.symbol}};
+    const Json told = number(limit * unit.per_si);
+    if (!estimate && !told.is_null()) {
+      document[name] = Json{{"value", told}, {"unit", unit.symbol}};
     }
   };
   add("N", parameters.n, parameters.n_limit, 1);
@@ -196,7 +189,7 @@ Json dynamic_allan_json(const DynamicAllan& moving, double factor) {
   for (const std::vector<double>& row : moving.variance) {
     Json line = Json::array();
     for (const double variance : row) {
-      line.push_back(number(std::sqrt(variance) * std::abs(factor)));
+      line.push_back(number(deviation_of(variance) * factor));
     }
     deviation.push_back(std::move(line));
   }

@@ -4,7 +4,6 @@
 #include "schema/json/imu_model.hpp"
 
 #include <array>
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -212,7 +211,8 @@ void read_drive_gnss(const Json& document, const std::string& pointer, std::stri
     gnss.position_latency_s = inner.real("position").value_or(0.0);
     gnss.velocity_latency_s = inner.real("velocity").value_or(0.0);
     inner.reject_unknown();
-    if (std::abs(gnss.position_latency_s) > 10.0 || std::abs(gnss.velocity_latency_s) > 10.0) {
+    const auto too_late = [](double latency_s) { return latency_s > 10.0 || latency_s < -10.0; };
+    if (too_late(gnss.position_latency_s) || too_late(gnss.velocity_latency_s)) {
       faults.add(pointer + "/latency_s", ErrorCode::InvalidArgument, "A latency is at most 10 s.");
     }
   }

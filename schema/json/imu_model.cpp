@@ -4,7 +4,6 @@
 #include "schema/json/error_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace driftlab {
 namespace {

@@ -3,9 +3,9 @@
 #include "core/signal/angle.hpp"
 #include "schema/json/channel_summary.hpp"
 #include "schema/json/outage_scenario.hpp"
+#include "schema/json/rounded.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -29,7 +29,7 @@ Json path_json(const OutagePath& path) {
   const auto list = [](const std::vector<double>& values) {
     Json out = Json::array();
     for (const double value : values) {
-      out.push_back(number(std::round(value * 1e3) / 1e3));  // millimetres
+      out.push_back(rounded(value, 3));  // millimetres
     }
     return out;
   };
@@ -41,7 +41,7 @@ Json track_json(const OutagePath& track) {
   const auto list = [](const std::vector<double>& values) {
     Json out = Json::array();
     for (const double value : values) {
-      out.push_back(number(std::round(value * 1e2) / 1e2));
+      out.push_back(rounded(value, 2));
     }
     return out;
   };
@@ -55,8 +55,8 @@ Json outage_json(const OutageSummary& outage) {
   Json north = Json::array();
   Json east = Json::array();
   for (const auto& point : outage.scatter) {
-    north.push_back(number(std::round(point[0] * 1e3) / 1e3));
-    east.push_back(number(std::round(point[1] * 1e3) / 1e3));
+    north.push_back(rounded(point[0], 3));
+    east.push_back(rounded(point[1], 3));
   }
   return Json{{"index", outage.index},
               {"start_s", number(outage.start_s)},

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -69,7 +68,7 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
     if (!(plan.speed_m_s >= 0.0)) {
       faults.add(pointer + "/start/speed_m_s", ErrorCode::InvalidArgument, "A speed is not negative.");
     }
-    if (!(std::fabs(plan.start.latitude_rad) < 1.57)) {
+    if (!(plan.start.latitude_rad < 1.57 && plan.start.latitude_rad > -1.57)) {
       faults.add(pointer + "/start/latitude_deg", ErrorCode::OutOfRange, "The latitude lies between the poles.");
     }
   }

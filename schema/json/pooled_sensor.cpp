@@ -3,7 +3,6 @@
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace driftlab {
@@ -116,7 +115,7 @@ Json to_json(const std::optional<RecordingAgreement>& agreement) {
   const bool joint = !agreement->model.empty();
   return Json{{"model", text_or_null(agreement->model)},
               {"statistic", number(agreement->statistic)},
-              {"dof", joint ? number(agreement->dof) : Json(std::lround(agreement->dof))},
+              {"dof", joint ? number(agreement->dof) : Json(static_cast<long>(agreement->dof))},
               {"p", number(agreement->p)},
               {"agree", agreement->agree()}};
 }

@@ -1,10 +1,9 @@
 #include "schema/json/regression.hpp"
 
+#include "core/campaign/regression/ratios.hpp"
 #include "core/signal/angle.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
-
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -70,10 +69,11 @@ Json regression_test_json(const regression::ScaleReport& told) {
   } else {
     test["name"] = told.name;
   }
-  test["ratio"] = number(std::exp(told.theta));
-  test["ci"] = Json::array({number(std::exp(told.outcome.lower)), number(std::exp(told.outcome.upper))});
-  test["upper_single"] = number(std::exp(told.outcome.upper_one));
-  test["margin"] = number(std::exp(told.test.margin));
+  const regression::RatioReport ratios = regression::ratios_of(told);
+  test["ratio"] = number(ratios.ratio);
+  test["ci"] = interval(ratios.ci95);
+  test["upper_single"] = number(ratios.upper_single);
+  test["margin"] = number(ratios.margin);
   test["gated"] = told.gated;
   test["verdict"] = name_of(told.outcome.finding);
   test["p_adjusted"] = number(told.outcome.p_adjusted);
@@ -101,12 +101,13 @@ Json regression_unit_json(const regression::Report& report, const regression::Un
 
 Json regression_trend_json(const regression::TrendReport& told) {
   const regression::ReleaseTrend& trend = told.trend;
+  const regression::TrendRatios ratios = regression::ratios_of(trend);
   return Json{{"unit", told.unit},
               {"of", told.name.empty() ? "scales" : told.name},
               {"releases", trend.releases},
-              {"per_release", number(std::exp(trend.slope))},
-              {"ci95", {number(std::exp(trend.ci95.low)), number(std::exp(trend.ci95.high))}},
-              {"total", number(std::exp(trend.total))},
+              {"per_release", number(ratios.per_release)},
+              {"ci95", interval(ratios.ci95)},
+              {"total", number(ratios.total)},
               {"p", number(trend.p)},
               {"warning", told.warns()}};
 }
@@ -122,6 +123,7 @@ Json regression_arm_json(const regression::ArmReport& arm) {
 
 Json regression_between_json(const regression::Report& report) {
   const regression::SessionScatter& scatter = report.comparison.scatter;
+  const regression::ScatterFactors factors = regression::factors_of(scatter);
   Json posterior = Json::array();
   for (Eigen::Index a = 0; a < scatter.posterior.rows(); ++a) {
     Json row = Json::array();
@@ -131,10 +133,10 @@ Json regression_between_json(const regression::Report& report) {
     posterior.push_back(std::move(row));
   }
   return Json{{"common",
-               {{"value", number(std::sqrt(scatter.mean_square_common()))},
+               {{"value", number(factors.common)},
                 {"ci95", {number(scatter.quantile_common(0.025)), number(scatter.quantile_common(0.975))}}}},
               {"local",
-               {{"value", number(std::sqrt(scatter.mean_square_local()))},
+               {{"value", number(factors.local)},
                 {"ci95", {number(scatter.quantile_local(0.025)), number(scatter.quantile_local(0.975))}}}},
               {"factors", regression::factor_grid()},
               {"posterior", std::move(posterior)},

@@ -6,7 +6,6 @@
 #include "schema/json/error_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace driftlab {
 namespace {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on an include that climbs a floor, and on what core/ may not use.
+"""Fails on an include that climbs a floor, on what core/ may not use, and on documents that compute.
 
 Each module stands only on those named here; `tests/` stands on everything. A relative include of a driftlab header is a
 fault too, for it hides the floor.
@@ -75,6 +75,15 @@ FORBIDDEN_IN_CORE = {
     r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(": "ends the process",
 }
 
+# What schema/json may not say: a document is what core computed, in the units of its readers. Whoever needs a function of
+# <cmath> or <numeric> there computes. (A product of two numbers passes: it may be a unit.) json.cpp and
+# rounded.cpp write numbers: whether one is finite, and to how many decimals.
+COMPUTING_HEADERS = {"cmath", "complex", "numeric", "valarray", "math.h"}
+COMPUTING = re.compile(
+    r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|l?l?round|floor|ceil|trunc|fabs|fmod|"
+    r"remainder|fma|lerp|midpoint|accumulate|(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element)\b")
+WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp"}
+
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 COMMENT_OR_LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|' r"(?<!\w)'(?:\\.|[^'\\\n])+'", re.DOTALL)
 
@@ -111,9 +120,15 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
             fault(match.start(2), f"{module} may not include {included}: {target} is not below it")
         if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
             fault(match.start(2), f"include {included} by its path from the top of the repository")
+        if module == "schema/json" and name not in WRITE_NUMBERS and included in COMPUTING_HEADERS:
+            fault(match.start(2), f"schema/json may not include <{included}>: documents compute nothing, core does")
         for pattern, owners in RESERVED.items():
             if re.fullmatch(pattern, included) and not any(o in (module, name) or module.startswith(o + "/") for o in owners):
                 fault(match.start(2), f"{module} may not include <{included}>: it is kept to {', '.join(owners)}")
+    if module == "schema/json" and name not in WRITE_NUMBERS:
+        for number, line in enumerate(code_of(text).split("\n"), start=1):
+            for match in COMPUTING.finditer(line):
+                faults.append(f"{name}:{number}: schema/json computes ({match.group(0)}): that belongs to core")
     if module.startswith("core/"):
         for number, line in enumerate(code_of(text).split("\n"), start=1):
             for pattern, sentence in FORBIDDEN_IN_CORE.items():

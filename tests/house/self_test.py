@@ -77,6 +77,19 @@ class Floors(Planted):
                 self.plant("core/signal/a.cpp", "int before;\n" + line + "\n")
                 self.refused(floors.check(self.root), "core/signal/a.cpp:2: core")
 
+    def test_a_document_that_computes_is_refused(self) -> None:
+        # Figures were interpolated and averaged on JSON values, and nothing said so.
+        for line in ("double y = std::exp(std::log(a) * share);", "auto d = std::sqrt(v);", "auto s = std::accumulate(a, b, 0.0);",
+                     "auto n = std::lround(100.0 * share);", "auto h = std::hypot(x, y);", "#include <cmath>", "#include <numeric>"):
+            with self.subTest(line=line):
+                path = self.plant("schema/json/report/a.cpp", "int before;\n" + line + "\n")
+                self.refused(floors.check(self.root), "schema/json/report/a.cpp:2: schema/json")
+                path.unlink()
+        self.plant("schema/json/json.cpp", "#include <cmath>\nauto n = std::isfinite(x) ? std::round(x) : 0.0;\n")
+        self.plant("schema/json/a.cpp", '#include <algorithm>\nauto v = std::max(a, b) * unit.per_si;  // std::sqrt\nauto s = "std::exp";\n')
+        self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
+        self.assertEqual(floors.check(self.root), [])
+
     def test_reserved_headers_are_refused(self) -> None:
         for source, header in (("core/read/a.cpp", "iostream"), ("core/fit/a.cpp", "spdlog/spdlog.h"), ("core/read/b.cpp", "sqlite3.h"),
                                ("core/signal/b.cpp", "nlohmann/json.hpp"), ("core/signal/c.cpp", "boost/beast/http.hpp"),

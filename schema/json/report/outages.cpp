@@ -3,8 +3,8 @@
 #include "core/signal/with_count.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
+#include "schema/json/rounded.hpp"
 
-#include <cmath>
 #include <cstdint>
 
 namespace driftlab::page {
@@ -17,6 +17,10 @@ std::string written(double value, const Json& ci95) {
   return significant(value, low, high) + " [" + significant(low, low, high) + ", " + significant(high, low, high) + "]";
 }
 
+std::string whole_percent(double share) {
+  return std::to_string(static_cast<int>(rounded(100.0 * share, 0).get<double>())) + " %";
+}
+
 }  // namespace
 
 std::string outages_html(const Json& document) {
@@ -27,7 +31,7 @@ std::string outages_html(const Json& document) {
     filters += row_html({text_of(filter, "name"), std::to_string(filter.at("states").get<int>()),
                          written(error.at("value").get<double>(), error.at("ci95")),
                          written(filter.at("nees").get<double>(), filter.at("nees_ci95")),
-                         std::to_string(std::lround(100.0 * filter.at("coverage95").get<double>())) + " %"});
+                         whole_percent(filter.at("coverage95").get<double>())});
   }
   std::string claims;
   for (const Json& claim : document.at("claims")) {

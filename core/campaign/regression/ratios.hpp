@@ -1,0 +1,32 @@
+#pragma once
+/// What a regression run tells as ratios. Its comparisons are made on logarithms of Allan deviations, which have an
+/// even scatter at every averaging time; people read candidate over baseline.
+#include "core/campaign/regression/report.hpp"
+
+namespace driftlab::regression {
+
+/// Candidate over baseline, 1: no change.
+struct RatioReport {
+  double ratio = 1.0;
+  Interval ci95 = {1.0, 1.0};  ///< of all tests at once
+  double upper_single = 1.0;   ///< upper end of this test alone
+  double margin = 1.0;         ///< the most that is accepted
+};
+[[nodiscard]] RatioReport ratios_of(const ScaleReport& told);
+
+/// A trend over releases.
+struct TrendRatios {
+  double per_release = 1.0;
+  Interval ci95 = {1.0, 1.0};
+  double total = 1.0;  ///< from the anchor to the candidate
+};
+[[nodiscard]] TrendRatios ratios_of(const ReleaseTrend& trend);
+
+/// By how much sessions of one sensor scatter: root mean squares of the factors of session_scatter.hpp.
+struct ScatterFactors {
+  double common = 0.0;
+  double local = 0.0;
+};
+[[nodiscard]] ScatterFactors factors_of(const SessionScatter& scatter);
+
+}  // namespace driftlab::regression

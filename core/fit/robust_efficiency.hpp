@@ -1,0 +1,12 @@
+#pragma once
+/// How much the robust variances of a channel lose against the classical ones.
+#include "core/fit/characterisation.hpp"
+
+#include <optional>
+
+namespace driftlab {
+
+/// The mean efficiency of the robust variances over the scales that have one; nothing where none has.
+[[nodiscard]] std::optional<double> mean_robust_efficiency(const HaarCurve& curve);
+
+}  // namespace driftlab
