@@ -142,6 +142,17 @@ std::string text_member(const Json& object, const char* name) {
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
+Json to_json(const ReportedValue& value) {
+  if (!value.value) {
+    return nullptr;
+  }
+  return Json{{"value", number(*value.value)},
+              {"unit", value.unit},
+              {"ci95", Json::array({optional_number(value.low), optional_number(value.high)})}};
+}
+
+ReportedValue reported_value_from_json(const Json& document) { return value_from_json(document, nullptr, ""); }
+
 Json to_json(const ReportedValues& values, Json& reasons) {
   Json document = Json::object();
   for (const auto& [name, value] : values) {
@@ -150,9 +161,7 @@ Json to_json(const ReportedValues& values, Json& reasons) {
       reasons[name] = value.reason;
       continue;
     }
-    document[name] = Json{{"value", number(*value.value)},
-                          {"unit", value.unit},
-                          {"ci95", Json::array({optional_number(value.low), optional_number(value.high)})}};
+    document[name] = to_json(value);
   }
   return document;
 }

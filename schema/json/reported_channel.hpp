@@ -16,6 +16,10 @@ namespace driftlab {
 /// The `processes` of one of them. Throws likewise.
 [[nodiscard]] std::vector<ReportedProcess> processes_from_json(const Json& processes);
 
+/// {"value", "unit", "ci95"}; null without a value, and back. Reading throws likewise.
+[[nodiscard]] Json to_json(const ReportedValue& value);
+[[nodiscard]] ReportedValue reported_value_from_json(const Json& document);
+
 /// N, B, ... with null where there is no value; the reasons for it are added to `reasons`.
 [[nodiscard]] Json to_json(const ReportedValues& values, Json& reasons);
 

@@ -1,14 +1,17 @@
 // What stands on the front of a lab: how much there is, and how each device is.
 #include "server/api/overviews.hpp"
 
-#include "core/campaign/verdict.hpp"
+#include "core/campaign/glance.hpp"
 #include "core/signal/condition.hpp"
+#include "schema/json/channel_summary.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/reported_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/message.hpp"
 
 #include <map>
+#include <utility>
 
 namespace driftlab::server {
 namespace {
@@ -20,53 +23,28 @@ Json condition_json(const std::string& text) {
   return condition ? driftlab::to_json(*condition) : Json(nullptr);
 }
 
-/// The density N of rate at low frequencies, whatever the model; of a fit that was stored before fits kept it, the
-/// model's white noise. Null where there is none.
-Json density_of(const Json& fit) {
-  if (fit.contains("density")) {
-    return fit.at("density");
-  }
-  for (const Json& process : fit.value("processes", Json::array())) {
-    if (process.value("process", "") == "white_noise") {
-      return process.value("params", Json::object()).value("N", Json(nullptr));
-    }
-  }
-  return nullptr;
-}
+/// The best fit of an axis under one condition, with what it says at a glance.
+struct AxisResult {
+  const Fit* fit = nullptr;
+  AxisGlance glance;
+  [[nodiscard]] AxisCandidate candidate() const { return {fit->condition == "static", glance.level}; }
+};
 
-/// One sensor axis by its best fit: at rest where there is one, else under the condition seen first.
-Json axis_summary(const Fit& fit) {
-  const Json document = stored(fit.document_json);
-  const Json test = document.value("j_test", Json(nullptr));
-  const Json p = test.is_object() ? test.value("p", Json(nullptr)) : Json(nullptr);
-  const bool fits = p.is_number() && p.get<double>() >= kRejected;
-  const auto condition = parse_condition(fit.condition);
+Json to_json(const AxisResult& axis) {
+  const Fit& fit = *axis.fit;
   return Json{{"quantity", fit.quantity},
-              {"axis", fit.axis.empty() ? Json(nullptr) : Json(fit.axis)},
+              {"axis", text_or_null(fit.axis)},
               {"recording", fit.recording_id},
-              {"condition", condition ? driftlab::to_json(*condition) : Json(nullptr)},
+              {"condition", condition_json(fit.condition)},
               {"model", fit.model},
-              {"N", density_of(document)},
-              {"fits", p.is_number() ? Json(fits) : Json(nullptr)},
-              {"level", fits ? "fine" : "look"},
-              {"reason", fits ? Json(nullptr)
-                              : Json(p.is_number() ? "the best model does not fit (J test p < 0.01)"
-                                                   : "too few scales to test whether the best model fits")}};
-}
-
-/// Of two best fits of an axis the one at rest stands for it, and of two at rest the one that does not fit: a glance
-/// must not pass over it.
-bool tells_more(const Fit& fit, const Fit& shown) {
-  const bool rests = fit.condition == "static";
-  if (rests != (shown.condition == "static")) {
-    return rests;
-  }
-  return rests && axis_summary(fit).at("level") == "look" && axis_summary(shown).at("level") == "fine";
+              {"N", driftlab::to_json(axis.glance.density)},
+              {"fits", axis.glance.fits ? Json(*axis.glance.fits) : Json(nullptr)},
+              {"level", name_of(axis.glance.level)},
+              {"reason", text_or_null(axis.glance.reason)}};
 }
 
 /// A result that must be read, with the page of the API that holds what its verdict rests on.
 Json to_json(const Attention& item) {
-  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   const std::string href = item.recording_id.empty() ? result_address(item.kind, item.job_id, item.investigation_id)
                                                      : "/v1/recordings/" + item.recording_id +
                                                            "/characterisation?channel=" + percent_encode(item.channel);
@@ -76,10 +54,10 @@ Json to_json(const Attention& item) {
               {"kind", item.kind},
               {"href", href},
               {"job", item.job_id},
-              {"device", or_null(item.device_id)},
-              {"device_name", or_null(item.device_name)},
-              {"recording", or_null(item.recording_id)},
-              {"channel", or_null(item.channel)},
+              {"device", text_or_null(item.device_id)},
+              {"device_name", text_or_null(item.device_name)},
+              {"recording", text_or_null(item.recording_id)},
+              {"channel", text_or_null(item.channel)},
               {"created_at", rfc3339(item.created_at)}};
 }
 
@@ -164,12 +142,17 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
   if (!fits) {
     return fail(fits.error());
   }
-  std::map<std::pair<std::string, std::string>, const Fit*> axes;
+  std::map<std::pair<std::string, std::string>, AxisResult> axes;
   const Fit* newest = nullptr;
   for (const Fit& fit : *fits) {
-    const Fit*& shown = axes[{fit.quantity, fit.axis}];
-    if (shown == nullptr || tells_more(fit, *shown)) {
-      shown = &fit;
+    auto glance = axis_glance(stored(fit.document_json));
+    if (!glance) {
+      return fail(glance.error());
+    }
+    AxisResult found{&fit, std::move(*glance)};
+    AxisResult& shown = axes[{fit.quantity, fit.axis}];
+    if (shown.fit == nullptr || tells_more(found.candidate(), shown.candidate())) {
+      shown = std::move(found);
     }
     if (newest == nullptr || fit.created_at > newest->created_at) {
       newest = &fit;
@@ -182,8 +165,8 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
     kinds.push_back(Json{{"condition", condition_json(one.condition)}, {"recordings", one.recordings}});
   }
   Json channels = Json::array();
-  for (const auto& [axis, fit] : axes) {
-    channels.push_back(axis_summary(*fit));
+  for (const auto& [axis, shown] : axes) {
+    channels.push_back(to_json(shown));
   }
   return Json{{"recordings", recordings},
               {"conditions", std::move(kinds)},
