@@ -1,11 +1,8 @@
 #include "core/variance/spectral_lines.hpp"
 
-#include <unsupported/Eigen/FFT>
+#include "core/variance/welch.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <complex>
-#include <numbers>
 
 namespace driftlab {
 namespace {
@@ -26,31 +23,16 @@ constexpr std::size_t kLobe = 3;
 /// Mean periodogram of Hann windows of `length` samples, bins 0 .. length/2; empty if stopped.
 std::vector<double> periodogram(std::span<const double> samples, double pivot, std::size_t length,
                                 const RunControl& control) {
-  std::vector<double> taper(length);
-  for (std::size_t t = 0; t < length; ++t) {
-    taper[t] =
-        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(t) + 0.5) / static_cast<double>(length));
-  }
   const std::size_t windows = std::min(samples.size() / length, kMostWindows);
-  std::vector<double> power(length / 2 + 1, 0.0);
-  std::vector<double> tapered(length);
-  std::vector<std::complex<double>> spectrum(length / 2 + 1);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  WelchPeriodogram mean(length, Taper::Hann, 1.0);
   for (std::size_t w = 0; w < windows; ++w) {
     if (control.stop.stop_requested()) {
       return {};
     }
     const std::size_t from = windows > 1 ? (samples.size() - length) / (windows - 1) * w : 0;
-    for (std::size_t t = 0; t < length; ++t) {
-      tapered[t] = (samples[from + t] - pivot) * taper[t];
-    }
-    fft.fwd(spectrum.data(), tapered.data(), static_cast<Eigen::Index>(length));
-    for (std::size_t k = 0; k < power.size(); ++k) {
-      power[k] += std::norm(spectrum[k]);
-    }
+    mean.add(samples.subspan(from, length), {.level = pivot});
   }
-  return power;
+  return mean.mean();
 }
 
 /// Power over its median in the octave below and the octave above.

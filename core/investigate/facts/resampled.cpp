@@ -1,6 +1,6 @@
 #include "core/investigate/facts/resampled.hpp"
 
-#include "core/investigate/fullrate/spectrum.hpp"
+#include "core/variance/welch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,37 +37,19 @@ double share_on_chords(std::span<const double> rows, std::size_t every, std::siz
   return between > 100.0 ? on / between : 0.0;
 }
 
-/// Mean periodogram of pieces of `length` behind a Hann window, unit of x squared per sample.
+/// Density of pieces of `length` that overlap by half, each less the line through its ends and the mean of the rest;
+/// unit of x squared per sample.
 std::vector<double> mean_periodogram(std::span<const double> x, std::size_t length) {
-  std::vector<double> power(length / 2 + 1, 0.0);
-  std::vector<double> window(length);
-  double square = 0.0;
-  for (std::size_t i = 0; i < length; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
-    square += window[i] * window[i];
-  }
-  double pieces = 0.0;
-  std::vector<double> piece(length);
+  WelchPeriodogram mean(length, Taper::Hann, 1.0);
   for (std::size_t from = 0; from + length <= x.size(); from += length / 2) {
-    const double slope = (x[from + length - 1] - x[from]) / static_cast<double>(length - 1);
-    double mean = 0.0;
+    const std::span<const double> piece = x.subspan(from, length);
+    PieceLine off{.slope = (piece.back() - piece.front()) / static_cast<double>(length - 1)};
     for (std::size_t i = 0; i < length; ++i) {
-      piece[i] = x[from + i] - slope * static_cast<double>(i);
-      mean += piece[i] / static_cast<double>(length);
+      off.level += (piece[i] - off.slope * static_cast<double>(i)) / static_cast<double>(length);
     }
-    for (std::size_t i = 0; i < length; ++i) {
-      piece[i] = (piece[i] - mean) * window[i];
-    }
-    const auto z = transform(Series::view(piece));
-    for (std::size_t k = 0; k < power.size(); ++k) {
-      power[k] += std::norm(z[k]) / square;
-    }
-    pieces += 1.0;
+    mean.add(piece, off);
   }
-  for (double& p : power) {
-    p /= std::max(1.0, pieces);
-  }
-  return power;
+  return mean.mean();
 }
 
 struct Near {

@@ -3,6 +3,7 @@
 #include "core/process/distributions.hpp"
 #include "core/process/quantization_noise.hpp"
 #include "core/process/white_noise.hpp"
+#include "core/variance/welch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,32 +74,14 @@ void add_scales(const GroupOutcome& outcome, ChannelFigures& figures) {
   }
 }
 
-/// Mean periodogram over stretches of `length` samples of all recordings.
-struct MeanPeriodogram {
-  std::vector<double> power;
-  double stretches = 0.0;
-};
-
-MeanPeriodogram mean_periodogram(const FullRate& data, std::size_t length) {
-  MeanPeriodogram mean;
-  mean.power.assign(length / 2 + 1, 0.0);
-  const double scale = data.dt_s / static_cast<double>(length);
+/// Density over stretches of `length` samples, end to end, of all recordings.
+WelchPeriodogram mean_periodogram(const FullRate& data, std::size_t length) {
+  WelchPeriodogram mean(length, Taper::None, data.dt_s);
   for (const auto& residual : data.residual) {
     for (std::size_t from = 0; from + length <= residual.size(); from += length) {
-      std::vector<double> part = residual.part(from, length).values();
-      const double level = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(length);
-      for (double& v : part) {
-        v -= level;
-      }
-      const auto z = transform(Series::view(part));
-      for (std::size_t k = 0; k < mean.power.size(); ++k) {
-        mean.power[k] += std::norm(z[k]) * scale;
-      }
-      mean.stretches += 1.0;
+      const std::vector<double> part = residual.part(from, length).values();
+      mean.add(part, {.level = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(length)});
     }
-  }
-  for (double& p : mean.power) {
-    p /= std::max(1.0, mean.stretches);
   }
   return mean;
 }
@@ -112,30 +95,32 @@ void add_spectrum(const GroupOutcome& outcome, ChannelFigures& figures) {
   if (length < 64) {
     return;
   }
-  const MeanPeriodogram before = mean_periodogram(outcome.before, length);
-  const MeanPeriodogram after = mean_periodogram(outcome.after, length);
+  const WelchPeriodogram periodogram = mean_periodogram(outcome.before, length);
+  const auto stretches = static_cast<double>(periodogram.pieces());
+  const std::vector<double> before = periodogram.mean();
+  const std::vector<double> after = mean_periodogram(outcome.after, length).mean();
   const double dt_s = outcome.before.dt_s;
   const std::size_t ordinates = (length - 1) / 2;
   const std::size_t bins = std::min(kBins, ordinates);
-  const double chance = chi_squared_quantile(1.0 - 0.05 / static_cast<double>(ordinates), 2.0 * before.stretches) /
-                        (2.0 * before.stretches);
+  const double chance =
+      chi_squared_quantile(1.0 - 0.05 / static_cast<double>(ordinates), 2.0 * stretches) / (2.0 * stretches);
   for (std::size_t b = 0; b < bins; ++b) {
     const std::size_t from = 1 + b * ordinates / bins;
     const std::size_t to = 1 + (b + 1) * ordinates / bins;
     double sum[2] = {0.0, 0.0};
     double top[2] = {0.0, 0.0};
     for (std::size_t k = from; k < to; ++k) {
-      sum[0] += before.power[k];
-      sum[1] += after.power[k];
-      top[0] = std::max(top[0], before.power[k]);
-      top[1] = std::max(top[1], after.power[k]);
+      sum[0] += before[k];
+      sum[1] += after[k];
+      top[0] = std::max(top[0], before[k]);
+      top[1] = std::max(top[1], after[k]);
     }
     const auto m = static_cast<double>(to - from);
     const double f = 0.5 * static_cast<double>(from + to - 1) / static_cast<double>(length) / dt_s;
     const double base = outcome.before.model.white +
                         slow_density(outcome.before.model, 0, f, dt_s, static_cast<double>(length)) +
                         outcome.before.quantization * quantization_shape(f, dt_s);
-    const double dof = 2.0 * m * before.stretches;
+    const double dof = 2.0 * m * stretches;
     figures.f_hz.push_back(f);
     figures.density_before.push_back(sum[0] / m);
     figures.density_after.push_back(sum[1] / m);
