@@ -1,5 +1,7 @@
 #include "tests/hidden/fresh_likelihood.hpp"
 
+#include "tests/hidden/fresh_noise.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -20,10 +22,6 @@ using investigate::StudyRecording;
 
 constexpr double kPi = std::numbers::pi;
 
-bool lists(const std::vector<std::string>& names, const std::string& name) {
-  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // ---- the equations of the mean effects, once more -----------------------------------------------------------------
 
 std::vector<double> each(const StudyRecording& recording, const std::function<double(std::size_t)>& f) {
@@ -33,8 +31,6 @@ std::vector<double> each(const StudyRecording& recording, const std::function<do
   }
   return values;
 }
-
-double at(const Series& values, std::size_t i) { return values.empty() ? 0.0 : values[i]; }
 
 /// Temperature behind a first-order lag, less its mean over the recording.
 std::vector<double> lagged(const StudyRecording& recording, double lag_s) {
@@ -116,160 +112,6 @@ std::vector<double> mean_of(const GivenEffect& effect, const StudyRecording& rec
     v *= p;
   }
   return values;
-}
-
-// ---- the noise of one recording as states --------------------------------------------------------------------------
-
-/// x' = F x + noise of covariance Q, y = h x + white of variance r g_i^2.
-struct States {
-  Eigen::MatrixXd f, q, p0;
-  Eigen::RowVectorXd h;
-  double white = 0.0;  ///< [SI^2], of one sample
-  void add(const Eigen::MatrixXd& f2, const Eigen::MatrixXd& q2, const Eigen::MatrixXd& p2,
-           const Eigen::RowVectorXd& h2) {
-    const auto n = h.size();
-    const auto m = h2.size();
-    const auto grow = [&](Eigen::MatrixXd& into, const Eigen::MatrixXd& more) {
-      Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
-      both.topLeftCorner(n, n) = into;
-      both.bottomRightCorner(m, m) = more;
-      into = both;
-    };
-    grow(f, f2);
-    grow(q, q2);
-    grow(p0, p2);
-    Eigen::RowVectorXd both(n + m);
-    both << h, h2;
-    h = both;
-  }
-  void add_scalar(double phi, double step, double start) {
-    const auto one = [](double v) { return Eigen::MatrixXd::Constant(1, 1, v); };
-    add(one(phi), one(step), one(start), Eigen::RowVectorXd::Ones(1));
-  }
-};
-
-void add_gauss_markov(States& states, double variance, double beta, double dt) {
-  const double phi = std::exp(-beta * dt);
-  states.add_scalar(phi, variance * (1.0 - phi * phi), variance);
-}
-
-/// Density B^2/(2 pi f) as Gauss-Markov processes whose rates stand in equal ratios: each adds B^2 ln(ratio)/pi.
-void add_flicker(States& states, double b, const StudyRecording& recording) {
-  constexpr int kStates = 12;
-  const double low = 0.3 / (static_cast<double>(recording.length) * recording.dt_s);
-  const double high = kPi / recording.dt_s;
-  const double ratio = std::pow(high / low, 1.0 / (kStates - 1));
-  for (int k = 0; k < kStates; ++k) {
-    add_gauss_markov(states, b * b * std::log(ratio) / kPi, low * std::pow(ratio, k), recording.dt_s);
-  }
-}
-
-/// (u_i - u_{i-1})/dt with u of standard deviation Q.
-void add_differenced(States& states, double q, double dt) {
-  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(2, 2);
-  f(1, 0) = 1.0;
-  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(2, 2);
-  noise(0, 0) = q * q / dt / dt;
-  states.add(f, noise, Eigen::MatrixXd::Identity(2, 2) * (q * q / dt / dt), Eigen::RowVector2d(1.0, -1.0));
-}
-
-/// White noise of variance `white` behind the bilinear second-order Butterworth low-pass: states s1, s2 of the filter
-/// (transposed direct form II) and its next input.
-void add_low_pass(States& states, double white, double corner_hz, double dt) {
-  const double k = std::tan(kPi * corner_hz * dt);
-  const double norm = 1.0 / (1.0 + std::sqrt(2.0) * k + k * k);
-  const double b0 = k * k * norm;
-  const double b1 = 2.0 * b0;
-  const double a1 = 2.0 * (k * k - 1.0) * norm;
-  const double a2 = (1.0 - std::sqrt(2.0) * k + k * k) * norm;
-  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(3, 3);
-  f << -a1, 1.0, b1 - a1 * b0, -a2, 0.0, b0 - a2 * b0, 0.0, 0.0, 0.0;
-  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(3, 3);
-  q(2, 2) = white;
-  Eigen::MatrixXd p = q;
-  for (int i = 0; i < 20000; ++i) {
-    p = (f * p * f.transpose() + q).eval();
-  }
-  states.add(f, q, p, Eigen::RowVector3d(1.0, 0.0, b0));
-}
-
-/// Everything that an effect does beside the mean.
-struct Noise {
-  States states;
-  std::vector<double> white_factor;  ///< of the white part's deviation, per sample
-  std::vector<double> whole_factor;  ///< of the whole error
-  double nu = 0.0;
-  double fraction = 0.0, magnitude = 0.0;
-  double step = 0.0;
-  double correlation = 0.0;
-};
-
-Noise noise_of(const Baseline& model, const StudyRecording& recording, const ChannelGroup& group, double finest) {
-  Noise noise;
-  noise.white_factor.assign(recording.length, 1.0);
-  noise.whole_factor.assign(recording.length, 1.0);
-  const double dt = recording.dt_s;
-  double white = 0.0;
-  const auto own = model.by_channel.find(group.column);
-  for (const Process& process : own != model.by_channel.end() ? own->second : model.processes) {
-    const std::string name(process.kind->name);
-    const auto& p = process.parameters;
-    if (name == "white_noise") {
-      white += p[0] * p[0] / dt;
-    } else if (name == "gauss_markov") {
-      add_gauss_markov(noise.states, p[0] * p[0], p[1], dt);
-    } else if (name == "random_walk") {
-      noise.states.add_scalar(1.0, p[0] * p[0] * dt, 0.0);
-    } else if (name == "flicker_noise") {
-      add_flicker(noise.states, p[0], recording);
-    } else if (name == "quantization_noise") {
-      add_differenced(noise.states, p[0], dt);
-    }
-  }
-  for (const GivenEffect& effect : model.effects) {
-    if (!lists(effect.channels, group.column) || !lists(effect.recordings, recording.id)) {
-      continue;
-    }
-    const double p = effect.values[0];
-    const double second = effect.values.size() > 1 ? effect.values[1] : 0.0;
-    const std::size_t axis = group.role.quantity == Quantity::AngularRate ? group.axis() : 2;
-    if (effect.cause == "white_noise_level") {
-      white = p * p / dt;
-    } else if (effect.cause == "gauss_markov") {
-      add_gauss_markov(noise.states, p * p, second, dt);
-    } else if (effect.cause == "random_walk") {
-      noise.states.add_scalar(1.0, p * p * dt, 0.0);
-    } else if (effect.cause == "flicker_noise") {
-      add_flicker(noise.states, p, recording);
-    } else if (effect.cause == "quantization_noise") {
-      add_differenced(noise.states, p, dt);
-    } else if (effect.cause == "turn_on_bias") {
-      noise.states.add_scalar(1.0, 0.0, p * p);
-    } else if (effect.cause == "rate_dependent_noise" || effect.cause == "acceleration_dependent_noise") {
-      const auto& driver = effect.cause == "rate_dependent_noise" ? recording.rate[axis] : recording.acceleration[axis];
-      for (std::size_t i = 0; i < recording.length; ++i) {
-        noise.white_factor[i] *= 1.0 + p * std::fabs(at(driver, i));
-      }
-    } else if (effect.cause == "noise_level_change") {
-      for (std::size_t i = 0; i < recording.length; ++i) {
-        noise.whole_factor[i] *= recording.time_s(i) >= second ? p : 1.0;
-      }
-    } else if (effect.cause == "heavy_tailed_noise") {
-      noise.nu = p;
-    } else if (effect.cause == "outliers") {
-      noise.fraction = p;
-      noise.magnitude = second;
-    } else if (effect.cause == "output_resolution") {
-      noise.step = p;
-    } else if (effect.cause == "common_mode_noise") {
-      noise.correlation = p;
-    } else if (effect.cause == "band_limited_noise") {
-      add_low_pass(noise.states, white, p, dt);
-      white = 0.0;
-    }
-  }
-  noise.states.white = white + finest * finest / 12.0;
-  return noise;
 }
 
 // ---- the filter ----------------------------------------------------------------------------------------------------
