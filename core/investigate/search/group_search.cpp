@@ -3,15 +3,14 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/search/base_quantization.hpp"
 #include "core/investigate/search/candidates.hpp"
-#include "core/investigate/search/fact_gain.hpp"
+#include "core/investigate/search/file_facts.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/hold_out.hpp"
 #include "core/investigate/search/joint_refit.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/search/take_out.hpp"
 #include "core/investigate/search/thresholds.hpp"
-#include "core/investigate/study/lattice.hpp"
-#include "core/investigate/study/reference_quality.hpp"
+#include "core/investigate/search/usable_group.hpp"
 #include "core/process/gauss_markov.hpp"
 #include "core/process/registry.hpp"
 
@@ -33,11 +32,22 @@ class GroupSearch {
       : study_(study), group_(group), index_(index), control_(control), outcome_(outcome) {}
 
   void run() {
-    if (!check_usable()) {
+    const UsableGroup usable = usable_group(group_);
+    outcome_.usable = usable.why_not.empty();
+    outcome_.why_not = usable.why_not;
+    outcome_.needs = usable.needs;
+    if (!outcome_.usable) {
       return;
     }
     control_.report("facts of " + group_.column, 0.0);
-    look_at_files();
+    FileFacts facts = look_at_files(group_);
+    mask_ = std::move(facts.mask);
+    lattice_step_ = facts.lattice_step;
+    outcome_.found = std::move(facts.found);
+    outcome_.examined = outcome_.found;
+    for (const auto& member : group_.members) {
+      error_.push_back(member.channel->error);
+    }
     if (!stopped()) {
       search_slow();
     }
@@ -59,77 +69,6 @@ class GroupSearch {
 
  private:
   [[nodiscard]] bool stopped() const { return control_.stop.stop_requested(); }
-
-  bool check_usable() {
-    double samples = 0.0;
-    bool constant = true;
-    for (const auto& member : group_.members) {
-      samples += static_cast<double>(member.recording->count());
-      const auto [low, high] = std::minmax_element(member.channel->rows.begin(), member.channel->rows.end());
-      constant = constant && *low == *high;
-      const double dt = member.recording->dt_s;
-      if (std::fabs(dt / group_.members.front().recording->dt_s - 1.0) > 0.01) {
-        outcome_.why_not = "its recordings have different sampling rates";
-        outcome_.needs = "recordings at one sampling rate";
-        return false;
-      }
-    }
-    if (constant) {
-      outcome_.why_not = "it never changes";
-      outcome_.needs = "a channel whose values change";
-      return false;
-    }
-    if (samples < 500.0) {
-      outcome_.why_not = "it has fewer than 500 samples";
-      outcome_.needs = "500 samples or more";
-      return false;
-    }
-    outcome_.why_not = why_reference_misleads(group_);
-    if (!outcome_.why_not.empty()) {
-      outcome_.needs = "a reference of the same motion, on the same clock and axes";
-      return false;
-    }
-    outcome_.usable = true;
-    return true;
-  }
-
-  void look_at_files() {
-    mask_.resize(group_.members.size());
-    error_.resize(group_.members.size());
-    for (std::size_t r = 0; r < group_.members.size(); ++r) {
-      mask_[r].assign(group_.members[r].recording->length, 0);
-      error_[r] = group_.members[r].channel->error;
-    }
-    for (const Cause& cause : cause_registry()) {
-      const FileFact* const fact = cause.as<FileFact>();
-      if (fact == nullptr) {
-        continue;
-      }
-      for (Evidence& evidence : fact->find(group_)) {
-        evidence.cause = &cause;
-        std::vector<std::vector<unsigned char>> spoilt(group_.members.size());
-        for (const std::size_t r : evidence.members) {
-          spoilt[r].assign(group_.members[r].recording->length, 0);
-          if (fact->spoils != nullptr) {
-            fact->spoils(group_, evidence, r, spoilt[r]);
-            std::transform(mask_[r].begin(), mask_[r].end(), spoilt[r].begin(), mask_[r].begin(),
-                           [](unsigned char a, unsigned char b) { return static_cast<unsigned char>(a | b); });
-          }
-        }
-        hold_out_fact(group_, spoilt, evidence);
-        if (fact->gives_lattice_step && !evidence.parameters.empty()) {
-          lattice_step_ = evidence.parameters[0].estimate.value;
-        }
-        outcome_.found.push_back(std::move(evidence));
-      }
-    }
-    if (lattice_step_ == 0.0) {
-      const Channel& channel = *group_.members.front().channel;
-      const Lattice lattice = find_lattice(channel.rows);
-      lattice_step_ = std::max(lattice.step, lattice.decimals) * channel.unit.factor;
-    }
-    outcome_.examined = outcome_.found;
-  }
 
   /// `error[r]`, over the grid of member r, less what the search has accepted, under the null of the search.
   [[nodiscard]] FullRate full_rate(const SlowSearch& search, const std::vector<Series>& error,

@@ -1,0 +1,19 @@
+#pragma once
+/// What the files of a channel show by themselves: facts, the samples that they spoil, and the step of the values.
+#include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/study/study.hpp"
+
+#include <vector>
+
+namespace driftlab::investigate {
+
+struct FileFacts {
+  std::vector<Evidence> found;                   ///< each held out on what it does not spoil
+  std::vector<std::vector<unsigned char>> mask;  ///< by member, over the grid: not 0 where a fact spoils the sample
+  double lattice_step = 0.0;                     ///< [SI]: a fact's, else that of the values or of their last digit
+};
+
+/// Every cause of the registry that is a fact of the file is looked for, in its order.
+[[nodiscard]] FileFacts look_at_files(const ChannelGroup& group);
+
+}  // namespace driftlab::investigate
