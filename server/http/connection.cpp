@@ -1,7 +1,5 @@
 #include "server/http/connection.hpp"
 
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/write.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
@@ -21,8 +19,6 @@ namespace {
 /// more.
 constexpr std::size_t kFirstBytes = 1024;
 constexpr auto kUnaskedWait = 20s;
-
-auto into(boost::system::error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
 HeadView head_of(const http::request<http::buffer_body>& message) {
   HeadView head;
@@ -248,18 +244,6 @@ std::optional<Response> HttpConnection::admit(const Route* route, Request& reque
   return shared_.hooks.admit ? shared_.hooks.admit(route, request) : std::nullopt;
 }
 
-asio::awaitable<bool> HttpConnection::write_text(std::string_view text) {
-  while (!text.empty()) {
-    boost::system::error_code error;
-    stream_.expires_after(std::chrono::seconds(budgets().write_stall_seconds));
-    text.remove_prefix(co_await stream_.async_write_some(asio::buffer(text), into(error)));
-    if (error) {
-      co_return false;
-    }
-  }
-  co_return true;
-}
-
 asio::awaitable<bool> HttpConnection::answer_plain(Parser& parser, const Route& route, Request& request) {
   const auto declared = parser.content_length();
   if (declared && *declared > static_cast<std::uint64_t>(budgets().document_bytes)) {
@@ -332,58 +316,6 @@ bool HttpConnection::still_admitted(const Request& request) const {
 asio::awaitable<bool> HttpConnection::refuse(const Request& request, Response response) {
   co_await send(request, std::move(response), false);
   co_await linger();
-  co_return false;
-}
-
-asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler, const Request& request) {
-  auto begin = [&handler, &request] {
-    const ActingFor acting(request.caller);
-    return handler(request);
-  };
-  auto begun = co_await shared_.handlers.run(begin);
-  auto settled = settle(std::move(begun));
-  if (!settled) {
-    co_return co_await send(request, std::move(settled.error()), true);
-  }
-  const std::unique_ptr<EventSource> source = std::move(*settled);
-  const auto executor = co_await asio::this_coro::executor;
-  const auto listener = shared_.bell.listen(source->subject(), executor);
-  std::string text =
-      "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-cache\r\nX-Accel-Buffering: no\r\n"
-      "X-Content-Type-Options: nosniff\r\nConnection: close\r\nX-Request-Id: " +
-      request.request_id + "\r\n\r\nretry: 3000\n\n";
-  auto last_sent = std::chrono::steady_clock::now();
-  bool last = request.method == "HEAD";
-  while (true) {
-    if (!last) {
-      auto look = [&source, &request] {
-        const ActingFor acting(request.caller);
-        return source->next();
-      };
-      auto batch = co_await shared_.handlers.run(look);
-      if (batch && *batch) {
-        text += (*batch)->text;
-        last = (*batch)->last;
-      }
-    }
-    if (text.empty() && std::chrono::steady_clock::now() - last_sent > 15s) {
-      text = ": still here\n\n";
-    }
-    if (!text.empty()) {
-      const bool written = co_await write_text(text);
-      if (!written) {
-        break;
-      }
-      last_sent = std::chrono::steady_clock::now();
-      text.clear();
-    }
-    if (last || shared_.stopping || !still_admitted(request)) {
-      break;
-    }
-    co_await listener->wait(1s);
-  }
-  const Response summary;
-  log(request, summary);
   co_return false;
 }
 

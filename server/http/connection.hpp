@@ -8,6 +8,8 @@
 #include "server/http/upload_places.hpp"
 
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -25,6 +27,11 @@ namespace driftlab::server {
 
 /// Bytes of a body that are handed on at once.
 inline constexpr std::size_t kBodyPiece = 256UL * 1024;
+
+/// The completion token of an awaited operation whose error is looked at and not thrown.
+[[nodiscard]] inline auto into(boost::system::error_code& error) {
+  return boost::asio::redirect_error(boost::asio::use_awaitable, error);
+}
 
 /// What work gave, or the answer where it failed or found no place in its queue.
 ///

@@ -1,7 +1,6 @@
 // Bodies: what comes in piece by piece, of a stated length or chunked, and files on their way out.
 #include "server/http/connection.hpp"
 
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/http/read.hpp>
 
@@ -14,12 +13,6 @@ namespace driftlab::server {
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using namespace std::chrono_literals;
-
-namespace {
-
-auto into(boost::system::error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
-
-}  // namespace
 
 bool HttpConnection::trickles() const {
   const auto elapsed = std::chrono::steady_clock::now() - body_started_;
