@@ -61,7 +61,7 @@ FilterDifference difference_of(const ComparedFilter& filter, const ComparedFilte
   return pair;
 }
 
-/// "M_dyn(AV) errs 3.1 % [1.2 %, 5 %] more"; where less, the numbers are those of the gain.
+/// "M_dyn(AV) errs 3.1 % [1.2 %, 5 %] more than M_stat(AV)"; where less, the numbers are those of the gain.
 std::string shown_difference(const FilterDifference& pair) {
   const double sign = pair.relative.value < 0.0 ? -100.0 : 100.0;
   const double low = std::min(sign * pair.relative.ci95.low, sign * pair.relative.ci95.high);
@@ -69,7 +69,7 @@ std::string shown_difference(const FilterDifference& pair) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), " errs %.2g %% [%.2g %%, %.2g %%] %s", sign * pair.relative.value, low, high,
                 sign < 0.0 ? "less" : "more");
-  std::string sentence = pair.filter + text.data();
+  std::string sentence = pair.filter + text.data() + " than " + pair.against;
   if (std::abs(pair.relative.value) < kPracticalSize) {
     sentence += ", which is of no practical size";
   }
@@ -155,7 +155,7 @@ std::vector<std::string> verdicts_of(const FilterComparison& comparison) {
       continue;
     }
     if (!shown.empty()) {
-      sentence += shown + " than " + first;
+      sentence += shown;
     }
     if (open > 0) {
       std::snprintf(text.data(), text.size(), "no %sdifference from ", shown.empty() ? "" : "other ");
