@@ -5,6 +5,10 @@
 /// astray rejects every fix, so that after five in a row the receiver is right and the filter is not: fixes are
 /// believed again, however far off, until about as many have agreed by themselves as had disagreed. The memory caps
 /// that count: after a long disagreement belief would otherwise last as long as the disagreement did.
+///
+/// The filter's options remember 60 fixes: a minute of a receiver at 1 Hz, which is long against the few fixes in which
+/// a filter comes back to its receiver and short against a drive. accuracy_recorded_drives ('*GatesMemory*') measures
+/// errors and rejected fixes of a recorded drive for memories from 5 to 1000.
 #include <algorithm>
 
 namespace driftlab::drive {
