@@ -20,6 +20,7 @@ namespace {
 struct DriveFlags {
   std::string document;
   std::string model;
+  std::vector<std::string> models;  ///< of a comparison
   DriveRequest request;
   int threads = 0;
   bool json = false;
@@ -84,6 +85,15 @@ Exit ask(const DriveFlags& flags) {
   return Exit::Success;
 }
 
+Exit compare(DriveFlags& flags) {
+  auto models = read_drive_models(flags.models);
+  if (!models) {
+    return complain_of_work(models.error());
+  }
+  flags.request.models = std::move(*models);
+  return ask(flags);
+}
+
 /// The path by all fixes, written as a table.
 Exit smooth_files(const DriveFlags& flags) {
   RunControl control;
@@ -111,8 +121,11 @@ void add_files(CLI::App& command, DriveFlags& flags) {
   command.add_flag("--json", flags.json, "Print the result document instead of tables");
 }
 
-void add_belief(CLI::App& command, DriveFlags& flags) {
+void add_model(CLI::App& command, DriveFlags& flags) {
   command.add_option("--model", flags.model, "What the filter believes, in place of the document's model");
+}
+
+void add_work(CLI::App& command, DriveFlags& flags) {
   command.add_flag("--nhc", flags.request.velocity_constraint,
                    "The vehicle moves along its nose: velocity constraints");
   command.add_option("--seed", flags.request.seed, "Same seed, same result, for any number of threads")
@@ -127,9 +140,20 @@ void add_belief(CLI::App& command, DriveFlags& flags) {
 }
 
 void add_filter(CLI::App& command, DriveFlags& flags) {
-  add_belief(command, flags);
+  add_work(command, flags);
   command.add_flag("--zupt", flags.request.zero_velocity, "Zero velocity and no turn while the unit is at rest");
   command.add_flag("--odometer", flags.request.odometer, "Use the odometer");
+  command.add_flag("--estimate", flags.request.estimate,
+                   "Estimate the lever arm, and with --nhc the mounting, by the document's standard deviations");
+}
+
+void add_readings(CLI::App& command, DriveFlags& flags) {
+  command
+      .add_option("--gate", flags.request.gate,
+                  "Reject fixes whose normalised squared innovation is above this; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_flag("--as-stamped", flags.request.as_stamped, "Believe the unit's stamps and keep repeated rows");
 }
 
 void add_runs(CLI::App& command, DriveFlags& flags) {
@@ -150,12 +174,9 @@ void add_drive(CLI::App& app, Command& chosen) {
   check->callback([flags, &chosen] { chosen = [flags] { return check_files(*flags); }; });
   CLI::App* const run = drive->add_subcommand("run", "Take fixes away and measure what the filter does without them");
   add_files(*run, *flags);
+  add_model(*run, *flags);
   add_filter(*run, *flags);
-  run->add_option("--gate", flags->request.gate,
-                  "Reject fixes whose normalised squared innovation is above this; 0: none")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  run->add_flag("--as-stamped", flags->request.as_stamped, "Believe the unit's stamps and keep repeated rows");
+  add_readings(*run, *flags);
   run->callback([flags, &chosen] {
     flags->request.question = DriveQuestion::Run;
     chosen = [flags] { return ask(*flags); };
@@ -163,6 +184,7 @@ void add_drive(CLI::App& app, Command& chosen) {
   CLI::App* const simulate = drive->add_subcommand(
       "simulate", "The same outages simulated along the same trajectory, beside the measured ones");
   add_files(*simulate, *flags);
+  add_model(*simulate, *flags);
   add_filter(*simulate, *flags);
   add_runs(*simulate, *flags);
   simulate->callback([flags, &chosen] {
@@ -179,11 +201,28 @@ void add_drive(CLI::App& app, Command& chosen) {
   CLI::App* const explain = drive->add_subcommand(
       "explain", "By how much a simulation of the drive is too optimistic, why, and what mending it gains");
   add_files(*explain, *flags);
-  add_belief(*explain, *flags);
+  add_model(*explain, *flags);
+  add_work(*explain, *flags);
   add_runs(*explain, *flags);
   explain->callback([flags, &chosen] {
     flags->request.question = DriveQuestion::Explain;
     chosen = [flags] { return ask(*flags); };
+  });
+  CLI::App* const comparison =
+      drive->add_subcommand("compare", "Several error models as filters through the same outages, paired");
+  add_files(*comparison, *flags);
+  comparison
+      ->add_option("--model", flags->models,
+                   "A model: document, document-white, a filter of the paper such as M_dyn(GMWM), or a JSON file; give "
+                   "it once for each, the first is what the others are compared with")
+      ->required();
+  comparison->add_flag("--fit-noise", flags->request.fit_noise,
+                       "Scale each model's white noise to the innovations first");
+  add_filter(*comparison, *flags);
+  add_readings(*comparison, *flags);
+  comparison->callback([flags, &chosen] {
+    flags->request.question = DriveQuestion::Compare;
+    chosen = [flags] { return compare(*flags); };
   });
 }
 

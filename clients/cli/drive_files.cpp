@@ -5,6 +5,9 @@
 #include "core/read/rtklib_tag.hpp"
 #include "schema/json/drive_document.hpp"
 
+#include <algorithm>
+#include <filesystem>
+
 namespace driftlab::cli {
 Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunControl& control) {
   auto decoded = decode_file(folder_ / source.file, workspace_.file(), {}, control);
@@ -50,6 +53,32 @@ Result<drive::Document> read_drive_document(const std::string& path, const std::
   Faults faults;
   drive::Document made = drive_from_json(*document, faults);
   return faults.none() ? Result<drive::Document>(std::move(made)) : fail(in_file(path, faults.error()));
+}
+
+Result<std::vector<DriveModel>> read_drive_models(const std::vector<std::string>& given) {
+  const std::vector<std::string>& known = known_drive_models();
+  std::vector<DriveModel> models;
+  for (const std::string& name : given) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) {
+      models.push_back({name, std::nullopt});
+      continue;
+    }
+    std::string names;
+    for (const std::string& one : known) {
+      names += (names.empty() ? "" : ", ") + one;
+    }
+    const auto document = read_json_file(name, "a model, or the name of one: " + names);
+    if (!document) {
+      return fail(document.error());
+    }
+    Faults faults;
+    ImuModel imu = drive_model_from_json(*document, "", faults);
+    if (!faults.none()) {
+      return fail(in_file(name, faults.error()));
+    }
+    models.push_back({std::filesystem::path(name).stem().string(), std::move(imu)});
+  }
+  return models;
 }
 
 Result<drive::Tables> open_drive_tables(const std::string& path, const drive::Document& document,

@@ -33,4 +33,8 @@ class DriveFiles final : public DriveSource {
 [[nodiscard]] Result<drive::Drive> open_drive_files(const std::string& path, const drive::Document& document,
                                                     const drive::LoadOptions& options, const RunControl& control);
 
+/// The models of a comparison: names that driftlab knows, else JSON files, called by their name without `.json`.
+/// Errors: those of the file.
+[[nodiscard]] Result<std::vector<DriveModel>> read_drive_models(const std::vector<std::string>& given);
+
 }  // namespace driftlab::cli

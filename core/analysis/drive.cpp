@@ -3,10 +3,23 @@
 #include "core/navigate/drive/smoother.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace driftlab {
 namespace {
+
+/// A share with its interval: "97 % [95, 99]"; without an interval where there are too few blocks.
+std::string percent_of(const Estimate& share) {
+  std::array<char, 64> text{};
+  if (std::isfinite(share.ci95.low)) {
+    std::snprintf(text.data(), text.size(), "%.0f %% [%.0f, %.0f]", 100.0 * share.value, 100.0 * share.ci95.low,
+                  100.0 * share.ci95.high);
+  } else {
+    std::snprintf(text.data(), text.size(), "%.0f %%", 100.0 * share.value);
+  }
+  return text.data();
+}
 
 Error of_file(Error error, const std::string& file) {
   error.message = file + ": " + error.message;
@@ -16,12 +29,13 @@ Error of_file(Error error, const std::string& file) {
 }  // namespace
 
 std::string_view name_of(DriveQuestion question) {
-  constexpr std::array<std::string_view, 3> kNames{"run", "simulate", "explain"};
+  constexpr std::array<std::string_view, 4> kNames{"run", "simulate", "explain", "compare"};
   return kNames[static_cast<std::size_t>(question)];
 }
 
 std::optional<DriveQuestion> parse_drive_question(std::string_view name) {
-  for (const DriveQuestion question : {DriveQuestion::Run, DriveQuestion::Simulate, DriveQuestion::Explain}) {
+  for (const DriveQuestion question :
+       {DriveQuestion::Run, DriveQuestion::Simulate, DriveQuestion::Explain, DriveQuestion::Compare}) {
     if (name_of(question) == name) {
       return question;
     }
@@ -37,6 +51,12 @@ drive::FilterOptions options_of(const DriveRequest& request, const drive::Docume
   options.zero_velocity = request.zero_velocity;
   options.odometer = request.odometer;
   options.gate = request.gate;
+  if (request.estimate && document.gnss.lever_arm_sd_m > 0.0) {
+    options.constants.lever_arm_sd_m = document.gnss.lever_arm_sd_m;
+  }
+  if (request.estimate && request.velocity_constraint && document.imu.mounting_sd_rad > 0.0) {
+    options.constants.mounting_sd_rad = document.imu.mounting_sd_rad;
+  }
   return options;
 }
 
@@ -112,8 +132,7 @@ DriveCheck check_drive(drive::Drive drive) {
   return checked;
 }
 
-Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& options,
-                              const drive::EvaluationOptions& settings, const RunControl& control) {
+Status check_options(const drive::Drive& drive, const drive::FilterOptions& options) {
   if (options.constraint && !drive::moves_along_its_nose(drive.document.vehicle)) {
     return fail(ErrorCode::InvalidArgument,
                 "A vehicle of kind " + std::string(name_of(drive.document.vehicle)) +
@@ -122,6 +141,14 @@ Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& op
   }
   if (options.odometer && drive.odometer.empty()) {
     return fail(ErrorCode::InvalidArgument, "The drive has no odometer.", {{"parameter", "odometer"}});
+  }
+  return {};
+}
+
+Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& options,
+                              const drive::EvaluationOptions& settings, const RunControl& control) {
+  if (auto status = check_options(drive, options); !status) {
+    return fail(status.error());
   }
   auto evaluation = drive::evaluate_drive(drive, options, settings, control);
   if (!evaluation) {
@@ -169,8 +196,9 @@ std::string sentence_of(const DriveExplanationReport& report) {
   std::snprintf(
       text.data(), text.size(),
       "After %.3g s without fixes the drive's errors are %.3g times (95 %% interval %.3g to %.3g) those that the "
-      "simulation of the same trajectory gives. ",
-      before.duration_s, before.ratio.value, before.ratio.ci95.low, before.ratio.ci95.high);
+      "simulation of the same trajectory gives, whose own 95 %% ellipse holds %s of its errors. ",
+      before.duration_s, before.ratio.value, before.ratio.ci95.low, before.ratio.ci95.high,
+      percent_of(before.coverage95).c_str());
   std::string sentence = text.data();
   sentence += causes.empty() ? "No cause is shown. " : "Found: " + causes + ". ";
   const drive::RungFigures* first = nullptr;
@@ -186,9 +214,9 @@ std::string sentence_of(const DriveExplanationReport& report) {
     std::snprintf(
         text.data(), text.size(),
         "On %zu outages of %.3g s that it has not seen the mended model takes the rms from %.3g to %.3g m and the "
-        "NEES from %.3g to %.3g (2 is right), with %.0f %% inside its 95 %% ellipse.",
+        "NEES from %.3g to %.3g (2 is right), with %s inside its 95 %% ellipse.",
         last->held_out_count, last->duration_s, first->held_out_rms_m, last->held_out_rms_m, first->held_out_nees,
-        last->held_out_nees, 100.0 * last->held_out_coverage95);
+        last->held_out_nees, percent_of(last->held_out_coverage95).c_str());
     sentence += text.data();
   }
   return sentence;
@@ -217,9 +245,12 @@ std::string sentence_of(const DriveSimulationReport& simulation) {
   std::array<char, 512> text{};
   std::snprintf(text.data(), text.size(),
                 "After %.3g s without fixes the measured error is %.3g times (95 %% interval %.3g to %.3g) that of the "
-                "simulation of the same trajectory, outages and model: %.3g m against %.3g m.",
+                "simulation of the same trajectory, outages and model: %.3g m against %.3g m. The filter's 95 %% "
+                "ellipse holds %s of the measured errors and %s of the simulated ones.",
                 first.duration_s, first.ratio.value, first.ratio.ci95.low, first.ratio.ci95.high,
-                simulation.measured.evaluation.durations.front().rms_m.value, first.rms_m);
+                simulation.measured.evaluation.durations.front().rms_m.value, first.rms_m,
+                percent_of(simulation.measured.evaluation.durations.front().coverage95).c_str(),
+                percent_of(first.coverage95).c_str());
   return text.data();
 }
 
@@ -249,6 +280,9 @@ Result<DriveAnswer> answer_drive(const DriveRequest& request, const drive::Docum
   auto drive = load_with_reference(document, tables, {.repair = simulate || !request.as_stamped});
   if (!drive) {
     return fail(drive.error());
+  }
+  if (request.question == DriveQuestion::Compare) {
+    return answer(compare_drive_models(std::move(*drive), request, control));
   }
   const drive::FilterOptions options = options_of(request, document);
   if (simulate) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The use case "drive": a recorded drive in, measured GNSS outages out (spec/drives.md).
 #include "core/analysis/simulate.hpp"
+#include "core/navigate/drive/comparison.hpp"
 #include "core/navigate/drive/explain.hpp"
 #include "core/read/column_file.hpp"
 
@@ -25,9 +26,20 @@ enum class DriveQuestion {
   Run,       ///< what the filter does in its outages
   Simulate,  ///< the same outages simulated beside the measured ones
   Explain,   ///< by how much a simulation is too optimistic, why, and what mending gains
+  Compare,   ///< several error models as filters through the same outages
 };
 [[nodiscard]] std::string_view name_of(DriveQuestion question);
 [[nodiscard]] std::optional<DriveQuestion> parse_drive_question(std::string_view name);
+
+/// A model of a comparison: one of the caller's, or without one the name of one that driftlab knows.
+struct DriveModel {
+  std::string name;
+  std::optional<ImuModel> imu;
+};
+
+/// The document's model, the same without slow errors, and the filters of the paper's comparison (paper_scenario.hpp),
+/// whose gyroscope then stands beside the document's accelerometer.
+[[nodiscard]] const std::vector<std::string>& known_drive_models();
 
 struct DriveRequest {
   DriveQuestion question = DriveQuestion::Run;
@@ -38,6 +50,11 @@ struct DriveRequest {
   bool as_stamped = false;     ///< of a run
   std::uint64_t seed = 1;
   int runs = 4;  ///< simulated drives
+  /// The antenna's lever arm, and with velocity constraints the mounting, are estimated beside everything else, by the
+  /// standard deviations of the document; not where causes are sought.
+  bool estimate = false;
+  std::vector<DriveModel> models = {};  ///< of a comparison
+  bool fit_noise = false;               ///< of a comparison: scale each model's white noise to the innovations first
 };
 [[nodiscard]] drive::FilterOptions options_of(const DriveRequest& request, const drive::Document& document);
 
@@ -67,14 +84,16 @@ struct DriveCheck {
 
 [[nodiscard]] DriveCheck check_drive(drive::Drive drive);
 
+/// Error: InvalidArgument, where the options ask for what the vehicle or the document does not allow.
+[[nodiscard]] Status check_options(const drive::Drive& drive, const drive::FilterOptions& options);
+
 struct DriveReport {
   drive::Drive drive;
   drive::FilterOptions options;
   drive::DriveEvaluation evaluation;
 };
 
-/// Errors: InvalidArgument, where the options ask for what the vehicle or the document does not allow; those of
-/// evaluate_drive.
+/// Errors: those of check_options and evaluate_drive.
 [[nodiscard]] Result<DriveReport> run_drive(drive::Drive drive, const drive::FilterOptions& options,
                                             const drive::EvaluationOptions& settings = {},
                                             const RunControl& control = {});
@@ -111,7 +130,23 @@ struct DriveSimulationReport {
 
 [[nodiscard]] std::string sentence_of(const DriveSimulationReport& simulation);
 
-using DriveAnswer = std::variant<DriveReport, DriveSimulationReport, DriveExplanationReport>;
+/// Several models as filters on the drive, and the verdict that its outages allow.
+struct DriveComparisonReport {
+  drive::Drive drive;
+  drive::FilterOptions options;
+  bool fit_noise = false;
+  drive::FilterComparison comparison;
+};
+
+/// The request's models on a drive. Errors: InvalidArgument (a name that driftlab does not know; fewer than two); those
+/// of check_options and compare_filters.
+[[nodiscard]] Result<DriveComparisonReport> compare_drive_models(drive::Drive drive, const DriveRequest& request,
+                                                                 const RunControl& control = {});
+
+/// The verdicts of all durations.
+[[nodiscard]] std::string sentence_of(const DriveComparisonReport& report);
+
+using DriveAnswer = std::variant<DriveReport, DriveSimulationReport, DriveExplanationReport, DriveComparisonReport>;
 
 /// Loads the drive and answers what is asked of it. Errors: those of load_drive and of the question's own function.
 [[nodiscard]] Result<DriveAnswer> answer_drive(const DriveRequest& request, const drive::Document& document,

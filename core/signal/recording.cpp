@@ -1,5 +1,6 @@
 #include "core/signal/recording.hpp"
 
+#include "core/signal/find_column.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/number.hpp"
 
@@ -49,25 +50,14 @@ std::string listed(const ColumnNames& names) {
   return names.size() > kMost ? text.append(", ...") : text;
 }
 
-/// The place of the column that the user calls `column`: by its name, else by its number from 0. `names.size()`: none.
-std::size_t place_of(const std::string& column, const ColumnNames& names) {
-  const auto found = std::find(names.begin(), names.end(), column);
-  const bool digits = !column.empty() && column.size() < 6 &&
-                      std::all_of(column.begin(), column.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (found != names.end() || !digits) {
-    return static_cast<std::size_t>(found - names.begin());
-  }
-  return std::min<std::size_t>(std::stoul(column), names.size());
-}
-
 Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec& spec, const ColumnNames& names) {
   std::vector<std::optional<ColumnRole>> roles(names.size());
   for (const auto& [column, role] : spec.columns) {
-    const std::size_t place = place_of(column, names);
-    if (place == names.size()) {
-      return fail(ErrorCode::UnknownColumn, "The file has no column '" + column + "'; it has " + listed(names) + ".",
-                  {{"column", column}});
+    const auto found = find_column(names, column);
+    if (!found) {
+      return fail(found.error());
     }
+    const std::size_t place = *found;
     if (auto status = check_role(column, role); !status) {
       return fail(status.error());
     }
@@ -119,6 +109,21 @@ void add_time_by_name(const ColumnNames& names, std::vector<std::optional<Column
 }
 
 }  // namespace
+
+Result<std::size_t> find_column(const ColumnNames& names, const std::string& column) {
+  const auto named = std::find(names.begin(), names.end(), column);
+  if (named != names.end()) {
+    return static_cast<std::size_t>(named - names.begin());
+  }
+  const bool digits = !column.empty() && column.size() < 6 &&
+                      std::all_of(column.begin(), column.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const std::size_t number = digits ? std::stoul(column) : names.size();
+  if (number < names.size()) {
+    return number;
+  }
+  return fail(ErrorCode::UnknownColumn, "The file has no column '" + column + "'; it has " + listed(names) + ".",
+              {{"column", column}});
+}
 
 Status check_role(const std::string& column, const ColumnRole& role) {
   const std::string quantity(name_of(role.quantity));

@@ -1,10 +1,13 @@
 #pragma once
-/// The one loader of recordings: what each column of a file means, and what drove the sensors.
+/// The one loader of recordings of a device: what each column of a file means, and what drove the sensors.
 ///
-/// Variances (core/signal/recording_view.hpp), calibrations, investigations (core/investigate/study/study.hpp) and
-/// drives all ask here which column is the time, which the temperature and which the reference of a sensor, and what a
+/// Variances (core/signal/recording_view.hpp), calibrations and investigations (core/investigate/study/study.hpp) all
+/// ask here which column is the time, which the temperature and which the reference of a sensor, and what a
 /// condition says where there is no such column (spec/study.md). They differ only in the samples they then keep: a view
 /// takes the sound rows, a study puts every row on a grid.
+///
+/// A drive has several files, each on a clock of its own, and quantities that no device has (fixes, a course, an
+/// accuracy): core/navigate/drive/table.hpp reads them. Both find the column that somebody names by find_column.hpp.
 #include "core/signal/recording.hpp"
 
 #include <functional>

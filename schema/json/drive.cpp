@@ -5,13 +5,11 @@
 #include <array>
 
 namespace driftlab {
-namespace {
-
-Json estimate_json(const Estimate& estimate) {
+Json estimate_to_json(const Estimate& estimate) {
   return Json{{"value", number(estimate.value)}, {"ci95", interval(estimate.ci95)}};
 }
 
-Json facts_json(const drive::Drive& drive) {
+Json facts_to_json(const drive::Drive& drive) {
   const drive::FileFacts& facts = drive.facts;
   const drive::SamplingFacts& s = facts.sampling;
   return Json{{"duration_s", number(drive.end_s())},
@@ -46,6 +44,14 @@ Json facts_json(const drive::Drive& drive) {
               {"notes", facts.notes}};
 }
 
+Json options_to_json(const drive::FilterOptions& options) {
+  return Json{{"velocity_constraint", options.constraint.has_value()},
+              {"zero_velocity", options.zero_velocity},
+              {"odometer", options.odometer}};
+}
+
+namespace {
+
 Json start_json(const drive::Start& start) {
   const Matrix3 axes = ned_axes(start.state.position_ecef_m);
   const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * start.state.attitude);
@@ -68,7 +74,7 @@ Json to_json(const DriveCheck& checked) {
   }
   Json document{{"id", checked.drive.document.id},
                 {"vehicle", name_of(checked.drive.document.vehicle)},
-                {"facts", facts_json(checked.drive)},
+                {"facts", facts_to_json(checked.drive)},
                 {"rests_s", std::move(rests)}};
   if (checked.start) {
     document["start"] = start_json(*checked.start);
@@ -106,16 +112,16 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
   return Json{{"duration_s", number(d.duration_s)},
               {"period_s", number(d.period_s)},
               {"n", d.outages.size()},
-              {"rms_m", estimate_json(d.rms_m)},
-              {"median_m", estimate_json(d.median_m)},
+              {"rms_m", estimate_to_json(d.rms_m)},
+              {"median_m", estimate_to_json(d.median_m)},
               {"mean_m", number(d.mean_m)},
               {"p95_m", number(d.p95_m)},
               {"worst_m", number(d.worst_m)},
               {"along_rms_m", number(d.along_rms_m)},
               {"across_rms_m", number(d.across_rms_m)},
-              {"nees", estimate_json(d.nees)},
-              {"coverage50", estimate_json(d.coverage50)},
-              {"coverage95", estimate_json(d.coverage95)},
+              {"nees", estimate_to_json(d.nees)},
+              {"coverage50", estimate_to_json(d.coverage50)},
+              {"coverage95", estimate_to_json(d.coverage95)},
               {"start_error_rms_m", number(d.start_error_rms_m)},
               {"straight_line_rms_m", number(d.straight_line_rms_m)},
               {"promised_rms_m", number(d.promised_rms_m)},
@@ -128,7 +134,8 @@ Json to_json(const DriveReport& report) {
   for (const drive::DurationSummary& d : report.evaluation.durations) {
     durations.push_back(to_json(d, report.drive));
   }
-  constexpr std::array<const char*, 5> kKinds{"position", "velocity", "constraint", "zero_velocity", "odometer"};
+  constexpr std::array<const char*, 6> kKinds{"position",      "velocity", "constraint",
+                                              "zero_velocity", "odometer", "zero_turn"};
   Json innovations = Json::array();
   for (const drive::InnovationSummary& one : report.evaluation.innovations) {
     innovations.push_back(Json{{"kind", kKinds[static_cast<std::size_t>(one.kind)]},
@@ -152,11 +159,8 @@ Json to_json(const DriveReport& report) {
                 {"vehicle", name_of(report.drive.document.vehicle)},
                 {"summary", sentence_of(report)},
                 {"algorithm_version", drive::kDriveAlgorithmVersion},
-                {"options",
-                 {{"velocity_constraint", report.options.constraint.has_value()},
-                  {"zero_velocity", report.options.zero_velocity},
-                  {"odometer", report.options.odometer}}},
-                {"facts", facts_json(report.drive)},
+                {"options", options_to_json(report.options)},
+                {"facts", facts_to_json(report.drive)},
                 {"starts", std::move(starts)},
                 {"durations", std::move(durations)},
                 {"innovations", std::move(innovations)},
@@ -177,10 +181,13 @@ Json simulated_json(const std::vector<drive::SimulatedDuration>& simulated) {
                         {"rms_m", number(s.rms_m)},
                         {"mean_m", number(s.mean_m)},
                         {"median_m", number(s.median_m)},
-                        {"nees", number(s.nees)},
-                        {"coverage50", number(s.coverage50)},
-                        {"coverage95", number(s.coverage95)},
-                        {"measured_over_simulated", estimate_json(s.ratio)}});
+                        {"nees", number(s.nees.value)},
+                        {"coverage50", number(s.coverage50.value)},
+                        {"coverage95", number(s.coverage95.value)},
+                        {"nees_ci95", interval(s.nees.ci95)},
+                        {"coverage50_ci95", interval(s.coverage50.ci95)},
+                        {"coverage95_ci95", interval(s.coverage95.ci95)},
+                        {"measured_over_simulated", estimate_to_json(s.ratio)}});
   }
   return list;
 }
@@ -237,7 +244,8 @@ Json to_json(const DriveExplanationReport& report) {
                  {"median_m", number(d.held_out_median_m)},
                  {"nees", number(d.held_out_nees)},
                  {"coverage50", number(d.held_out_coverage50)},
-                 {"coverage95", number(d.held_out_coverage95)},
+                 {"coverage95", number(d.held_out_coverage95.value)},
+                 {"coverage95_ci95", interval(d.held_out_coverage95.ci95)},
                  {"log_score", number(d.held_out_log_score)}}}});
     }
     rungs.push_back(Json{{"name", rung.name}, {"kept", rung.kept}, {"durations", std::move(durations)}});
@@ -247,7 +255,7 @@ Json to_json(const DriveExplanationReport& report) {
       {"vehicle", name_of(report.drive.document.vehicle)},
       {"summary", sentence_of(report)},
       {"algorithm_version", drive::kDriveAlgorithmVersion},
-      {"facts", facts_json(report.drive)},
+      {"facts", facts_to_json(report.drive)},
       {"findings", std::move(findings)},
       {"rungs", std::move(rungs)},
       {"white_noise_factors", {{"gyroscope", number(e.gyro_noise)}, {"accelerometer", number(e.force_noise)}}},

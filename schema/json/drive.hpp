@@ -11,4 +11,11 @@ namespace driftlab {
 [[nodiscard]] Json to_json(const DriveSimulationReport& simulation);
 [[nodiscard]] Json to_json(const drive::DurationSummary& duration, const drive::Drive& drive);
 
+/// What is true of the drive's files, before any filter.
+[[nodiscard]] Json facts_to_json(const drive::Drive& drive);
+/// With the interval of a bootstrap.
+[[nodiscard]] Json estimate_to_json(const Estimate& estimate);
+/// What a filter was told beside the document.
+[[nodiscard]] Json options_to_json(const drive::FilterOptions& options);
+
 }  // namespace driftlab

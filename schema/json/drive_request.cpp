@@ -1,11 +1,56 @@
 #include "schema/json/drive_request.hpp"
 
 #include "schema/json/drive.hpp"
+#include "schema/json/drive_comparison.hpp"
+#include "schema/json/drive_document.hpp"
+#include "schema/json/imu_model.hpp"
 
 namespace driftlab {
 namespace {
 
 constexpr int kMostSimulatedDrives = 1000;
+constexpr std::size_t kMostModels = 16;
+
+bool simulates(DriveQuestion question) {
+  return question == DriveQuestion::Simulate || question == DriveQuestion::Explain;
+}
+
+Json models_to_json(const std::vector<DriveModel>& models) {
+  Json list = Json::array();
+  for (const DriveModel& model : models) {
+    Json one{{"name", model.name}};
+    if (model.imu) {
+      one["model"] =
+          Json{{"gyroscope", sensor_to_json(*model.imu, 0)}, {"accelerometer", sensor_to_json(*model.imu, 3)}};
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+std::vector<DriveModel> models_from_json(const Json* list, const std::string& pointer, Faults& faults) {
+  std::vector<DriveModel> models;
+  if (list == nullptr || !list->is_array() || list->size() < 2 || list->size() > kMostModels) {
+    faults.add(pointer, ErrorCode::InvalidArgument,
+               "A comparison takes a list of 2 to " + std::to_string(kMostModels) + " models.");
+    return models;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string where = pointer + "/" + std::to_string(i);
+    ObjectReader reader((*list)[i], where, faults);
+    DriveModel model{reader.required_text("name"), std::nullopt};
+    if (const Json* const own = reader.member("model")) {
+      model.imu = drive_model_from_json(*own, where + "/model", faults);
+    } else if (const auto& known = known_drive_models();
+               std::find(known.begin(), known.end(), model.name) == known.end()) {
+      faults.add(where + "/name", ErrorCode::InvalidArgument,
+                 "driftlab knows no model '" + model.name + "'; give it beside the name.");
+    }
+    reader.reject_unknown();
+    models.push_back(std::move(model));
+  }
+  return models;
+}
 
 }  // namespace
 
@@ -16,12 +61,17 @@ Json to_json(const DriveRequest& request) {
   if (request.question != DriveQuestion::Explain) {
     document["zero_velocity"] = request.zero_velocity;
     document["odometer"] = request.odometer;
+    document["estimate"] = request.estimate;
   }
-  if (request.question == DriveQuestion::Run) {
+  if (simulates(request.question)) {
+    document["runs"] = request.runs;
+  } else {
     document["gate"] = number(request.gate);
     document["as_stamped"] = request.as_stamped;
-  } else {
-    document["runs"] = request.runs;
+  }
+  if (request.question == DriveQuestion::Compare) {
+    document["models"] = models_to_json(request.models);
+    document["fit_noise"] = request.fit_noise;
   }
   return document;
 }
@@ -36,7 +86,7 @@ DriveRequest drive_request_from_json(const Json& document, const std::string& po
     const auto parsed = parse_drive_question(*question);
     request.question = parsed.value_or(DriveQuestion::Run);
     if (!parsed) {
-      refuse("question", "What is asked of a drive is run, simulate or explain.");
+      refuse("question", "What is asked of a drive is run, simulate, explain or compare.");
     }
   }
   /// A member that only some questions take; absent, the default.
@@ -56,11 +106,17 @@ DriveRequest drive_request_from_json(const Json& document, const std::string& po
     }
   };
   const bool explains = request.question == DriveQuestion::Explain;
-  const bool runs = request.question == DriveQuestion::Run;
+  const bool compares = request.question == DriveQuestion::Compare;
+  const bool runs = !simulates(request.question);
   flag("velocity_constraint", true, request.velocity_constraint);
   flag("zero_velocity", !explains, request.zero_velocity);
   flag("odometer", !explains, request.odometer);
+  flag("estimate", !explains, request.estimate);
   flag("as_stamped", runs, request.as_stamped);
+  flag("fit_noise", compares, request.fit_noise);
+  if (const Json* const models = taken("models", compares); compares) {
+    request.models = models_from_json(models, reader.pointer("models"), faults);
+  }
   if (taken("gate", runs) != nullptr) {
     request.gate = reader.real("gate").value_or(0.0);
     if (!(request.gate >= 0.0)) {

@@ -6,9 +6,7 @@
 #include <array>
 
 namespace driftlab {
-namespace {
-
-std::string notes_of(const std::vector<std::string>& notes) {
+std::string notes_of_drive(const std::vector<std::string>& notes) {
   std::string text;
   for (const std::string& note : notes) {
     text += "  - " + note + "\n";
@@ -22,8 +20,6 @@ std::string header_of_drive(const drive::Drive& drive) {
                  std::string(name_of(drive.document.vehicle)).c_str(), drive.end_s(), 1e-3 * facts.length_m,
                  facts.highest_speed_m_s);
 }
-
-}  // namespace
 
 std::string drive_check_to_text(const DriveCheck& checked) {
   const drive::FileFacts& facts = checked.drive.facts;
@@ -70,7 +66,7 @@ std::string drive_check_to_text(const DriveCheck& checked) {
   } else {
     text += "No start: " + checked.cannot_start + "\n";
   }
-  return text + notes_of(facts.notes);
+  return text + notes_of_drive(facts.notes);
 }
 
 std::string duration_rows(const std::vector<drive::DurationSummary>& durations) {
@@ -96,7 +92,8 @@ std::string drive_report_to_text(const DriveReport& report) {
                       std::string(name_of(c.outage_class)).c_str(), c.count, c.rms_m, c.nees);
     }
   }
-  constexpr std::array<const char*, 5> kKinds{"position", "velocity", "constraint", "zero velocity", "odometer"};
+  constexpr std::array<const char*, 6> kKinds{"position",      "velocity", "constraint",
+                                              "zero velocity", "odometer", "zero turn"};
   text += "\nInnovations (horizontal), all fixes used:\n";
   for (const drive::InnovationSummary& one : report.evaluation.innovations) {
     text += printed(
@@ -115,16 +112,17 @@ std::string drive_report_to_text(const DriveReport& report) {
   }
   std::vector<std::string> notes = report.drive.facts.notes;
   notes.insert(notes.end(), report.evaluation.notes.begin(), report.evaluation.notes.end());
-  return text + notes_of(notes);
+  return text + notes_of_drive(notes);
 }
 
 namespace {
 
 std::string simulated_rows(const std::vector<drive::SimulatedDuration>& simulated) {
-  std::string text = "outage   n sim  rms m  median  NEES  in 50 %  in 95 %  measured / simulated [95 %]\n";
+  std::string text = "outage   n sim  rms m  median  NEES  in 50 %  in 95 % [95 %]      measured / simulated [95 %]\n";
   for (const drive::SimulatedDuration& s : simulated) {
-    text += printed("%4.0f s %7zu %7.2f %7.2f %5.2f %8.2f %8.2f  %.3g [%.3g, %.3g]\n", s.duration_s, s.count, s.rms_m,
-                    s.median_m, s.nees, s.coverage50, s.coverage95, s.ratio.value, s.ratio.ci95.low, s.ratio.ci95.high);
+    text += printed("%4.0f s %7zu %7.2f %7.2f %5.2f %8.2f %8.2f [%.2f, %.2f]  %.3g [%.3g, %.3g]\n", s.duration_s,
+                    s.count, s.rms_m, s.median_m, s.nees.value, s.coverage50.value, s.coverage95.value,
+                    s.coverage95.ci95.low, s.coverage95.ci95.high, s.ratio.value, s.ratio.ci95.low, s.ratio.ci95.high);
   }
   return text;
 }
@@ -138,7 +136,7 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
     text += printed("  %s %s: %s %.4g +- %.2g %s (score %.0f, from %s)%s\n", f.cause.c_str(), f.parameter.c_str(),
                     f.title.c_str(), f.value, f.se, f.unit.c_str(), f.score, f.evidence.c_str(),
                     f.pair.empty() ? "" : (", not told apart from " + std::string(drive::words_of(f.pair))).c_str());
-    if (f.cause != "sample_clock") {
+    if (f.judged) {
       text += printed("      held-out outages: log score %+.3f; %s\n", f.held_out_gain,
                       f.kept ? "kept in the mended model" : "found, but no gain: not in the mended model");
     }
@@ -156,7 +154,7 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
     for (const drive::RungFigures& d : rung.durations) {
       text += printed("%-44s %4.0f s %4zu %7.2f %5.1f %4zu %7.2f %7.2f %5.1f %8.2f %8.2f%s\n", rung.name.c_str(),
                       d.duration_s, d.found_count, d.found_rms_m, d.found_nees, d.held_out_count, d.held_out_rms_m,
-                      d.held_out_median_m, d.held_out_nees, d.held_out_coverage50, d.held_out_coverage95,
+                      d.held_out_median_m, d.held_out_nees, d.held_out_coverage50, d.held_out_coverage95.value,
                       rung.kept ? "" : "  (not kept)");
     }
   }
@@ -165,7 +163,7 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
   text += "\nMended:\n" + duration_rows(e.after.durations) + simulated_rows(e.simulated_after);
   std::vector<std::string> notes = report.drive.facts.notes;
   notes.insert(notes.end(), e.notes.begin(), e.notes.end());
-  return text + notes_of(notes);
+  return text + notes_of_drive(notes);
 }
 
 std::string drive_simulation_to_text(const DriveSimulationReport& simulation) {
@@ -177,6 +175,9 @@ std::string drive_simulation_to_text(const DriveSimulationReport& simulation) {
 std::string drive_answer_to_text(const DriveAnswer& answer) {
   if (const auto* const explained = std::get_if<DriveExplanationReport>(&answer)) {
     return drive_explanation_to_text(*explained);
+  }
+  if (const auto* const compared = std::get_if<DriveComparisonReport>(&answer)) {
+    return drive_comparison_to_text(*compared);
   }
   const auto* const simulated = std::get_if<DriveSimulationReport>(&answer);
   return simulated != nullptr ? drive_simulation_to_text(*simulated)

@@ -18,8 +18,17 @@ namespace driftlab {
 /// One sentence, then measured beside simulated outages.
 [[nodiscard]] std::string drive_simulation_to_text(const DriveSimulationReport& simulation);
 
+/// A sentence for each duration, then the filters and their differences pair by pair.
+[[nodiscard]] std::string drive_comparison_to_text(const DriveComparisonReport& report);
+
 /// Whichever of these it is.
 [[nodiscard]] std::string drive_answer_to_text(const DriveAnswer& answer);
+
+/// The drive in a line: name, vehicle, duration, length, highest speed.
+[[nodiscard]] std::string header_of_drive(const drive::Drive& drive);
+
+/// What is true of a drive, a line each; empty where there is nothing.
+[[nodiscard]] std::string notes_of_drive(const std::vector<std::string>& notes);
 
 /// The rows of a table of durations: n, rms with interval, median, NEES, coverage.
 [[nodiscard]] std::string duration_rows(const std::vector<drive::DurationSummary>& durations);

@@ -16,13 +16,13 @@ Json about_drive(const Json& request) {
   return about;
 }
 
-const JobResource kDriveEvaluations{
-    "drive_evaluation",
-    "/v1/drive-evaluations",
-    "drive evaluation",
-    {"drive", "model", "outages"},
-    {"question", "velocity_constraint", "zero_velocity", "odometer", "gate", "as_stamped", "seed", "runs"},
-    about_drive};
+const JobResource kDriveEvaluations{"drive_evaluation",
+                                    "/v1/drive-evaluations",
+                                    "drive evaluation",
+                                    {"drive", "model", "outages"},
+                                    {"question", "velocity_constraint", "zero_velocity", "odometer", "gate",
+                                     "as_stamped", "seed", "runs", "estimate", "models", "fit_noise"},
+                                    about_drive};
 
 }  // namespace
 

@@ -2,7 +2,8 @@
 ///
 /// `inputs`: {"drive": "drv_...", "model": {...}, "outages": {...}}; the last two, optional, take the place of the
 /// document's. Whole document, revisions of its recordings and what stored models say are written into the request when
-/// it is queued. `parameters`: {"question": run | simulate | explain, ...} (schema/json/drive_request.hpp), optional.
+/// it is queued. `parameters`: {"question": run | simulate | explain | compare, ...} (schema/json/drive_request.hpp),
+/// optional.
 #include "schema/json/drive_document.hpp"
 #include "schema/json/drive_request.hpp"
 #include "server/jobs/job_kind.hpp"
@@ -80,8 +81,12 @@ class DriveEvaluationKind final : public JobKind {
   [[nodiscard]] JobCost cost(const Json& request, JobContext& context) const override {
     constexpr std::int64_t kBytesPerCell = 24;
     constexpr std::int64_t kBytesPerRow = 1500;
-    const bool explains = request["parameters"].value("question", "") == "explain";
-    const double seconds_per_row = explains ? 4e-4 : 1e-5;
+    const Json& parameters = request["parameters"];
+    const bool explains = parameters.value("question", "") == "explain";
+    const double fits = parameters.value("fit_noise", false) ? 3.0 : 1.0;  // a search for two levels takes two more
+    const double filters =
+        parameters.contains("models") ? fits * static_cast<double>(parameters["models"].size()) : 1.0;
+    const double seconds_per_row = explains ? 4e-4 : 1e-5 * filters;
     JobCost cost;
     for (const RecordingSize& size : sizes_of(request["inputs"]["recordings"], context.store)) {
       cost.memory_bytes += size.rows * (kBytesPerCell * size.columns + kBytesPerRow);

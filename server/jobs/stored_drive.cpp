@@ -1,5 +1,6 @@
 #include "server/jobs/stored_drive.hpp"
 
+#include "core/signal/find_column.hpp"
 #include "schema/json/drive_document.hpp"
 #include "server/jobs/stored_models.hpp"
 
@@ -47,7 +48,7 @@ Result<drive::Table> names_of(const Recording& recording, Store& store) {
 
 void check_columns(const PlacedSource& placed, const drive::Table& table, Faults& faults) {
   for (const auto& [name, meaning] : placed.source->columns) {
-    if (const auto found = drive::find_column(table, name); !found) {
+    if (const auto found = find_column(table.names, name); !found) {
       faults.add(placed.pointer + "/columns", found.error());
     }
   }
@@ -57,7 +58,7 @@ void check_columns(const PlacedSource& placed, const drive::Table& table, Faults
                "A server has no time tags; give what the tag says as `dates`: {\"first_s\", \"last_s\"}.");
   }
   if (time.scale != drive::TimeScale::Row) {
-    if (const auto found = drive::find_column(table, time.column); !found) {
+    if (const auto found = find_column(table.names, time.column); !found) {
       faults.add(placed.pointer + "/time/column", found.error());
     }
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace driftlab::accuracy {
@@ -193,7 +194,7 @@ TEST(Accuracy, CausesPutIntoARecordedDriveAreNamedFirst) {
       }
       const auto& first = found->findings.front();
       const drive::Knob* const named = drive::find_knob(first.cause, first.parameter);
-      const double change = first.value - drive::Profile::value_of(base, *named) * named->per_si;
+      const double change = first.value - named->value(base) * named->per_si;
       section.print("| %s (%s) %.3g %s%s | %s (%s)%s | %.3g %s | %.2g | %.0f |\n", one.cause, one.parameter, put,
                     std::string(knob->unit).c_str(), suffix.c_str(), first.cause.c_str(), first.parameter.c_str(),
                     first.pair.empty() ? "" : (" or " + first.pair).c_str(), change, first.unit.c_str(), first.se,
@@ -278,6 +279,34 @@ TEST(Accuracy, TheArmOfADriveAlongTheRecordedPathIsFound) {
       EXPECT_NEAR(options.imu_offset_s, 0.0, 0.01);
     }
   }
+}
+
+// How long a gate that believes the receiver again remembers those that disagreed (core/navigate/drive/fix_gate.hpp).
+TEST(Accuracy, TheGatesMemoryDecidesLittleOnARecordedDrive) {
+  const auto recorded = drive::recorded_car();
+  if (!recorded) {
+    GTEST_SKIP();
+  }
+  Section section("recorded_drives");
+  section.print(
+      "\n## Memory of the gate\n\nrtk-car-0708, the data sheet's model, gate 25.\n\n| fixes remembered | rejected | "
+      "rms "
+      "after 10, 30, 60 s [m] |\n|---|---|---|\n");
+  double least = std::numeric_limits<double>::infinity();
+  double own = 0.0;
+  for (const int memory : {5, 15, 60, 240, 1000}) {
+    FilterOptions options = drive::options_of(recorded->document);
+    options.gate = 25.0;
+    options.gate_memory = memory;
+    const auto evaluation = drive::evaluate_drive(*recorded, options, {.resamples = 0});
+    ASSERT_TRUE(evaluation) << evaluation.error().message;
+    const double ten = evaluation->durations.front().rms_m.value;
+    section.print("| %d | %zu | %.2f; %.1f; %.0f |\n", memory, evaluation->rejected, ten,
+                  evaluation->durations[1].rms_m.value, evaluation->durations[2].rms_m.value);
+    least = std::min(least, ten);
+    own = memory == FilterOptions{}.gate_memory ? ten : own;
+  }
+  EXPECT_LT(own, 1.1 * least);
 }
 
 }  // namespace driftlab::accuracy

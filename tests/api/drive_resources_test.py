@@ -57,6 +57,8 @@ class Drives(Asked):
             (folder / "drive.json").write_text(json.dumps(local))
             for question, arguments, body in (("run", ["--zupt", "--gate", "25"], {"zero_velocity": True, "gate": 25}),
                                               ("simulate", ["--runs", "2", "--nhc"], {"runs": 2, "velocity_constraint": True}),
+                                              ("compare", ["--model", "document-white", "--model", "M_dyn(GMWM)", "--fit-noise"],
+                                               {"models": [{"name": "document-white"}, {"name": "M_dyn(GMWM)"}], "fit_noise": True}),
                                               ("explain", ["--runs", "1", "--seed", "3"], {"runs": 1, "seed": 3})):
                 with self.subTest(question=question):
                     asked = self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": made.json["id"], "question": question, **body}))
@@ -70,7 +72,7 @@ class Drives(Asked):
         again = {"drive": made.json["id"], "seed": 3, "runs": 1, "question": "explain"}
         self.expect(200, self.daemon.post("/v1/drive-evaluations", again))
         listed = self.daemon.items("/v1/drive-evaluations?state=succeeded")
-        self.assertGreaterEqual(len(listed), 3)
+        self.assertGreaterEqual(len(listed), 4)
 
     def test_model_and_outages_take_the_documents_place_and_name_what_is_stored(self) -> None:
         drive = self.expect(201, self.daemon.post("/v1/drives", self.uploaded("other", seed=6))).json["id"]
@@ -87,6 +89,10 @@ class Drives(Asked):
         for body, status, pointer in (({"drive": "drv_nobody"}, 404, "/drive"), ({"drive": drive, "question": "why"}, 400, "/question"),
                                       ({"drive": drive, "gate": -1}, 400, "/gate"), ({"drive": drive, "runs": 2}, 400, "/runs"),
                                       ({"drive": drive, "question": "explain", "odometer": True}, 400, "/odometer"),
+                                      ({"drive": drive, "question": "explain", "estimate": True}, 400, "/estimate"),
+                                      ({"drive": drive, "models": [{"name": "document"}, {"name": "document-white"}]}, 400, "/models"),
+                                      ({"drive": drive, "question": "compare"}, 400, "/models"),
+                                      ({"drive": drive, "question": "compare", "models": [{"name": "document"}, {"name": "mine"}]}, 400, "/models/1/name"),
                                       ({"drive": drive, "outages": {"phases": 0}}, 400, ""), ({"drive": drive, "colour": 1}, 400, "/colour"),
                                       ({"drive": drive, "model": {**believed, "gyroscope": {"fit": "fit_nobody"}}}, 404, "/model/gyroscope/fit")):
             with self.subTest(pointer=pointer):

@@ -57,6 +57,30 @@ class MadeUp(Folder):
         self.assertEqual(self.drive(0, "run", document, "--threads", "1"), self.drive(0, "run", document, "--threads", "2"))
         self.assertIn("measured error is", self.drive(0, "simulate", document, "--runs", "2"))
 
+    def test_models_are_compared_through_the_same_outages(self) -> None:
+        document = self.document()
+        (self.folder / "loud.json").write_text(json.dumps(drive_documents.model(0.5, 0.1)))
+        found = json.loads(self.drive(0, "compare", document, "--model", "document", "--model", "loud.json", "--model", "M_stat(AV)", "--json"))
+        self.assertEqual([each["name"] for each in found["filters"]], ["document", "loud", "M_stat(AV)"])
+        self.assertEqual([(pair["filter"], pair["against"]) for pair in found["differences"]],
+                         [("loud", "document"), ("M_stat(AV)", "document"), ("M_stat(AV)", "loud")])
+        [first, loud, _] = (each["durations"][0]["mean_m"] for each in found["filters"])
+        self.assertAlmostEqual(found["differences"][0]["relative"]["value"], loud / first - 1.0, delta=1e-6)
+        [alone] = json.loads(self.drive(0, "run", document, "--json"))["durations"]
+        self.assertEqual(found["filters"][0]["durations"][0]["rms_m"]["value"], alone["rms_m"]["value"])
+        text = self.drive(0, "compare", document, "--model", "document", "--model", "M_dyn(GMWM)")
+        self.assertIn("difference from document larger than", text)
+        self.assertIn("M_dyn(AV)", self.drive(2, "compare", document, "--model", "document", "--model", "none.json"))
+        self.assertIn("at least two models", self.drive(2, "compare", document, "--model", "document"))
+
+    def test_an_arm_of_a_stated_uncertainty_is_estimated_where_asked(self) -> None:
+        document = self.document()
+        document["gnss"].update({"lever_arm_m": [0, 0, 0], "lever_arm_sd_m": 1.0})
+        known = json.loads(self.drive(0, "run", document, "--json"))
+        self.assertTrue(any("taken as stated" in note for note in known["facts"]["notes"]), known["facts"]["notes"])
+        estimated = json.loads(self.drive(0, "run", document, "--estimate", "--json"))
+        self.assertGreater(estimated["durations"][0]["promised_rms_m"], known["durations"][0]["promised_rms_m"])
+
     def test_what_cannot_be_is_refused_with_the_repair(self) -> None:
         document = self.document()
 
@@ -133,6 +157,12 @@ class Shared(Folder):
         sentences = [found["summary"], *found["notes"], *(rung["name"] for rung in found["rungs"]), *(f["words"] for f in found["findings"])]
         self.assertEqual([text for text in sentences if re.search(r"[a-z]_[a-z]", text)], [], "names of documents are not for people")
         self.assertIn("late velocities of fixes", found["summary"])
+
+    def test_rest_is_used_where_asked(self) -> None:
+        found = self.of("rtk-car-0708", drive_documents.car(), "run", "--zupt")
+        counts = {each["kind"]: each["n"] for each in found["innovations"]}
+        self.assertGreater(counts["zero_velocity"], 50)
+        self.assertGreater(counts["zero_turn"], 25)
 
     def test_phone_and_aircraft_run(self) -> None:
         phone = self.of("phone-motorway-1104", drive_documents.phone(), "run", "--nhc")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Fails where code knows a cause of an investigation by name.
+"""Fails where code knows a cause of an investigation or of a drive by name.
 
-A cause is one file of core/investigate/causes/ and one line of the registry there: the search, the report, documents, server
-and clients work from what it declares. Its name may stand in its own file, among the `rivals` of another cause, in the
-registry, in tests and in documentation. A name that is also a registered process's (core/process) may stand where processes
+A cause is one file of core/investigate/causes/, or of core/navigate/drive/causes/ for one that a drive shows, and one line of
+the registry there: the search, the report, documents, server and clients work from what it declares. Its name may stand in its
+own file, among the `rivals` of another cause, in the registry, in tests and in documentation. A name that is also a registered process's (core/process) may stand where processes
 are spoken of, but not where a cause is compared, looked up or written down.
 """
 from __future__ import annotations
@@ -13,8 +13,7 @@ from pathlib import Path
 
 import tree
 
-FOLDER = "core/investigate/causes"
-REGISTRY = f"{FOLDER}/registry.cpp"
+FOLDERS = ("core/investigate/causes", "core/navigate/drive/causes")
 LITERAL = re.compile(r'"((?:\\.|[^"\\\n])*)"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 RIVALS = re.compile(r"\.rivals\s*=\s*\{[^}]*\}")
@@ -46,23 +45,26 @@ def check(root: Path) -> list[str]:
     texts = {path.relative_to(root).as_posix(): path.read_text() for path in paths}
     causes: dict[str, str] = {}
     for name, text in texts.items():
-        if name.startswith(FOLDER + "/"):
+        if name.startswith(tuple(f"{folder}/" for folder in FOLDERS)):
             causes.update({cause: name for cause in NAME.findall(without_comments(text))})
-    if not causes:
-        return [f"no causes under {root / FOLDER}"]
+    empty = [folder for folder in FOLDERS if not any(name.startswith(f"{folder}/") for name in causes.values())]
+    if empty:
+        return [f"no causes under {root / folder}" for folder in empty]
     processes = {p for name, text in texts.items() if name.startswith("core/process/") for p in PROCESS.findall(text)}
     faults: list[str] = []
-    listed = LINE.findall(texts.get(REGISTRY, ""))
     for cause, name in causes.items():
+        folder = Path(name).parent.as_posix()
+        registry = f"{folder}/registry.cpp"
+        listed = LINE.findall(texts.get(registry, "")).count(cause)
         if Path(name).stem != cause:
-            faults.append(f"{name}: the cause {cause} belongs in a file of its own, {FOLDER}/{cause}.cpp")
-        if listed.count(cause) != 1:
-            faults.append(f"{REGISTRY}: the cause {cause} has {listed.count(cause)} lines; it needs one")
+            faults.append(f"{name}: the cause {cause} belongs in a file of its own, {folder}/{cause}.cpp")
+        if listed != 1:
+            faults.append(f"{registry}: the cause {cause} has {listed} lines; it needs one")
     for name, text in texts.items():
         if name.split("/")[0] not in TOPS:
             continue
         code = without_comments(text)
-        if name.startswith(FOLDER + "/"):
+        if name.startswith(tuple(f"{folder}/" for folder in FOLDERS)):
             code = blank(RIVALS, code)
         for match in LITERAL.finditer(code):
             said = match.group(1)

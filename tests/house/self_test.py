@@ -115,10 +115,13 @@ class Floors(Planted):
 class Causes(Planted):
     def setUp(self) -> None:
         super().setUp()
+        self.folder, self.of_drives = causes.FOLDERS
+        self.plant(f"{self.of_drives}/late_fix.cpp", 'Cause late_fix() {\n  return {.name = "late_fix", .words = "late fixes"};\n}\n')
+        self.plant(f"{self.of_drives}/registry.cpp", "#define DRIFTLAB_DRIVE_CAUSES(CAUSE) \\\n  CAUSE(late_fix)\n")
         for name, rivals in (("bias_jump", '"slow_walk"'), ("slow_walk", '')):
-            self.plant(f"{causes.FOLDER}/{name}.cpp",
+            self.plant(f"{self.folder}/{name}.cpp",
                        f'Cause {name}() {{\n  return {{.name = "{name}", .title = "it",\n          .rivals = {{{rivals}}}}};\n}}\n')
-        self.plant(causes.REGISTRY, "#define DRIFTLAB_CAUSES(CAUSE) \\\n  CAUSE(bias_jump) \\\n  CAUSE(slow_walk)\n")
+        self.plant(f"{self.folder}/registry.cpp", "#define DRIFTLAB_CAUSES(CAUSE) \\\n  CAUSE(bias_jump) \\\n  CAUSE(slow_walk)\n")
         self.plant("core/process/slow_walk.hpp", 'static constexpr std::string_view kName = "slow_walk";\n')
 
     def test_names_in_their_places_are_clean(self) -> None:
@@ -134,17 +137,27 @@ class Causes(Planted):
                             ("schema/json/a.cpp", 'const bool powers = name == "bias_jump";'),
                             ("server/jobs/a.cpp", 'Json effect{{"cause", "slow_walk"}};'),
                             ("clients/dashboard/a.ts", 'if (name === "bias_jump") {'),
-                            (f"{causes.FOLDER}/draft.cpp", 'if (name == "bias_jump") {')):
+                            ("core/navigate/drive/explain.cpp", 'if (finding.cause == "late_fix") {'),
+                            ("schema/text/drive.cpp", 'if (f.cause != "late_fix") {'),
+                            (f"{self.of_drives}/draft.cpp", 'return knob_of("late_fix");'),
+                            (f"{self.folder}/draft.cpp", 'if (name == "bias_jump") {')):
             with self.subTest(place=place):
                 path = self.plant(place, "int before;\n" + line + "\n")
-                said = "slow_walk" if "slow_walk" in line else "bias_jump"
+                said = next(name for name in ("slow_walk", "late_fix", "bias_jump") if name in line)
                 self.refused(causes.check(self.root), place, said, "by name")
                 path.unlink()
 
     def test_a_cause_without_its_line_or_its_own_file_is_refused(self) -> None:
-        self.plant(f"{causes.FOLDER}/odd.cpp", '  return {.name = "other",\n')
-        self.refused(causes.check(self.root), "a file of its own")
-        self.refused(causes.check(self.root), causes.REGISTRY, "other has 0 lines")
+        for folder in causes.FOLDERS:
+            with self.subTest(folder=folder):
+                path = self.plant(f"{folder}/odd.cpp", '  return {.name = "other",\n')
+                self.refused(causes.check(self.root), "a file of its own")
+                self.refused(causes.check(self.root), f"{folder}/registry.cpp", "other has 0 lines")
+                path.unlink()
+
+    def test_a_registry_without_causes_is_refused(self) -> None:
+        (self.root / self.of_drives / "late_fix.cpp").unlink()
+        self.refused(causes.check(self.root), "no causes", self.of_drives)
 
     def test_an_empty_tree_proves_nothing(self) -> None:
         with tempfile.TemporaryDirectory() as empty:

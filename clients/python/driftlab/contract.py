@@ -597,6 +597,55 @@ class DriveColumn(TypedDict):
     unit: NotRequired[str]
 
 
+class DriveEvaluationComparedFilter(TypedDict):
+    name: str
+    about: str
+    # What the model's white noise was scaled by.
+    noise_factor: DriveEvaluationComparedFilterNoiseFactor
+    durations: list[DriveEvaluationDuration]
+
+
+class DriveEvaluationComparedFilterNoiseFactor(TypedDict):
+    """What the model's white noise was scaled by."""
+
+    gyroscope: float
+    accelerometer: float
+
+
+class DriveEvaluationComparison(TypedDict):
+    """Several error models as filters through the same outages."""
+
+    # Of the document.
+    id: str
+    vehicle: str
+    # The verdicts.
+    summary: str
+    algorithm_version: int
+    facts: DriveEvaluationFacts
+    options: DriveEvaluationComparisonOptions
+    # A sentence for each duration: what is shown against the first filter, and how large a difference can be that is
+    # not.
+    verdicts: list[str]
+    filters: list[DriveEvaluationComparedFilter]
+    differences: list[DriveEvaluationFilterDifference]
+    notes: list[str]
+    # What stored simulation models say that a filter is not told.
+    left_out: NotRequired[list[DriveEvaluationComparisonLeftOutItem]]
+
+
+class DriveEvaluationComparisonLeftOutItem(TypedDict):
+    where: str
+    simulation_model: str
+    what: list[str]
+
+
+class DriveEvaluationComparisonOptions(TypedDict):
+    velocity_constraint: bool
+    zero_velocity: bool
+    odometer: bool
+    fit_noise: bool
+
+
 class DriveEvaluationDuration(TypedDict):
     """Outages of one duration, over all phases."""
 
@@ -706,6 +755,19 @@ class DriveEvaluationFactsImu(TypedDict):
     longest_gap_s: float
 
 
+class DriveEvaluationFilterDifference(TypedDict):
+    """Filter minus the other over the same outages, with the interval of a bootstrap over blocks of one period."""
+
+    duration_s: float
+    n: int
+    filter: str
+    against: str
+    difference_m: DriveEvaluationEstimate
+    relative: DriveEvaluationEstimate
+    # The interval of the relative difference excludes 0.
+    shown: bool
+
+
 class DriveEvaluationFinding(TypedDict):
     """A parameter that the drive shows."""
 
@@ -731,7 +793,7 @@ class DriveEvaluationFinding(TypedDict):
 
 
 class DriveEvaluationInnovation(TypedDict):
-    kind: Literal['position', 'velocity', 'constraint', 'zero_velocity', 'odometer']
+    kind: Literal['position', 'velocity', 'constraint', 'zero_velocity', 'odometer', 'zero_turn']
     n: int
     rms: float
     stated_rms: float
@@ -808,7 +870,7 @@ class DriveEvaluationResource(TypedDict):
     drive: str
     # The document's own id.
     name: str
-    question: Literal['run', 'simulate', 'explain']
+    question: Literal['run', 'simulate', 'explain', 'compare']
     seed: int
     state: JobState
     stage: str | None
@@ -851,6 +913,7 @@ class DriveEvaluationRungDurationHeldOut(TypedDict):
     nees: float | None
     coverage50: float
     coverage95: float
+    coverage95_ci95: NotRequired[list[float | None]]
     log_score: float | None
 
 
@@ -870,6 +933,11 @@ class DriveEvaluationSimulated(TypedDict):
     nees: float | None
     coverage50: float
     coverage95: float
+    # Of a bootstrap over blocks of one period of one simulated drive, as the two that follow.
+    nees_ci95: NotRequired[list[float | None]]
+    coverage50_ci95: NotRequired[list[float | None]]
+    coverage95_ci95: NotRequired[list[float | None]]
+    # The interval holds the scatter of both.
     measured_over_simulated: DriveEvaluationEstimate
 
 
@@ -931,7 +999,7 @@ class DriveEvaluationSummary(TypedDict):
     drive: str
     # The document's own id.
     name: str
-    question: Literal['run', 'simulate', 'explain']
+    question: Literal['run', 'simulate', 'explain', 'compare']
     seed: int
     state: JobState
     stage: str | None
@@ -1665,21 +1733,34 @@ class JobRequestDriveEvaluationInputs(TypedDict):
 
 
 class JobRequestDriveQuestion(TypedDict):
-    # Measure outages; simulate the same beside them; say why the two differ.
-    question: NotRequired[Literal['run', 'simulate', 'explain']]
+    # Measure outages; simulate the same beside them; say why the two differ; compare several models.
+    question: NotRequired[Literal['run', 'simulate', 'explain', 'compare']]
     # The vehicle moves along its nose.
     velocity_constraint: NotRequired[bool]
     # Zero velocity and no turn at rest; not of `explain`.
     zero_velocity: NotRequired[bool]
     # Use the odometer; not of `explain`.
     odometer: NotRequired[bool]
-    # Of `run`: reject fixes with a normalised squared innovation above; 0: none.
+    # Of `run` and `compare`: reject fixes with a normalised squared innovation above; 0: none.
     gate: NotRequired[float]
-    # Of `run`: believe the unit's stamps and keep repeated rows.
+    # Of `run` and `compare`: believe the unit's stamps and keep repeated rows.
     as_stamped: NotRequired[bool]
     seed: NotRequired[int]
-    # Simulated drives; not of `run`.
+    # Simulated drives; of `simulate` and `explain`.
     runs: NotRequired[int]
+    # Estimate the lever arm, and with velocity constraints the mounting, by the document's standard deviations; not of
+    # `explain`.
+    estimate: NotRequired[bool]
+    # Of `compare`: at least two; the first is what the others are compared with.
+    models: NotRequired[list[JobRequestDriveQuestionModel]]
+    # Of `compare`: scale each model's white noise to the innovations first.
+    fit_noise: NotRequired[bool]
+
+
+class JobRequestDriveQuestionModel(TypedDict):
+    # Without `model` one that is known: `document`, `document-white`, a filter of the paper such as `M_dyn(GMWM)`.
+    name: str
+    model: NotRequired[DriveModel]
 
 
 class JobRequestInvestigate(TypedDict):
@@ -1768,13 +1849,15 @@ class JobRequestMemberParameters(TypedDict):
     also: NotRequired[list[Literal['total', 'theo1', 'psd']]]
     taus: NotRequired[int]
     runs: NotRequired[int]
-    # Of a drive evaluation, as the five that follow.
-    question: NotRequired[Literal['run', 'simulate', 'explain']]
+    # Of a drive evaluation, as the seven that follow.
+    question: NotRequired[Literal['run', 'simulate', 'explain', 'compare']]
     velocity_constraint: NotRequired[bool]
     zero_velocity: NotRequired[bool]
     odometer: NotRequired[bool]
     gate: NotRequired[float]
     as_stamped: NotRequired[bool]
+    estimate: NotRequired[bool]
+    fit_noise: NotRequired[bool]
     relative_precision: NotRequired[float]
     # Of an investigation, complete.
     baseline: NotRequired[dict[str, Any]]
@@ -2058,6 +2141,9 @@ class NewDriveEvaluation(TypedDict):
     as_stamped: NotRequired[bool]
     seed: NotRequired[int]
     runs: NotRequired[int]
+    estimate: NotRequired[bool]
+    models: NotRequired[JobRequestDriveQuestionModels]
+    fit_noise: NotRequired[bool]
     # 0 is first.
     priority: NotRequired[int]
 
@@ -3860,7 +3946,8 @@ Condition: TypeAlias = (
     "ConditionSixPosition")
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 DriveColumns: TypeAlias = "dict[str, DriveColumn]"
-DriveEvaluation: TypeAlias = "DriveEvaluationMeasured | DriveEvaluationSimulation | DriveEvaluationExplanation"
+DriveEvaluation: TypeAlias = (
+    "DriveEvaluationMeasured | DriveEvaluationSimulation | DriveEvaluationExplanation | DriveEvaluationComparison")
 DriveEvaluationMotion: TypeAlias = "Literal['rest', 'straight', 'turning']"
 FitModelFitIntervals: TypeAlias = "Literal['profile', 'sandwich', 'bootstrap']"
 FitModelFitProcesses: TypeAlias = "list[FitProcess]"
@@ -3869,7 +3956,8 @@ InvestigationConcern: TypeAlias = "Literal['recording', 'calibration', 'noise', 
 JobRequest: TypeAlias = (
     "JobRequestCharacterise | JobRequestOutageEvaluation | JobRequestDriveEvaluation | JobRequestInvestigate | "
     "JobRequestPool | JobRequestRegress")
-JobRequestDriveQuestionQuestion: TypeAlias = "Literal['run', 'simulate', 'explain']"
+JobRequestDriveQuestionModels: TypeAlias = "list[JobRequestDriveQuestionModel]"
+JobRequestDriveQuestionQuestion: TypeAlias = "Literal['run', 'simulate', 'explain', 'compare']"
 JobState: TypeAlias = "Literal['queued', 'running', 'succeeded', 'failed', 'cancelled', 'dead']"
 ModelChannels: TypeAlias = "dict[str, ModelChannel]"
 ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"

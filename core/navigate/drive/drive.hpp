@@ -32,13 +32,20 @@ struct OdometerReading {
 struct FileFacts {
   SamplingFacts sampling;
   StampFacts imu_stamps, gnss_stamps;
-  std::size_t fixes = 0;                 ///< used
-  std::size_t held = 0;                  ///< rows that repeat a fix
-  std::size_t other_types = 0;           ///< rows of a fix type that is not to be used
-  std::size_t incomplete = 0;            ///< rows without a position
-  std::size_t far_away = 0;              ///< placeholders before the first fix, and the like
-  bool accuracy_constant = false;        ///< the position's; not used
-  bool speed_accuracy_constant = false;  ///< not used
+  std::size_t fixes = 0;                    ///< used
+  std::size_t held = 0;                     ///< rows that repeat a fix
+  std::size_t other_types = 0;              ///< rows of a fix type that is not to be used
+  std::size_t incomplete = 0;               ///< rows without a position
+  std::size_t far_away = 0;                 ///< placeholders before the first fix, and the like
+  bool accuracy_constant = false;           ///< the position's; not used
+  bool speed_accuracy_constant = false;     ///< not used
+  bool vertical_accuracy_constant = false;  ///< not used
+  bool height_zero = false;                 ///< every height is 0: nobody's
+  bool course_constant = false;             ///< the same number throughout; no velocity comes of it
+  std::size_t without_accuracy = 0;         ///< accuracies of used fixes that are no number above 0
+  std::size_t without_type = 0;             ///< of `other_types`, rows without a fix type
+  std::size_t reference_gaps = 0;           ///< of a reference of its own, too long to compare within
+  double reference_gaps_s = 0.0;
   double fix_rate_hz = 0.0;
   double highest_speed_m_s = 0.0;
   double length_m = 0.0;
@@ -57,6 +64,9 @@ struct Drive {
 
   [[nodiscard]] double end_s() const { return runs.back().end_s(); }
 };
+
+/// A reference says where the vehicle is between two points that lie no farther from the moment than this [s].
+inline constexpr double kNearestReference = 1.6;
 
 /// The decoded files of a document.
 struct Tables {

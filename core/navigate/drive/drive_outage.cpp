@@ -11,8 +11,6 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kNearestReference = 1.6;  ///< [s]
-
 /// Of the point that the estimate is compared with, in north, east and down [m^2].
 Vector3 reference_variance(const Drive& drive, const ColouredFixes& coloured, double time_s) {
   const auto after = std::lower_bound(drive.fixes.begin(), drive.fixes.end(), time_s,

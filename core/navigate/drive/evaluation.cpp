@@ -81,8 +81,9 @@ double correlation_at(const std::vector<const Innovation*>& list, double lag_s, 
 
 std::vector<InnovationSummary> summarise_innovations(const std::vector<Innovation>& innovations) {
   std::vector<InnovationSummary> summaries;
-  for (const MeasurementKind kind : {MeasurementKind::Position, MeasurementKind::Velocity, MeasurementKind::Constraint,
-                                     MeasurementKind::ZeroVelocity, MeasurementKind::Odometer}) {
+  for (const MeasurementKind kind :
+       {MeasurementKind::Position, MeasurementKind::Velocity, MeasurementKind::Constraint,
+        MeasurementKind::ZeroVelocity, MeasurementKind::ZeroTurn, MeasurementKind::Odometer}) {
     InnovationSummary summary;
     summary.kind = kind;
     std::vector<const Innovation*> list;
@@ -239,7 +240,7 @@ std::vector<std::vector<std::size_t>> blocks_of(const std::vector<DriveOutage>& 
 Interval bootstrap_interval(const std::vector<std::vector<std::size_t>>& blocks,
                             const std::function<double(std::span<const std::size_t>)>& statistic,
                             const EvaluationOptions& settings, std::uint64_t stream) {
-  if (blocks.size() < 3 || settings.resamples < 20) {
+  if (blocks.size() < kLeastBlocks || settings.resamples < 20) {
     return {};  // too few blocks to say anything
   }
   Random random(settings.seed, stream);
@@ -253,11 +254,30 @@ Interval bootstrap_interval(const std::vector<std::vector<std::size_t>>& blocks,
     }
     values.push_back(statistic(drawn));
   }
+  return percentile_interval(std::move(values));
+}
+
+Interval percentile_interval(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto at = [&](double fraction) {
     return values[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)))];
   };
   return {at(0.025), at(0.975)};
+}
+
+Estimate share_inside(const std::vector<DriveOutage>& outages, const std::vector<std::vector<std::size_t>>& blocks,
+                      double fraction, const EvaluationOptions& settings, std::uint64_t stream) {
+  const double limit = -2.0 * std::log(1.0 - fraction);  // chi-square of two degrees of freedom
+  const auto share = [&](std::span<const std::size_t> which) {
+    double count = 0.0;
+    for (const std::size_t i : which) {
+      count += outages[i].nees() <= limit ? 1.0 : 0.0;
+    }
+    return count / static_cast<double>(which.size());
+  };
+  std::vector<std::size_t> all(outages.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return {share(all), bootstrap_interval(blocks, share, settings, stream)};
 }
 
 DurationSummary summarise(std::vector<DriveOutage> outages, double duration_s, double period_s,
@@ -293,18 +313,8 @@ DurationSummary summarise(std::vector<DriveOutage> outages, double duration_s, d
   summary.rms_m = estimate([&](std::span<const std::size_t> w) { return root_mean_square(picked(errors, w)); });
   summary.median_m = estimate([&](std::span<const std::size_t> w) { return middle_of(picked(errors, w)); });
   summary.nees = estimate([&](std::span<const std::size_t> w) { return mean_over(picked(nees, w)); });
-  const auto inside = [&](double fraction) {
-    const double limit = -2.0 * std::log(1.0 - fraction);  // chi-square of two degrees of freedom
-    return estimate([&, limit](std::span<const std::size_t> w) {
-      double count = 0.0;
-      for (const std::size_t i : w) {
-        count += nees[i] <= limit ? 1.0 : 0.0;
-      }
-      return count / static_cast<double>(w.size());
-    });
-  };
-  summary.coverage50 = inside(0.5);
-  summary.coverage95 = inside(0.95);
+  summary.coverage50 = share_inside(summary.outages, blocks, 0.5, settings, stream++);
+  summary.coverage95 = share_inside(summary.outages, blocks, 0.95, settings, stream++);
   summary.mean_m = mean_over(errors);
   std::vector<double> sorted = errors;
   std::sort(sorted.begin(), sorted.end());

@@ -122,6 +122,18 @@ struct EvaluationOptions {
 /// Blocks of one period for a bootstrap: each holds the indices of the outages that start in it.
 [[nodiscard]] std::vector<std::vector<std::size_t>> blocks_of(const std::vector<DriveOutage>& outages, double period_s);
 
+/// Fewer blocks say nothing of an interval.
+inline constexpr std::size_t kLeastBlocks = 3;
+
+/// From the 2.5 % to the 97.5 % quantile of resampled values. Not empty.
+[[nodiscard]] Interval percentile_interval(std::vector<double> values);
+
+/// Share of the outages whose error lies within the ellipse that the filter says holds `fraction` of them, with the
+/// interval of resampled blocks.
+[[nodiscard]] Estimate share_inside(const std::vector<DriveOutage>& outages,
+                                    const std::vector<std::vector<std::size_t>>& blocks, double fraction,
+                                    const EvaluationOptions& settings, std::uint64_t stream);
+
 /// The 95 % percentile interval of a statistic of outages under resampled blocks.
 [[nodiscard]] Interval bootstrap_interval(const std::vector<std::vector<std::size_t>>& blocks,
                                           const std::function<double(std::span<const std::size_t>)>& statistic,

@@ -1,7 +1,6 @@
 #include "core/navigate/drive/explain.hpp"
 
 #include "core/navigate/drive/profile.hpp"
-#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +8,8 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kSureOfDelay = 3.0;
-constexpr double kNamedDelay = 5.0;
-constexpr double kNoiseNamed = 1.25;  ///< a factor of the white noise that is worth a name
+constexpr double kLevelNamed = 5.0;            ///< score
+constexpr std::uint64_t kHeldOutStream = 400;  ///< of the bootstrap
 
 /// The options as they are for each fold: what the other fold has shown.
 using FoldOptions = std::array<FilterOptions, LogLikelihood::kFolds>;
@@ -73,7 +71,9 @@ Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, c
     figures.held_out_median_m = held.median_m.value;
     figures.held_out_nees = held.nees.value;
     figures.held_out_coverage50 = held.coverage50.value;
-    figures.held_out_coverage95 = held.coverage95.value;
+    const double period = plan.at_s.empty() ? plan.every_s[d] : plan.duration_s[d];
+    figures.held_out_coverage95 =
+        share_inside(held.outages, blocks_of(held.outages, period), 0.95, EvaluationOptions{}, kHeldOutStream);
     rung.durations.push_back(figures);
   }
   return rung;
@@ -88,63 +88,82 @@ double held_out_score(const Rung& rung) {
   return sum;
 }
 
-DriveFinding finding_of_clock(const Drive& drive) {
-  const SamplingFacts& s = drive.facts.sampling;
-  DriveFinding finding;
-  finding.cause = "sample_clock";
-  finding.parameter = "rate_hz";
-  finding.title = "the host polls faster than the sensor samples, which runs at";
-  finding.unit = "Hz";
-  finding.value = s.sensor_rate_hz;
-  const double span = drive.end_s();
-  finding.se = s.sensor_rate_hz * s.jitter_s / span;
-  // Repeats at random would be as likely anywhere; a lattice of them is not. One nat for each is a small part of it.
-  finding.score = static_cast<double>(s.repeated - s.stuck);
-  finding.evidence = "the file";
-  finding.told_apart = "a lattice of single repeated rows; irregular runs of equal rows are a stuck sensor";
-  return finding;
+/// What the files show, in the order of the causes: `start` is told all of it, `first` what says which readings may be
+/// used.
+std::vector<DriveFinding> findings_of_files(const Drive& drive, FilterOptions& first, FilterOptions& start) {
+  std::vector<DriveFinding> findings;
+  for (const Cause& cause : cause_registry()) {
+    auto found = cause.from_files != nullptr ? cause.from_files(drive, start) : std::nullopt;
+    if (!found) {
+      continue;
+    }
+    found->finding.cause = cause.name;
+    found->finding.from_files = true;
+    if (found->use) {
+      found->use(start);
+      if (found->of_readings) {
+        found->use(first);
+      }
+    }
+    findings.push_back(std::move(found->finding));
+  }
+  return findings;
 }
 
-DriveFinding finding_of_delay(const FixDelay& delay) {
-  const Knob& knob = *find_knob("gnss_velocity_latency", "delay_s");
-  DriveFinding finding;
-  finding.cause = knob.cause;
-  finding.parameter = knob.parameter;
-  finding.title = knob.title;
-  finding.unit = knob.unit;
-  finding.value = delay.delay_s;
-  finding.se = delay.se_s;
-  finding.score = delay.score;
-  finding.evidence = "the fixes alone";
-  finding.told_apart = knob.told_apart;
-  return finding;
+/// What the causes of the innovations' findings add in words.
+std::vector<std::string> notes_on(const std::vector<DriveFinding>& findings,
+                                  const std::vector<DriveFinding>& of_files) {
+  std::vector<std::string> notes;
+  for (const DriveFinding& finding : findings) {
+    const Cause& cause = *find_cause(finding.cause);
+    const bool known = std::any_of(of_files.begin(), of_files.end(),
+                                   [&](const DriveFinding& other) { return other.cause == finding.cause; });
+    std::string note = cause.note != nullptr ? cause.note(finding, known) : "";
+    if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
+      notes.push_back(std::move(note));
+    }
+  }
+  return notes;
 }
 
-DriveFinding finding_of_noise(const char* sensor, double factor, const Drive& drive) {
-  DriveFinding finding;
-  finding.cause = "noise_level";
-  finding.parameter = sensor;
-  finding.title = std::string("the white noise of the ") + sensor + " on the road is that of the model times";
-  finding.unit = "1";
-  finding.value = factor;
-  finding.evidence = "innovations";
-  finding.told_apart = "what is left when every other cause is set: innovations that are white yet too large";
-  (void)drive;
-  return finding;
+/// The levels of the noise that are worth a name under the options.
+std::vector<DriveFinding> findings_of_levels(const Drive& drive, const FilterOptions& options,
+                                             const RunControl& control) {
+  std::vector<DriveFinding> findings;
+  const Profile profile(drive, {true, true}, control);
+  for (const Cause& cause : cause_registry()) {
+    for (const NoiseLevel& level : cause.levels) {
+      const double factor = options.*level.factor;
+      if (factor < level.named_from && factor > 1.0 / level.named_from) {
+        continue;
+      }
+      FilterOptions without = options;
+      without.*level.factor = 1.0;
+      const auto sums = profile.values({options, without});
+      DriveFinding finding;
+      finding.cause = cause.name;
+      finding.parameter = level.parameter;
+      finding.title = level.title;
+      finding.unit = "1";
+      finding.value = factor;
+      finding.evidence = "innovations";
+      finding.told_apart = level.told_apart;
+      finding.score = std::max((sums[0] - sums[1]) / profile.scale(options), 0.0);
+      if (finding.score >= kLevelNamed) {
+        findings.push_back(std::move(finding));
+      }
+    }
+  }
+  return findings;
 }
 
-DriveFinding finding_of_slips(const WheelSlips& found) {
-  DriveFinding finding;
-  finding.cause = "wheel_slip";
-  finding.parameter = "seconds";
-  finding.title = "the wheel of the odometer slips or locks, " + how_often(found.slips.size()) + ", in all";
-  finding.unit = "s";
-  finding.value = found.seconds();
-  // Each reading of a slip is five standard deviations off and more: 12 nats in half of its square.
-  finding.score = 12.5 * static_cast<double>(found.slips.size());
-  finding.evidence = "odometer and fixes";
-  finding.told_apart = "bursts; a scale factor of the odometer is the same everywhere";
-  return finding;
+/// The levels of the noise as the options `from` have them.
+void take_levels(const FilterOptions& from, FilterOptions& into) {
+  for (const Cause& cause : cause_registry()) {
+    for (const NoiseLevel& level : cause.levels) {
+      into.*level.factor = from.*level.factor;
+    }
+  }
 }
 
 /// The findings' knobs, fitted again on one fold from the whole drive's values.
@@ -188,66 +207,24 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   explanation.simulated_before = std::move(*simulated);
 
   control.report("causes", 0.1);
+  first.odometer = !drive.odometer.empty();
   FilterOptions start = first;
-  if (drive.facts.sampling.polled_faster) {
-    explanation.findings.push_back(finding_of_clock(drive));
-  }
-  explanation.fix_delay = delay_from_fixes(drive.fixes);
-  if (explanation.fix_delay) {
-    const FixDelay& delay = *explanation.fix_delay;
-    const double rest = delay.delay_s - (start.velocity_latency_s - start.position_latency_s);
-    if (delay.score >= kNamedDelay && std::abs(rest) >= kSureOfDelay * delay.se_s) {
-      start.velocity_latency_s = start.position_latency_s + delay.delay_s;
-      explanation.findings.push_back(finding_of_delay(delay));
-    }
-  }
-  if (!drive.odometer.empty()) {
-    first.odometer = start.odometer = true;
-    const auto slips = slips_of(drive, start.velocity_latency_s);
-    if (slips && !slips->slips.empty()) {
-      first.slips = start.slips = slips->slips;
-      explanation.findings.push_back(finding_of_slips(*slips));
-    }
-  }
+  explanation.findings = findings_of_files(drive, first, start);
   const FilterOptions from_files = start;
   auto search = search_causes(drive, start, options.most_causes, control);
   if (!search) {
     return fail(search.error());
   }
+  explanation.notes = notes_on(search->findings, explanation.findings);
   std::vector<const Knob*> knobs;
   for (const DriveFinding& finding : search->findings) {
     knobs.push_back(find_knob(finding.cause, finding.parameter));
-    const bool again = std::any_of(explanation.findings.begin(), explanation.findings.end(),
-                                   [&](const DriveFinding& f) { return f.cause == finding.cause; });
-    if (again && finding.cause == "gnss_velocity_latency") {
-      explanation.notes.push_back("The innovations put the delay of the velocities at " +
-                                  std::to_string(finding.value) +
-                                  " s: a receiver's velocity can be a mean over the interval before it.");
-    }
     explanation.findings.push_back(finding);
-  }
-  for (const DriveFinding& finding : search->findings) {
-    if (finding.cause == "imu_time_offset") {
-      explanation.notes.emplace_back(
-          "An offset of the unit's clock and an equal delay of all fixes are the same thing here: only "
-          "the difference of the two clocks shows.");
-    }
   }
   explanation.gyro_noise = search->options.gyro_noise;
   explanation.force_noise = search->options.force_noise;
-  for (const auto& [sensor, factor] :
-       {std::pair{"gyroscope", explanation.gyro_noise}, std::pair{"accelerometer", explanation.force_noise}}) {
-    if (factor >= kNoiseNamed || factor <= 1.0 / kNoiseNamed) {
-      DriveFinding finding = finding_of_noise(sensor, factor, drive);
-      FilterOptions without = search->options;
-      (sensor[0] == 'g' ? without.gyro_noise : without.force_noise) = 1.0;
-      const Profile profile(drive, {true, true}, control);
-      const auto sums = profile.values({search->options, without});
-      finding.score = std::max((sums[0] - sums[1]) / profile.scale(search->options), 0.0);
-      if (finding.score >= kNamedDelay) {
-        explanation.findings.push_back(finding);
-      }
-    }
+  for (DriveFinding& finding : findings_of_levels(drive, search->options, control)) {
+    explanation.findings.push_back(std::move(finding));
   }
 
   control.report("held-out outages", 0.5);
@@ -263,21 +240,21 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   // The noise level comes first: judged under the document's, every gain would be one of covariance alone.
   FoldOptions current{first, first};
   for (std::size_t fold = 0; fold < current.size(); ++fold) {
-    current[fold].gyro_noise = fitted[fold].gyro_noise;
-    current[fold].force_noise = fitted[fold].force_noise;
+    take_levels(fitted[fold], current[fold]);
   }
   const double unmended_score = held_out_score(explanation.rungs.back());
   explanation.rungs.push_back(rung_of(drive, "the white noise of the road", current, control));
   for (DriveFinding& finding : explanation.findings) {
-    if (finding.cause == "noise_level") {
+    if (!find_cause(finding.cause)->levels.empty()) {
+      finding.judged = true;
       finding.held_out_gain = held_out_score(explanation.rungs.back()) - unmended_score;
     }
   }
   const auto set = [&](FoldOptions& folds, const DriveFinding& finding, bool on) {
     const Knob* const knob = find_knob(finding.cause, finding.parameter);
     for (std::size_t fold = 0; fold < folds.size(); ++fold) {
-      const FilterOptions& source = !on ? first : finding.evidence == "the fixes alone" ? from_files : fitted[fold];
-      knob->turn(folds[fold], Profile::value_of(source, *knob) - Profile::value_of(folds[fold], *knob));
+      const FilterOptions& source = !on ? first : finding.from_files ? from_files : fitted[fold];
+      knob->turn(folds[fold], knob->value(source) - knob->value(folds[fold]));
     }
   };
   std::vector<DriveFinding*> turned;
@@ -297,6 +274,7 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   for (DriveFinding* const finding : turned) {
     FoldOptions without = current;
     set(without, *finding, false);
+    finding->judged = true;
     finding->held_out_gain = whole - held_out_score(rung_of(drive, "", without, control));
     finding->kept = finding->held_out_gain > 0.0;
     if (!finding->kept) {
@@ -314,13 +292,11 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   }
   // The extended model: what was kept, with the whole drive's values.
   explanation.extended = first;
-  explanation.extended.gyro_noise = search->options.gyro_noise;
-  explanation.extended.force_noise = search->options.force_noise;
+  take_levels(search->options, explanation.extended);
   for (const DriveFinding* const finding : turned) {
     if (finding->kept) {
       const Knob& knob = *find_knob(finding->cause, finding->parameter);
-      knob.turn(explanation.extended,
-                Profile::value_of(search->options, knob) - Profile::value_of(explanation.extended, knob));
+      knob.turn(explanation.extended, knob.value(search->options) - knob.value(explanation.extended));
     }
   }
   control.report("the mended model", 0.9);

@@ -2,39 +2,23 @@
 /// Why a simulation of a drive is too optimistic, by profile likelihood (spec/drives.md, section 6).
 ///
 /// The search starts from the level of white noise at which the innovations fit best: before that, scores mean nothing.
-/// Every knob (causes.hpp) is then turned by -h and +h and the parabola through the three log likelihoods gives
+/// Every knob (causes/cause.hpp) is then turned by -h and +h and the parabola through the three log likelihoods gives
 /// estimate, uncertainty and score; where the likelihood still rises the step is doubled until it falls. The knob with
 /// the best score is set, those found before and the noise level are fitted again, and the search goes on until no knob
 /// has a score of 5 at three standard errors. Two whose scores differ by less than 2 are reported as a pair.
 ///
-/// What the receiver's own numbers show (velocities older than positions) is found first, without the unit.
+/// What the files show without a filter (velocities older than positions) is found first.
 ///
 /// A cause found is not a gain. Values are fitted once more on every second stretch of 100 s; outages that lie whole in
 /// the other stretches have not been seen, and say what the mended model gains. A parameter stays in the extended model
 /// if the held-out outages are then described better (Gaussian log score, in which error and coverage both count).
 ///
 /// Runs are tasks of the executor; results do not depend on the number of threads.
-#include "core/navigate/drive/causes.hpp"
+#include "core/navigate/drive/causes/cause.hpp"
 #include "core/navigate/drive/likelihood.hpp"
 #include "core/navigate/drive/simulation.hpp"
 
 namespace driftlab::drive {
-
-/// A parameter that the drive shows.
-struct DriveFinding {
-  std::string cause;  ///< its name in documents; people read words_of (causes.hpp)
-  std::string parameter;
-  std::string title;
-  std::string unit;
-  double value = 0.0;  ///< in `unit`
-  double se = 0.0;
-  double score = 0.0;
-  std::string pair;      ///< a cause whose score was within 2 of this one's when it was named; empty: none
-  std::string evidence;  ///< what showed it: the file, the fixes alone, the innovations
-  std::string told_apart;
-  bool kept = true;            ///< in the extended model
-  double held_out_gain = 0.0;  ///< mean log score gained on outages that it has not seen
-};
 
 /// Errors of one duration on outages that found the model's values and on those that did not.
 struct RungFigures {
@@ -42,7 +26,8 @@ struct RungFigures {
   std::size_t found_count = 0, held_out_count = 0;
   double found_rms_m = 0.0, found_nees = 0.0;
   double held_out_rms_m = 0.0, held_out_median_m = 0.0, held_out_nees = 0.0;
-  double held_out_coverage50 = 0.0, held_out_coverage95 = 0.0;
+  double held_out_coverage50 = 0.0;
+  Estimate held_out_coverage95;
   double held_out_log_score = 0.0;  ///< mean of -(ln |P| + e^T P^-1 e)/2
 };
 
@@ -63,8 +48,7 @@ struct ExplainOptions {
 struct DriveExplanation {
   std::vector<DriveFinding> findings;  ///< in the order in which they were named
   std::vector<Rung> rungs;
-  FilterOptions extended;  ///< the mended model
-  std::optional<FixDelay> fix_delay;
+  FilterOptions extended;                      ///< the mended model
   double gyro_noise = 1.0, force_noise = 1.0;  ///< factors of the extended model
   DriveEvaluation before;                      ///< the document's model, as stamped
   DriveEvaluation after;                       ///< the extended model

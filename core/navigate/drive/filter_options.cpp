@@ -11,16 +11,20 @@ double vibration_of(const FilterOptions& options, std::size_t channel) {
 }
 
 void scale_white_noise(AxisModel& axis, double factor) {
-  if (factor == 1.0 || axis.processes.size() != 1) {
+  if (factor == 1.0) {
     return;
   }
-  Model model = axis.processes.model(0);
-  for (Process& process : model) {
-    if (process.kind->white_square != nullptr) {
-      process.parameters[0] *= factor;
+  std::vector<Model> bands;
+  for (std::size_t band = 0; band < axis.processes.size(); ++band) {
+    bands.push_back(axis.processes.model(band));
+    for (Process& process : bands.back()) {
+      if (process.kind->white_square != nullptr) {
+        process.parameters[0] *= factor;
+      }
     }
   }
-  axis.processes = ModelSchedule::constant(std::move(model));
+  axis.processes =
+      *ModelSchedule::by_rate(axis.processes.bounds_rad_s(), std::move(bands), axis.processes.hysteresis_rad_s());
 }
 
 double even_noise_factor(const FilterOptions& options, std::size_t channel) {

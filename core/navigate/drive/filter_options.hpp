@@ -66,18 +66,19 @@ struct FilterOptions {
   double odometer_scale = 0.0;                    ///< odometer = (1 + scale) speed
   std::vector<std::array<double, 2>> slips = {};  ///< from, to [s]: the wheel slips, and its readings are not used
   EstimatedConstants constants;
-  double gate = 0.0;  ///< a fix whose normalised squared innovation is above is rejected; 0: none
+  double gate = 0.0;     ///< a fix whose normalised squared innovation is above is rejected; 0: none
+  int gate_memory = 60;  ///< disagreeing fixes that are remembered once the receiver is believed again (fix_gate.hpp)
   bool date_to_sample =
       false;  ///< fixes count as of the end of their sample: what a filter does that ignores their dates
 };
 
-/// What the document says: arm, latencies and their uncertainty.
+/// What the document says: arm and latencies.
 [[nodiscard]] FilterOptions options_of(const Document& document);
 
 /// Mean noise of a channel that follows the vibration over that which does not.
 [[nodiscard]] double vibration_of(const FilterOptions& options, std::size_t channel);
 
-/// Multiplies the white noise of an axis whose model does not depend on the rate.
+/// Multiplies the white noise of an axis, at every rate.
 void scale_white_noise(AxisModel& axis, double factor);
 
 /// Adds the noise that follows the vibration, by the options' ratios, to readings whose other noise is of `model`,

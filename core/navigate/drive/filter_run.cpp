@@ -1,7 +1,8 @@
 #include "core/navigate/drive/filter_run.hpp"
 
+#include "core/navigate/drive/fix_gate.hpp"
+#include "core/navigate/drive/measurement_equations.hpp"
 #include "core/navigate/drive/smoother.hpp"
-#include "core/process/random.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
@@ -10,50 +11,12 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr int kRejectedInARow = 5;  ///< after so many the receiver is believed again
-constexpr int kMostBelieved = 60;
-constexpr double kRestSd = 0.02;  ///< [m/s]
-constexpr double kRestTurnSd = 0.05 * kDegree;
 constexpr double kSteadyRestRate = 0.6 * kDegree;
 constexpr double kSteadyRestForce = 0.2;   ///< [m/s^2]
 constexpr double kTurnWindow = 0.05;       ///< [s] on each side
 constexpr std::size_t kTapedReadings = 9;  ///< the filter itself closes a step after ten
 constexpr double kTapedPoints = 0.08;      ///< [s]
 constexpr double kHeadingKnown = 1.0 * kDegree;
-
-/// Where the constants that a filter estimates stand behind the sensor states.
-struct ConstantLayout {
-  int arm = -1, yaw = -1, axle = -1, odometer = -1, fixes = -1;
-};
-
-/// Standard deviations of the constants and their correlation times, 0 for what stays.
-struct Constants {
-  std::vector<double> sd, tau_s;
-};
-
-Constants constants_of(const FilterOptions& options, ConstantLayout& layout, int first) {
-  Constants all;
-  const auto add = [&](const std::optional<double>& value, int count, int& at) {
-    if (value) {
-      at = first + static_cast<int>(all.sd.size());
-      all.sd.insert(all.sd.end(), static_cast<std::size_t>(count), *value);
-    }
-  };
-  const EstimatedConstants& constants = options.constants;
-  add(constants.lever_arm_sd_m, 3, layout.arm);
-  add(constants.mounting_sd_rad, 2, layout.yaw);
-  add(constants.axle_sd_m, 1, layout.axle);
-  add(constants.odometer_scale_sd, 1, layout.odometer);
-  all.tau_s.assign(all.sd.size(), 0.0);
-  if (!options.coloured.none()) {
-    layout.fixes = first + static_cast<int>(all.sd.size());
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      all.sd.push_back(options.coloured.sd_m()(k));
-      all.tau_s.push_back(options.coloured.tau_s);
-    }
-  }
-  return all;
-}
 
 enum class Step { Score, Begin, Position, Velocity, Odometer };  // in this order at one moment
 struct FilterEvent {
@@ -73,7 +36,10 @@ class Driver {
         options_(options),
         task_(task),
         filter_(design, start.state),
-        done_(start.reading) {
+        design_(design),
+        done_(start.reading),
+        position_gate_(options.gate, options.gate_memory),
+        velocity_gate_(options.gate, options.gate_memory) {
     (void)constants_of(options, layout_, design.first_constant());
     if (task.vibration != nullptr && (options.gyro_vibration > 0.0 || options.force_vibration > 0.0)) {
       vibration_ = task.vibration;
@@ -172,7 +138,8 @@ class Driver {
         keep_step();
       }
       if (options_.constraint && done_ % constraint_step_ == 0) {
-        constrain(*options_.constraint);
+        const std::array<double, 2> slip = task_.slip != nullptr ? (*task_.slip)(done_) : std::array<double, 2>{};
+        apply(MeasurementKind::Constraint, now(), constraint_equations(moment(), *options_.constraint, slip));
       }
       if (options_.zero_velocity && done_ % rest_step_ == 0) {
         hold_still();
@@ -206,26 +173,30 @@ class Driver {
         begun_ = {now(), filter_.state()};
         return;
       case Step::Position:
-        position(drive_.fixes[event.index], event.time_s);
+        apply(MeasurementKind::Position, event.time_s,
+              position_equations(moment(), drive_.fixes[event.index], late(event.time_s)), &position_gate_);
+        if (task_.keep_poses) {
+          pose();
+        }
         return;
       case Step::Velocity:
         if (const Fix& fix = drive_.fixes[event.index]; fix.velocity_ned_m_s) {
-          velocity(*fix.velocity_ned_m_s, fix.velocity_sd_m_s, event.time_s);
+          apply(MeasurementKind::Velocity, event.time_s,
+                velocity_equations(moment(), *fix.velocity_ned_m_s, fix.velocity_sd_m_s, late(event.time_s)),
+                &velocity_gate_);
         }
         return;
       case Step::Odometer:
         if (drive_.document.odometer) {
-          odometer(*drive_.document.odometer, drive_.odometer[event.index]);
+          const OdometerReading& reading = drive_.odometer[event.index];
+          apply(MeasurementKind::Odometer, reading.time_s,
+                odometer_equations(moment(), *drive_.document.odometer, reading.speed_m_s));
         }
         return;
     }
   }
 
-  [[nodiscard]] double constant(int at) const { return at < 0 ? 0.0 : filter_.sensor_states()(at); }
-  [[nodiscard]] Vector3 arm() const {
-    return options_.lever_arm_m + Vector3(constant(layout_.arm), constant(layout_.arm < 0 ? -1 : layout_.arm + 1),
-                                          constant(layout_.arm < 0 ? -1 : layout_.arm + 2));
-  }
+  [[nodiscard]] FilterMoment moment() const { return {filter_, options_, layout_, body_rate()}; }
   /// The turning rate of the vehicle around now: the mean of a tenth of a second, for vibration on a long arm is no
   /// velocity that a receiver sees, less what the filter believes to be the gyroscope's error.
   [[nodiscard]] Vector3 body_rate() const {
@@ -245,94 +216,8 @@ class Driver {
     return mean - error - filter_.attitude().transpose() * earth_rate();
   }
 
-  void position(const Fix& fix, double time_s) {
-    const double late = options_.date_to_sample ? 0.0 : now() - time_s;
-    const NavigationState& state = filter_.state();
-    const Matrix3& attitude = filter_.attitude();
-    const Matrix3 axes = ned_axes(state.position_ecef_m);
-    const Vector3 own_arm = arm();
-    const Vector3 turned = attitude * own_arm;
-    const Vector3 arm_velocity = attitude * body_rate().cross(own_arm);
-    const Vector3 antenna = state.position_ecef_m + turned - late * (state.velocity_ecef_m_s + arm_velocity) +
-                            (0.5 * late * late) * filter_.last_acceleration();
-    Vector3 gap = fix.position_ecef_m - antenna;
-    for (int k = 0; layout_.fixes >= 0 && k < 3; ++k) {
-      gap -= constant(layout_.fixes + k) * axes.col(k);
-    }
-    std::array<WideMeasurement, 3> measurements;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Vector3 axis = axes.col(k);
-      WideMeasurement& m = measurements[static_cast<std::size_t>(k)];
-      m.navigation.h << axis, -late * axis, turned.cross(axis);
-      m.navigation.innovation = axis.dot(gap);
-      m.navigation.variance = fix.position_sd_m(k) * fix.position_sd_m(k);
-      add_arm(m, attitude.transpose() * axis);
-      if (layout_.fixes >= 0) {
-        m.add(layout_.fixes + static_cast<int>(k), 1.0);
-      }
-    }
-    apply(MeasurementKind::Position, time_s, measurements, true);
-    if (task_.keep_poses) {
-      pose();
-    }
-  }
-
-  void velocity(const Vector3& velocity_ned_m_s, const Vector3& sd_m_s, double time_s) {
-    const double late = options_.date_to_sample ? 0.0 : now() - time_s;
-    const NavigationState& state = filter_.state();
-    const Matrix3& attitude = filter_.attitude();
-    const Matrix3 axes = ned_axes(state.position_ecef_m);
-    const Vector3 rate = body_rate();
-    const Vector3 arm_velocity = attitude * rate.cross(arm());
-    const Vector3 gap =
-        axes * velocity_ned_m_s - (state.velocity_ecef_m_s + arm_velocity - late * filter_.last_acceleration());
-    std::array<WideMeasurement, 3> measurements;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Vector3 axis = axes.col(k);
-      WideMeasurement& m = measurements[static_cast<std::size_t>(k)];
-      m.navigation.h << Vector3::Zero(), axis, arm_velocity.cross(axis);
-      m.navigation.innovation = axis.dot(gap);
-      m.navigation.variance = sd_m_s(k) * sd_m_s(k);
-      add_arm(m, (attitude.transpose() * axis).cross(rate));  // axis . C (w x l) = l . (C^T axis x w)
-    }
-    apply(MeasurementKind::Velocity, time_s, measurements, true);
-  }
-
-  void add_arm(WideMeasurement& m, const Vector3& weight) const {
-    for (int k = 0; layout_.arm >= 0 && k < 3; ++k) {
-      m.add(layout_.arm + k, weight(k));
-    }
-  }
-
-  void constrain(const Constraint& c) {
-    const Matrix3& attitude = filter_.attitude();
-    const Vector3 v = filter_.state().velocity_ecef_m_s;
-    const Vector3 body = attitude.transpose() * v;
-    const Vector3 rate = body_rate();
-    const double yaw = c.yaw_rad + constant(layout_.yaw);
-    const double pitch = c.pitch_rad + constant(layout_.yaw < 0 ? -1 : layout_.yaw + 1);
-    const double axle = c.axle_m + constant(layout_.axle);
-    const std::array<double, 2> slip = task_.slip != nullptr ? (*task_.slip)(done_) : std::array<double, 2>{};
-    std::array<WideMeasurement, 2> measurements;
-    const Vector3 right = attitude.col(1) - yaw * attitude.col(0);
-    const Vector3 down = attitude.col(2) + pitch * attitude.col(0);
-    measurements[0].navigation.h << Vector3::Zero(), right, right.cross(v);
-    measurements[0].navigation.innovation = slip[0] - (body.y() - yaw * body.x() + axle * rate.z());
-    measurements[1].navigation.h << Vector3::Zero(), down, down.cross(v);
-    measurements[1].navigation.innovation = slip[1] - (body.z() + pitch * body.x() - axle * rate.y());
-    for (WideMeasurement& m : measurements) {
-      m.navigation.variance = c.sd_m_s * c.sd_m_s;
-    }
-    if (layout_.yaw >= 0) {
-      measurements[0].add(layout_.yaw, -body.x());
-      measurements[1].add(layout_.yaw + 1, body.x());
-    }
-    if (layout_.axle >= 0) {
-      measurements[0].add(layout_.axle, rate.z());
-      measurements[1].add(layout_.axle, -rate.y());
-    }
-    apply(MeasurementKind::Constraint, now(), measurements, false);
-  }
+  /// How long ago a moment was, for the filter.
+  [[nodiscard]] double late(double time_s) const { return options_.date_to_sample ? 0.0 : now() - time_s; }
 
   /// Velocity 0, and no turn where the unit is on a vehicle, if the last second looks like rest and the filter says so.
   void hold_still() {
@@ -350,55 +235,29 @@ class Driver {
     if ((rate[0] - rate[1]).norm() > kSteadyRestRate || (force[0] - force[1]).norm() > kSteadyRestForce) {
       return;
     }
-    const Matrix3 axes = ned_axes(filter_.state().position_ecef_m);
-    std::array<WideMeasurement, 3> still;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Vector3 axis = axes.col(k);
-      WideMeasurement& m = still[static_cast<std::size_t>(k)];
-      m.navigation.h << Vector3::Zero(), axis, Vector3::Zero();
-      m.navigation.innovation = -axis.dot(filter_.state().velocity_ecef_m_s);
-      m.navigation.variance = kRestSd * kRestSd;
+    apply(MeasurementKind::ZeroVelocity, now(), rest_equations(moment()));
+    if (moves_along_its_nose(drive_.document.vehicle)) {  // an aircraft or a boat at rest may turn with the wind
+      const double mean = 0.5 * (rate[0].z() + rate[1].z());
+      apply(MeasurementKind::ZeroTurn, now(),
+            no_turn_equations(moment(), design_, mean, 2.0 * static_cast<double>(half) * run_.dt_s));
     }
-    apply(MeasurementKind::ZeroVelocity, now(), still, false);
-  }
-
-  void odometer(const OdometerSource& source, const OdometerReading& reading) {
-    const Matrix3& attitude = filter_.attitude();
-    const Vector3 v = filter_.state().velocity_ecef_m_s;
-    const Vector3 arm_velocity = body_rate().cross(source.lever_arm_m);
-    const double speed = (attitude.transpose() * v).x() + arm_velocity.x();
-    const double scale = 1.0 + options_.odometer_scale + constant(layout_.odometer);
-    std::array<WideMeasurement, 1> measurement;
-    WideMeasurement& m = measurement[0];
-    const Vector3 forward = scale * attitude.col(0);
-    m.navigation.h << Vector3::Zero(), forward, forward.cross(v);
-    m.navigation.innovation = reading.speed_m_s - scale * speed;
-    m.navigation.variance = source.sd_m_s * source.sd_m_s;
-    if (layout_.odometer >= 0) {
-      m.add(layout_.odometer, speed);
-    }
-    apply(MeasurementKind::Odometer, reading.time_s, measurement, false);
   }
 
   /// Gate, update, record.
-  void apply(MeasurementKind kind, double time_s, std::span<const WideMeasurement> measurements, bool gated) {
+  void apply(MeasurementKind kind, double time_s, std::span<const WideMeasurement> measurements,
+             FixGate* gate = nullptr) {
     Innovation record;
     record.time_s = time_s + options_.imu_offset_s;
     record.kind = kind;
     record.count = static_cast<int>(measurements.size());
-    if (gated && options_.gate > 0.0) {
+    if (gate != nullptr && options_.gate > 0.0) {
       const ErrorCovariance& covariance = filter_.covariance();
       double worst = 0.0;
       for (std::size_t i = 0; i < measurements.size(); ++i) {
         record.scalar[i] = covariance.expected(measurements[i], ErrorCovariance::State::Zero());
         worst = std::max(worst, record.scalar[i].value * record.scalar[i].value / record.scalar[i].variance);
       }
-      int& in_a_row = rejected_in_a_row_[kind == MeasurementKind::Position ? 0 : 1];
-      // Once believed again, the receiver is believed until about as many fixes have agreed by themselves as disagreed.
-      const bool believed = in_a_row >= kRejectedInARow;
-      const bool agrees = worst <= options_.gate;
-      record.accepted = agrees || believed;
-      in_a_row = agrees ? (believed ? in_a_row - 1 : 0) : std::min(in_a_row + 1, kMostBelieved);
+      record.accepted = gate->accepts(worst);
       result_.rejected += record.accepted ? 0 : 1;
     }
     if (record.accepted && task_.tape != nullptr) {
@@ -436,8 +295,8 @@ class Driver {
   }
 
   void score(std::size_t index) {
-    const OutageEnd end{now(),       filter_.state(), filter_.attitude(), arm(), filter_.covariance().navigation(),
-                        heading_sd()};
+    const OutageEnd end{
+        now(), filter_.state(), filter_.attitude(), moment().arm(), filter_.covariance().navigation(), heading_sd()};
     if (auto scored = score_outage(drive_, options_, task_.outages[index], begun_, end)) {
       scored->phase = task_.phase;
       result_.outages.push_back(std::move(*scored));
@@ -450,6 +309,7 @@ class Driver {
   const FilterOptions& options_;
   const FilterTask& task_;
   NavigationFilter filter_;
+  const FilterDesign& design_;
   std::size_t done_;
   ConstantLayout layout_;
   const Vibration* vibration_ = nullptr;
@@ -457,7 +317,7 @@ class Driver {
   std::size_t constraint_step_ = 0;
   std::size_t rest_step_ = 100;
   std::size_t turn_window_ = 5;  ///< readings on each side
-  std::array<int, 2> rejected_in_a_row_{};
+  FixGate position_gate_, velocity_gate_;
   OutageStart begun_;
   FilterRun result_;
 };

@@ -21,7 +21,7 @@
 
 namespace driftlab::drive {
 
-enum class MeasurementKind { Position, Velocity, Constraint, ZeroVelocity, Odometer };
+enum class MeasurementKind { Position, Velocity, Constraint, ZeroVelocity, Odometer, ZeroTurn };
 
 /// The innovations of one measurement: scalars, each given those before it.
 struct Innovation {

@@ -55,6 +55,11 @@ Result<FixColumns> columns_of_fixes(const GnssSource& source, const Table& table
     }
     *one.into = std::move(*found);
   }
+  if (!source.fix_types.empty() && !columns.type) {
+    return fail(ErrorCode::InvalidArgument,
+                "Only fixes of stated types are to be used (fix_types), but no column says the fix_type of a fix.",
+                {{"parameter", "gnss.fix_types"}});
+  }
   const bool geodetic = columns.lat && columns.lon;
   const bool cartesian = columns.x && columns.y && columns.z;
   if (!geodetic && !cartesian) {
@@ -74,8 +79,19 @@ bool says_nothing(const Column& column) {
   return column->size() > 10 && std::all_of(column->begin(), column->end(), [&](double v) { return v == first; });
 }
 
+bool is_accuracy(const Column& column, std::size_t row) {
+  return std::isfinite((*column)[row]) && (*column)[row] > 0.0;
+}
+
 double sd_at(const Column& column, std::size_t row, double otherwise) {
-  return column && std::isfinite((*column)[row]) && (*column)[row] > 0.0 ? (*column)[row] : otherwise;
+  return column && is_accuracy(column, row) ? (*column)[row] : otherwise;
+}
+
+/// A stated accuracy that is no number above 0: the document's stands in its place.
+bool lacks_accuracy(const FixColumns& c, std::size_t row) {
+  const Column* const stated[] = {&c.sd_north, &c.sd_east, &c.sd_down, &c.sd_horizontal, &c.sd_vertical, &c.sd_speed};
+  return std::any_of(std::begin(stated), std::end(stated),
+                     [&](const Column* column) { return *column && !is_accuracy(*column, row); });
 }
 
 void set_velocity(const FixColumns& c, std::size_t i, const GnssSource& source, bool believe, Fix& fix) {
@@ -124,7 +140,12 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
   const FixColumns& c = *columns;
   facts.accuracy_constant = says_nothing(c.sd_horizontal) || says_nothing(c.sd_north);
   facts.speed_accuracy_constant = says_nothing(c.sd_speed);
-  const bool vertical_constant = says_nothing(c.sd_vertical);
+  facts.vertical_accuracy_constant = says_nothing(c.sd_vertical);
+  facts.height_zero = says_nothing(c.height) && c.height->front() == 0.0;
+  facts.course_constant = says_nothing(c.course);
+  if (facts.course_constant) {
+    columns->course.reset();
+  }
   std::vector<Fix> fixes;
   std::array<double, 3> before{};
   double before_s = 0.0;
@@ -148,6 +169,7 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
                                       [&](int good) { return type == static_cast<double>(good); });
       if (!wanted) {
         ++facts.other_types;
+        facts.without_type += std::isfinite(type) ? 0 : 1;
         continue;
       }
     }
@@ -177,11 +199,12 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
         fix.position_sd_m = {sd, sd, 2.0 * sd};
       }
     }
-    if (c.sd_vertical && !vertical_constant) {
+    if (c.sd_vertical && !facts.vertical_accuracy_constant) {
       fix.position_sd_m.z() = sd_at(c.sd_vertical, i, fix.position_sd_m.z());
     }
     fix.position_sd_m = fix.position_sd_m.cwiseMax(1e-3);
-    if (source.geoid || !(c.height || c.z)) {
+    facts.without_accuracy += lacks_accuracy(c, i) ? 1 : 0;
+    if (source.geoid || facts.height_zero || !(c.height || c.z)) {
       fix.position_sd_m.z() = std::max(fix.position_sd_m.z(), 10.0);  // the height is nobody's
     }
     set_velocity(c, i, source, !facts.speed_accuracy_constant, fix);

@@ -104,6 +104,38 @@ void describe_motion(Drive& drive) {
   }
 }
 
+/// Members of the document that no filter of itself acts on.
+void write_notes_on_members(Drive& drive) {
+  const ImuSource& imu = drive.document.imu;
+  const GnssSource& gnss = drive.document.gnss;
+  std::vector<std::string>& notes = drive.facts.notes;
+  if (gnss.lever_arm_sd_m > 0.0) {
+    notes.emplace_back(
+        "The lever arm is taken as stated: its standard deviation counts where the arm is to be estimated.");
+  }
+  if (imu.mounting_sd_rad > 0.0) {
+    notes.emplace_back(
+        "The mounting is taken as stated: its standard deviation counts where it is to be estimated under velocity "
+        "constraints.");
+  }
+  if (imu.clock == SensorClock::Arrival || imu.source.time.arrival) {
+    notes.emplace_back(
+        "Readings are stamped when they arrive: between gaps they get equal spacing, and by how much all are late is "
+        "part of the offset of the unit's clock.");
+  }
+  if (gnss.source.time.arrival) {
+    notes.emplace_back(
+        "Fixes are stamped when they arrive: by how much they are late is not taken off; it is the latency of the "
+        "document, or part of the offset of the unit's clock.");
+  }
+  for (const Source* const other : {drive.document.reference.source ? &*drive.document.reference.source : nullptr,
+                                    drive.document.odometer ? &drive.document.odometer->source : nullptr}) {
+    if (other != nullptr && other->time.arrival) {
+      notes.push_back("Rows of " + other->file + " are stamped when they arrive; nothing is taken off their time.");
+    }
+  }
+}
+
 std::string count_text(std::size_t count, const char* of) { return std::to_string(count) + " " + of; }
 
 void write_notes(Drive& drive) {
@@ -115,6 +147,20 @@ void write_notes(Drive& drive) {
   };
   note(facts.accuracy_constant, "The stated accuracy of the positions never varies; it is not used.");
   note(facts.speed_accuracy_constant, "The stated accuracy of the speed never varies; it is not used.");
+  note(facts.vertical_accuracy_constant, "The stated vertical accuracy never varies; it is not used.");
+  note(facts.without_accuracy > 0,
+       count_text(facts.without_accuracy,
+                  "fixes state an accuracy that is 0 or no number; the document's stands in its place."));
+  note(facts.height_zero, "Every height is 0: it is nobody's, and only horizontal results are given.");
+  note(facts.course_constant, "The course of the fixes never varies: neither it nor the speed is used as a velocity.");
+  note(facts.without_type > 0,
+       count_text(facts.without_type, "fixes say no type; they are among those that are left out."));
+  note(facts.imu_stamps.without_stamp + facts.gnss_stamps.without_stamp > 0,
+       count_text(facts.imu_stamps.without_stamp + facts.gnss_stamps.without_stamp,
+                  "rows have no time and are left out."));
+  note(facts.reference_gaps > 0, "The reference has gaps (" + std::to_string(facts.reference_gaps) + ", " +
+                                     std::to_string(std::lround(facts.reference_gaps_s)) +
+                                     " s in all): outages that begin or end in one are not scored.");
   note(facts.held > 0, count_text(facts.held, "rows of the fixes repeat the fix before; they are no new data."));
   note(facts.far_away > 0,
        count_text(facts.far_away, "fixes lie more than 200 km from the middle of the drive and are left out."));
@@ -132,6 +178,7 @@ void write_notes(Drive& drive) {
        count_text(facts.sampling.stuck, "rows of the unit stand in runs of equal rows: the sensor was stuck there."));
   note(facts.sampling.gaps_splitting > 0,
        count_text(facts.sampling.gaps_splitting, "gaps are too long to bridge; the filter begins anew after each."));
+  write_notes_on_members(drive);
   note(drive.document.gnss.geoid, "Heights are above the geoid: only horizontal results are given.");
   note(drive.withheld_fixes,
        "The reference is the withheld fixes: their own errors are part of every error given here.");
@@ -172,6 +219,13 @@ Status load_reference(const Document& document, const Tables& tables, double epo
   std::size_t equal = 0;
   for (const Fix& point : *points) {
     drive.reference.push_back({point.time_s - epoch_s, point.position_ecef_m});
+  }
+  for (std::size_t i = 1; i < drive.reference.size(); ++i) {
+    const double step = drive.reference[i].time_s - drive.reference[i - 1].time_s;
+    if (step > 2.0 * kNearestReference) {
+      ++drive.facts.reference_gaps;
+      drive.facts.reference_gaps_s += step;
+    }
   }
   std::size_t at = 0;
   for (const Fix& fix : drive.fixes) {
@@ -246,7 +300,9 @@ Result<Drive> load_drive(const Document& document, const Tables& tables, const L
   if (!log) {
     return fail(log.error());
   }
-  auto runs = uniform_readings(std::move(log->rows), {document.imu.clock, options.repair}, drive.facts.sampling);
+  const bool arrives = document.imu.clock == SensorClock::Sensor && document.imu.source.time.arrival;
+  const SensorClock clock = arrives ? SensorClock::Arrival : document.imu.clock;
+  auto runs = uniform_readings(std::move(log->rows), {clock, options.repair}, drive.facts.sampling);
   if (!runs) {
     return fail(runs.error());
   }

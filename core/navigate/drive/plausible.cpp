@@ -9,6 +9,8 @@
 namespace driftlab::drive {
 namespace {
 
+constexpr double kSwapped = 0.9;  ///< correlation of displacements and velocities with their axes exchanged
+
 tl::unexpected<Error> implausible(const char* member, std::string sentence) {
   return fail(ErrorCode::InvalidArgument, std::move(sentence), {{"parameter", member}});
 }
@@ -79,6 +81,8 @@ Status check_path(const Drive& drive) {
   double by_velocity = 0.0;
   double by_position = 0.0;
   Product vertical;
+  Product straight;  // displacement on velocity, north on north and east on east
+  Product crossed;   // north on east and east on north
   Product turning;
   for (std::size_t i = 1; i < drive.fixes.size(); ++i) {
     const Fix& a = drive.fixes[i - 1];
@@ -92,6 +96,10 @@ Status check_path(const Drive& drive) {
     if (expected.head<2>().norm() > 2.0 * step) {
       by_velocity += expected.head<2>().norm();
       by_position += moved.head<2>().norm();
+      straight.add(moved.x(), expected.x());
+      straight.add(moved.y(), expected.y());
+      crossed.add(moved.x(), expected.y());
+      crossed.add(moved.y(), expected.x());
     }
     if (b.velocity_sd_m_s.z() < 5.0) {
       vertical.add(moved.z() / step, expected.z() / step);
@@ -117,6 +125,11 @@ Status check_path(const Drive& drive) {
                                              : "The positions move " + std::to_string(ratio) +
                                                    " times as far as the velocities say: latitude and longitude are in "
                                                    "radians, not degrees.");
+    }
+    if (crossed.correlation() > kSwapped && straight.correlation() < kSwapped - 0.2) {
+      return implausible("gnss.columns",
+                         "The positions move north where the velocities say east, and east where they say north: "
+                         "latitude and longitude are swapped, or the velocities north and east.");
     }
     if (ratio > 2.0 || ratio < 0.5) {
       return implausible("gnss.columns", "The positions move " + std::to_string(ratio) +

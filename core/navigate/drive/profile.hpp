@@ -34,8 +34,6 @@ class Profile {
   [[nodiscard]] FilterOptions refitted(FilterOptions options, const std::vector<const Knob*>& knobs, int sweeps) const;
 
   [[nodiscard]] static FilterOptions turned(const FilterOptions& options, const Knob& knob, double by);
-  /// What the options hold of a knob, SI.
-  [[nodiscard]] static double value_of(const FilterOptions& options, const Knob& knob);
 
  private:
   struct Bracket {

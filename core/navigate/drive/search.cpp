@@ -135,39 +135,6 @@ FilterOptions Profile::refitted(FilterOptions options, const std::vector<const K
   return options;
 }
 
-double Profile::value_of(const FilterOptions& options, const Knob& knob) {
-  // What a knob has been turned to: the change of the options along it, read by turning it back to the start.
-  FilterOptions zero;
-  zero.constraint = options.constraint ? std::optional(Constraint{}) : std::nullopt;
-  FilterOptions one = zero;
-  knob.turn(one, 1.0);
-  const auto numbers = [](const FilterOptions& o) {
-    std::vector<double> list{o.imu_offset_s,   o.velocity_latency_s,  o.position_latency_s,
-                             o.odometer_scale, o.initial_heading_rad, o.coloured.sigma_m,
-                             o.coloured.tau_s, o.gyro_vibration,      o.force_vibration};
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      list.push_back(o.lever_arm_m(i));
-      for (Eigen::Index j = 0; j < 3; ++j) {
-        list.push_back(o.errors.gyroscope(i, j));
-        list.push_back(o.errors.accelerometer(i, j));
-      }
-    }
-    if (o.constraint) {
-      list.insert(list.end(), {o.constraint->yaw_rad, o.constraint->pitch_rad, o.constraint->axle_m});
-    }
-    return list;
-  };
-  const auto base = numbers(zero);
-  const auto turned_numbers = numbers(one);
-  const auto own = numbers(options);
-  for (std::size_t i = 0; i < base.size(); ++i) {
-    if (turned_numbers[i] != base[i]) {
-      return own[i];
-    }
-  }
-  return 0.0;
-}
-
 Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& options, int most_causes,
                                    const RunControl& control) {
   if (auto sound = log_likelihood(drive, options); !sound) {
@@ -208,13 +175,7 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
       }
     }
     const Knob& knob = *open[best];
-    DriveFinding finding;
-    finding.cause = knob.cause;
-    finding.parameter = knob.parameter;
-    finding.title = knob.title;
-    finding.unit = knob.unit;
-    finding.evidence = "innovations";
-    finding.told_apart = knob.told_apart;
+    DriveFinding finding = finding_of(knob);
     finding.score = estimates[best].score;
     if (second_at < open.size() && finding.score - second < kPair) {
       finding.pair = open[second_at]->cause;
@@ -233,8 +194,8 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
   const double at = profile.values({result.options}).front();
   const auto last = profile.estimates(result.options, at, named, scale);
   for (std::size_t i = 0; i < named.size(); ++i) {
-    const double value = Profile::value_of(result.options, *named[i]) - Profile::value_of(options, *named[i]);
-    result.findings[i].value = Profile::value_of(result.options, *named[i]) * named[i]->per_si;
+    const double value = named[i]->value(result.options) - named[i]->value(options);
+    result.findings[i].value = named[i]->value(result.options) * named[i]->per_si;
     result.findings[i].se = last[i].se * named[i]->per_si;
     const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
     result.findings[i].score = std::max((at - without) / scale, 0.0);

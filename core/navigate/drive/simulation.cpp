@@ -60,6 +60,46 @@ class LastingErrors {
   bool begun_ = false;
 };
 
+constexpr std::uint64_t kSimulatedStream = 300;  ///< of the bootstrap
+
+double mean_nees(const std::vector<DriveOutage>& outages, std::span<const std::size_t> which) {
+  double sum = 0.0;
+  for (const std::size_t i : which) {
+    sum += outages[i].nees();
+  }
+  return sum / static_cast<double>(which.size());
+}
+
+double rms_error(const std::vector<DriveOutage>& outages, const std::vector<std::vector<std::size_t>>& blocks,
+                 Random& random) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (const std::size_t i : blocks[random.below(blocks.size())]) {
+      sum += outages[i].error_m() * outages[i].error_m();
+      count += 1.0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+/// The 95 % percentile interval of the ratio of two rms errors whose blocks are resampled apart.
+Interval ratio_interval(const DurationSummary& measured, const DurationSummary& simulated,
+                        const std::vector<std::vector<std::size_t>>& simulated_blocks,
+                        const EvaluationOptions& settings, std::uint64_t stream) {
+  const auto measured_blocks = blocks_of(measured.outages, measured.period_s);
+  if (measured_blocks.size() < kLeastBlocks || simulated_blocks.size() < kLeastBlocks) {
+    return {};
+  }
+  Random random(settings.seed, stream);
+  std::vector<double> ratios;
+  for (int r = 0; r < settings.resamples; ++r) {
+    const double above = rms_error(measured.outages, measured_blocks, random);
+    ratios.push_back(above / rms_error(simulated.outages, simulated_blocks, random));
+  }
+  return percentile_interval(std::move(ratios));
+}
+
 }  // namespace
 
 Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::size_t part) {
@@ -242,7 +282,12 @@ Result<std::vector<SimulatedDuration>> simulate_outages(const PreparedDrive& pre
     const auto d = static_cast<std::size_t>(std::find(plan.duration_s.begin(), plan.duration_s.end(), own.duration_s) -
                                             plan.duration_s.begin());
     std::vector<DriveOutage> all;
+    std::vector<std::vector<std::size_t>> blocks;
     for (const auto& one : scored) {
+      for (auto& block : blocks_of(one[d], own.period_s)) {
+        std::for_each(block.begin(), block.end(), [&](std::size_t& i) { i += all.size(); });
+        blocks.push_back(std::move(block));
+      }
       all.insert(all.end(), one[d].begin(), one[d].end());
     }
     if (all.empty()) {
@@ -257,11 +302,18 @@ Result<std::vector<SimulatedDuration>> simulate_outages(const PreparedDrive& pre
     result.rms_m = summary.rms_m.value;
     result.mean_m = summary.mean_m;
     result.median_m = summary.median_m.value;
-    result.nees = summary.nees.value;
-    result.coverage50 = summary.coverage50.value;
-    result.coverage95 = summary.coverage95.value;
+    const EvaluationOptions bootstrap{.seed = options.seed};
+    const auto share = [&](double fraction, std::uint64_t stream) {
+      return share_inside(summary.outages, blocks, fraction, bootstrap, stream);
+    };
+    result.nees = {summary.nees.value,
+                   bootstrap_interval(
+                       blocks, [&](std::span<const std::size_t> which) { return mean_nees(summary.outages, which); },
+                       bootstrap, kSimulatedStream)};
+    result.coverage50 = share(0.5, kSimulatedStream + 1);
+    result.coverage95 = share(0.95, kSimulatedStream + 2);
     result.ratio = {own.rms_m.value / result.rms_m,
-                    {own.rms_m.ci95.low / result.rms_m, own.rms_m.ci95.high / result.rms_m}};
+                    ratio_interval(own, summary, blocks, bootstrap, kSimulatedStream + 3)};
     results.push_back(result);
   }
   return results;

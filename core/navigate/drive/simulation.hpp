@@ -21,8 +21,11 @@ struct SimulatedDuration {
   double duration_s = 0.0;
   std::size_t count = 0;
   double rms_m = 0.0, mean_m = 0.0, median_m = 0.0;
-  double nees = 0.0, coverage50 = 0.0, coverage95 = 0.0;
-  Estimate ratio;  ///< measured rms over simulated rms; blocks of the measured outages resampled
+  /// What the simulation's own filter makes of itself; blocks of one period of one simulated drive resampled.
+  Estimate nees, coverage50, coverage95;
+  /// Measured rms over simulated rms; blocks of the measured and of the simulated outages resampled, so that the
+  /// interval holds the scatter of both.
+  Estimate ratio;
 };
 
 /// A drive simulated once: as load_drive would give it. `poses` on the unit's clock. Errors: those of

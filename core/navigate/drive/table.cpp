@@ -1,8 +1,9 @@
 #include "core/navigate/drive/table.hpp"
 
+#include "core/signal/find_column.hpp"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -29,31 +30,13 @@ double leap_seconds_at(double unix_s) {
   return leap;
 }
 
-Result<std::size_t> find_column(const Table& table, const std::string& name) {
-  const auto found = std::find(table.names.begin(), table.names.end(), name);
-  if (found != table.names.end()) {
-    return static_cast<std::size_t>(found - table.names.begin());
-  }
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc{} && end == name.data() + name.size() && number < table.names.size()) {
-    return number;
-  }
-  std::string known;
-  for (const std::string& other : table.names) {
-    known.append(known.empty() ? "" : ", ").append(other);
-  }
-  return fail(ErrorCode::UnknownColumn, "There is no column '" + name + "'; the file has " + known + ".",
-              {{"column", name}});
-}
-
 Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source, Quantity quantity,
                                                          std::string_view axis) {
   for (const auto& [name, meaning] : source.columns) {
     if (meaning.quantity != quantity || meaning.axis != axis) {
       continue;
     }
-    const auto index = find_column(table, name);
+    const auto index = find_column(table.names, name);
     if (!index) {
       return fail(index.error());
     }
@@ -79,7 +62,7 @@ Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
       stamps[i] = static_cast<double>(i) / *meaning.rate_hz;
     }
   } else {
-    const auto column = find_column(table, meaning.column);
+    const auto column = find_column(table.names, meaning.column);
     if (!column) {
       return fail(column.error());
     }

@@ -264,10 +264,31 @@ TEST(DriveSimulation, CoversItselfWithAndWithoutAVelocityConstraint) {
     const auto simulated = simulate_outages(*prepared, evaluation->durations, {.runs = 8, .seed = 2});
     ASSERT_TRUE(simulated) << simulated.error().message;
     for (const SimulatedDuration& one : *simulated) {
-      EXPECT_GT(one.coverage95, 0.91) << one.duration_s << (constrained ? " constrained" : "");
-      EXPECT_NEAR(one.nees, 2.0, 0.5) << one.duration_s << (constrained ? " constrained" : "");
+      EXPECT_GT(one.coverage95.value, 0.91) << one.duration_s << (constrained ? " constrained" : "");
+      EXPECT_NEAR(one.nees.value, 2.0, 0.5) << one.duration_s << (constrained ? " constrained" : "");
+      EXPECT_TRUE(one.nees.ci95.contains(one.nees.value));
+      EXPECT_TRUE(one.coverage95.ci95.contains(one.coverage95.value));
+      EXPECT_TRUE(one.coverage95.ci95.contains(0.95)) << one.coverage95.ci95.low << " to " << one.coverage95.ci95.high;
     }
   }
+}
+
+TEST(DriveSimulation, TheRatiosIntervalHoldsTheScatterOfTheSimulationToo) {
+  // Fewer simulated drives say less of the simulated rms: the interval of the ratio widens, where that of the measured
+  // rms alone, divided by the simulated one, would stay.
+  const Drive drive = simulated_drive(20);
+  const auto evaluation = evaluate_drive(drive, {});
+  const auto prepared = PreparedDrive::make(drive, {});
+  ASSERT_TRUE(evaluation && prepared);
+  const auto few = simulate_outages(*prepared, evaluation->durations, {.runs = 1, .seed = 3});
+  const auto many = simulate_outages(*prepared, evaluation->durations, {.runs = 12, .seed = 3});
+  ASSERT_TRUE(few && many);
+  const auto width = [](const SimulatedDuration& one) {
+    return (one.ratio.ci95.high - one.ratio.ci95.low) / one.ratio.value;
+  };
+  const Estimate& rms = evaluation->durations.front().rms_m;
+  EXPECT_GT(width(few->front()), 1.1 * (rms.ci95.high - rms.ci95.low) / rms.value);
+  EXPECT_GT(width(few->front()), width(many->front()));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ import {Head, MadeBy, Report} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
-import {errorOf, isExplanation, opened, SHORT, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Simulated} from './drive/documents';
+import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Simulated} from './drive/documents';
 import {FactsPanel} from './drive/Facts';
 import {errorPlots, mendedPlots, outagesPlot} from './drive/plots';
 import {Where} from './drive/Where';
@@ -81,6 +81,16 @@ function Steps({evaluation, duration}: {evaluation: Explanation; duration: numbe
   </Panel>;
 }
 
+// Several models: what is shown, in words, and each filter's errors.
+function Compared({evaluation}: {evaluation: Comparison}): JSX.Element {
+  const [first, ...others] = evaluation.verdicts.map(writeSentence);
+  return <>
+    <p class="verdict">{first}<small>{[...others, ...evaluation.notes].join(' ')}</small></p>
+    {evaluation.filters.map(filter => <div key={filter.name} class="above"><h2>{filter.name}</h2><p class="sec">{filter.about}</p><ByDuration durations={filter.durations} simulated={undefined} /></div>)}
+    <FactsPanel facts={evaluation.facts} />
+  </>;
+}
+
 function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: string}): JSX.Element {
   const {query} = usePlace();
   const explained = isExplanation(evaluation);
@@ -116,6 +126,6 @@ export default function DriveEvaluation(): JSX.Element {
       facts={[stored.evaluation?.vehicle, `seed ${stored.seed}`, stored.evaluation && `algorithm ${stored.evaluation.algorithm_version}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']}
       actions={<><a class="btn" href={pageOf('jobs', stored.id)}>Job</a><Report /></>} />
     <MadeBy job={stored.id} />
-    {stored.evaluation ? <Answer evaluation={stored.evaluation} id={stored.id} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Drive" />}</>}
+    {stored.evaluation ? (isComparison(stored.evaluation) ? <Compared evaluation={stored.evaluation} /> : <Answer evaluation={stored.evaluation} id={stored.id} />) : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Drive" />}</>}
   </>}</Shown>;
 }

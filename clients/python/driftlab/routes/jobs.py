@@ -95,7 +95,7 @@ class JobRoutes(Routes):
     @operation("createDriveEvaluation")
     def create_drive_evaluation(self, request: NewDriveEvaluation, *, wait_s: float | None = None,
                                 idempotency_key: str | None = None) -> DriveEvaluationResource:
-        """Asks a stored drive: measure its outages, simulate them beside it, or explain the difference."""
+        """Asks a stored drive: measure its outages, simulate them beside it, explain the difference, or compare models."""
         return cast(DriveEvaluationResource, self._post("createDriveEvaluation", request, idempotency_key, wait_s=wait_s))
 
     @operation("getDriveEvaluation")

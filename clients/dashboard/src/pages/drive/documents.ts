@@ -9,7 +9,7 @@ export interface DriveText {
 }
 export interface StoredDrive { id: string; device: string; name: string; vehicle: string; drive: DriveText; created_at: string }
 
-export type Question = 'run' | 'simulate' | 'explain';
+export type Question = 'run' | 'simulate' | 'explain' | 'compare';
 export interface EvaluationRow { id: string; drive: string; name: string; question: Question; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: {detail: string} | null }
 
 export interface Estimated { value: number | null; ci95: Ends }
@@ -30,11 +30,15 @@ interface Common { id: string; vehicle: string; summary: string; algorithm_versi
 export interface Measured extends Common { options: {velocity_constraint: boolean; zero_velocity: boolean; odometer: boolean}; durations: Duration[]; natural_outages: {start_s: number; duration_s: number}[]; rejected_fixes: number; heading_known_s: number | null; simulated?: Simulated[] }
 export interface Side { durations: Duration[]; simulated: Simulated[] }
 export interface Explanation extends Common { findings: Finding[]; rungs: Rung[]; white_noise_factors: {gyroscope: number; accelerometer: number}; before: Side; after: Side }
-export interface Evaluation extends EvaluationRow { evaluation: Measured | Explanation | null }
+export interface Evaluation extends EvaluationRow { evaluation: Measured | Explanation | Comparison | null }
 
-export const QUESTIONS: Record<Question, string> = {run: 'Measure outages', simulate: 'Simulate the same beside them', explain: 'Explain the difference'};
-export const SHORT: Record<Question, string> = {run: 'measured', simulate: 'measured and simulated', explain: 'explained'};
+export interface Comparison extends Common { verdicts: string[]; filters: {name: string; about: string; durations: Duration[]}[] }
 
+// What a page asks; several models are compared from the command line and the API.
+export const QUESTIONS: Record<Exclude<Question, 'compare'>, string> = {run: 'Measure outages', simulate: 'Simulate the same beside them', explain: 'Explain the difference'};
+export const SHORT: Record<Question, string> = {run: 'measured', simulate: 'measured and simulated', explain: 'explained', compare: 'models compared'};
+
+export const isComparison = (evaluation: Measured | Explanation | Comparison): evaluation is Comparison => 'verdicts' in evaluation;
 export const isExplanation = (evaluation: Measured | Explanation): evaluation is Explanation => 'rungs' in evaluation;
 
 // The name of a quantity as people write it.

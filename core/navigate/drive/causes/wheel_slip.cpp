@@ -1,4 +1,7 @@
+/// wheel_slip: the wheel of the odometer slips or locks, in bursts. Its readings there are used by no filter.
+#include "core/navigate/drive/causes/cause.hpp"
 #include "core/navigate/drive/likelihood.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +97,31 @@ std::optional<WheelSlips> slips_of(const Drive& drive, double velocity_latency_s
     slip = {slip[0] - kShortestSlip, slip[1] + kShortestSlip};
   }
   return found;
+}
+
+namespace {
+
+std::optional<FromFiles> slips_in_files(const Drive& drive, const FilterOptions& options) {
+  const auto found = slips_of(drive, options.velocity_latency_s);
+  if (!found || found->slips.empty()) {
+    return std::nullopt;
+  }
+  DriveFinding finding;
+  finding.parameter = "seconds";
+  finding.title = "the wheel of the odometer slips or locks, " + how_often(found->slips.size()) + ", in all";
+  finding.unit = "s";
+  finding.value = found->seconds();
+  // Each reading of a slip is five standard deviations off and more: 12 nats in half of its square.
+  finding.score = 12.5 * static_cast<double>(found->slips.size());
+  finding.evidence = "odometer and fixes";
+  finding.told_apart = "bursts; a scale factor of the odometer is the same everywhere";
+  return FromFiles{std::move(finding), [slips = found->slips](FilterOptions& told) { told.slips = slips; }, true};
+}
+
+}  // namespace
+
+Cause wheel_slip() {
+  return {.name = "wheel_slip", .words = "slips of the odometer's wheel", .from_files = slips_in_files};
 }
 
 }  // namespace driftlab::drive

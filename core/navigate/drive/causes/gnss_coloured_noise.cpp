@@ -1,0 +1,37 @@
+/// gnss_coloured_noise: errors of positions last from fix to fix. The filter estimates them beside everything else.
+#include "core/navigate/drive/causes/cause.hpp"
+
+#include <algorithm>
+
+namespace driftlab::drive {
+namespace {
+
+constexpr double kShortestColour = 0.5;  ///< [s]
+constexpr std::string_view kColourApart = "the correlation of fixes at rest, and of innovations once their level fits";
+
+}  // namespace
+
+Cause gnss_coloured_noise() {
+  return {.name = "gnss_coloured_noise",
+          .words = "lasting errors of positions",
+          .knobs = {{.parameter = "sigma",
+                     .title = "positions of fixes have lasting errors of",
+                     .unit = "m",
+                     .step = 0.02,
+                     .most = 20.0,
+                     .turn = [](FilterOptions& o, double by) { o.coloured.sigma_m += by; },
+                     .value = [](const FilterOptions& o) { return o.coloured.sigma_m; },
+                     .told_apart = kColourApart},
+                    {.parameter = "tau_s",
+                     .title = "lasting errors of positions last",
+                     .unit = "s",
+                     .step = 3.0,
+                     .most = 300.0,
+                     .turn = [](FilterOptions& o,
+                                double by) { o.coloured.tau_s = std::max(o.coloured.tau_s + by, kShortestColour); },
+                     .value = [](const FilterOptions& o) { return o.coloured.tau_s; },
+                     .applies = [](const Drive&, const FilterOptions& o) { return !o.coloured.none(); },
+                     .told_apart = kColourApart}}};
+}
+
+}  // namespace driftlab::drive

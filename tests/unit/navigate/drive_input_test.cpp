@@ -1,0 +1,234 @@
+// Bad input of drives: each is refused with its sentence, or survived with one among the notes (spec/drives.md, 8).
+#include "tests/unit/navigate/drive_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+namespace driftlab::drive {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Files {
+  Document document;
+  Tables tables;
+
+  std::vector<double>& column(Table& table, std::string_view name) {
+    const auto at = std::find(table.names.begin(), table.names.end(), name);
+    return table.columns[static_cast<std::size_t>(at - table.names.begin())];
+  }
+  std::vector<double>& imu(std::string_view name) { return column(tables.imu, name); }
+  std::vector<double>& gnss(std::string_view name) { return column(tables.gnss, name); }
+};
+
+/// The town's drive as its files would hold it, over hills that the fixes alone know of.
+Files town() {
+  const Drive drive = simulated_drive(71);
+  Files files;
+  files.document = drive.document;
+  Source& unit = files.document.imu.source;
+  unit.file = "imu.csv";
+  unit.time.column = "t";
+  files.tables.imu.names = {"t", "gx", "gy", "gz", "ax", "ay", "az"};
+  files.tables.imu.columns.resize(7);
+  const UniformRun& run = drive.runs.front();
+  for (std::size_t i = 0; i < run.readings.size(); ++i) {
+    files.tables.imu.columns[0].push_back(run.dt_s * static_cast<double>(i + 1));
+    for (std::size_t c = 0; c < kImuChannels; ++c) {
+      files.tables.imu.columns[c + 1].push_back(run.readings[i][c]);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string axis(1, "xyz"[k]);
+    unit.columns["g" + axis] = {Quantity::AngularRate, axis, 1.0};
+    unit.columns["a" + axis] = {Quantity::SpecificForce, axis, 1.0};
+  }
+  GnssSource& gnss = files.document.gnss;
+  gnss.source.file = "gnss.csv";
+  gnss.source.time.column = "t";
+  gnss.source.columns = {{"lat", {Quantity::GnssPosition, "lat", 1.0}},
+                         {"lon", {Quantity::GnssPosition, "lon", 1.0}},
+                         {"h", {Quantity::GnssPosition, "height", 1.0}},
+                         {"vn", {Quantity::GnssVelocity, "north", 1.0}},
+                         {"ve", {Quantity::GnssVelocity, "east", 1.0}},
+                         {"vd", {Quantity::GnssVelocity, "down", 1.0}},
+                         {"sd", {Quantity::GnssAccuracy, "horizontal", 1.0}},
+                         {"sdv", {Quantity::GnssAccuracy, "vertical", 1.0}},
+                         {"type", {Quantity::FixType, "", 1.0}}};
+  files.tables.gnss.names = {"t", "lat", "lon", "h", "vn", "ve", "vd", "sd", "sdv", "type"};
+  files.tables.gnss.columns.resize(10);
+  for (const Fix& fix : drive.fixes) {
+    const Geodetic place = to_geodetic(fix.position_ecef_m);
+    const Vector3& v = *fix.velocity_ned_m_s;
+    const double t = fix.time_s;
+    const double values[] = {t,
+                             place.latitude_rad,
+                             place.longitude_rad,
+                             place.height_m + 5.0 * std::sin(0.3 * t),
+                             v.x(),
+                             v.y(),
+                             v.z() - 1.5 * std::cos(0.3 * t),
+                             1.0 + 0.1 * std::sin(t),
+                             2.0 + 0.1 * std::sin(t),
+                             1.0};
+    for (std::size_t c = 0; c < 10; ++c) {
+      files.tables.gnss.columns[c].push_back(values[c]);
+    }
+  }
+  return files;
+}
+
+/// Speed and course in place of the velocity.
+void by_course(Files& files) {
+  auto& columns = files.document.gnss.source.columns;
+  columns.erase("vd");
+  columns["vn"] = {Quantity::GnssSpeed, "", 1.0};
+  columns["ve"] = {Quantity::GnssCourse, "", 1.0};
+  for (std::size_t i = 0; i < files.gnss("vn").size(); ++i) {
+    const double north = files.gnss("vn")[i];
+    const double east = files.gnss("ve")[i];
+    const double speed = std::hypot(north, east);
+    files.gnss("vn")[i] = speed < 0.5 ? 0.0 : speed;
+    files.gnss("ve")[i] = speed < 0.5 ? 0.0 : std::atan2(east, north);
+  }
+}
+
+void own_reference(Files& files, double beside_rad) {
+  Table reference = files.tables.gnss;
+  for (double& latitude : reference.columns[1]) {
+    latitude += beside_rad;
+  }
+  files.document.reference.source = files.document.gnss.source;
+  files.document.reference.source->columns = {{"lat", {Quantity::ReferencePosition, "lat", 1.0}},
+                                              {"lon", {Quantity::ReferencePosition, "lon", 1.0}},
+                                              {"h", {Quantity::ReferencePosition, "height", 1.0}}};
+  files.tables.reference = std::move(reference);
+}
+
+struct Case {
+  const char* name;
+  std::function<void(Files&)> spoil;
+  bool refused;
+  const char* said;
+};
+
+TEST(DriveInput, IsRefusedOrSurvivedWithItsSentence) {
+  const std::vector<Case> cases{
+      {"nothing", [](Files&) {}, false, "The reference is the withheld fixes"},
+      {"latitude and longitude swapped, both plausible", [](Files& f) { std::swap(f.gnss("lat"), f.gnss("lon")); },
+       true, "latitude and longitude are swapped"},
+      {"up for down", [](Files& f) { f.document.gnss.source.columns["vd"].axis = "up"; }, true,
+       "the vertical velocity is up"},
+      {"left-handed axes",
+       [](Files& f) { std::for_each(f.imu("gz").begin(), f.imu("gz").end(), [](double& v) { v = -v; }); }, true,
+       "left-handed"},
+      {"the filter's own input as reference", [](Files& f) { own_reference(f, 0.0); }, false, "the filter's own input"},
+      {"a reference with gaps",
+       [](Files& f) {
+         own_reference(f, 1e-7);
+         std::vector<double>& t = f.tables.reference->columns[0];
+         for (double& one : t) {
+           one = one > 100.0 && one < 130.0 ? kNothing : one;
+         }
+       },
+       false, "The reference has gaps (1, 30 s in all)"},
+      {"an accuracy of 0", [](Files& f) { f.gnss("sd")[40] = f.gnss("sd")[41] = 0.0; }, false,
+       "2 fixes state an accuracy that is 0"},
+      {"an accuracy that is no number", [](Files& f) { f.gnss("sdv")[40] = kNothing; }, false,
+       "1 fixes state an accuracy that is 0 or no number"},
+      {"a constant vertical accuracy", [](Files& f) { f.gnss("sdv").assign(f.gnss("sdv").size(), 3.0); }, false,
+       "The stated vertical accuracy never varies"},
+      {"heights of 0", [](Files& f) { f.gnss("h").assign(f.gnss("h").size(), 0.0); }, false, "Every height is 0"},
+      {"a course that is always 0",
+       [](Files& f) {
+         by_course(f);
+         f.gnss("ve").assign(f.gnss("ve").size(), 0.0);
+       },
+       false, "The course of the fixes never varies"},
+      {"a fix type that is lost for a while",
+       [](Files& f) {
+         f.document.gnss.fix_types = {1};
+         std::fill_n(f.gnss("type").begin() + 50, 7, kNothing);
+       },
+       false, "7 fixes say no type"},
+      {"a fix type that no column says",
+       [](Files& f) {
+         f.document.gnss.fix_types = {1};
+         f.document.gnss.source.columns.erase("type");
+       },
+       true, "no column says the fix_type"},
+      {"stamps that step back", [](Files& f) { std::swap(f.imu("t")[700], f.imu("t")[703]); }, false,
+       "rows whose stamp steps back"},
+      {"a torn first row of the unit", [](Files& f) { f.imu("ay")[0] = f.imu("az")[0] = kNothing; }, false,
+       "rows of the unit are incomplete"},
+      {"a first row without its time", [](Files& f) { f.gnss("t")[0] = kNothing; }, false, "rows have no time"},
+      {"a torn last row of the fixes", [](Files& f) { f.gnss("lat").back() = kNothing; }, false, "have no position"},
+      {"an arm whose uncertainty is stated", [](Files& f) { f.document.gnss.lever_arm_sd_m = 1.0; }, false,
+       "The lever arm is taken as stated"},
+      {"a mounting whose uncertainty is stated", [](Files& f) { f.document.imu.mounting_sd_rad = 0.02; }, false,
+       "The mounting is taken as stated"},
+      {"readings stamped on arrival", [](Files& f) { f.document.imu.source.time.arrival = true; }, false,
+       "Readings are stamped when they arrive"},
+      {"a clock of arrival", [](Files& f) { f.document.imu.clock = SensorClock::Arrival; }, false,
+       "Readings are stamped when they arrive"},
+      {"fixes stamped on arrival", [](Files& f) { f.document.gnss.source.time.arrival = true; }, false,
+       "Fixes are stamped when they arrive"},
+  };
+  const Files sound = town();
+  for (const Case& one : cases) {
+    Files files = sound;
+    one.spoil(files);
+    const auto drive = load_drive(files.document, files.tables);
+    std::string said;
+    if (drive) {
+      for (const std::string& note : drive->facts.notes) {
+        said += note + "\n";
+      }
+    } else {
+      said = drive.error().message;
+    }
+    EXPECT_EQ(!drive, one.refused) << one.name << ": " << said;
+    EXPECT_NE(said.find(one.said), std::string::npos) << one.name << ": " << said;
+  }
+}
+
+TEST(DriveInput, StampsOfArrivalGetEqualSpacing) {
+  // Every second reading arrives a millisecond late: taken at their stamps, readings would be mixed with their
+  // neighbours on the even grid.
+  Files files = town();
+  std::vector<double>& t = files.imu("t");
+  for (std::size_t i = 0; i < t.size(); i += 2) {
+    t[i] += 0.001;
+  }
+  files.document.imu.source.time.arrival = true;
+  const auto drive = load_drive(files.document, files.tables);
+  ASSERT_TRUE(drive) << drive.error().message;
+  ASSERT_EQ(drive->runs.size(), 1U);
+  EXPECT_NEAR(static_cast<double>(drive->runs.front().readings.size()), static_cast<double>(t.size()), 3.0);
+  EXPECT_EQ(drive->runs.front().readings[1001][2], files.imu("gz")[1001]) << "each reading is one of the file";
+}
+
+TEST(DriveInput, SpeedAndCourseOfZeroIsRestAndNoHeading) {
+  Files files = town();
+  by_course(files);
+  const auto drive = load_drive(files.document, files.tables);
+  ASSERT_TRUE(drive) << drive.error().message;
+  std::size_t resting = 0;
+  for (const Fix& fix : drive->fixes) {
+    ASSERT_TRUE(fix.velocity_ned_m_s);
+    if (fix.velocity_ned_m_s->head<2>().norm() == 0.0) {
+      ++resting;
+      EXPECT_FALSE(fix.has_course);
+      EXPECT_GE(fix.velocity_sd_m_s.x(), 0.5);
+    }
+  }
+  EXPECT_GT(resting, 50U);
+}
+
+}  // namespace
+}  // namespace driftlab::drive
