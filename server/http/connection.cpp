@@ -1,5 +1,7 @@
 #include "server/http/connection.hpp"
 
+#include "server/http/forwarded.hpp"
+
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/read.hpp>
@@ -118,6 +120,7 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   }
   started_ = std::chrono::steady_clock::now();
   route_.clear();
+  client_ = address_;
   bytes_in_ = 0;
   broken_ = false;
   folded_ = false;
@@ -180,7 +183,8 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   const auto given_id = request.header("x-request-id");
   request.request_id = given_id && is_request_id(*given_id) ? std::string(*given_id) : shared_.hooks.make_request_id();
   request.caller.request_id = request.request_id;
-  request.caller.address = address_;
+  client_ = client_address(address_, request.headers, shared_.options.proxies);
+  request.caller.address = client_;
   wants_continue_ = verdict.expects_continue;
   const bool has_body = verdict.content_length > 0 || verdict.chunked;
   body_unread_ = has_body || verdict.refusal.has_value();
@@ -232,6 +236,16 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   }
 
   route_ = match.route->pattern;
+  const auto place = shared_.in_flight.enter(request.caller.principal.token);
+  if (!place) {
+    Response full = problem_response(HttpFault::TooManyRequests,
+                                     "The token has as many requests under way as it may have " +
+                                         naming_budget("requests_per_token", budgets().requests_per_token) + ".");
+    if (has_body) {
+      co_return co_await refuse(request, std::move(full));
+    }
+    co_return co_await send(request, std::move(full), true);
+  }
   if (verdict.chunked) {
     chunked_.emplace();
   }
@@ -335,58 +349,6 @@ asio::awaitable<bool> HttpConnection::refuse(const Request& request, Response re
   co_return false;
 }
 
-asio::awaitable<bool> HttpConnection::answer_events(const EventHandler& handler, const Request& request) {
-  auto begin = [&handler, &request] {
-    const ActingFor acting(request.caller);
-    return handler(request);
-  };
-  auto begun = co_await shared_.handlers.run(begin);
-  auto settled = settle(std::move(begun));
-  if (!settled) {
-    co_return co_await send(request, std::move(settled.error()), true);
-  }
-  const std::unique_ptr<EventSource> source = std::move(*settled);
-  const auto executor = co_await asio::this_coro::executor;
-  const auto listener = shared_.bell.listen(source->subject(), executor);
-  std::string text =
-      "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-cache\r\nX-Accel-Buffering: no\r\n"
-      "X-Content-Type-Options: nosniff\r\nConnection: close\r\nX-Request-Id: " +
-      request.request_id + "\r\n\r\nretry: 3000\n\n";
-  auto last_sent = std::chrono::steady_clock::now();
-  bool last = request.method == "HEAD";
-  while (true) {
-    if (!last) {
-      auto look = [&source, &request] {
-        const ActingFor acting(request.caller);
-        return source->next();
-      };
-      auto batch = co_await shared_.handlers.run(look);
-      if (batch && *batch) {
-        text += (*batch)->text;
-        last = (*batch)->last;
-      }
-    }
-    if (text.empty() && std::chrono::steady_clock::now() - last_sent > 15s) {
-      text = ": still here\n\n";
-    }
-    if (!text.empty()) {
-      const bool written = co_await write_text(text);
-      if (!written) {
-        break;
-      }
-      last_sent = std::chrono::steady_clock::now();
-      text.clear();
-    }
-    if (last || shared_.stopping || !still_admitted(request)) {
-      break;
-    }
-    co_await listener->wait(1s);
-  }
-  const Response summary;
-  log(request, summary);
-  co_return false;
-}
-
 asio::awaitable<bool> HttpConnection::send(const Request& request, Response response, bool keep_alive) {
   shared_.hooks.complete(request, response);
   log(request, response);
@@ -448,8 +410,8 @@ void HttpConnection::log(const Request& request, const Response& response) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_,
-                     response.file ? response.file->length : response.body.size(), seconds, request.request_id,
-                     address_, request.caller.principal.token});
+                     response.file ? response.file->length : response.body.size(), seconds, request.request_id, client_,
+                     request.caller.principal.token, response.failure});
 }
 
 }  // namespace driftlab::server
