@@ -6,6 +6,7 @@
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
 #include "server/jobs/worker_pool.hpp"
+#include "server/noted.hpp"
 #include "server/observe/log.hpp"
 #include "server/observe/metrics.hpp"
 #include "server/open_store.hpp"
@@ -14,6 +15,7 @@
 #include "server/readiness.hpp"
 #include "server/scrubber.hpp"
 #include "server/store/disk_reserve.hpp"
+#include "server/store_gauges.hpp"
 #include "server/take_over.hpp"
 #include "server/webhooks/deliverer.hpp"
 
@@ -43,20 +45,6 @@ void settle_threads(const Settings& settings, WorkerOptions& options) {
   options.threads = settings.workers > 0 ? std::min(settings.workers, options.computing) : options.computing;
 }
 
-void log_request(Metrics& metrics, const AccessRecord& record) {
-  metrics.count_request(record.method, record.route, record.status, record.seconds, record.bytes_in, record.bytes_out);
-  log_info("request", Json{{"method", record.method},
-                           {"route", record.route},
-                           {"target", record.target},
-                           {"status", record.status},
-                           {"bytes_in", record.bytes_in},
-                           {"bytes_out", record.bytes_out},
-                           {"seconds", record.seconds},
-                           {"request_id", record.request_id},
-                           {"address", record.address},
-                           {"token", record.token.empty() ? Json(nullptr) : Json(record.token)}});
-}
-
 }  // namespace
 
 /// Members in the order of construction; destruction is the reverse.
@@ -72,9 +60,10 @@ struct Daemon::Parts {
         store(std::move(store_in.store)),
         others(store_in.others),
         visible(make_visible_store(*store)),
-        readiness(*store, *blobs),
+        states(*clock, note_state, [this](const auto&... words) { return store->access().note_state(words...); }),
+        readiness(*store, *blobs, states),
         gate(std::move(gate_in)),
-        scrubber(*store, *blobs, decode_limits(budgets), budgets.scrub_bytes_per_second,
+        scrubber(*store, *blobs, states, decode_limits(budgets), budgets.scrub_bytes_per_second,
                  [this] { return has_duty(Duty::Scrubbing); }),
         deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
         workers({*store, *blobs, *clock, budgets,
@@ -105,7 +94,8 @@ struct Daemon::Parts {
             stop_uploads.get_token(),
             &store->webhooks(),
             webhook_guard,
-            [this] { deliverer.wake(); }},
+            [this] { deliverer.wake(); },
+            [this] { return states.standing(); }},
         dispatcher(api) {
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
     if (others != nullptr) {
@@ -142,13 +132,23 @@ struct Daemon::Parts {
   }
 
   WorkerOptions maintained(WorkerOptions options) {
+    options.problem_document = [this](const Error& error) {
+      if (error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull || error.code == ErrorCode::Internal) {
+        note_failure(states, error, Json{{"of", "job"}});
+      }
+      return problem_document(error);
+    };
     options.attempt_ended = [this](std::string_view kind, std::string_view outcome, double seconds) {
       metrics.count_attempt(kind, outcome, seconds);
     };
     options.maintenance.budgets = budgets;
     options.maintenance.is_mine = [this] { return has_duty(Duty::Maintenance); };
     options.maintenance.is_nearly_full = [this] { return is_nearly_full(); };
-    options.maintenance.each_turn = [this] { look_after_reserve(); };
+    options.maintenance.each_turn = [this] {
+      look_after_reserve();
+      readiness.look_after();
+      states.look_after();
+    };
     options.maintenance.each_tidy = [this] {
       (void)store->webhooks().forget_deliveries(clock->now() - budgets.keep_deliveries_days * kMicrosPerDay);
     };
@@ -185,27 +185,12 @@ struct Daemon::Parts {
       found.connections = static_cast<double>(load.connections);
       found.idle_connections = static_cast<double>(load.idle);
       found.uploads = static_cast<double>(load.uploads);
+      found.requests_in_flight = static_cast<double>(load.in_flight);
       found.turned_away = static_cast<double>(load.turned_away);
     }
-    if (const auto counts = store->counts(std::nullopt)) {
-      found.devices = static_cast<double>(counts->devices);
-      found.recordings = static_cast<double>(counts->recordings);
-      found.jobs_queued = static_cast<double>(counts->queued);
-      found.jobs_running = static_cast<double>(counts->running);
-    }
-    JobFilter waiting;
-    waiting.state = JobState::Queued;
-    if (const auto oldest = store->jobs(waiting, Page{"", 1}); oldest && !oldest->empty()) {
-      found.oldest_queued_seconds = static_cast<double>(clock->now() - oldest->front().created_at) / 1e6;
-    }
-    if (const auto space = blobs->space()) {
-      found.free_bytes = static_cast<double>(space->free_bytes);
-      found.free_fraction = space->free_fraction;
-    }
-    if (const auto hooks = store->webhooks().webhook_counts()) {
-      found.deliveries_waiting = static_cast<double>(hooks->waiting);
-      found.webhooks_disabled = static_cast<double>(hooks->disabled);
-    }
+    add_store_gauges(found, *store, *clock);
+    add_disk_gauges(found, *blobs);
+    add_state_gauges(found, states);
     const Scrubber::Findings stored = scrubber.findings();
     found.blobs_damaged = static_cast<double>(stored.damaged);
     found.blobs_healed = static_cast<double>(stored.healed);
@@ -244,6 +229,7 @@ struct Daemon::Parts {
   std::unique_ptr<SqlStore> store;
   Coordination* others;  ///< nullptr: this process has the store alone
   std::unique_ptr<Store> visible;
+  BadStates states;
   Readiness readiness;
   std::unique_ptr<Gate> gate;
   Scrubber scrubber;
@@ -316,7 +302,6 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   worker_options.grace_micros =
       static_cast<std::int64_t>(kGraceShare * 1e6 * static_cast<double>(settings.budgets.stop_seconds));
-  worker_options.problem_document = [](const Error& error) { return problem_document(error); };
   auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*opened), std::move(clock), std::move(gate),
                                        std::move(worker_options), std::move(*webhook_guard), settings);
 
@@ -350,7 +335,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   hooks.complete = complete_problem;
   hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
-  hooks.log = [shared](const AccessRecord& record) { log_request(shared->metrics, record); };
+  hooks.log = [shared](const AccessRecord& record) { note_request(shared->metrics, shared->states, record); };
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
   if (parts->others != nullptr) {
     parts->others->listen(parts->hints());
@@ -389,6 +374,8 @@ void Daemon::reload() {
   parts_->http->show(std::move(*context));
   log_info("certificate reloaded", Json{{"file", parts_->certificate.chain.string()}});
 }
+
+bool Daemon::is_alive(std::chrono::milliseconds patience) const { return parts_->http->is_alive(patience); }
 
 std::uint16_t Daemon::port() const { return parts_->http->port(); }
 

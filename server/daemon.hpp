@@ -3,6 +3,7 @@
 #include "core/signal/result.hpp"
 #include "server/settings.hpp"
 
+#include <chrono>
 #include <memory>
 
 namespace driftlab::server {
@@ -16,6 +17,8 @@ class Daemon {
   ~Daemon();
 
   [[nodiscard]] std::uint16_t port() const;
+  /// Whether requests are taken up: an I/O thread does something in that time. Thread safe.
+  [[nodiscard]] bool is_alive(std::chrono::milliseconds patience) const;
   /// Not ready, stop accepting, finish requests (10 s), stop workers (20 s), close the store. Idempotent.
   void stop();
   /// Opens the log file again, reads the certificate again and shows it to new connections (SIGHUP); one that does not

@@ -6,6 +6,7 @@
 #include "server/move_store.hpp"
 #include "server/observe/log.hpp"
 #include "server/process.hpp"
+#include "server/service_manager.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/crash_point.hpp"
 #include "server/store/sqlite/backup.hpp"
@@ -22,17 +23,22 @@ using driftlab::server::Configuration;
 using driftlab::server::Daemon;
 using driftlab::server::Settings;
 
+/// The point that DRIFTLAB_CRASH_AT names, which is read before any thread exists. False: there is no such point.
+bool arm_crash() {
+  const char* const crash_at = std::getenv("DRIFTLAB_CRASH_AT");  // NOLINT(concurrency-mt-unsafe)
+  if (crash_at == nullptr || driftlab::server::arm_crash_point(crash_at)) {
+    return true;
+  }
+  std::fprintf(stderr, "driftlabd: DRIFTLAB_CRASH_AT names no crash point\n");
+  return false;
+}
+
 int serve(const Settings& settings) {
   driftlab::server::Signals signals;
+  driftlab::server::ServiceManager manager;
   if (const auto opened = driftlab::server::start_log(settings.log_level, settings.log_file); !opened) {
     std::fprintf(stderr, "driftlabd: %s\n", opened.error().message.c_str());
     return 1;
-  }
-  // Read once, before any thread exists.
-  const char* const crash_at = std::getenv("DRIFTLAB_CRASH_AT");  // NOLINT(concurrency-mt-unsafe)
-  if (crash_at != nullptr && !driftlab::server::arm_crash_point(crash_at)) {
-    std::fprintf(stderr, "driftlabd: DRIFTLAB_CRASH_AT names no crash point\n");
-    return 2;
   }
   auto daemon = Daemon::start(settings);
   if (!daemon) {
@@ -41,7 +47,15 @@ int serve(const Settings& settings) {
     std::fprintf(stderr, "driftlabd: %s\n", daemon.error().message.c_str());
     return daemon.error().code == driftlab::ErrorCode::InvalidArgument ? 2 : 1;
   }
-  signals.wait_for_stop([&daemon] { (*daemon)->reload(); });
+  manager.tell("READY=1");
+  manager.watch([&daemon](std::chrono::milliseconds patience) { return (*daemon)->is_alive(patience); });
+  signals.wait_for_stop([&daemon, &manager] {
+    manager.tell("RELOADING=1");
+    (*daemon)->reload();
+    manager.tell("READY=1");
+  });
+  manager.stop_watching();
+  manager.tell("STOPPING=1");
   signals.end_process_after(std::chrono::seconds(settings.budgets.stop_seconds));
   (*daemon)->stop();
   daemon->reset();
@@ -188,6 +202,9 @@ int main(int argc, char** argv) {
   }
   if (manual.parsed()) {
     return manual.run();
+  }
+  if (!arm_crash()) {
+    return 2;
   }
   const auto configuration = driftlab::server::configure(given, driftlab::server::own_environment());
   if (!configuration) {

@@ -1,6 +1,6 @@
 #include "server/readiness.hpp"
 
-#include "server/observe/log.hpp"
+#include "server/store/told_error.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -11,14 +11,29 @@ constexpr std::chrono::seconds kProbeInterval{2};
 
 }  // namespace
 
-std::string Readiness::why_not() const {
-  if (const Status answered = store_.ping(); !answered) {
-    return "The store does not answer: " + answered.error().message;
+std::string Readiness::told(BadState state, const std::string& what, const Status& checked) const {
+  if (checked) {
+    states_.end(state);
+    return {};
   }
-  if (is_nearly_full()) {
-    return "The disk is nearly full.";
-  }
-  return cannot_write_why();
+  const std::string_view cause = cause_of(checked.error());
+  states_.begin(state, cause, what + checked.error().message);
+  return what + without_paths(checked.error()).message + " (state " + std::string(name_of(state)) + ", cause " +
+         std::string(cause) + ")";
+}
+
+std::string Readiness::why_not() const { return look(true); }
+
+void Readiness::look_after() const { (void)look(!states_.standing().empty()); }
+
+std::string Readiness::look(bool tries_to_write) const {
+  const std::string silent = told(BadState::StoreSilent, "The store does not answer: ", store_.ping());
+  const Status room =
+      is_nearly_full() ? Status(fail(ErrorCode::DiskFull, "less than it needs is free, or nobody can say.")) : Status{};
+  const std::string full = told(BadState::DiskNearlyFull, "The disk is nearly full: ", room);
+  const std::string unwritable =
+      tries_to_write ? told(BadState::StoreUnwritable, "The store cannot be written: ", can_write()) : "";
+  return !silent.empty() ? silent : !full.empty() ? full : unwritable;
 }
 
 bool Readiness::is_nearly_full() const {
@@ -26,20 +41,14 @@ bool Readiness::is_nearly_full() const {
   return !space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes);
 }
 
-std::string Readiness::cannot_write_why() const {
+Status Readiness::can_write() const {
   const std::lock_guard<std::mutex> guard(mutex_);
   const auto now = std::chrono::steady_clock::now();
-  if (probed_at_ && now - *probed_at_ < kProbeInterval) {
-    return write_fault_;
+  if (!probed_at_ || now - *probed_at_ >= kProbeInterval) {
+    written_ = store_.write_probe();
+    probed_at_ = std::chrono::steady_clock::now();
   }
-  const Status written = store_.write_probe();
-  probed_at_ = std::chrono::steady_clock::now();
-  const std::string fault = written ? "" : "The store cannot be written: " + written.error().message;
-  if (fault != write_fault_) {
-    fault.empty() ? log_info("the store can be written again") : log_error("bad state", Json{{"detail", fault}});
-  }
-  write_fault_ = fault;
-  return write_fault_;
+  return written_;
 }
 
 }  // namespace driftlab::server

@@ -1,5 +1,6 @@
 #pragma once
 /// Whether this daemon can take work: its store answers and can be written, and its disk has room.
+#include "server/store/bad_states.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
 
@@ -13,25 +14,32 @@ namespace driftlab::server {
 /// Any thread may ask.
 class Readiness {
  public:
-  /// Both must outlive it.
-  Readiness(Store& store, BlobStore& blobs) : store_(store), blobs_(blobs) {}
+  /// All must outlive it. What is found wrong begins and ends in `states`.
+  Readiness(Store& store, BlobStore& blobs, BadStates& states) : store_(store), blobs_(blobs), states_(states) {}
 
-  /// A sentence; empty where the daemon can take work.
+  /// A sentence that names state and cause, without paths of files; empty where the daemon can take work.
   [[nodiscard]] std::string why_not() const;
+
+  /// The same for nobody in particular, now and then: whether a row can be written is tried only while something is
+  /// wrong, for a daemon that has nothing to do leaves the disk alone.
+  void look_after() const;
 
   /// Less than 5 % and less than 10 GiB of the disk are free, or nobody can say.
   [[nodiscard]] bool is_nearly_full() const;
 
  private:
-  /// Why a row cannot be written; tried once in two seconds, for who asks whether the daemon is ready asks often. A bad
-  /// state is logged when it begins and when it ends.
-  [[nodiscard]] std::string cannot_write_why() const;
+  /// Whether a row can be written; tried once in two seconds, for who asks whether the daemon is ready asks often.
+  [[nodiscard]] Status can_write() const;
+  [[nodiscard]] std::string look(bool tries_to_write) const;
+  /// The sentence for a state that holds where `checked` failed; empty where it does not.
+  [[nodiscard]] std::string told(BadState state, const std::string& what, const Status& checked) const;
 
   Store& store_;
   BlobStore& blobs_;
+  BadStates& states_;
   mutable std::mutex mutex_;
   mutable std::optional<std::chrono::steady_clock::time_point> probed_at_;
-  mutable std::string write_fault_;
+  mutable Status written_;
 };
 
 }  // namespace driftlab::server

@@ -47,13 +47,13 @@ void Scrubber::note(const std::string& sha256, BlobState state) {
     log_warning("columns were made anew from the uploaded bytes", Json{{"blob", sha256}});
   }
   if (state == BlobState::Sound || state == BlobState::Healed) {
-    if (damaged_.erase(sha256) > 0) {
-      log_info("a damaged blob is sound again", Json{{"blob", sha256}});
-    }
-  } else if (damaged_.insert(sha256).second) {
-    log_error("bad state", Json{{"detail", "A stored file is damaged; upload the same file again to heal it."},
-                                {"blob", sha256},
-                                {"state", name_of(state)}});
+    damaged_.erase(sha256);
+    states_.end(BadState::FileDamaged, sha256);
+  } else {
+    damaged_.insert(sha256);
+    states_.begin(BadState::FileDamaged, "damage",
+                  "A stored file has " + std::string(name_of(state)) + "; upload the same file again to heal it.",
+                  sha256);
   }
   findings_.damaged = damaged_.size();
 }

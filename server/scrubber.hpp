@@ -3,6 +3,7 @@
 /// are healed, and what cannot be healed is logged once, counted and shown by /readyz.
 #include "core/read/byte_source.hpp"
 #include "server/api/stored_blob.hpp"
+#include "server/store/bad_states.hpp"
 #include "server/store/store.hpp"
 
 #include <cstdint>
@@ -17,12 +18,14 @@ namespace driftlab::server {
 
 class Scrubber {
  public:
-  /// References must outlive this object. `bytes_per_second` 0: nothing is read in the background.
+  /// References must outlive this object. `bytes_per_second` 0: nothing is read in the background. Damaged files are
+  /// bad states.
   /// `is_mine`: whether this process reads, of several on the same files; empty: it is the only one.
-  Scrubber(Store& store, BlobStore& blobs, DecodeLimits limits, std::int64_t bytes_per_second,
+  Scrubber(Store& store, BlobStore& blobs, BadStates& states, DecodeLimits limits, std::int64_t bytes_per_second,
            std::function<bool()> is_mine = {})
       : store_(store),
         blobs_(blobs),
+        states_(states),
         limits_(limits),
         bytes_per_second_(bytes_per_second),
         is_mine_(std::move(is_mine)) {}
@@ -54,6 +57,7 @@ class Scrubber {
 
   Store& store_;
   BlobStore& blobs_;
+  BadStates& states_;
   const DecodeLimits limits_;
   const std::int64_t bytes_per_second_;
   const std::function<bool()> is_mine_;

@@ -7,6 +7,7 @@
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/store/bad_states.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
 #include "server/store/webhook_store.hpp"
@@ -43,8 +44,9 @@ struct ApiContext {
   std::function<Status(const std::string& sha256)> expect_sound_columns = {};
   std::stop_token stopping = {};  ///< requested when the daemon stops: uploads that decode then give up
   WebhookStore* webhooks = nullptr;
-  DestinationGuard webhook_guard = {};         ///< where webhooks may lead
-  std::function<void()> wake_deliveries = {};  ///< there is something to deliver
+  DestinationGuard webhook_guard = {};                          ///< where webhooks may lead
+  std::function<void()> wake_deliveries = {};                   ///< there is something to deliver
+  std::function<std::vector<StandingState>()> bad_states = {};  ///< what is wrong now
   KeysInFlight keys_in_flight = {};
 };
 

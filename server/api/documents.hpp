@@ -2,6 +2,7 @@
 /// Rows of the store as the documents that go over the wire, and the small things every resource shares.
 #include "schema/json/json.hpp"
 #include "server/http/message.hpp"
+#include "server/store/cursor.hpp"
 #include "server/store/store.hpp"
 
 #include <optional>
@@ -105,10 +106,6 @@ enum class ListNames { None, Sorted };
 [[nodiscard]] Result<Page> page_of(const Request& request, ListNames names);
 /// The same for a list without names whose cursors are no ids of rows: `is_cursor` tells them.
 [[nodiscard]] Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view));
-
-/// The cursor that leads on from the row at which a page in this order ends: its id, with its name where names order
-/// the list. Clients take it as it is.
-[[nodiscard]] std::string cursor_at(PageOrder order, const std::string& id, const std::string& name);
 
 /// `?q=`, what is sought; nothing where it is not asked for. Error: InvalidArgument naming the parameter.
 [[nodiscard]] Result<std::optional<std::string>> text_filter(const Request& request);

@@ -10,36 +10,6 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::string_view kDigits = "0123456789abcdef";
-
-/// Two digits a byte, so that the cursor needs no escapes wherever it stands.
-std::string hexadecimal(std::string_view text) {
-  std::string digits;
-  for (const char c : text) {
-    digits += kDigits[static_cast<unsigned char>(c) >> 4U];
-    digits += kDigits[static_cast<unsigned char>(c) & 15U];
-  }
-  return digits;
-}
-
-std::optional<std::string> from_hexadecimal(std::string_view digits) {
-  std::string text;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    const std::size_t high = kDigits.find(digits[i]);
-    const std::size_t low = kDigits.find(digits[i + 1]);
-    if (high == std::string_view::npos || low == std::string_view::npos) {
-      return std::nullopt;
-    }
-    text += static_cast<char>(high << 4U | low);
-  }
-  return digits.size() % 2 == 0 && is_plain_text(text) ? std::optional(text) : std::nullopt;
-}
-
-bool is_row_cursor(std::string_view cursor) {
-  const std::size_t underscore = cursor.find('_');
-  return underscore != std::string_view::npos && is_id(cursor, cursor.substr(0, underscore));
-}
-
 tl::unexpected<Error> unknown_cursor() {
   return fail(ErrorCode::InvalidArgument, "The cursor is not one that a list in this order gave.",
               {{"parameter", "cursor"}});
@@ -78,15 +48,12 @@ Result<Page> page_of(const Request& request, ListNames names) {
   if (!page || !cursor) {
     return page;
   }
-  const std::size_t dot = page->order == PageOrder::ByName ? cursor->find('.') : cursor->size();
-  const auto name = dot == std::string_view::npos ? std::nullopt
-                    : dot == cursor->size()       ? std::optional<std::string>("")
-                                                  : from_hexadecimal(cursor->substr(dot + 1));
-  if (!name || !is_row_cursor(cursor->substr(0, dot))) {
+  const auto row = read_cursor(*cursor, page->order);
+  if (!row || !is_plain_text(row->name)) {
     return unknown_cursor();
   }
-  page->after = cursor->substr(0, dot);
-  page->after_name = *name;
+  page->after = row->id;
+  page->after_name = row->name;
   return page;
 }
 
@@ -100,10 +67,6 @@ Result<Page> page_of(const Request& request, bool (*is_cursor)(std::string_view)
     page->after = *cursor;
   }
   return page;
-}
-
-std::string cursor_at(PageOrder order, const std::string& id, const std::string& name) {
-  return order == PageOrder::ByName && !id.empty() ? id + '.' + hexadecimal(name) : id;
 }
 
 Result<std::optional<std::string>> text_filter(const Request& request) {

@@ -93,23 +93,42 @@ Result<DecodedBlob> decode(ApiContext& context, const IncomingBlob& incoming) {
   return DecodedBlob{std::move(row), incoming.columns_path()};
 }
 
-/// Error: DiskFull naming the budget, where the device has all it may have.
+/// Error: DiskFull naming the budget that `usage` of a device or a token and `more` bytes would pass.
+Status require_within(const DeviceUsage& usage, const IncomingBlob& more, std::string_view whose, const Budget& count,
+                      const Budget& bytes, const Budgets& budgets) {
+  const bool many = usage.recordings >= budgets.*count.value;
+  if (!many && usage.bytes + static_cast<std::int64_t>(more.size()) <= budgets.*bytes.value) {
+    return {};
+  }
+  const Budget& passed = many ? count : bytes;
+  return fail(ErrorCode::DiskFull, "The " + std::string(whose) + " has all that it may have " +
+                                       naming_budget(passed.name, budgets.*passed.value) +
+                                       "; remove recordings, or ask for a larger budget.");
+}
+
+/// Error: DiskFull naming the budget, where the device or whoever uploads has all it may have.
 Status require_quota(ApiContext& context, const IncomingBlob& blob, const std::string& device_name) {
   const auto device = context.store.device(device_name);
   const auto usage = context.store.usage_of(device ? device->id : "", blob.sha256());
   if (!usage) {
     return fail(usage.error());
   }
-  const Budgets& budgets = context.budgets;
-  const bool many = usage->recordings >= budgets.recordings_per_device;
-  if (usage->holds_these_bytes ||
-      (!many && usage->bytes + static_cast<std::int64_t>(blob.size()) <= budgets.device_bytes)) {
+  if (usage->holds_these_bytes) {
     return {};
   }
-  return fail(ErrorCode::DiskFull, "The device has all that it may have " +
-                                       (many ? naming_budget("recordings_per_device", budgets.recordings_per_device)
-                                             : naming_budget("device_bytes", budgets.device_bytes)) +
-                                       "; remove recordings, or ask for a larger budget.");
+  const Budgets& budgets = context.budgets;
+  Status within = require_within(*usage, blob, "device", budget_of(&Budgets::recordings_per_device),
+                                 budget_of(&Budgets::device_bytes), budgets);
+  const Caller* const caller = caller_of_thread();
+  if (!within || caller == nullptr || caller->principal.token.empty()) {
+    return within;
+  }
+  const auto own = context.store.usage_of_token(caller->principal.token, blob.sha256());
+  if (!own) {
+    return fail(own.error());
+  }
+  return require_within(*own, blob, "token", budget_of(&Budgets::recordings_per_token),
+                        budget_of(&Budgets::token_bytes), budgets);
 }
 
 /// A conflict with a recording that is there says by which request that one is changed.

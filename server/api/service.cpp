@@ -2,6 +2,7 @@
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
+#include "server/store/told_error.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -13,6 +14,8 @@ Response text_response(std::string_view type, std::string_view text) {
   return response;
 }
 
+constexpr std::size_t kMostStates = 100;  // damaged files may be many; damaged_files counts them
+
 Result<Response> ready(const ApiContext& context) {
   if (const std::string why = context.not_ready_why(); !why.empty()) {
     return problem_response(HttpFault::NotReady, why);
@@ -20,6 +23,19 @@ Result<Response> ready(const ApiContext& context) {
   Json document{{"status", "ready"}};
   if (const std::size_t damaged = context.damaged_blobs ? context.damaged_blobs() : 0; damaged > 0) {
     document["damaged_files"] = damaged;
+  }
+  for (const StandingState& standing : context.bad_states ? context.bad_states() : std::vector<StandingState>{}) {
+    Json state{{"state", name_of(standing.state)},
+               {"cause", standing.cause},
+               {"since", rfc3339(standing.since)},
+               {"detail", without_paths({ErrorCode::Io, standing.detail, {}}).message}};
+    if (!standing.object.empty()) {
+      state["file"] = standing.object;
+    }
+    document["states"].push_back(std::move(state));
+    if (document["states"].size() == kMostStates) {
+      break;
+    }
   }
   return json_response(200, document);
 }

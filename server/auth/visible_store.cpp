@@ -38,6 +38,9 @@ class VisibleStore final : public Store {
   Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) override {
     return whole_.usage_of(device_id, sha256);
   }
+  Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) override {
+    return whole_.usage_of_token(token, sha256);
+  }
   Result<int> forget_ended_jobs(UtcMicros before) override { return whole_.forget_ended_jobs(before); }
   Result<Counts> counts(const std::optional<Visibility>& /*visible*/) override { return whole_.counts(limits()); }
   Result<EndedCounts> ended_since(UtcMicros since, const std::optional<Visibility>& /*visible*/) override {
@@ -117,7 +120,9 @@ class VisibleStore final : public Store {
   Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) override {
     return whole_.jobs(filter, limited(page));
   }
-  Result<std::optional<Job>> claim(std::int64_t lease_micros) override { return whole_.claim(lease_micros); }
+  Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) override {
+    return whole_.claim(lease_micros, running_per_token);
+  }
   Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override {
     return whole_.renew(lease, lease_micros);
   }

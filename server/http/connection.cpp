@@ -1,5 +1,7 @@
 #include "server/http/connection.hpp"
 
+#include "server/http/forwarded.hpp"
+
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
@@ -114,6 +116,7 @@ asio::awaitable<bool> HttpConnection::read_header(Parser& parser) {
   }
   started_ = std::chrono::steady_clock::now();
   route_.clear();
+  client_ = address_;
   bytes_in_ = 0;
   broken_ = false;
   folded_ = false;
@@ -176,7 +179,8 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   const auto given_id = request.header("x-request-id");
   request.request_id = given_id && is_request_id(*given_id) ? std::string(*given_id) : shared_.hooks.make_request_id();
   request.caller.request_id = request.request_id;
-  request.caller.address = address_;
+  client_ = client_address(address_, request.headers, shared_.options.proxies);
+  request.caller.address = client_;
   wants_continue_ = verdict.expects_continue;
   const bool has_body = verdict.content_length > 0 || verdict.chunked;
   body_unread_ = has_body || verdict.refusal.has_value();
@@ -228,6 +232,16 @@ asio::awaitable<bool> HttpConnection::answer(Parser& parser) {
   }
 
   route_ = match.route->pattern;
+  const auto place = shared_.in_flight.enter(request.caller.principal.token);
+  if (!place) {
+    Response full = problem_response(HttpFault::TooManyRequests,
+                                     "The token has as many requests under way as it may have " +
+                                         naming_budget("requests_per_token", budgets().requests_per_token) + ".");
+    if (has_body) {
+      co_return co_await refuse(request, std::move(full));
+    }
+    co_return co_await send(request, std::move(full), true);
+  }
   if (verdict.chunked) {
     chunked_.emplace();
   }
@@ -380,8 +394,8 @@ void HttpConnection::log(const Request& request, const Response& response) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   shared_.hooks.log({request.method, route_, request.target, response.status, bytes_in_,
-                     response.file ? response.file->length : response.body.size(), seconds, request.request_id,
-                     address_, request.caller.principal.token});
+                     response.file ? response.file->length : response.body.size(), seconds, request.request_id, client_,
+                     request.caller.principal.token, response.failure});
 }
 
 }  // namespace driftlab::server

@@ -2,6 +2,7 @@
 /// One client connection as a coroutine: header, guard, route, body, answer; again until it closes.
 #include "server/http/chunked.hpp"
 #include "server/http/client_stream.hpp"
+#include "server/http/in_flight.hpp"
 #include "server/http/offload.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/server.hpp"
@@ -56,6 +57,7 @@ struct ConnectionShared {
   BoundedPool& decodings;  ///< ends uploads, which takes as long as they are large
   std::atomic<bool>& stopping;
   UploadPlaces& upload_places;
+  RequestsInFlight& in_flight;
 };
 
 class HttpConnection {
@@ -127,7 +129,8 @@ class HttpConnection {
   ClientStream stream_;
   boost::beast::flat_buffer buffer_;
   ConnectionShared& shared_;
-  std::string address_;
+  std::string address_;  ///< of whoever connected
+  std::string client_;   ///< of whom the request at hand is: somebody else behind a listed proxy
   std::vector<std::byte> chunk_;
   std::string route_;
   std::uint64_t bytes_in_ = 0;

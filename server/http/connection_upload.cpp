@@ -91,7 +91,7 @@ asio::awaitable<tl::expected<Response, Response>> HttpConnection::take_upload(Pa
     co_return tl::unexpected(std::move(*refusal));
   }
   const auto declared = parser.content_length();
-  const auto number = shared_.upload_places.join({request.caller.principal.token, address_, declared.value_or(0)},
+  const auto number = shared_.upload_places.join({request.caller.principal.token, client_, declared.value_or(0)},
                                                  std::chrono::steady_clock::now());
   if (!number) {
     co_return tl::unexpected(problem_response(

@@ -1,5 +1,6 @@
 #pragma once
 /// Requests and responses as handlers see them: plain values, free of sockets.
+#include "core/signal/result.hpp"
 #include "server/store/budgets.hpp"
 #include "server/store/principal.hpp"
 
@@ -52,6 +53,8 @@ struct Response {
   bool volatile_body = false;
   /// Refused until that job has ended: nothing was done, so a request of any method may be repeated.
   bool undone = false;
+  /// What failed in the daemon itself, as the log tells it; the body says it without the paths of files.
+  std::optional<Error> failure = std::nullopt;
 
   [[nodiscard]] bool has_header(std::string_view name) const;
 };

@@ -1,5 +1,7 @@
 #include "server/http/problem.hpp"
 
+#include "server/store/told_error.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -68,6 +70,8 @@ std::string_view slug_of(HttpFault fault) {
       return "unauthorized";
     case HttpFault::Forbidden:
       return "forbidden";
+    case HttpFault::TooManyRequests:
+      return "too-many-requests";
   }
   return "internal";
 }
@@ -233,6 +237,8 @@ const std::vector<ProblemType>& problem_types() {
       {"forbidden", 403, "Not allowed", false,
        "The token does not allow this: its scope is too small, or it is limited to other devices. An admin makes "
        "another one; see /docs/security."},
+      {"too-many-requests", 429, "Too many requests at once", true,
+       "The token has as many requests under way as it may have. Wait for one of them to end."},
   };
   return types;
 }
@@ -240,7 +246,7 @@ const std::vector<ProblemType>& problem_types() {
 const std::vector<HttpFault>& all_http_faults() {
   static const std::vector<HttpFault> all = [] {
     std::vector<HttpFault> faults;
-    for (int i = 0; i <= static_cast<int>(HttpFault::Forbidden); ++i) {
+    for (int i = 0; i <= static_cast<int>(HttpFault::TooManyRequests); ++i) {
       faults.push_back(static_cast<HttpFault>(i));
     }
     return faults;
@@ -273,14 +279,19 @@ const ProblemType& problem_type(ErrorCode code) { return type_or_internal(slug_o
 const ProblemType& problem_type(HttpFault fault) { return type_or_internal(slug_of(fault)); }
 
 std::string problem_document(const Error& error) {
-  return render(problem_type(error.code), name_of(error.code), error.message, error.fields);
+  const Error told = without_paths(error);
+  return render(problem_type(told.code), name_of(told.code), told.message, told.fields);
 }
 
 Response problem_response(const Error& error) {
   if (is_forbidden(error)) {
     return problem_response(HttpFault::Forbidden, error.message);
   }
-  return respond(problem_type(error.code), problem_document(error));
+  Response response = respond(problem_type(error.code), problem_document(error));
+  if (error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull || error.code == ErrorCode::Internal) {
+    response.failure = error;
+  }
+  return response;
 }
 
 Response problem_response(HttpFault fault, const std::string& detail) {

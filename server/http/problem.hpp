@@ -48,6 +48,7 @@ enum class HttpFault {
   RangeNotSatisfiable,
   Unauthorized,
   Forbidden,
+  TooManyRequests,
 };
 
 [[nodiscard]] const std::vector<ProblemType>& problem_types();
@@ -57,10 +58,12 @@ enum class HttpFault {
 /// The entry of a slug, or nullptr.
 [[nodiscard]] const ProblemType* find_problem_type(std::string_view slug);
 
-/// The document without `instance` and `request_id`, which the connection adds. Error fields named by JSON pointer
-/// become `errors`; the others (row, column, parameter, ...) become members of `where`.
+/// The document without `instance` and `request_id`, which the connection adds, and without paths of the daemon's files
+/// (server/store/told_error.hpp). Error fields named by JSON pointer become `errors`; the others (row, column,
+/// parameter, ...) become members of `where`.
 [[nodiscard]] std::string problem_document(const Error& error);
 
+/// The answer; an error that is the daemon's own goes with it whole, for the log.
 [[nodiscard]] Response problem_response(const Error& error);
 [[nodiscard]] Response problem_response(HttpFault fault, const std::string& detail);
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <future>
 #include <list>
 #include <map>
 #include <mutex>
@@ -30,7 +31,8 @@ struct HttpServer::Shared {
                  static_cast<std::size_t>(options.budgets.requests_waiting)),
         uploads(static_cast<std::size_t>(options.upload_threads), 1024),
         decodings(static_cast<std::size_t>(options.budgets.decodings), 1024),
-        connection_shared{options, router, bell_in, hooks, handlers, uploads, decodings, stopping, upload_places},
+        connection_shared{options, router,    bell_in,  hooks,         handlers,
+                          uploads, decodings, stopping, upload_places, in_flight},
         work(asio::make_work_guard(io)),
         acceptor(io) {}
 
@@ -49,6 +51,7 @@ struct HttpServer::Shared {
   Bell& bell;
   std::atomic<bool> stopping{false};
   UploadPlaces upload_places{options.budgets, [this](const std::string& address) { return is_exempt(address); }};
+  RequestsInFlight in_flight{options.budgets.requests_per_token};
   BoundedPool handlers;
   BoundedPool uploads;
   BoundedPool decodings;
@@ -226,11 +229,19 @@ HttpServer::Load HttpServer::load() const {
   load.connections = shared_->open;
   load.turned_away = shared_->turned_away;
   load.uploads = shared_->upload_places.taken();
+  load.in_flight = static_cast<std::size_t>(shared_->in_flight.count());
   for (const auto& entry : shared_->connections) {
     const auto connection = entry.lock();
     load.idle += connection && connection->idle_since() ? 1 : 0;
   }
   return load;
+}
+
+bool HttpServer::is_alive(std::chrono::milliseconds patience) const {
+  const auto turned = std::make_shared<std::promise<void>>();
+  auto turn = turned->get_future();
+  asio::post(shared_->io, [turned] { turned->set_value(); });
+  return turn.wait_for(patience) == std::future_status::ready;
 }
 
 void HttpServer::stop(std::chrono::milliseconds grace) {

@@ -29,7 +29,7 @@ struct HttpOptions {
   int handler_threads = 4;
   int upload_threads = 2;
   Budgets budgets;
-  std::vector<std::string> proxies;  ///< addresses that are exempt from the budgets of one address, as loopback is
+  std::vector<std::string> proxies;  ///< exempt from the budgets of one address, as loopback is; their Forwarded counts
   GuardLimits guard;
   std::shared_ptr<boost::asio::ssl::context> tls;  ///< the certificate to show; nullptr: plain HTTP
 };
@@ -45,7 +45,8 @@ struct AccessRecord {
   double seconds = 0.0;
   std::string request_id;
   std::string address;
-  std::string token;  ///< public id; empty where nobody was asked for one
+  std::string token;                            ///< public id; empty where nobody was asked for one
+  std::optional<Error> failure = std::nullopt;  ///< of the daemon itself
 };
 
 /// What the server needs from the daemon.
@@ -89,9 +90,12 @@ class HttpServer {
     std::size_t connections = 0;
     std::size_t idle = 0;
     std::size_t uploads = 0;
+    std::size_t in_flight = 0;      ///< requests that are being answered
     std::uint64_t turned_away = 0;  ///< connections closed for want of a place, since the start
   };
   [[nodiscard]] Load load() const;
+  /// Whether an I/O thread takes up work in that time.
+  [[nodiscard]] bool is_alive(std::chrono::milliseconds patience) const;
   /// Stops accepting, lets running requests finish for up to `grace`, closes event streams, joins. Idempotent.
   void stop(std::chrono::milliseconds grace);
 

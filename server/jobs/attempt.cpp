@@ -200,7 +200,8 @@ void Attempt::fail(const Error& error) {
       options_.problem_document ? options_.problem_document(shown) : plain_problem(shown, failure.retryable);
   // Where even this cannot be written, the lease runs out and the job is tried again.
   const Result<LeaseStatus> failed = context_.store.fail_attempt(lease_, failure);
-  ended(failed, failure.retryable ? "retried" : "failed");
+  const bool dead = failed && failed->dead;
+  ended(failed, dead ? "dead" : failure.retryable ? "retried" : "failed");
   announce(failed);
 }
 

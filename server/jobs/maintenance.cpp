@@ -108,6 +108,7 @@ void Maintenance::run() {
     }
     const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
     if (full) {
+      (void)forget_old(store_, options_.budgets, clock_.now());
       (void)sweep_blobs(store_, blobs_, clock_.now(), kMinuteMicros);
     }
     if (mine && std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {

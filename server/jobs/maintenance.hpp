@@ -19,7 +19,7 @@ struct MaintenanceOptions {
   Budgets budgets = {};
   /// Whether this process does it, of several on one store; empty: it is the only one.
   std::function<bool()> is_mine = {};
-  std::function<bool()> is_nearly_full = {};  ///< then files without rows go at once
+  std::function<bool()> is_nearly_full = {};  ///< then what is older than it may be goes at once, with its files
   std::function<void()> each_tidy = {};       ///< what else is forgotten, at each removal of old replies
   std::function<void()> each_turn = {};       ///< what else is looked after, at each look for expired leases
 };

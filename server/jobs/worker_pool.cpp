@@ -92,7 +92,8 @@ void WorkerPool::Implementation::work() {
 
 bool WorkerPool::Implementation::run_next() {
   // A store that does not answer is asked again like one that has nothing to do.
-  std::optional<Job> claimed = context.store.claim(options.lease_micros).value_or(std::nullopt);
+  std::optional<Job> claimed =
+      context.store.claim(options.lease_micros, context.budgets.running_jobs_per_token).value_or(std::nullopt);
   if (!claimed) {
     return false;
   }

@@ -113,6 +113,8 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
   single(text, "driftlab_http_idle_connections", "gauge", "Of these, waiting for a request.", gauges.idle_connections);
   single(text, "driftlab_http_connections_turned_away_total", "counter", "Connections closed for want of a place.",
          gauges.turned_away);
+  single(text, "driftlab_http_requests_in_flight", "gauge", "Requests that are being answered.",
+         gauges.requests_in_flight);
   single(text, "driftlab_uploads_running", "gauge", "Uploads under way.", gauges.uploads);
 
   head(text, "driftlab_job_attempts_total", "counter", "Attempts at jobs that ended, by kind and outcome.");
@@ -120,6 +122,12 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
     sample(text, "driftlab_job_attempts_total", label("kind", key.first) + "," + label("outcome", key.second),
            static_cast<double>(count));
   }
+  // From the start, for whoever watches it rise: a job given up is one that somebody must look at.
+  double dead = 0.0;
+  for (const auto& [key, count] : attempts_) {
+    dead += key.second == "dead" ? static_cast<double>(count) : 0.0;
+  }
+  single(text, "driftlab_jobs_dead_total", "counter", "Jobs that were given up after their last attempt.", dead);
   head(text, "driftlab_job_seconds", "histogram", "Time that an attempt took, by kind.");
   for (const auto& [kind, histogram] : job_seconds_) {
     write(text, "driftlab_job_seconds", label("kind", kind), histogram, kJobBounds);
@@ -144,6 +152,19 @@ std::string Metrics::text(const Gauges& gauges, std::string_view version) const 
   single(text, "driftlab_recordings", "gauge", "Recordings stored.", gauges.recordings);
   single(text, "driftlab_disk_free_bytes", "gauge", "Free where the daemon keeps its data.", gauges.free_bytes);
   single(text, "driftlab_disk_free_ratio", "gauge", "The same as a fraction of the disk.", gauges.free_fraction);
+  head(text, "driftlab_bad_states", "gauge", "What is wrong now, by state and cause.");
+  for (const Gauges::State& each : gauges.bad_states) {
+    sample(text, "driftlab_bad_states", label("state", each.state) + "," + label("cause", each.cause), each.count);
+  }
+  head(text, "driftlab_store_write_seconds", "histogram", "Time until a write to the store was on disk.");
+  for (const auto& [bound, count] : gauges.writes.buckets) {
+    sample(text, "driftlab_store_write_seconds_bucket", label("le", number_text(bound)), static_cast<double>(count));
+  }
+  sample(text, "driftlab_store_write_seconds_bucket", label("le", "+Inf"), static_cast<double>(gauges.writes.count));
+  sample(text, "driftlab_store_write_seconds_sum", "", gauges.writes.seconds);
+  sample(text, "driftlab_store_write_seconds_count", "", static_cast<double>(gauges.writes.count));
+  single(text, "driftlab_store_log_pages", "gauge", "Pages of the database's write-ahead log.", gauges.log_pages);
+  single(text, "driftlab_blob_bytes", "gauge", "Bytes of all recordings as they were uploaded.", gauges.blob_bytes);
   single(text, "driftlab_blobs_damaged", "gauge", "Stored files that are damaged and could not be healed.",
          gauges.blobs_damaged);
   single(text, "driftlab_blobs_healed_total", "counter", "Columns made anew from the uploaded bytes.",

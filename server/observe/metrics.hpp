@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace driftlab::server {
 
@@ -20,6 +22,7 @@ struct Gauges {
   double connections = 0.0;
   double idle_connections = 0.0;
   double uploads = 0.0;
+  double requests_in_flight = 0.0;
   double turned_away = 0.0;  ///< a counter kept elsewhere
   double devices = 0.0;
   double recordings = 0.0;
@@ -30,6 +33,22 @@ struct Gauges {
   double oldest_queued_seconds = 0.0;
   double free_bytes = 0.0;
   double free_fraction = 0.0;
+  double blob_bytes = 0.0;
+  double log_pages = 0.0;  ///< of the database's write-ahead log
+  /// How long writes to the store took: a histogram kept elsewhere.
+  struct Writes {
+    std::vector<std::pair<double, std::uint64_t>> buckets;  ///< upper bound [s], cumulative count
+    std::uint64_t count = 0;
+    double seconds = 0.0;
+  };
+  Writes writes;
+  /// What is wrong, from closed sets: every state with every cause.
+  struct State {
+    std::string_view state;
+    std::string_view cause;
+    double count = 0.0;
+  };
+  std::vector<State> bad_states;
   double blobs_damaged = 0.0;
   double blobs_healed = 0.0;       ///< a counter kept elsewhere
   double scrubbed_bytes = 0.0;     ///< a counter kept elsewhere
@@ -44,7 +63,8 @@ class Metrics {
   /// One answered request. `route` is a template; empty: none matched.
   void count_request(std::string_view method, std::string_view route, int status, double seconds,
                      std::uint64_t bytes_in, std::uint64_t bytes_out);
-  /// One attempt at a job that ended: `succeeded`, `failed`, `retried`, `cancelled`, `released`, `lost`.
+  /// One attempt at a job that ended: `succeeded`, `failed`, `retried`, `dead`, `cancelled`, `released`,
+  /// `lost`.
   void count_attempt(std::string_view kind, std::string_view outcome, double seconds);
 
   /// One attempt at a delivery to a webhook that ended: `delivered`, `failed`, `given_up`.

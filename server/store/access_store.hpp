@@ -59,6 +59,9 @@ class AccessStore {
   [[nodiscard]] virtual Status open_session(const Session& session) = 0;
   [[nodiscard]] virtual Status close_session(std::string_view secret_sha256) = 0;
 
+  /// A row of the audit log about the daemon itself, whose actor is `daemon`.
+  [[nodiscard]] virtual Status note_state(const std::string& action, const std::string& object,
+                                          const std::string& detail) = 0;
   /// Rows of the audit log after (newest first: before) a sequence, 0 for the first page.
   [[nodiscard]] virtual Result<std::vector<AuditRow>> audit(std::int64_t after, int limit, bool newest_first) = 0;
   /// Reads the whole chain.

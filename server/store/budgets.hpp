@@ -5,6 +5,7 @@
 /// which budget refused it. They are set by `--budget NAME=VALUE`, `DRIFTLAB_BUDGET_NAME` or the table `[budgets]` of
 /// the configuration file; `driftlabd config` prints those in force, and schema/docs/budgets.md explains them (a test
 /// compares the three).
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,6 +28,7 @@
   BUDGET(write_stall_seconds, 60, 1, 3600, "A client may take nothing of its answer for so long")                       \
   BUDGET(send_buffer_bytes, 262'144, 4096, 67'108'864, "What the kernel holds of an answer that is not taken")          \
   BUDGET(requests_waiting, 256, 1, 100'000, "Requests that wait for a thread; beyond it 503")                           \
+  BUDGET(requests_per_token, 32, 1, 100'000, "Requests of one token under way at once; beyond it 429")                  \
   /* documents */                                                                                                       \
   BUDGET(document_bytes, 1'048'576, 1024, 67'108'864, "Size of a JSON document that is sent")                           \
   BUDGET(page_bytes, 4'194'304, 4096, 268'435'456, "Size of a page of a list; one larger item comes alone")             \
@@ -50,6 +52,8 @@
   /* what is kept */                                                                                                    \
   BUDGET(recordings_per_device, 100'000, 1, 1'000'000'000, "Recordings of a device")                                    \
   BUDGET(device_bytes, 1'099'511'627'776, 4096, 9'000'000'000'000'000, "Bytes uploaded for a device")                   \
+  BUDGET(recordings_per_token, 1'000'000, 1, 1'000'000'000, "Recordings that one token has uploaded")                    \
+  BUDGET(token_bytes, 10'995'116'277'760, 4096, 9'000'000'000'000'000, "Bytes that one token has uploaded")              \
   BUDGET(least_free_bytes, 268'435'456, 0, 1'099'511'627'776, "Free on the disk, or uploads and jobs are refused")      \
   BUDGET(reserve_bytes, 16'777'216, 0, 1'099'511'627'776, "Kept in a file so that deleting works on a full disk")       \
   BUDGET(orphan_hours, 24, 0, 8760, "Files without a row are removed after this time; at once on a full disk")          \
@@ -58,6 +62,7 @@
   /* jobs */                                                                                                            \
   BUDGET(job_memory_bytes, 0, 0, 9'000'000'000'000, "Memory of all running jobs; 0 is half of what the machine has")    \
   BUDGET(job_seconds, 21'600, 1, 31'536'000, "A job is ended after this time")                                          \
+  BUDGET(running_jobs_per_token, 8, 1, 10'000, "Jobs of one token that run at once; the others of it wait")              \
   BUDGET(queued_jobs, 10'000, 1, 10'000'000, "Jobs that wait; beyond it 503")                                           \
   BUDGET(scrub_bytes_per_second, 8'388'608, 0, 1'000'000'000'000, "Stored files read again in the background; 0: none") \
   /* webhooks */                                                                                                        \
@@ -104,6 +109,12 @@ struct Budget {
   static const std::vector<Budget> all{DRIFTLAB_BUDGETS(DRIFTLAB_LIST_BUDGET)};
 #undef DRIFTLAB_LIST_BUDGET
   return all;
+}
+
+/// The one that is kept in that member.
+[[nodiscard]] inline const Budget& budget_of(std::int64_t Budgets::* value) {
+  return *std::find_if(all_budgets().begin(), all_budgets().end(),
+                       [value](const Budget& budget) { return budget.value == value; });
 }
 
 /// The end of every refusal: "(budget page_bytes = 4194304)".

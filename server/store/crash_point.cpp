@@ -28,6 +28,13 @@ const std::vector<std::string_view>& crash_point_names() {
       "job.before_finish",  // results are computed, nothing of them is written
       "job.in_finish",      // results are written in a transaction that is not committed
       "job.finished",       // the finish is committed, nobody was told
+      "migrate.backed_up",  // the copy from before the migrations has its name, nothing is migrated
+      "migrate.in_step",    // a migration is carried out in a transaction that is not committed
+      "migrate.stepped",    // it is committed, others may follow
+      "backup.copied",      // the database is copied, no recording is
+      "backup.files",       // recordings are copied too, the manifest is not written
+      "backup.complete",    // everything is there and on disk, without its name
+      "backup.named",       // the backup has its name, nobody was told
   };
   return names;
 }

@@ -83,11 +83,13 @@ Result<ResumableUpload> ResumableUploads::find(std::string_view id) {
     return unknown(id);
   }
   const fs::path bytes = bytes_path(id);
-  std::ifstream about(directory_ / (std::string(id) + ".about"), std::ios::binary);
+  const fs::path described = directory_ / (std::string(id) + ".about");
+  std::ifstream about(described, std::ios::binary);
   ResumableUpload upload;
   upload.id = id;
   if (!(about >> upload.length)) {
-    return unknown(id);
+    std::error_code none;  // what is there and cannot be read is not gone: the client may go on with it later
+    return fs::exists(described, none) ? tl::unexpected(file_error(EIO, "read", described)) : unknown(id);
   }
   about.get();
   std::getline(about, upload.file_name);

@@ -9,6 +9,7 @@
 #include "server/store/rows.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -139,6 +140,7 @@ struct Lease {
 struct LeaseStatus {
   bool held = false;  ///< false: another worker may have the job; stop and discard
   bool cancel_requested = false;
+  bool dead = false;  ///< the job was given up with this attempt
 };
 
 /// How an attempt ended without a result.
@@ -199,6 +201,8 @@ class Store {
   [[nodiscard]] virtual Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) = 0;
   /// Of the device of that id; all zero for one that is not there.
   [[nodiscard]] virtual Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) = 0;
+  /// Of the recordings that the token of that id has added and that are still there, for whatever device.
+  [[nodiscard]] virtual Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) = 0;
   [[nodiscard]] virtual Result<Recording> recording(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) = 0;
   /// The conditions of a device's recordings, each once, in the order of their text.
@@ -220,7 +224,12 @@ class Store {
   [[nodiscard]] virtual Result<Job> job(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) = 0;
   /// The next runnable job by (priority with ageing, run_at, id), now `running` with a lease; nothing if none is due.
-  [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros) = 0;
+  /// One that tokens asked for waits while each of them has `running_per_token` jobs running. Daemons that claim from
+  /// one PostgreSQL at the same moment may pass that by one each.
+  [[nodiscard]] virtual Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) = 0;
+  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros) {
+    return claim(lease_micros, std::numeric_limits<std::int64_t>::max());
+  }
   [[nodiscard]] virtual Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) = 0;
   [[nodiscard]] virtual Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
                                                             double progress) = 0;

@@ -391,6 +391,67 @@ class OtherDevices(GuardedDaemon):
         after = [self.daemon.get(f"/v1/{kind}/{them[one]}").text for kind, one in (("devices", "device"), ("recordings", "recording"))]
         self.assertEqual(before, after)
 
+    def changes(self, of: dict[str, str]) -> list[tuple[str, str, Any, dict[str, str]]]:
+        """Every operation of the contract that changes something, asked of what a device has: its ids in the address, in the query and in
+        the contract's own example of the body."""
+        groups = {"devices": "device", "recordings": "recording", "jobs": "job", "studies": "study", "calibrations": "calibration", "models": "model", "investigations": "investigation"}
+        of_kind = {value.partition("_")[0]: value for value in of.values() if re.fullmatch(r"[a-z]{3}_[0-9A-Z]{26}", value)}
+
+        def theirs(node: Any, name: str = "") -> Any:
+            if isinstance(node, dict):
+                return {key: theirs(value, of["name"] if name == "device" and key == "id" else key) for key, value in node.items()}
+            if isinstance(node, list):
+                return [theirs(value, name) for value in node]
+            found = re.fullmatch(r"([a-z]{3})_[0-9A-Z]{26}", node) if isinstance(node, str) else None
+            if found:
+                return of_kind.get(found[1], node)
+            return of["name"] if name == of["name"] or (isinstance(node, str) and name == "device") else node
+
+        asked = []
+        for path, operations in self.contract.paths.items():
+            group = path.split("/")[2] if path.startswith("/v1/") else ""
+            for method in ("post", "put", "patch", "delete"):
+                operation = operations.get(method)
+                if operation is None or operation["x-scope"] not in ("read", "write", "run") or group == "session":
+                    continue
+                if path.endswith("/preview"):  # says what a file would be, and keeps nothing: of the device it reads nothing
+                    continue
+                named = {p["name"] for p in map(self.contract.resolved, operation.get("parameters", [])) if p["in"] == "query"}
+                target = re.sub(r"\{[^}]*\}", of.get(groups.get(group, ""), "absent"), path)
+                if "device" in named:
+                    target += f"?device={of['name']}" + "&condition=static&rate_hz=100&columns=gz%3Dangular_rate%3Az%3Adeg%2Fs" * ("condition" in named)
+                content = operation.get("requestBody", {}).get("content", {})
+                media = next(iter(content), "")
+                described = content.get(media, {})
+                examples = [described["example"]] if "example" in described else [each["value"] for each in described.get("examples", {}).values()]
+                headers = {"If-Match": "*", "Tus-Resumable": "1.0.0", **({"Content-Type": media} if media else {})}
+                for body in ([theirs(example) for example in examples] if media.endswith("json") and examples else [samples.gyro_csv(seed=77) if media else None]):
+                    asked.append((method.upper(), target, body, headers))
+        return asked
+
+    def test_no_operation_changes_anything_of_another_device(self) -> None:
+        admin = [self.daemon.get(target) for target in self.gets(self.theirs)]
+        audited = self.daemon.items("/v1/audit?limit=500")[-1]["sequence"]
+        asked = self.changes(self.theirs)
+        self.assertGreater(len(asked), 20)
+        named = 0
+        for method, target, body, headers in asked:
+            with self.subTest(method=method, target=target, body=body if not isinstance(body, bytes) else b"..."):
+                names = any(value in target or value in json.dumps(body if not isinstance(body, bytes) else "") for value in self.theirs.values())
+                named += names
+                answer = self.ask(self.limited, method, target, body, headers)
+                self.assertNotEqual(answer.status // 100, 5, answer.describe())
+                if names:
+                    self.assertIn(answer.status, (400, 403, 404, 409, 415, 422), answer.describe())
+                self.assertNotIn("serial of", answer.text)
+        self.assertGreater(named, 12, "most operations are asked of something that is another's")
+        for before in admin:
+            if not any(part in before.target for part in ("/metrics", "/v1/jobs", "/v1/counts", "/v1/models", "/v1/outage", "/v1/search")):
+                self.assertEqual(self.daemon.get(before.target).text, before.text, "an admin sees what was there before")
+        ids = set(self.theirs.values())
+        touched = [row for row in self.daemon.items("/v1/audit?limit=500") if row["sequence"] > audited and row["object"] in ids]
+        self.assertEqual(touched, [], "the audit log knows of nothing either")
+
     def test_a_limited_token_makes_its_own_devices_only(self) -> None:
         """The refusal is the same whether the other device exists or not."""
         said = []

@@ -13,6 +13,7 @@ import random
 import re
 import resource
 import socket
+import sqlite3
 import subprocess
 import tempfile
 import threading
@@ -262,6 +263,117 @@ class UploadsShare(unittest.TestCase):
             self.assertEqual(heavy.status, 507, heavy.describe())
             self.assertIn("device_bytes = 100000", heavy.json["detail"])
             self.assertEqual(daemon.upload(csv(400), device="other").status, 201)
+
+
+class TokensHaveBudgets(unittest.TestCase):
+    """What one token may take, so that another has its share."""
+
+    def daemon(self, *budgets: str) -> tuple[Daemon, str, str]:
+        daemon = self.enterContext(Daemon(arguments=("--require-tokens", *(word for budget in budgets for word in ("--budget", budget)))))
+        daemon.token = (daemon.data / "first-admin-token").read_text().strip()
+        one, other = (daemon.post("/v1/tokens", {"name": name, "scope": "run"}).json["secret"] for name in ("one", "other"))
+        return daemon, one, other
+
+    def test_requests_under_way(self) -> None:
+        daemon, one, other = self.daemon("requests_per_token=2")
+        streams = [daemon.connect() for _ in range(2)]
+        for stream in streams:
+            send_head(stream, "/v1/events", f"Authorization: Bearer {one}\r\n")
+            self.assertTrue(stream.recv(65536).startswith(b"HTTP/1.1 200 "))
+        daemon.token = one
+        refused = daemon.get("/v1/devices")
+        self.assertEqual((refused.status, refused.headers["retry-after"]), (429, "1"), refused.describe())
+        self.assertIn("requests_per_token = 2", refused.json["detail"])
+        upload = daemon.upload(csv(200))
+        self.assertEqual(upload.status, 429, "before its body is read")
+        daemon.token = other
+        self.assertEqual(daemon.get("/v1/devices").status, 200)
+        for stream in streams:
+            stream.close()
+        until = time.monotonic() + 30
+        daemon.token = one
+        while daemon.get("/v1/devices").status != 200 and time.monotonic() < until:
+            daemon.token = other  # something to tell: so the daemon learns that nobody listens
+            daemon.post("/v1/devices", {"name": f"device-{time.monotonic_ns()}"})
+            daemon.token = one
+            time.sleep(0.05)
+        self.assertEqual(daemon.get("/v1/devices").status, 200, "a place that was given back")
+
+    def test_jobs_that_run_at_once(self) -> None:
+        daemon, one, other = self.daemon("running_jobs_per_token=1")
+        self.assertGreater(len(os.sched_getaffinity(0)), 1, "two jobs can run at once here")
+
+        def ask(secret: str, seed: int) -> str:
+            daemon.token = secret
+            return str(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": seed}).json["id"])
+        first, second = ask(one, 1), ask(one, 2)
+        third = ask(other, 3)
+
+        def state(job: str, secret: str) -> str:
+            daemon.token = secret
+            return str(daemon.get(f"/v1/jobs/{job}").json["state"])
+        until = time.monotonic() + 60
+        while state(third, other) == "queued" and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual((state(first, one), state(second, one), state(third, other)), ("running", "queued", "running"), "the other's passes the second of the one")
+        daemon.token = one
+        daemon.post(f"/v1/jobs/{first}/cancel")
+        while state(second, one) == "queued" and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual(state(second, one), "running", "its turn")
+        for job, secret in ((second, one), (third, other)):
+            daemon.token = secret
+            daemon.post(f"/v1/jobs/{job}/cancel")
+
+    def test_what_is_kept(self) -> None:
+        daemon, one, other = self.daemon("recordings_per_token=2", "token_bytes=100000")
+        daemon.token = one
+        first = daemon.upload(csv(200), device="a")
+        self.assertEqual((first.status, daemon.upload(csv(300), device="b").status), (201, 201))
+        self.assertEqual(daemon.upload(csv(300), device="b").status, 200, "what is there already costs nothing")
+        full = daemon.upload(csv(400), device="c")
+        self.assertEqual(full.status, 507, full.describe())
+        self.assertIn("The token has all that it may have (budget recordings_per_token = 2)", full.json["detail"])
+        daemon.token = other
+        self.assertEqual(daemon.upload(csv(400), device="c").status, 201)
+        self.assertIn("token_bytes = 100000", daemon.upload(csv(20_000), device="d").json["detail"])
+        daemon.token = one
+        self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{first.json['id']}", headers={"If-Match": "*"}).status, 204)
+        self.assertEqual(daemon.upload(csv(500), device="a").status, 201, "what was removed makes room")
+
+
+class WhatIsOldGoes(unittest.TestCase):
+    def test_recordings_and_ended_jobs_after_their_days(self) -> None:
+        """Two days later (the rows are dated back): gone with their files, and what is younger stays."""
+        data = Path(self.enterContext(tempfile.TemporaryDirectory())) / "data"
+        with Daemon(data) as daemon:
+            old, young = (daemon.upload(csv(200 + 100 * n), device=f"d{n}").json for n in range(2))
+            jobs = []
+            for seed in range(2):
+                jobs.append(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": seed}).json["id"])
+                daemon.post(f"/v1/jobs/{jobs[-1]}/cancel")
+                self.assertEqual(daemon.finished(jobs[-1])["state"], "cancelled")
+            self.assertEqual(daemon.terminate(), 0)
+        database = sqlite3.connect(data / "driftlab.db")
+        before = int((time.time() - 2 * 86400) * 1e6)
+        database.execute("UPDATE recordings SET created_at = ? WHERE id = ?", (before, old["id"]))
+        database.execute("UPDATE jobs SET finished_at = ? WHERE id = ?", (before, jobs[0]))
+        database.commit()
+        database.close()
+        blob = data / "blobs" / old["file"]["sha256"][:2] / old["file"]["sha256"]
+        columns = data / "columns" / blob.parent.name / f"{blob.name}.columns"
+        for file in (blob, columns):
+            os.utime(file, (before / 1e6, before / 1e6))
+        with Daemon(data) as daemon:  # by default everything stays
+            time.sleep(1.0)
+            self.assertEqual(len(daemon.items("/v1/recordings")), 2)
+        with Daemon(data, arguments=("--budget", "keep_recordings_days=1", "--budget", "keep_jobs_days=1")) as daemon:
+            until = time.monotonic() + 30
+            while (blob.exists() or columns.exists()) and time.monotonic() < until:
+                time.sleep(0.05)
+            self.assertEqual([r["id"] for r in daemon.items("/v1/recordings")], [young["id"]])
+            self.assertFalse(blob.exists() or columns.exists(), "the space is free")
+            self.assertEqual([daemon.get(f"/v1/jobs/{job}").status for job in jobs], [404, 200])
 
 
 class JobsHaveABudget(unittest.TestCase):

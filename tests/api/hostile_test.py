@@ -12,6 +12,8 @@ import random
 import resource
 import select
 import socket
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -127,22 +129,51 @@ class Smuggling(DaemonTest):
                 self.assertNotIn(b" 500 ", answer[:20])
 
 
+# Another client, in a process of its own so that whoever attacks does not share its interpreter: prints the seconds of its requests,
+# each on a new connection, one in two of them a list from the store.
+OTHERS = """
+import http.client, sys, time
+until, times = time.monotonic() + float(sys.argv[2]), []
+while time.monotonic() < until:
+    began = time.monotonic()
+    connection = http.client.HTTPConnection("127.0.0.1", int(sys.argv[1]), timeout=60)
+    connection.request("GET", ("/healthz", "/v1/recordings")[len(times) % 2])
+    assert connection.getresponse().read()
+    connection.close()
+    times.append(time.monotonic() - began)
+    time.sleep(0.005)
+print(*times)
+"""
+# A quiet p99 below this is taken as this: of a few hundred requests on two cores that other programs share, the slowest few tell of the
+# scheduler.
+FLOOR_S = 0.02
+
+
 class Pressed(DaemonTest):
     """Slow, silent and very many connections; others are answered all the while."""
 
-    def others(self, stop: threading.Event, times: list[float]) -> None:
-        while not stop.is_set():
-            began = time.monotonic()
-            assert self.daemon.get("/healthz").status == 200
-            times.append(time.monotonic() - began)
-            time.sleep(0.01)
+    def others(self, seconds: float) -> subprocess.Popen[str]:
+        return subprocess.Popen([sys.executable, "-c", OTHERS, str(self.daemon.port), str(seconds)], stdout=subprocess.PIPE, text=True)
+
+    def p99_s(self, watcher: subprocess.Popen[str]) -> tuple[float, int]:
+        times = sorted(float(word) for word in watcher.communicate(timeout=120)[0].split())
+        self.assertEqual(watcher.returncode, 0)
+        return times[int(0.99 * len(times))], len(times)
 
     def test_slow_headers_bodies_and_readers_hold_up_nobody(self) -> None:
+        for _ in range(3):  # where a machine at work disturbed one side of the comparison, it is made again
+            quiet, before = self.p99_s(self.others(2.5))
+            watcher = self.others(2.5)
+            self.press()
+            pressed, during = self.p99_s(watcher)
+            ratio = pressed / max(quiet, FLOOR_S)
+            print(f"hostile_test: p99 of others {quiet * 1e3:.1f} ms quiet ({before} requests), {pressed * 1e3:.1f} ms pressed ({during}), ratio {ratio:.2f}")
+            if ratio < 3.0:
+                break
+        self.assertLess(ratio, 30.0 if SANITIZED else 3.0)
+
+    def press(self) -> None:
         connections = [self.daemon.connect() for _ in range(60)]
-        times: list[float] = []
-        stop = threading.Event()
-        watcher = threading.Thread(target=self.others, args=(stop, times))
-        watcher.start()
         head = b"POST /v1/recordings?device=slow&condition=static&rate_hz=100 HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/octet-stream\r\nContent-Length: 100000\r\n\r\n"
         reader = b"GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n" * 50
         for step in range(40):
@@ -157,12 +188,8 @@ class Pressed(DaemonTest):
                 except OSError:
                     pass
             time.sleep(0.05)
-        stop.set()
-        watcher.join()
         for connection in connections:
             connection.close()
-        times.sort()
-        self.assertLess(times[int(0.99 * len(times))], 5.0 if SANITIZED else 0.5, f"p99 of {len(times)} requests of others")
 
     def test_ten_thousand_idle_connections_lock_nobody_out(self) -> None:
         hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
@@ -203,6 +230,63 @@ class Pressed(DaemonTest):
         self.assertEqual(ids, [b"pipelined-%d" % i for i in range(count)])
 
 
+class Malformed(DaemonTest):
+    """Ranges, cursors and targets that are none, each of a list: what is served is right, what is not is said."""
+
+    CONTENT = samples.gyro_csv(200, seed=5)
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        cls.recording = cls.daemon.upload(cls.CONTENT, rate_hz=100, columns=samples.GYRO_Z).json["id"]
+        for seed in (6, 7):
+            cls.daemon.upload(samples.gyro_csv(50, seed=seed), rate_hz=100, columns=samples.GYRO_Z)
+
+    def test_ranges(self) -> None:
+        size = len(self.CONTENT)
+        whole = ("bytes", "bytes=", "bytes=-", "bytes=a-b", "bytes=1", "bytes=9-1", "bytes=--1", "bytes=1--2", "bytes=+1-2", "bytes=0x1-2", "bytes=1-2-3", "bytes=0-0,2-3", "bytes=,", "bytes=1-2,",
+                 "lines=1-2", "bytes 0-1", "=0-1", "bytes==0-1", "bytes=1.5-2", "bytes=1e1-20", "bytes=\u00b9-2".encode("utf-8").decode("latin-1"), "bytes=" + "0-1," * 500 + "0-1", "none=0-1", "0-1", ";")
+        none = (f"bytes={size}-", f"bytes={size}-{size}", "bytes=-0", "bytes=99999999999999999999-", "bytes=18446744073709551615-18446744073709551615")
+        part = {"bytes=0-0": (0, 1), "bytes=-1": (size - 1, size), f"bytes={size - 1}-": (size - 1, size), "bytes=0-99999999999999999999": (0, size), "BYTES=1-2": (1, 3), "bytes= 1-2": (1, 3),
+                f"bytes=-{10 * size}": (0, size), "bytes=0000-0001": (0, 2)}
+        for text in (*whole, *none, *part):
+            with self.subTest(range=text[:60]):
+                answer = self.daemon.request("GET", f"/v1/recordings/{self.recording}/content", headers={"Range": text})
+                if text in part:
+                    first, end = part[text]
+                    self.expect(206, answer)
+                    self.assertEqual((answer.body, answer.headers["content-range"]), (self.CONTENT[first:end], f"bytes {first}-{end - 1}/{size}"))
+                elif text in none:
+                    self.problem(416, "range_not_satisfiable", answer)
+                    self.assertEqual(answer.headers["content-range"], f"bytes */{size}")
+                else:
+                    self.assertEqual(self.expect(200, answer).body, self.CONTENT, "a range that is none asks for everything")
+
+    def test_cursors(self) -> None:
+        given = self.expect(200, self.daemon.get("/v1/recordings?limit=1")).json["next_cursor"]
+        self.assertTrue(given)
+        broken = ["", " ", "0", "x", "null", "-1", "../..", "%00", given[:-1], given + given, given[:-2] + "zz", given.swapcase() + "!", "f" * 400, "rec_", self.recording + "0", "\u202e", "' OR 1=1 --"]
+        for path, operations in self.contract.paths.items():
+            names = {parameter["name"] for parameter in map(self.contract.resolved, operations.get("get", {}).get("parameters", []))}
+            if "cursor" not in names or "{" in path:  # what there is not has no pages
+                continue
+            for cursor in broken:
+                with self.subTest(path=path, cursor=cursor[:40]):
+                    query = {"cursor": cursor, **({"model": "x"} if path == "/v1/populations" else {})}
+                    self.problem(400, "invalid_argument", self.daemon.get(f"{path}?{urllib.parse.urlencode(query)}"), parameter="cursor")
+
+    def test_targets(self) -> None:
+        for target, statuses in (("/v1/recordings/" + "%2e%2e%2f" * 20 + "etc/passwd", {404}), ("/v1/recordings/..%2f..%2fdriftlab.db", {404}), ("/v1/recordings/%", {400}), ("/v1/recordings/%0", {400}),
+                                 ("/v1/recordings/%zz", {400}), ("/v1/recordings/%00", {400, 404}), ("/v1/recordings/%ff%fe", {400, 404}), ("//v1/recordings", {404}), ("/v1//recordings", {404}),
+                                 ("/v1/recordings/", {404}), ("/V1/recordings", {404}), ("/v1/recordings;x=1", {404}), ("/v1/recordings?limit", {400}), ("/v1/recordings?limit=1&limit=2", {400}),
+                                 ("/v1/recordings?=1", {400}), ("/v1/recordings?%00=1", {400}), ("/v1/recordings?limit=%ff", {400}), ("/v1/recordings?limit=1%20", {400}), ("/v1/recordings?limit=1e1", {400}),
+                                 ("/v1/recordings?limit=99999999999999999999", {400}), ("/v1/recordings?limit=-1", {400}), ("/v1/recordings?limit=0", {400}), ("/v1/recordings?" + "a=1&" * 1500, {400}),
+                                 ("/v1/recordings/" + "a" * 7000, {404}), ("/v1/recordings/" + "a" * 9000, {400}), ("/docs/../openapi.json", {404}), ("/problems/%2e%2e", {404}), ("/schemas/..%2fopenapi.yaml", {404})):
+            with self.subTest(target=target[:60]):
+                answer = self.daemon.request("GET", target)
+                self.assertIn(answer.status, statuses, answer.describe())
+
+
 EDGES: list[Any] = [None, True, False, 0, -1, 1, 0.5, -0.0, 1e-320, 1e308, -1e308, 2**31, 2**53, 2**63, 2**64, "", " ", "x", "0", "NaN", "\0", "\u202e", "é" * 40, "x" * 5000,
                     "../../etc/passwd", "<img onerror=alert(1)>", "'; DROP TABLE devices; --", "%00", "dev_", "rec_01ABCDEFGHJKMNPQRSTVWXYZ00", [], [[]], {}, {"": {}}, [None], [1e308] * 300]
 
@@ -230,6 +314,15 @@ class Grammar(DaemonTest):
         evaluation = daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 2}).json["id"]
         daemon.finished(evaluation)
         upload = daemon.request("POST", "/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": "10"}).headers["location"].rpartition("/")[2]
+        white = {"process": "white_noise", "params": {"N": {"value": 1, "unit": "deg/sqrt(h)"}}}
+        # Bodies that ask for what there is, with something that makes each another one.
+        cls.good = {
+            "createStudy": lambda n: {"device": {"id": "phone-07"}, "recordings": [{"id": f"r{n}", "recording": cls.random.choice(recordings)}]},
+            "createCalibration": lambda n: {"device": {"id": "phone-07"}, "calibration": {"gyroscope": {"apply": {**apply, "bias": [0.01, n / 1000, 0]}}}},
+            "createModel": lambda n: {"name": f"white {n}", "processes": [white], **cls.random.choice([{}, {"device": "phone-07"}, {"parent": model}])},
+            "createJob": lambda n: {"kind": "characterise", "inputs": {"recordings": [cls.random.choice(recordings)]}, "parameters": {"models": ["WN"], "seed": n}},
+            "createOutageEvaluation": lambda n: {"scenario": "paper", "runs": 2, "seed": n},
+            "createDevice": lambda n: {"name": f"device-{n}"}}
         cls.ids = {"recordings": recordings, "studies": [study], "calibrations": [calibration], "models": [model], "outage-evaluations": [evaluation], "uploads": [upload],
                    "devices": [daemon.items("/v1/devices")[0]["id"], "phone-07"], "jobs": [job["id"] for job in daemon.items("/v1/jobs")], "fits": [fit["id"] for fit in daemon.items("/v1/fits")]}
 
@@ -261,6 +354,10 @@ class Grammar(DaemonTest):
         return node
 
     def body(self, operation: dict[str, Any]) -> tuple[bytes, str]:
+        good = self.good.get(operation["operationId"])
+        if good and self.random.random() < 0.5:
+            made = good(self.random.randrange(1 << 20))
+            return json.dumps(self.mutated(made, self.random.choice([0.0, 0.0, 0.0, 0.03]))).encode(), "application/json"
         content = operation["requestBody"]["content"]
         media = self.random.choice(list(content))
         described = content[media]
@@ -302,10 +399,12 @@ class Grammar(DaemonTest):
     def test_no_request_made_from_the_contract_is_answered_outside_it(self) -> None:
         operations = [(method, path, operation) for path, methods in sorted(self.contract.paths.items()) for method, operation in methods.items()
                       if method in ("get", "post", "patch", "delete", "put", "head") and operation["operationId"] not in self.LEFT_OUT and not path.endswith("events")]
+        makers = [each for each in operations if each[2]["operationId"] in self.good]
         slowest = 0.0
         statuses: dict[int, int] = {}
+        succeeded: dict[str, int] = {name: 0 for name in self.good}
         for number in range(REQUESTS):
-            method, path, operation = operations[number % len(operations)] if number < 3 * len(operations) else self.random.choice(operations)
+            method, path, operation = operations[number % len(operations)] if number < 3 * len(operations) else self.random.choice(operations if self.random.random() < 0.8 else makers)
             if method == "delete" and self.random.random() < 0.8:
                 path_with_id = path.replace("{id}", "absent")
             else:
@@ -327,11 +426,14 @@ class Grammar(DaemonTest):
             took = time.monotonic() - began
             slowest = max(slowest, took)
             statuses[answer.status] = statuses.get(answer.status, 0) + 1
+            if operation["operationId"] in succeeded and answer.status < 300:
+                succeeded[operation["operationId"]] += 1
             self.assertTrue(answer.status < 500 or answer.status in (503, 507), f"seed {SEED}, request {number}: {answer.describe()}")
             self.assertLess(took, 60.0 if SANITIZED else 10.0, f"seed {SEED}, request {number}: {method} {target}")
         self.assertIsNone(self.daemon.process.poll(), "the daemon ended")
         self.assertGreater(sum(count for status, count in statuses.items() if status < 300), REQUESTS // 20, f"mostly refusals: {statuses}")
-        print(f"hostile_test: seed {SEED}, {REQUESTS} requests, slowest {slowest:.2f} s, answers {dict(sorted(statuses.items()))}")
+        self.assertEqual([name for name, count in succeeded.items() if count < max(1, REQUESTS // 600)], [], f"asked for in vain: {succeeded}")
+        print(f"hostile_test: seed {SEED}, {REQUESTS} requests, slowest {slowest:.2f} s, answers {dict(sorted(statuses.items()))}, made {succeeded}")
 
 
 if __name__ == "__main__":

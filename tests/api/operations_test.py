@@ -18,7 +18,7 @@ import urllib.parse
 import urllib.request
 from pathlib import Path
 
-from daemon import PATIENCE_S, PROGRAM, Daemon
+from daemon import PATIENCE_S, PROGRAM, STORE, Daemon
 from suite import DaemonTest
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -55,6 +55,16 @@ class Watched(DaemonTest):
         self.assertNotIn("nobody-", page.text)
         self.assertIn("driftlab_recordings 1\n", page.text)
         self.assertIn("driftlab_ready 1\n", page.text)
+        self.assertIn("driftlab_http_requests_in_flight 1\n", page.text, "this one")
+        self.assertIn("driftlab_jobs_dead_total 0\n", page.text)
+        self.assertIn(f"driftlab_blob_bytes {len(csv(2000))}\n", page.text)
+        values = dict(line.rsplit(" ", 1) for line in page.text.splitlines() if not line.startswith("#"))
+        self.assertGreater(float(values["driftlab_store_write_seconds_count"]), 3)
+        self.assertGreater(float(values["driftlab_store_write_seconds_sum"]), 0)
+        self.assertEqual(values['driftlab_store_write_seconds_bucket{le="+Inf"}'], values["driftlab_store_write_seconds_count"])
+        if not STORE:
+            self.assertGreater(float(values["driftlab_store_log_pages"]), 0)
+        self.assertEqual({float(value) for name, value in values.items() if name.startswith("driftlab_bad_states{")}, {0.0})
         if shutil.which("promtool") is None:
             self.skipTest("SKIPPED: promtool (package prometheus) is not here")
         checked = subprocess.run(["promtool", "check", "metrics"], input=page.text, capture_output=True, text=True, check=False)
@@ -132,6 +142,71 @@ class OffersForOperators(unittest.TestCase):
         found = re.search(r"Overall exposure level for driftlabd.service: ([\d.]+)", said.stdout)
         assert found, said.stdout + said.stderr
         self.assertLess(float(found.group(1)), 2.0)
+
+
+class Manager:
+    """The socket of a service manager (sd_notify(3))."""
+
+    def __init__(self, folder: Path) -> None:
+        self.name = folder / "notify"
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.socket.bind(str(self.name))
+        self.socket.settimeout(PATIENCE_S)
+
+    def next_but(self, *ignored: str) -> str:
+        while (said := self.socket.recv(4096).decode()) in ignored:
+            pass
+        return said
+
+
+class UnderAServiceManager(unittest.TestCase):
+    def test_it_says_how_it_stands_and_that_it_is_alive(self) -> None:
+        manager = Manager(Path(self.enterContext(tempfile.TemporaryDirectory())))
+        self.addCleanup(manager.socket.close)
+        with Daemon(environment={"NOTIFY_SOCKET": str(manager.name), "WATCHDOG_USEC": "800000"}) as daemon:
+            self.assertEqual(manager.next_but("WATCHDOG=1"), "READY=1")
+            self.assertEqual([manager.next_but() for _ in range(3)], ["WATCHDOG=1"] * 3)
+            daemon.process.send_signal(signal.SIGHUP)
+            self.assertEqual([manager.next_but("WATCHDOG=1") for _ in range(2)], ["RELOADING=1", "READY=1"])
+            daemon.process.send_signal(signal.SIGTERM)
+            self.assertEqual(manager.next_but("WATCHDOG=1"), "STOPPING=1")
+            self.assertEqual(daemon.wait(), 0)
+
+    def test_without_a_watchdog_it_says_nothing_of_its_life(self) -> None:
+        manager = Manager(Path(self.enterContext(tempfile.TemporaryDirectory())))
+        self.addCleanup(manager.socket.close)
+        for more in ({}, {"WATCHDOG_USEC": "100000", "WATCHDOG_PID": "1"}):
+            with Daemon(environment={"NOTIFY_SOCKET": str(manager.name), **more}) as daemon:
+                time.sleep(0.5)
+                self.assertEqual(daemon.terminate(), 0)
+            self.assertEqual([manager.next_but() for _ in range(2)], ["READY=1", "STOPPING=1"])
+
+
+class BehindAProxy(unittest.TestCase):
+    SAID = {"Forwarded": 'for=198.51.100.1, for="203.0.113.9:4711";proto=https', "X-Forwarded-For": "198.51.100.2"}
+
+    def test_the_address_is_the_one_that_a_listed_proxy_names(self) -> None:
+        for arguments, address in ((("--proxies", "127.0.0.1"), "203.0.113.9"), ((), "127.0.0.1"), (("--proxies", "192.0.2.1"), "127.0.0.1")):
+            with self.subTest(arguments=arguments), Daemon(arguments=arguments) as daemon:
+                daemon.request("POST", "/v1/devices", {"name": "behind"}, {**self.SAID, "X-Request-Id": "forwarded"})
+                self.assertEqual(daemon.logged(event="request", request_id="forwarded")["address"], address)
+                [row] = [row for row in daemon.items("/v1/audit") if row["action"] == "device.create"]
+                self.assertEqual(row["address"], address)
+
+    def test_budgets_are_those_of_whoever_is_behind_it(self) -> None:
+        """One client with an upload that stands still; another one's of the same proxy is taken all the same."""
+        narrow = ("--proxies", "127.0.0.1", "--budget", "uploads_per_address=1", "--budget", "upload_wait_seconds=1")
+        with Daemon(arguments=narrow) as daemon:
+            def upload(seed: int, address: str) -> int:
+                return daemon.upload(csv(200, seed), headers={"Forwarded": f"for={address}"}).status
+            with daemon.connect() as slow:
+                slow.sendall(b"POST /v1/recordings?device=slow&condition=static HTTP/1.1\r\nHost: localhost\r\nForwarded: for=203.0.113.9\r\n"
+                             b"Content-Type: application/octet-stream\r\nContent-Length: 100000\r\n\r\nt [s],gz [deg/s]\n")
+                until = time.monotonic() + 30
+                while "driftlab_uploads_running 1\n" not in daemon.get("/metrics").text and time.monotonic() < until:
+                    time.sleep(0.02)
+                self.assertEqual(upload(1, "203.0.113.9"), 503, "its own budget is used up")
+                self.assertEqual(upload(2, "203.0.113.10"), 201)
 
 
 class Stops(unittest.TestCase):
@@ -320,10 +395,20 @@ class Kept(unittest.TestCase):
             flip(daemon.data / "columns" / sha[:2] / f"{sha}.columns")
             other = uploads[1]["file"]["sha256"]
             flip(daemon.data / "blobs" / other[:2] / other)
-            daemon.logged(event="bad state", blob=other, state="damaged bytes")
+            damaged = daemon.logged(event="bad state", blob=other, state="file_damaged", cause="damage")
+            self.assertIn("damaged bytes", damaged["detail"])
+            [state] = daemon.get("/readyz").json["states"]
+            self.assertEqual((state["state"], state["cause"], state["file"]), ("file_damaged", "damage", other))
+            self.assertIn('driftlab_bad_states{state="file_damaged",cause="damage"} 1\n', daemon.get("/metrics").text)
             daemon.logged(event="columns were made anew from the uploaded bytes", blob=sha)
             self.assertIn("driftlab_blobs_damaged 1\n", daemon.get("/metrics").text)
             self.assertEqual(daemon.upload(csv(3000, 1), device="d1").status, 200, "the same file again heals it")
+            until = time.monotonic() + PATIENCE_S
+            def audited(action: str) -> list[str]:
+                return [row["object"] for row in daemon.items("/v1/audit") if row["action"] == action]
+            while not audited("state.begin") and time.monotonic() < until:
+                time.sleep(0.1)
+            self.assertEqual(audited("state.begin"), [other], "once, with what it is about")
 
     def test_check_tells_what_is_damaged_or_missing(self) -> None:
         with Daemon(self.folder / "data") as daemon:

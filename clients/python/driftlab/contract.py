@@ -2950,6 +2950,17 @@ class ReadinessAnswer(TypedDict):
     status: Literal['ready']
     # Stored files that are damaged and could not be healed; the log names them.
     damaged_files: NotRequired[int]
+    # What is wrong now. Each begins and ends once in the log and in the audit log.
+    states: NotRequired[list[ReadinessAnswerState]]
+
+
+class ReadinessAnswerState(TypedDict):
+    state: Literal['store_silent', 'store_unwritable', 'disk_nearly_full', 'files_fail', 'file_damaged']
+    cause: Literal['io', 'disk_full', 'damage']
+    since: str
+    detail: str
+    # SHA-256 of the file as it was uploaded.
+    file: NotRequired[str]
 
 
 class Recording(TypedDict):

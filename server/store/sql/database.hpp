@@ -3,9 +3,11 @@
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/sql/connection.hpp"
+#include "server/store/sql/write_times.hpp"
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -30,6 +32,7 @@ class Database {
   /// `work`.
   template <class Work>
   [[nodiscard]] auto write(WriteKind kind, Work work) {
+    const WriteTimes::Watch watch(write_times_);
     return run<Work>([&](const std::function<Status(Connection&)>& told) { return run_write(kind, told); }, work);
   }
 
@@ -44,12 +47,17 @@ class Database {
   [[nodiscard]] virtual UtcMicros now(const Connection& connection) const = 0;
   /// Store::changes.
   [[nodiscard]] virtual std::uint64_t changes() const = 0;
+  [[nodiscard]] WriteTimes::Counts write_times() const { return write_times_.counts(); }
+  /// Pages of the write-ahead log as it lies on this machine's disk; nothing where it is elsewhere.
+  [[nodiscard]] virtual std::optional<std::int64_t> log_pages() const { return std::nullopt; }
 
  protected:
   [[nodiscard]] virtual Status run_write(WriteKind kind, const std::function<Status(Connection&)>& work) = 0;
   [[nodiscard]] virtual Status run_read(const std::function<Status(Connection&)>& work) = 0;
 
  private:
+  WriteTimes write_times_;
+
   template <class Work, class Runner>
   [[nodiscard]] static auto run(const Runner& runner, Work& work) {
     using Outcome = std::invoke_result_t<Work&, Connection&>;

@@ -10,17 +10,25 @@
 namespace driftlab::server::tables {
 namespace {
 
-/// ?1 now, ?2 lease end, ?3 longest pause, ?4 ageing step. A job without failures has nothing to wait for, and nobody
-/// has to wait longer than the longest pause: a run_at beyond it was written before the clock went back. Where several
-/// claim at a time each passes over what another one is about to take.
+/// ?1 now, ?2 lease end, ?3 longest pause, ?4 ageing step, ?5 jobs of one token that run at once. A job without
+/// failures has nothing to wait for, and nobody has to wait longer than the longest pause: a run_at beyond it was
+/// written before the clock went back. Where several claim at a time each passes over what another one is about to
+/// take.
+#define DRIFTLAB_BUSY_TOKENS                                                                            \
+  "(SELECT token_id FROM owners JOIN jobs AS busy ON busy.id = object_id WHERE busy.state = 'running' " \
+  "GROUP BY token_id HAVING count(*) >= ?5)"
+#define DRIFTLAB_HAS_ITS_TURN                                                                             \
+  "AND (NOT EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id IN " DRIFTLAB_BUSY_TOKENS \
+  ") "                                                                                                    \
+  "OR EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id NOT IN " DRIFTLAB_BUSY_TOKENS ")) "
 constexpr EngineTexts kClaim{
     "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', "
     "progress = 0 WHERE id = (SELECT id FROM jobs WHERE state = 'queued' "
-    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) "
+    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " DRIFTLAB_HAS_ITS_TURN
     "ORDER BY priority - max(0, ?1 - run_at) / ?4, run_at, id LIMIT 1) RETURNING " DRIFTLAB_JOB_COLUMNS,
     "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', "
     "progress = 0 WHERE id = (SELECT id FROM jobs WHERE state = 'queued' "
-    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) "
+    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " DRIFTLAB_HAS_ITS_TURN
     "ORDER BY priority - greatest(0, ?1 - run_at) / ?4, run_at, id LIMIT 1 FOR UPDATE SKIP LOCKED) "
     "RETURNING " DRIFTLAB_JOB_COLUMNS};
 constexpr std::string_view kRenew =
@@ -122,11 +130,12 @@ std::optional<JobState> end_after(const AttemptFailure& failure, const HeldJob& 
 
 }  // namespace
 
-Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, UtcMicros now) {
+Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, std::int64_t running_per_token,
+                                 UtcMicros now) {
   std::optional<Job> claimed;
   {
     Statement update = connection.prepare(kClaim);
-    update.bind(now, now + lease_micros, kLongestPauseMicros, kAgeingMicros);
+    update.bind(now, now + lease_micros, kLongestPauseMicros, kAgeingMicros, running_per_token);
     Result<std::optional<Job>> row = first_row(update, read_job);
     if (!row) {
       return row;
@@ -213,8 +222,8 @@ Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease, con
       connection.prepare(kRememberFailure)
           .bind(lease.job_id, lease.attempt, job.started_at, now, failure.fault_signal ? 1 : 0, failure.problem_json)
           .run();
+  const std::optional<JobState> end = end_after(failure, job, failures, faults);
   if (change) {
-    const std::optional<JobState> end = end_after(failure, job, failures, faults);
     change =
         end ? connection.prepare(kFailToEnd)
                   .bind(lease.job_id, name_of(*end), now, failures, faults, failure.problem_json)
@@ -223,7 +232,11 @@ Result<LeaseStatus> fail_attempt(Connection& connection, const Lease& lease, con
                   .bind(lease.job_id, now + draw_pause_micros(failures, jitter), failures, faults, failure.problem_json)
                   .run();
   }
-  return moved(connection, std::move(change), lease, job.cancel_requested, now);
+  auto status = moved(connection, std::move(change), lease, job.cancel_requested, now);
+  if (status) {
+    status->dead = end == JobState::Dead;
+  }
+  return status;
 }
 
 Result<LeaseStatus> acknowledge_cancel(Connection& connection, const Lease& lease, UtcMicros now) {

@@ -28,6 +28,12 @@ constexpr std::string_view kUsageOf =
     "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
     "FROM recordings "
     "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE recordings.device_id = ?1";
+constexpr std::string_view kUsageOfToken =
+    "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
+    "FROM owners JOIN recordings ON recordings.id = owners.object_id "
+    "JOIN blobs ON blobs.sha256 = recordings.blob_sha256 WHERE owners.token_id = ?1";
+constexpr std::string_view kBlobBytes = "SELECT coalesce(sum(bytes), 0) FROM blobs";
+constexpr std::string_view kRemoveOwners = "DELETE FROM owners WHERE object_id = ?";
 constexpr std::string_view kConditionsOf =
     "SELECT condition, count(*) FROM recordings WHERE device_id = ? GROUP BY condition ORDER BY condition";
 constexpr std::string_view kInsert =
@@ -107,6 +113,12 @@ Status require_device(Connection& connection, const std::string& device_id) {
   return {};
 }
 
+Result<DeviceUsage> read_usage(Statement& statement) {
+  return one_row(
+      statement, +[](const Statement& row) { return DeviceUsage{row.integer(0), row.integer(1), row.integer(2) != 0}; },
+      Error{ErrorCode::Internal, "The store counts nothing.", {}});
+}
+
 tl::unexpected<Error> stale(const Recording& found) {
   return fail(ErrorCode::Conflict, "The recording was changed by somebody else in the meantime.",
               {{"revision", std::to_string(found.revision)}});
@@ -168,9 +180,18 @@ Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
 
 Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256) {
   Statement statement = connection.prepare(kUsageOf);
-  statement.bind(device_id, sha256);
+  return read_usage(statement.bind(device_id, sha256));
+}
+
+Result<DeviceUsage> usage_of_token(Connection& connection, std::string_view token, std::string_view sha256) {
+  Statement statement = connection.prepare(kUsageOfToken);
+  return read_usage(statement.bind(token, sha256));
+}
+
+Result<std::int64_t> blob_bytes(Connection& connection) {
+  Statement statement = connection.prepare(kBlobBytes);
   return one_row(
-      statement, +[](const Statement& row) { return DeviceUsage{row.integer(0), row.integer(1), row.integer(2) != 0}; },
+      statement, +[](const Statement& row) { return row.integer(0); },
       Error{ErrorCode::Internal, "The store counts nothing.", {}});
 }
 
@@ -252,8 +273,10 @@ Status remove_recording(Connection& connection, std::string_view id, std::int64_
   if (!axes) {
     return fail(axes.error());
   }
-  if (Status removed = connection.prepare(kRemove).bind(id).run(); !removed) {
-    return removed;
+  for (const std::string_view removal : {kRemove, kRemoveOwners}) {
+    if (Status removed = connection.prepare(removal).bind(id).run(); !removed) {
+      return removed;
+    }
   }
   return refresh_pools(connection, *axes, now).map([](int) {});
 }

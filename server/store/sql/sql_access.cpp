@@ -66,6 +66,16 @@ Status SqlAccess::close_session(std::string_view secret_sha256) {
   return closed ? Status{} : fail(closed.error());
 }
 
+Status SqlAccess::note_state(const std::string& action, const std::string& object, const std::string& detail) {
+  Caller self;
+  self.principal.name = "daemon";
+  const ActingFor acting(self);
+  const auto noted =
+      audited_.write([](Connection& /*connection*/) { return Result<bool>(true); },
+                     [&](bool /*noted*/) { return std::optional(tables::AuditEntry{action, object, detail}); });
+  return noted ? Status{} : fail(noted.error());
+}
+
 Result<std::vector<AuditRow>> SqlAccess::audit(std::int64_t after, int limit, bool newest_first) {
   return database_.read([&](Connection& c) { return tables::audit(c, after, limit, newest_first); });
 }

@@ -63,6 +63,8 @@ class SqlAccess final : public AccessStore {
   [[nodiscard]] Result<std::vector<Session>> sessions() override;
   [[nodiscard]] Status open_session(const Session& session) override;
   [[nodiscard]] Status close_session(std::string_view secret_sha256) override;
+  [[nodiscard]] Status note_state(const std::string& action, const std::string& object,
+                                  const std::string& detail) override;
   [[nodiscard]] Result<std::vector<AuditRow>> audit(std::int64_t after, int limit, bool newest_first) override;
   [[nodiscard]] Result<AuditVerdict> verify_audit() override;
 

@@ -86,19 +86,42 @@ Result<std::optional<Blob>> SqlStore::blob(std::string_view sha256) {
 }
 
 Result<RecordingOutcome> SqlStore::add_recording(const Blob& blob, const Recording& recording) {
-  return audited_.write([&](Connection& c) { return tables::add_recording(c, blob, recording, now(c)); },
-                        [](const RecordingOutcome& o) { return made("recording.add", o.created, o.recording.id); });
+  const Caller* const caller = caller_of_thread();
+  return audited_.write(
+      [&](Connection& c) {
+        auto added = tables::add_recording(c, blob, recording, now(c));
+        if (added && added->created && caller != nullptr) {
+          if (Status noted = tables::add_owner(c, added->recording.id, *caller); !noted) {
+            added = fail(noted.error());
+          }
+        }
+        return added;
+      },
+      [](const RecordingOutcome& o) { return made("recording.add", o.created, o.recording.id); });
 }
 
 Status SqlStore::write_probe() {
-  // The value stays; the page goes through log and disk like any other.
+  // A row that comes and goes: SQLite does not write a row that stays what it is. No client's key has a space in it.
   return database_->write(WriteKind::Fenced, [](Connection& c) -> Status {
-    return c.prepare("UPDATE schema_migrations SET applied_at = applied_at WHERE number = 1").run();
+    Status written = c.prepare(
+                          "INSERT INTO idempotent_replies (key, method, target, body_sha256, status, headers_json, "
+                          "body, created_at) VALUES ('write probe', '', '', '', 0, '', '', 0) "
+                          "ON CONFLICT (key) DO NOTHING")
+                         .run();
+    return written ? c.prepare("DELETE FROM idempotent_replies WHERE key = 'write probe'").run() : written;
   });
 }
 
 Result<DeviceUsage> SqlStore::usage_of(std::string_view device_id, std::string_view sha256) {
   return database_->read([&](Connection& c) { return tables::usage_of(c, device_id, sha256); });
+}
+
+Result<DeviceUsage> SqlStore::usage_of_token(std::string_view token, std::string_view sha256) {
+  return database_->read([&](Connection& c) { return tables::usage_of_token(c, token, sha256); });
+}
+
+Result<std::int64_t> SqlStore::blob_bytes() {
+  return database_->read([](Connection& c) { return tables::blob_bytes(c); });
 }
 
 Result<int> SqlStore::forget_ended_jobs(UtcMicros before) {
@@ -195,8 +218,9 @@ Result<std::vector<Job>> SqlStore::jobs(const JobFilter& filter, const Page& pag
   return database_->read([&](Connection& c) { return tables::jobs(c, filter, page); });
 }
 
-Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros) {
-  return database_->write(WriteKind::Fenced, [&](Connection& c) { return tables::claim(c, lease_micros, now(c)); });
+Result<std::optional<Job>> SqlStore::claim(std::int64_t lease_micros, std::int64_t running_per_token) {
+  return database_->write(WriteKind::Fenced,
+                          [&](Connection& c) { return tables::claim(c, lease_micros, running_per_token, now(c)); });
 }
 
 Result<LeaseStatus> SqlStore::renew(const Lease& lease, std::int64_t lease_micros) {

@@ -30,6 +30,13 @@ class SqlStore : public Store {
   /// Webhooks and their deliveries. Lives as long as the store.
   [[nodiscard]] WebhookStore& webhooks() { return webhooks_; }
 
+  /// How long writes have taken since the start.
+  [[nodiscard]] WriteTimes::Counts write_times() const { return database_->write_times(); }
+  /// Pages of the write-ahead log; nothing where the database lies elsewhere.
+  [[nodiscard]] std::optional<std::int64_t> log_pages() const { return database_->log_pages(); }
+  /// Bytes of everything that was uploaded and is still there.
+  [[nodiscard]] Result<std::int64_t> blob_bytes();
+
   [[nodiscard]] Status ping() override;
 
   [[nodiscard]] std::uint64_t changes() const override;
@@ -44,6 +51,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<RecordingOutcome> add_recording(const Blob& blob, const Recording& recording) override;
   [[nodiscard]] Status write_probe() override;
   [[nodiscard]] Result<DeviceUsage> usage_of(std::string_view device_id, std::string_view sha256) override;
+  [[nodiscard]] Result<DeviceUsage> usage_of_token(std::string_view token, std::string_view sha256) override;
   [[nodiscard]] Result<int> forget_ended_jobs(UtcMicros before) override;
   [[nodiscard]] Result<Recording> recording(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Recording>> recordings(const RecordingFilter& filter, const Page& page) override;
@@ -65,7 +73,8 @@ class SqlStore : public Store {
   [[nodiscard]] Result<EnqueuedJob> enqueue(const NewJob& job) override;
   [[nodiscard]] Result<Job> job(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Job>> jobs(const JobFilter& filter, const Page& page) override;
-  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros) override;
+  using Store::claim;
+  [[nodiscard]] Result<std::optional<Job>> claim(std::int64_t lease_micros, std::int64_t running_per_token) override;
   [[nodiscard]] Result<LeaseStatus> renew(const Lease& lease, std::int64_t lease_micros) override;
   [[nodiscard]] Result<LeaseStatus> report_progress(const Lease& lease, std::string_view stage,
                                                     double progress) override;

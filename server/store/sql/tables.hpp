@@ -172,6 +172,10 @@ class FilteredQuery {
 [[nodiscard]] Result<RecordingOutcome> add_recording(Connection& connection, const Blob& blob,
                                                      const Recording& recording, UtcMicros now);
 [[nodiscard]] Result<DeviceUsage> usage_of(Connection& connection, std::string_view device_id, std::string_view sha256);
+[[nodiscard]] Result<DeviceUsage> usage_of_token(Connection& connection, std::string_view token,
+                                                 std::string_view sha256);
+/// Bytes of all blobs, as uploaded.
+[[nodiscard]] Result<std::int64_t> blob_bytes(Connection& connection);
 [[nodiscard]] Result<Recording> recording(Connection& connection, std::string_view id);
 [[nodiscard]] Result<std::vector<Recording>> recordings(Connection& connection, const RecordingFilter& filter,
                                                         const Page& page);
@@ -198,7 +202,8 @@ class FilteredQuery {
 [[nodiscard]] Status add_event(Connection& connection, std::string_view job_id, std::string_view type, UtcMicros now);
 
 // ---- jobs: working
-[[nodiscard]] Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros, UtcMicros now);
+[[nodiscard]] Result<std::optional<Job>> claim(Connection& connection, std::int64_t lease_micros,
+                                               std::int64_t running_per_token, UtcMicros now);
 [[nodiscard]] Result<LeaseStatus> renew(Connection& connection, const Lease& lease, std::int64_t lease_micros,
                                         UtcMicros now);
 [[nodiscard]] Result<LeaseStatus> report_progress(Connection& connection, const Lease& lease, std::string_view stage,

@@ -1,6 +1,7 @@
 #include "server/store/sqlite/backup.hpp"
 
 #include "server/store/checksums.hpp"
+#include "server/store/crash_point.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
 #include "server/store/sqlite/connection.hpp"
@@ -238,17 +239,21 @@ Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const 
   if (!done) {
     return fail(done.error());
   }
+  crash_point("backup.copied");
   StoreReport report;
   if (done = copy_what_is_named(data, construction.part(), report); !done) {
     return fail(done.error());
   }
+  crash_point("backup.files");
   done = write_manifest(construction.part(), report, now);
   if (done) {
+    crash_point("backup.complete");
     done = construction.finish();
   }
   if (!done) {
     return fail(done.error());
   }
+  crash_point("backup.named");
   return report;
 }
 

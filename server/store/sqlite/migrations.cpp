@@ -1,5 +1,6 @@
 #include "server/store/sqlite/migrations.hpp"
 
+#include "server/store/crash_point.hpp"
 #include "server/store/files.hpp"
 
 namespace driftlab::server {
@@ -83,6 +84,7 @@ Status apply(SqliteConnection& connection, const Migration& migration, const Clo
     status = apply_steps(connection, migration, clock);
   }
   if (status) {
+    crash_point("migrate.in_step");
     status = connection.execute("COMMIT");
   }
   if (!status) {
@@ -94,6 +96,7 @@ Status apply(SqliteConnection& connection, const Migration& migration, const Clo
         "Migration " + std::to_string(migration.number) + " (" + migration.name + ") failed. " + error.message;
     return fail(std::move(error).with("migration", std::to_string(migration.number)));
   }
+  crash_point("migrate.stepped");
   return {};
 }
 
@@ -155,6 +158,7 @@ Result<MigrationOutcome> migrate(SqliteConnection& connection, const std::vector
     if (Status copied = copy_database(connection, outcome.backup); !copied) {
       return fail(copied.error());
     }
+    crash_point("migrate.backed_up");
   }
   // Tables that others refer to can only be rebuilt with the keys off; every migration ends with a check of all of
   // them.

@@ -14,12 +14,22 @@ namespace driftlab::server {
 /// Writes come one after the other, so that each kind of them is served alike. The time is that of the clock at hand.
 class SqliteDatabase final : public Database {
  public:
-  SqliteDatabase(FileHandle lock, const Clock& clock, std::unique_ptr<SqliteConnection> writer,
-                 std::unique_ptr<ReaderPool> readers)
-      : lock_(std::move(lock)), clock_(clock), writer_(std::move(writer)), readers_(std::move(readers)) {}
+  SqliteDatabase(FileHandle lock, const Clock& clock, std::filesystem::path file,
+                 std::unique_ptr<SqliteConnection> writer, std::unique_ptr<ReaderPool> readers)
+      : lock_(std::move(lock)),
+        clock_(clock),
+        file_(std::move(file)),
+        writer_(std::move(writer)),
+        readers_(std::move(readers)) {}
 
   [[nodiscard]] UtcMicros now(const Connection& /*connection*/) const override { return clock_.now(); }
   [[nodiscard]] std::uint64_t changes() const override { return writer_.changes(); }
+  [[nodiscard]] std::optional<std::int64_t> log_pages() const override {
+    constexpr std::int64_t kFrameBytes = 4096 + 24;  // https://sqlite.org/fileformat2.html#walformat
+    std::error_code absent;
+    const std::uintmax_t bytes = std::filesystem::file_size(file_.string() + "-wal", absent);
+    return absent ? 0 : static_cast<std::int64_t>(bytes) / kFrameBytes;
+  }
   [[nodiscard]] Status copy_to(const std::filesystem::path& target) {
     return readers_->borrow([&](SqliteConnection& c) { return copy_database(c, target); });
   }
@@ -36,6 +46,7 @@ class SqliteDatabase final : public Database {
   // lock.
   FileHandle lock_;
   const Clock& clock_;
+  const std::filesystem::path file_;
   Writer writer_;
   std::unique_ptr<ReaderPool> readers_;
 };

@@ -72,7 +72,8 @@ Result<std::unique_ptr<SqliteStore>> open_sqlite_store(const std::filesystem::pa
     return fail(readers.error());
   }
   const std::uint64_t seed = options.jitter_seed ? *options.jitter_seed : std::random_device{}();
-  auto database = std::make_unique<SqliteDatabase>(std::move(*lock), clock, std::move(*writer), std::move(*readers));
+  auto database = std::make_unique<SqliteDatabase>(std::move(*lock), clock, facts.database, std::move(*writer),
+                                                   std::move(*readers));
   return std::make_unique<SqliteStore>(std::move(database), std::move(facts), seed, std::move(options.audited));
 }
 

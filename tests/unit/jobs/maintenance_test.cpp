@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
+#include <thread>
 
 namespace driftlab::server {
 namespace {
@@ -61,6 +63,41 @@ TEST(Maintenance, RescuesForgetsAndSweepsByItself) {
   maintenance.stop();
   EXPECT_EQ(*world.store->forget_old_replies(), 0) << "it was forgotten already";
   EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(orphan)));
+}
+
+TEST(Maintenance, WhatIsTooOldGoesAtOnceWhereTheDiskIsNearlyFull) {
+  ToyWorld world(nothing);
+  const std::string blob = keep_blob(*world.blobs, "old");
+  const Recording recording = add_recording(*world.store, add_device(*world.store), "old");
+  const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 3650);
+  std::filesystem::last_write_time(world.blobs->bytes_path(blob), long_ago);
+  std::filesystem::last_write_time(world.blobs->columns_path(blob), long_ago);
+
+  std::atomic<bool> full{false};
+  std::atomic<int> turns{0};
+  MaintenanceOptions options;
+  options.rescue_micros = 1000;
+  options.budgets.keep_recordings_days = 1;
+  options.is_nearly_full = [&] { return full.load(); };
+  options.each_turn = [&] { ++turns; };
+  Maintenance maintenance(*world.store, *world.blobs, world.clock, options, [] {});
+  maintenance.start();
+  const auto pass_turns = [&] {
+    const int from = turns;
+    while (turns < from + 3) {
+      std::this_thread::yield();
+    }
+  };
+  pass_turns();
+  world.clock.advance(48 * kHour);
+  pass_turns();
+  EXPECT_TRUE(world.store->recording(recording.id)) << "it goes with the next hourly look, which is not yet";
+  full = true;
+  pass_turns();
+  EXPECT_EQ(world.store->recording(recording.id).error().code, ErrorCode::NotFound);
+  EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(blob))) << "the space is free";
+  EXPECT_FALSE(std::filesystem::exists(world.blobs->columns_path(blob)));
+  maintenance.stop();
 }
 
 TEST(Maintenance, GivesRescuedJobsToTheWorkers) {

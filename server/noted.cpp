@@ -1,0 +1,52 @@
+#include "server/noted.hpp"
+
+#include "server/observe/log.hpp"
+#include "server/store/told_error.hpp"
+
+namespace driftlab::server {
+namespace {
+
+/// Whether the disk failed, and not a limit that somebody set: such an error names its file.
+bool is_of_the_disk(const Error& error) {
+  return (error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull) &&
+         without_paths(error).message != error.message;
+}
+
+}  // namespace
+
+void note_state(const StandingState& state, bool begins) {
+  Json fields{{"state", name_of(state.state)}, {"cause", state.cause}, {"detail", state.detail}};
+  if (!state.object.empty()) {
+    fields["blob"] = state.object;
+  }
+  begins ? log_error("bad state", fields) : log_info("bad state ended", fields);
+}
+
+void note_failure(BadStates& states, const Error& error, const Json& where) {
+  Json fields = where;
+  fields["code"] = driftlab::name_of(error.code);
+  fields["detail"] = error.message;
+  log_error("failed", fields);
+  if (is_of_the_disk(error)) {
+    states.note_failure(error);
+  }
+}
+
+void note_request(Metrics& metrics, BadStates& states, const AccessRecord& record) {
+  if (record.failure) {
+    note_failure(states, *record.failure, Json{{"request_id", record.request_id}, {"route", record.route}});
+  }
+  metrics.count_request(record.method, record.route, record.status, record.seconds, record.bytes_in, record.bytes_out);
+  log_info("request", Json{{"method", record.method},
+                           {"route", record.route},
+                           {"target", record.target},
+                           {"status", record.status},
+                           {"bytes_in", record.bytes_in},
+                           {"bytes_out", record.bytes_out},
+                           {"seconds", record.seconds},
+                           {"request_id", record.request_id},
+                           {"address", record.address},
+                           {"token", record.token.empty() ? Json(nullptr) : Json(record.token)}});
+}
+
+}  // namespace driftlab::server
