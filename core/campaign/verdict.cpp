@@ -194,21 +194,36 @@ std::optional<std::size_t> white_column(const ParameterTable& table) {
   return std::nullopt;
 }
 
-/// The levels of white noise of all rows: at the reference, and how many of the others moved.
-void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdict) {
+/// Where a table holds its white-noise density: N at low frequencies, whatever the model, and where no recording has
+/// one the parameter of the model's white noise (or the Allan deviation's N).
+struct DensityOf {
+  std::optional<std::size_t> column;  ///< nothing: the density of the row
+  const TableCell& operator()(const TableRow& row) const { return column ? row.cells[*column] : row.density; }
+};
+
+std::optional<DensityOf> density_of(const ParameterTable& table) {
+  if (table.method == TableMethod::Gmwm && table.rows[table.reference].density.estimate.value) {
+    return DensityOf{std::nullopt};
+  }
+  const auto column = white_column(table);
+  return column ? std::optional(DensityOf{column}) : std::nullopt;
+}
+
+/// The white-noise densities of all rows: at the reference, and how many of the others moved.
+void say_levels(const ParameterTable& table, const DensityOf& density, Verdict& verdict) {
   const TableRow& reference = table.rows[table.reference];
-  const ReportedValue& first = reference.cells[column].estimate;
+  const ReportedValue& first = density(reference).estimate;
   if (!first.value) {
-    verdict.sentence = "White noise is not identified under the condition " + reference.label + ".";
+    verdict.sentence = "The white-noise density N is not identified under the condition " + reference.label + ".";
     return;
   }
-  verdict.sentence = "White noise is " + written(first) + " (" + reference.label + ")";
+  verdict.sentence = "The white-noise density N is " + written(first) + " (" + reference.label + ")";
   std::size_t moved = 0;
   std::size_t compared = 0;
   const TableRow* highest = nullptr;
   double most = 0.0;
   for (const TableRow& row : table.rows) {
-    const TableCell& cell = row.cells[column];
+    const TableCell& cell = density(row);
     if (&row == &reference || !cell.estimate.value) {
       continue;
     }
@@ -223,7 +238,7 @@ void say_levels(const ParameterTable& table, std::size_t column, Verdict& verdic
     verdict.sentence += ".";
     return;
   }
-  verdict.sentence += " and " + written(highest->cells[column].estimate) + " at " + highest->label +
+  verdict.sentence += " and " + written(density(*highest).estimate) + " at " + highest->label +
                       (compared > 1 ? ", the highest" : "") + ".";
   if (moved == 0) {
     verdict.sentence += " No change against " + reference.label + " is shown.";
@@ -261,12 +276,13 @@ Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evi
 
 Verdict verdict_of(const ParameterTable& table) {
   Verdict verdict;
-  const auto column = white_column(table);
-  if (!column || table.rows.empty()) {
-    verdict.sentence = "The model " + table.model + " has no white noise.";
+  const auto density = table.rows.empty() ? std::nullopt : density_of(table);
+  if (!density) {
+    verdict.sentence =
+        "No recording of this table gives a white-noise density N, and the model " + table.model + " holds none.";
     return verdict;
   }
-  say_levels(table, *column, verdict);
+  say_levels(table, *density, verdict);
   std::vector<std::string> misfits;
   for (const TableRow& row : table.rows) {
     const bool misfit = std::any_of(row.warnings.begin(), row.warnings.end(), [](const std::string& warning) {

@@ -83,5 +83,28 @@ TEST(Verdict, SaysWhatGrossErrorsAndAnotherShapeDo) {
   EXPECT_EQ(verdict_of(channel_of({}), {}).level, VerdictLevel::Wrong);
 }
 
+/// A low-passed sensor at two rates: the model holds no white noise, and the table said "has no white noise" of a
+/// sensor whose angle random walk stood in its own first column.
+TEST(Verdict, OfATableIsAboutTheDensityThatRowsShowWhateverTheModel) {
+  ParameterTable table{"phone", Quantity::AngularRate, "z", TableMethod::Gmwm, "2GM", {{"gauss_markov_1.beta", "1/s"}},
+                       {}};
+  for (const auto& [condition, value] : {std::pair("static", 0.3), std::pair("constant_rate:z:9:deg/s", 0.5)}) {
+    TableRow row;
+    row.condition = *parse_condition(condition);
+    row.label = condition;
+    row.cells = {{{1.7, 1.5, 1.9, "1/s", ""}, Change::None}};
+    row.density = {{value, 0.99 * value, 1.01 * value, "deg/sqrt(h)", ""}, value > 0.4 ? Change::Up : Change::None};
+    table.rows.push_back(row);
+  }
+  EXPECT_THAT(verdict_of(table).sentence,
+              testing::StartsWith("The white-noise density N is 0.300 deg/sqrt(h) (static) and 0.500 deg/sqrt(h) at "
+                                  "constant_rate:z:9:deg/s."));
+  EXPECT_THAT(verdict_of(table).sentence, HasSubstr("It moves"));
+  for (TableRow& row : table.rows) {
+    row.density = {};
+  }
+  EXPECT_THAT(verdict_of(table).sentence, HasSubstr("the model 2GM holds none"));
+}
+
 }  // namespace
 }  // namespace driftlab
