@@ -194,7 +194,9 @@ TEST(Ieee952Coefficients, LevelsGoWithTheUnitOfTheCurve) {
   EXPECT_DOUBLE_EQ(10.0 * one.k_limit, other.k_limit);
 }
 
-TEST(CompositeSearch, RecordedGyroscopesAreAcceptedAndAccelerometersDescribed) {
+class CompositeSearchOfRecorded : public testing::TestWithParam<const char*> {};
+
+TEST_P(CompositeSearchOfRecorded, GyroscopesAreAcceptedAndAccelerometersDescribed) {
   // Story: none of the nine candidates is accepted for any axis of three ADIS16405; gyroscopes x and y are white noise
   // averaged over little more than a sample and a power law, gyroscope z has a resonance at 20 Hz, accelerometers a
   // line at 0.56 Hz.
@@ -202,7 +204,7 @@ TEST(CompositeSearch, RecordedGyroscopesAreAcceptedAndAccelerometersDescribed) {
   if (!shared) {
     GTEST_SKIP() << "SKIPPED: no recordings; set DRIFTLAB_SHARED to the directory that holds data/";
   }
-  const auto columns = shared_data::read_npy_xz(*shared / "data" / "adis_16405_imu1.npy.xz", 6);
+  const auto columns = shared_data::read_npy_xz(*shared / "data" / (std::string(GetParam()) + ".npy.xz"), 6);
   const std::shared_ptr<const CompositeBasis> basis = basis_of(columns[0].size());
   for (std::size_t axis = 0; axis < columns.size(); ++axis) {
     const CompositeSearchResult found = search_composite(*basis, curve_of(columns[axis], *basis));
@@ -223,6 +225,10 @@ TEST(CompositeSearch, RecordedGyroscopesAreAcceptedAndAccelerometersDescribed) {
     EXPECT_EQ(has_line, axis >= 2) << name;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Adis16405, CompositeSearchOfRecorded,
+                         testing::Values("adis_16405_imu1", "adis_16405_imu2", "adis_16405_imu3"),
+                         [](const auto& one) { return std::string(one.param); });
 
 }  // namespace
 }  // namespace driftlab
