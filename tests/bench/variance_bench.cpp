@@ -5,6 +5,7 @@
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/robust_variance.hpp"
 #include "core/variance/samples.hpp"
+#include "tests/bench/recorded_axes.hpp"
 
 #include <Eigen/Core>
 #include <benchmark/benchmark.h>
@@ -62,10 +63,29 @@ void TwoHundredTaus(benchmark::State& state) {  // NOLINT(readability-identifier
   }
 }
 
+/// The six recorded axes of 10^6 samples, one after the other.
+void OctaveVariancesRecorded(benchmark::State& state) {  // NOLINT(readability-identifier-naming)
+  for (auto _ : state) {
+    for (const std::vector<double>& x : recorded_axes::adis(state)) {
+      benchmark::DoNotOptimize(haar_variance(x, 0.0));
+    }
+  }
+}
+
+void TwoHundredTausRecorded(benchmark::State& state) {  // NOLINT(readability-identifier-naming)
+  for (auto _ : state) {
+    for (const std::vector<double>& x : recorded_axes::adis(state)) {
+      benchmark::DoNotOptimize(allan_variance(x, 0.0, log_spaced_half_lengths(x.size(), 200)));
+    }
+  }
+}
+
 BENCHMARK(OneRead)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(OctaveVariances)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(TwoHundredTaus)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond);
 BENCHMARK(RobustVariances)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(OctaveVariancesRecorded)->Unit(benchmark::kMillisecond);
+BENCHMARK(TwoHundredTausRecorded)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace driftlab
