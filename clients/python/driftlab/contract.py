@@ -1212,6 +1212,16 @@ class GetImpliedCurvesAnswer(TypedDict):
     implied: RecordingCharacterisationImplied
 
 
+class GetSchemaAnswer(TypedDict):
+    cases: list[GetSchemaAnswerCase]
+
+
+class GetSchemaAnswerCase(TypedDict):
+    value: float
+    ci95: list[float] | None
+    text: str
+
+
 class HealthAnswer(TypedDict):
     status: Literal['alive']
     version: str
@@ -3917,7 +3927,7 @@ OPERATIONS: dict[str, Operation] = {
     'getProblemType': Operation(
         'GET', '/problems/{slug}', (), (), ('text/markdown',)),
     'getSchema': Operation(
-        'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
+        'GET', '/schemas/{name}', (), (), ('application/schema+json', 'application/json')),
     'getCounts': Operation(
         'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
     'listAttention': Operation(
@@ -3927,7 +3937,7 @@ OPERATIONS: dict[str, Operation] = {
     'getSample': Operation(
         'GET', '/v1/samples/{preset}', ('condition', 'seed'), (), ('text/csv',)),
     'listDevices': Operation(
-        'GET', '/v1/devices', ('include', 'limit', 'cursor', 'sort'), (), ('application/json',)),
+        'GET', '/v1/devices', ('include', 'limit', 'cursor', 'sort', 'q'), (), ('application/json',)),
     'createDevice': Operation(
         'POST', '/v1/devices', (), ('Idempotency-Key',), ('application/json',)),
     'getDevice': Operation(

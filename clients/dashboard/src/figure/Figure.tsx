@@ -102,9 +102,11 @@ export function defaultReadout(plot: Plot, x: number): JSX.Element {
 }
 
 // One curve at the cursor, as it is spoken.
-function spokenAt(plot: Plot, x: number, chosen: string | null): string {
+function spokenAt(plots: readonly Plot[], x: number, chosen: string | null): string {
+  const [plot] = plots;
+  if (!plot) return '';
   const write = plot.x.write ?? ((value: number) => writeNumber(value, 4));
-  return `${plot.x.name || 'at'} ${write(x)}, ${valuesAt(plot, x).filter(({series, value}) => finite(value) && (chosen === null || series.id === chosen))
+  return `${plots.map(each => each.x.name).find(Boolean) ?? 'at'} ${write(x)}, ${valuesAt(plot, x).filter(({series, value}) => finite(value) && (chosen === null || series.id === chosen))
     .map(({series, value, low, high}) => `${series.name} ${writeNumber(value)}${finite(low) && finite(high) ? `, ${writeNumber(low)} to ${writeNumber(high)}` : ''}`).join('; ')}`;
 }
 
@@ -136,7 +138,7 @@ export function Figure(props: FigureProps): JSX.Element {
 
   useEffect(() => {
     if (x === null || document.activeElement !== svg.current) return undefined;
-    const timer = setTimeout(() => setSpoken(plots[0] ? spokenAt(plots[0], x, curve) : ''), SAY_MS);
+    const timer = setTimeout(() => setSpoken(spokenAt(plots, x, curve)), SAY_MS);
     return () => clearTimeout(timer);
   }, [x, curve]);
 
