@@ -13,7 +13,7 @@ namespace driftlab::server {
 namespace {
 
 constexpr int kMostDevices = 1000;      ///< looked at for names that begin so
-constexpr std::size_t kLookedAt = 100;  ///< likewise of recordings, the newest that hold the text
+constexpr std::size_t kLookedAt = 100;  ///< likewise of recordings, the first by name that hold the text
 constexpr std::array<std::string_view, 5> kIds{"dev_", "rec_", "job_", "mod_", "inv_"};
 
 std::string in_lower_case(std::string_view text) {
@@ -149,7 +149,7 @@ Status add_named(Store& store, const std::string& text, std::size_t most, Hits& 
     RecordingFilter filter;
     filter.text = sought;
     const auto rows =
-        store.recordings(filter, Page{"", static_cast<int>(std::max(most, kLookedAt)), PageOrder::NewestFirst});
+        store.recordings(filter, Page{"", static_cast<int>(std::max(most, kLookedAt)), PageOrder::ByName});
     if (!rows) {
       return fail(rows.error());
     }

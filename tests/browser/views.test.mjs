@@ -43,7 +43,7 @@ test('the signal marks what is no noise of the sensor, and each sentence leads t
   await signal.locator('.quality-note', {hasText: '1 gap, 30 samples missing in it'}).getByRole('button').click();
   await page.waitForURL(/t0=14/);
   await signal.getByRole('button', {name: 'Show all'}).click();
-  await signal.locator('.quality-note', {hasText: 'frozen for 6 s'}).waitFor();
+  await signal.locator('.quality-note', {hasText: 'frozen for 6.0 s'}).waitFor();
   await signal.locator('.quality-note', {hasText: /at full scale/}).first().waitFor();
   const [download] = await Promise.all([page.waitForEvent('download'), signal.getByRole('button', {name: 'SVG', exact: true}).click()]);
   assert.match(readFileSync(await download.path(), 'utf8'), />driftlab \d+\.\d+\.\d+, rec_\w+ gz \[deg\/s\], revision 1</);

@@ -24,10 +24,6 @@ constexpr std::string_view kById = "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM r
 constexpr std::string_view kByDeviceAndBlob =
     "SELECT " DRIFTLAB_RECORDING_COLUMNS " FROM recordings WHERE device_id = ? AND blob_sha256 = ?";
 constexpr std::string_view kHasResult = "EXISTS (SELECT 1 FROM channel_results WHERE recording_id = recordings.id)";
-/// Read from an index of these columns alone: the rows themselves hold whole documents.
-constexpr std::string_view kHolds =
-    "id IN (SELECT sought.id FROM recordings AS sought WHERE instr(lower(sought.name || ' ' || sought.file_name || ' ' "
-    "|| sought.condition || ' ' || sought.id), lower(?)) > 0)";
 constexpr std::string_view kUsageOf =
     "SELECT count(*), coalesce(sum(blobs.bytes), 0), coalesce(max(CASE WHEN blobs.sha256 = ?2 THEN 1 ELSE 0 END), 0) "
     "FROM recordings "
@@ -193,7 +189,7 @@ Result<std::vector<Recording>> recordings(Connection& connection, const Recordin
   for (const std::string& label : filter.labels) {
     query.where("EXISTS (SELECT 1 FROM json_each(tags_json, '$.labels') WHERE key || '=' || value = ?)", label);
   }
-  query.where(kHolds, filter.text);
+  query.holds("name || ' ' || file_name || ' ' || condition || ' ' || id", filter.text);
   query.made_since("rec", filter.since);
   if (filter.has_result) {
     query.where((*filter.has_result ? "" : "NOT ") + std::string(kHasResult));

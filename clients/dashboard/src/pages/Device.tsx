@@ -165,7 +165,7 @@ export default function DevicePage(): JSX.Element {
   // Until there is a first result the page looks for one.
   useEffect(() => { if (summary.data) setWaits(summary.data.channels.length === 0); }, [summary.data]);
   useTitle(read.data?.name ?? name);
-  return <Shown read={read}>{device => <>
+  return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
       actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /></>} />

@@ -112,7 +112,7 @@ export default function DriveEvaluation(): JSX.Element {
   const read = useRead<Evaluation>(`/v1/drive-evaluations/${encodeURIComponent(parts[1] ?? '')}`);
   useJobEvents(read.data && !read.data.finished_at ? read.data.id : null, read.again);
   useTitle(read.data ? `Drive: ${read.data.name}` : 'Drive');
-  return <Shown read={read}>{stored => <>
+  return <Shown read={read} page="Evaluation of a drive">{stored => <>
     <Head crumb={[['Recorded drives', listOf('drives')], [stored.name, pageOf('drives', stored.drive)], [SHORT[stored.question], null]]} title={`${stored.name}, ${SHORT[stored.question]}`}
       facts={[stored.evaluation?.vehicle, `seed ${stored.seed}`, stored.evaluation && `algorithm ${stored.evaluation.algorithm_version}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']}
       actions={<><a class="btn" href={pageOf('jobs', stored.id)}>Job</a><Report /></>} />

@@ -110,5 +110,5 @@ export default function InvestigationPage(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<Investigation>(`/v1/investigations/${encodeURIComponent(parts[1] ?? '')}`);
   useTitle('Investigation');
-  return <Shown read={read}>{found => <Found found={found} />}</Shown>;
+  return <Shown read={read} page="Investigation">{found => <Found found={found} />}</Shown>;
 }

@@ -111,7 +111,7 @@ export default function Jobs(): JSX.Element {
           <td class="desk-only" style={{width: '38%'}}><Clock job={job} from={from} to={to} /></td>
           <td class="n">{job.state === 'succeeded' ? <a href={resultPage(job)}>Result</a> : <Cancel job={job} onDone={read.again} />}</td>
         </tr>)}
-        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
+        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td class="n" /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
         </tbody>
       </table></div>}</Shown>
       {(read.data?.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{read.data?.next_cursor && <button type="button" class="btn" onClick={() => choose({after: read.data!.next_cursor})}>Older</button>}</p>}

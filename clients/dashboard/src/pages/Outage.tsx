@@ -66,7 +66,7 @@ export default function OutagePage(): JSX.Element {
   const read = useRead<StoredEvaluation>(`/v1/outage-evaluations/${encodeURIComponent(parts[1] ?? '')}`);
   useJobEvents(read.data && !read.data.finished_at ? read.data.id : null, read.again);
   useTitle(read.data ? `Outages: ${read.data.scenario_name}` : 'Outages');
-  return <Shown read={read}>{stored => <>
+  return <Shown read={read} page="Outages">{stored => <>
     <Head crumb={[['Outages', '/outages'], [stored.scenario_name, null]]} title={`Simulated outages: ${stored.scenario_name}`}
       facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
     <MadeBy job={stored.id} document={`/v1/outage-evaluations/${stored.id}`} />

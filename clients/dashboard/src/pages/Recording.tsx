@@ -50,7 +50,8 @@ function Expected({recording}: {recording: Recording}): JSX.Element | null {
   const values = (of: Recording): number => of.quality.samples * Math.max(1, of.quality.channels?.length ?? 1);
   if (!job?.started_at || !job.finished_at || !other.data || values(other.data) === 0) return null;
   const took = (Date.parse(job.finished_at) - Date.parse(job.started_at)) / 1000;
-  return <small>About {writeDuration(Math.max(1, Math.round(took * values(recording) / values(other.data))))}, going by the last one: {writeDuration(Math.max(took, 0.1))} for {plural(values(other.data), 'value')}.</small>;
+  const expected = Math.max(1, Math.round(took * values(recording) / values(other.data)));
+  return <small>About {expected < 10 ? `${expected} s` : writeDuration(expected)}, going by the last one: {writeDuration(Math.max(took, 0.1))} for {plural(values(other.data), 'value')}.</small>;
 }
 
 // The recording of the same device before or after this one, in the order of upload; refused at the ends.
@@ -196,5 +197,5 @@ export default function RecordingPage(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<Recording>(`/v1/recordings/${encodeURIComponent(parts[1] ?? '')}`);
   useTitle('Recording');
-  return <Shown read={read}>{recording => <Body recording={recording} />}</Shown>;
+  return <Shown read={read} page="Recording">{recording => <Body recording={recording} />}</Shown>;
 }

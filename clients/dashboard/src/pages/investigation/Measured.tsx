@@ -20,9 +20,10 @@ function linesOf(found: Investigation, one: SeriesDocument, chosen: string | nul
   }).sort((a, b) => a.from - b.from);
 }
 
-// What is left and higher than chance lets the highest of all ordinates be: the highest of each run of such bins.
+// What is left and higher than chance lets the highest of all ordinates be: the highest of each run of such bins. The first bin holds
+// whatever is slower than a stretch, which is no line.
 export function leftOver({spectrum}: SeriesDocument): number[] {
-  const above = spectrum.highest_remaining.map((value, i) => { const limit = spectrum.chance[i]; return finite(value) && finite(limit) && limit > 0 ? value / limit : 0; });
+  const above = spectrum.highest_remaining.map((value, i) => { const limit = spectrum.chance[i]; return i > 0 && finite(value) && finite(limit) && limit > 0 ? value / limit : 0; });
   return spectrum.f_hz.filter((_, i) => above[i]! > 1 && above[i]! >= (above[i - 1] ?? 0) && above[i]! > (above[i + 1] ?? 0));
 }
 
