@@ -88,7 +88,7 @@ export const launch = () => chromium.launch({executablePath: process.env.DRIFTLA
 const ASKED_IN_DOUBT = [/\/v1\/recordings\/[^/]+\/characterisation/];
 
 // A tab whose console errors, failed scripts, policy violations and refused requests are kept in `loud`, which must be empty in the end.
-// `absent`: addresses that the page asks for knowing that there may be nothing; `page.away`: the daemon is stopped on purpose.
+// `absent`: addresses that may hold nothing, or that the test lets the daemon refuse; `page.away`: the daemon is stopped on purpose.
 export async function open(browser, daemon, path, {absent = [], ...options} = {}) {
   const context = await browser.newContext({viewport: {width: 1440, height: 900}, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'], ...options});
   const page = await context.newPage();
@@ -100,7 +100,7 @@ export async function open(browser, daemon, path, {absent = [], ...options} = {}
     const {url} = message.location();
     const text = message.text();
     if (message.type() !== 'error' || (page.away && /ERR_|Failed to load resource/.test(text))) return;
-    if (/status of 404/.test(text) && page.absent.some(pattern => pattern.test(url))) return;
+    if (/status of (404|422)/.test(text) && page.absent.some(pattern => pattern.test(url))) return;
     page.loud.push(`${text} ${url}`);
   });
   await page.goto(daemon.address + path);
