@@ -189,7 +189,7 @@ test('keys lead everywhere and the find field finds', async () => {
   await page.getByRole('heading', {level: 1, name: 'Jobs'}).waitFor();
   await page.keyboard.press('/');
   await page.keyboard.type('bench');
-  await page.getByRole('option', {name: /bench-01/}).waitFor();
+  await page.getByRole('option', {name: /^bench-01/}).waitFor();  // before its recordings
   await page.keyboard.press('Enter');
   await page.waitForURL(/\/devices\/bench-01/);
   await page.keyboard.press('g');
