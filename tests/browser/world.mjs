@@ -100,7 +100,7 @@ export async function open(browser, daemon, path, {absent = [], ...options} = {}
     const {url} = message.location();
     const text = message.text();
     if (message.type() !== 'error' || (page.away && /ERR_|Failed to load resource/.test(text))) return;
-    if (/status of (404|422)/.test(text) && page.absent.some(pattern => pattern.test(url))) return;
+    if (/status of (400|404|422)/.test(text) && page.absent.some(pattern => pattern.test(url))) return;
     page.loud.push(`${text} ${url}`);
   });
   await page.goto(daemon.address + path);
