@@ -95,8 +95,13 @@ Result<Response> list_devices(ApiContext& context, const Request& request) {
     return fail(ErrorCode::InvalidArgument, "What can be included with a device is its summary.",
                 {{"parameter", "include"}});
   }
+  auto sought = text_filter(request);
+  if (!sought) {
+    return fail(sought.error());
+  }
+  const DeviceFilter filter{std::move(*sought)};
   return list_rows(
-      request, [&](const Page& page) { return context.store.devices(page); },
+      request, [&](const Page& page) { return context.store.devices(filter, page); },
       [&](const Device& device) {
         Json document = to_json(device);
         if (include) {
@@ -158,7 +163,7 @@ void add_device_routes(Router& router, ApiContext& context) {
   router.add(from_rows({"GET",
                         "/v1/devices",
                         "listDevices",
-                        {"limit", "cursor", "sort", "include"},
+                        {"limit", "cursor", "sort", "include", "q"},
                         Handler([&](const Request& request) { return list_devices(context, request); })}));
   router.add({"POST", "/v1/devices", "createDevice", {}, Handler([&](const Request& request) {
                 return create_device(context, request);

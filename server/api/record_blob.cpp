@@ -4,6 +4,7 @@
 #include "core/read/format.hpp"
 #include "core/read/open_recording.hpp"
 #include "core/read/trace_pyramid.hpp"
+#include "core/signal/channel_survey.hpp"
 #include "core/signal/full_scale.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "schema/json/recording_spec.hpp"
@@ -16,9 +17,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <stop_token>
 #include <thread>
 
@@ -179,7 +182,29 @@ std::vector<Gap> longest_of(std::vector<Gap> gaps) {
   return gaps;
 }
 
-/// The quality with what a drawing of the samples marks: where the longest gaps are, and the ends of the range.
+/// Where a channel holds numbers that are no measurements: the first stretches of them, in order of their rows.
+Json implausible_in(const std::string& column, std::span<const double> values) {
+  constexpr std::size_t kTold = 64;  // more than a screen can tell apart
+  Json stretches = Json::array();
+  std::size_t next = 0;
+  for (const std::size_t row : survey_channel(column, values).unsound) {
+    if (std::isnan(values[row])) {
+      continue;
+    }
+    if (!stretches.empty() && row == next) {
+      stretches.back()["samples"] = stretches.back()["samples"].get<std::size_t>() + 1;
+    } else if (stretches.size() < kTold) {
+      stretches.push_back(Json{{"row", row + 1}, {"samples", 1}});
+    } else {
+      break;
+    }
+    next = row + 1;
+  }
+  return stretches;
+}
+
+/// The quality with what a drawing of the samples marks: where the longest gaps are, what is no measurement, and the
+/// ends of the range.
 Json quality_of(const OpenRecording& opened) {
   Json quality = driftlab::to_json(opened.view.window.quality);
   for (const Gap& gap : longest_of(opened.view.window.gaps)) {
@@ -189,9 +214,16 @@ Json quality_of(const OpenRecording& opened) {
   const auto& names = opened.columns.names();
   for (Json& channel : quality["channels"]) {
     const auto named = std::find(names.begin(), names.end(), channel.at("column").get<std::string>());
-    if (channel.at("saturated").get<std::size_t>() > 0 && named != names.end()) {
-      const Rails rails = find_rails(*named, opened.columns.column(static_cast<std::size_t>(named - names.begin())));
+    if (named == names.end()) {
+      continue;
+    }
+    const auto values = opened.columns.column(static_cast<std::size_t>(named - names.begin()));
+    if (channel.at("saturated").get<std::size_t>() > 0) {
+      const Rails rails = find_rails(*named, values);
       channel["rails"] = Json::array({or_null(rails.low), or_null(rails.high)});
+    }
+    if (channel.at("implausible").get<std::size_t>() > 0) {
+      channel["implausible_at"] = implausible_in(*named, values);
     }
   }
   return quality;

@@ -96,11 +96,13 @@ Result<Response> get_problem_page(const Request& request) {
 }
 
 Result<Response> get_schema(const Request& request) {
-  const std::string_view text = contract_file(request.parameters[0]);
-  if (text.empty() || !request.parameters[0].ends_with(".schema.json")) {
-    return fail(ErrorCode::NotFound, "There is no schema '" + request.parameters[0] + "'.");
+  const std::string& name = request.parameters[0];
+  const bool is_schema = name.ends_with(".schema.json");
+  const std::string_view text = is_schema || name == "number-format.json" ? contract_file(name) : std::string_view();
+  if (text.empty()) {
+    return fail(ErrorCode::NotFound, "There is no schema '" + name + "'.");
   }
-  return text_response("application/schema+json", text);
+  return text_response(is_schema ? "application/schema+json" : "application/json", text);
 }
 
 }  // namespace

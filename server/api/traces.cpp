@@ -152,8 +152,8 @@ void flag_saturated(const Trace& trace, const Json& rails, std::size_t end, doub
   }
 }
 
-/// What a reader must not take for the sensor's noise: trimmed ends, gaps, a stretch in which the sensor gives one
-/// value only, and full scale. `end`: the row behind the trace.
+/// What a reader must not take for the sensor's noise: trimmed ends, gaps, numbers that are no measurements, a stretch
+/// in which the sensor gives one value only, and full scale. `end`: the row behind the trace.
 Json flags_of(const Recording& recording, const RecordingSpec& spec, const std::string& channel, const Trace& trace,
               std::size_t end, double duration_s, double rate_hz) {
   Flags flags;
@@ -169,6 +169,10 @@ Json flags_of(const Recording& recording, const RecordingSpec& spec, const std::
     if (survey.value("frozen", 0) > 0 && survey["frozen_from"].is_number()) {
       const double first = (survey["frozen_from"].get<double>() - 1.0) / rate_hz;
       flags.add("frozen", first, first + survey["frozen"].get<double>() / rate_hz);
+    }
+    for (const Json& wrong : survey.value("implausible_at", Json::array())) {
+      const double first = (wrong.at("row").get<double>() - 1.0) / rate_hz;
+      flags.add("flagged", first, first + wrong.at("samples").get<double>() / rate_hz);
     }
     flag_saturated(trace, survey.value("rails", Json(nullptr)), end, rate_hz, flags);
   }

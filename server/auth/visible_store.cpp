@@ -66,7 +66,9 @@ class VisibleStore final : public Store {
     }
     return found;
   }
-  Result<std::vector<Device>> devices(const Page& page) override { return whole_.devices(limited(page)); }
+  Result<std::vector<Device>> devices(const DeviceFilter& filter, const Page& page) override {
+    return whole_.devices(filter, limited(page));
+  }
   Result<Device> update_device(std::string_view id, const DeviceChange& change,
                                std::int64_t expected_revision) override {
     if (auto found = device(id); !found) {

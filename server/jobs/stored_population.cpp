@@ -14,7 +14,7 @@ Result<std::vector<Device>> devices_of_model(Store& store, const std::string& mo
   std::vector<Device> found;
   std::string after;
   while (true) {
-    auto page = store.devices(Page{after, kDevicesAtOnce});
+    auto page = store.devices({}, Page{after, kDevicesAtOnce});
     if (!page) {
       return fail(page.error());
     }

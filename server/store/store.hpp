@@ -60,6 +60,10 @@ struct DeviceUsage {
   bool holds_these_bytes = false;  ///< a recording of the device has the blob that was asked for
 };
 
+struct DeviceFilter {
+  std::optional<std::string> text = {};  ///< part of its name, model, imu, serial or id, in any case
+};
+
 struct RecordingFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> condition;
@@ -94,6 +98,7 @@ struct FitFilter {
 struct ModelFilter {
   std::optional<std::string> device_id;
   std::optional<std::string> parent_id;
+  std::optional<std::string> text = {};  ///< part of its name or id, in any case
 };
 
 struct InvestigationFilter {
@@ -185,7 +190,7 @@ class Store {
   [[nodiscard]] virtual Result<DeviceOutcome> ensure_device(const Device& device) = 0;
   /// By `dev_` id or by name. NotFound.
   [[nodiscard]] virtual Result<Device> device(std::string_view id_or_name) = 0;
-  [[nodiscard]] virtual Result<std::vector<Device>> devices(const Page& page) = 0;
+  [[nodiscard]] virtual Result<std::vector<Device>> devices(const DeviceFilter& filter, const Page& page) = 0;
   /// Changes what `change` holds if the revision is still `expected_revision`. NotFound; Conflict (field "revision").
   [[nodiscard]] virtual Result<Device> update_device(std::string_view id, const DeviceChange& change,
                                                      std::int64_t expected_revision) = 0;

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import os
 import tempfile
 import unittest
 from pathlib import Path
@@ -45,6 +46,25 @@ class Resumable(DaemonTest):
         at_once = self.expect(200, self.daemon.upload(content, rate_hz=100, columns=samples.GYRO_Z))
         self.assertEqual(made.json["id"], at_once.json["id"])
         self.problem(404, "not_found", self.daemon.get(upload))
+
+    def test_what_nobody_goes_on_with_for_a_day_is_forgotten(self) -> None:
+        content = samples.gyro_csv(seed=12)
+        upload = self.begin(content)
+        self.expect(204, self.put(upload, 0, content[:500]))
+        state = self.expect(200, self.daemon.get(upload)).json
+        [part] = (self.daemon.data / "uploads").rglob(f"{state['id']}*.part")
+        changed = part.stat().st_mtime
+        os.utime(part, (changed, changed - 23 * 3600))
+        self.assertEqual(self.expect(200, self.daemon.get(upload)).json["offset"], 500, "a day has not passed")
+        os.utime(part, (changed, changed - 25 * 3600))
+        self.problem(404, "not_found", self.daemon.get(upload))
+        self.assertEqual(self.daemon.request("HEAD", upload, headers=TUS).status, 404)
+        self.assertEqual(self.put(upload, 500, content[500:]).status, 404)
+        self.assertTrue(part.exists(), "it is removed with the next upload that begins")
+        other = self.begin(content)
+        self.assertFalse(part.exists())
+        self.assertEqual(list(part.parent.glob(f"{state['id']}*")), [])
+        self.expect(204, self.put(other, 0, content))
 
     def test_what_arrived_before_a_connection_broke_is_kept(self) -> None:
         content = samples.gyro_csv(seed=4)

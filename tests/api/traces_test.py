@@ -54,6 +54,16 @@ class Traces(DaemonTest):
         self.assertAlmostEqual(flags["frozen"][0], 30, delta=0.02)
         self.assertAlmostEqual(flags["frozen"][1], 36, delta=0.02)
 
+    def test_numbers_that_are_no_measurements_are_marked_where_they_are(self) -> None:
+        values = [f"{value:.5f}" for value in samples.noise(4000, seed=27)[0]]
+        for row in (700, 701, 702, 2500):
+            values[row] = "-9999"
+        id = self.expect(201, self.daemon.upload(("gz\n" + "\n".join(values) + "\n").encode(), rate_hz=RATE, columns=samples.GYRO_Z)).json["id"]
+        quality = self.expect(200, self.daemon.get(f"/v1/recordings/{id}")).json["quality"]
+        self.assertEqual(quality["channels"][0]["implausible_at"], [{"row": 701, "samples": 3}, {"row": 2501, "samples": 1}])
+        flags = [(flag["t0"], flag["t1"]) for flag in self.trace(id)["flags"] if flag["kind"] == "flagged"]
+        self.assertEqual(flags, [(7.0, 7.03), (25.0, 25.01)])
+
     def test_gaps_and_full_scale_are_marked_where_they_are(self) -> None:
         values = [max(-2.0, min(2.0, value)) for value in samples.noise(3000, seed=25)[0]]
         values[2000:2020] = [2.0] * 20

@@ -67,7 +67,11 @@ def lists(devices: int, recordings: int) -> dict[str, Callable[[int], str]]:
         "attention": lambda i: f"/v1/attention?{since(i)}",
         "counts": lambda i: f"/v1/counts?{since(i)}",
         "search, beginning": lambda i: f"/v1/search?q=unit-{i:03d}&limit=10",
-        "search, nothing": lambda i: f"/v1/search?q={recordings - 1 - i:05d}&limit=10",
+        "search, a recording": lambda i: f"/v1/search?q={recordings - 1 - i:05d}&limit=10",
+        "search, a condition": lambda i: f"/v1/search?q={10 * (i % 4 + 1)}%20deg/s&limit={10 + i}",
+        "search, beginning of an id": lambda i: f"/v1/search?q=rec_01{i % 10}&limit={10 + i}",
+        "search, nothing": lambda i: f"/v1/search?q=nowhere{i}&limit=10",
+        "devices, q of one": lambda i: f"/v1/devices?include=summary&q=nit-{devices - 1 - i:04d}",
     }
 
 

@@ -11,22 +11,48 @@ after(async () => { await browser?.close(); await daemon?.end(); });
 
 const visible = (page, text) => page.getByText(text).first().waitFor();
 
-test('an empty lab leads from the sample to its device without reading anything', async () => {
-  const page = await open(browser, daemon, '/');
+test('an empty lab notices an upload from elsewhere', async () => {
+  const other = await Daemon.start();
+  const page = await open(browser, other, '/');
   await visible(page, 'Drop a recording of a sensor at rest; you get its noise model.');
-  await page.getByRole('button', {name: 'Try the sample'}).click();
+  await other.upload(csv(4000, 2), {device: 'from-the-bench', condition: 'static', rate_hz: 100});
+  await page.getByRole('rowheader', {name: 'from-the-bench'}).waitFor();
+  assert.match(await page.getByRole('row', {name: /from-the-bench/}).innerText(), /not characterised/);
+  const [recording] = (await other.json('/v1/recordings')).items;
+  await other.characterise(recording.id);
+  await page.getByRole('row', {name: /from-the-bench.*fits|from-the-bench.*fit:/}).waitFor();  // the row follows without a reload
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+  await other.end();
+});
+
+test('two files of one device end on its figures, files of several devices in the Lab', async () => {
+  const page = await open(browser, daemon, '/upload');
+  const file = (name, seed) => ({name, mimeType: 'text/csv', buffer: Buffer.from(csv(6000, seed))});
+  await page.locator('input[type=file]').setInputFiles([file('pair-1.csv', 21), file('pair-2.csv', 22)]);
+  for (const name of ['pair-1.csv', 'pair-2.csv']) {
+    await page.getByLabel(`Device of ${name}`, {exact: true}).fill('pair');
+    await page.getByLabel(`Rate in Hz of ${name}`).fill('100');
+  }
   await page.getByRole('button', {name: 'Upload two and characterise'}).click();
-  await visible(page, 'stored');
-  await page.waitForFunction(() => document.querySelectorAll('a[href^="/jobs/"]').length >= 2);
-  await page.goto(`${daemon.address}/devices/iphone5s-simulated`);
+  await page.waitForURL(/\/devices\/pair$/);
   await page.getByRole('heading', {name: 'Parameters by condition'}).waitFor();
-  await visible(page, 'White noise is 1.03');
+  await page.getByText('2 recordings').first().waitFor();
+  await page.goBack();
+  for (const [name, device] of [['left.csv', 'left'], ['right.csv', 'right']]) {
+    await page.locator('input[type=file]').setInputFiles(file(name, name.length + 30));
+    await page.getByLabel(`Device of ${name}`, {exact: true}).fill(device);
+    await page.getByLabel(`Rate in Hz of ${name}`).fill('100');
+  }
+  await page.getByRole('button', {name: 'Upload two and characterise'}).click();
+  await page.waitForURL(url => url.pathname === '/');
+  await page.getByRole('rowheader', {name: 'right'}).waitFor();
   assert.deepEqual(page.loud, []);
   await page.context().close();
 });
 
 test('a refusal is repaired in place, and the recording ends in a figure that is a file of its own', async () => {
-  const page = await open(browser, daemon, '/upload');
+  const page = await open(browser, daemon, '/upload', {absent: [/\/v1\/recordings\?device=bench-01/]});
   await page.locator('input[type=file]').setInputFiles({name: 'bench gyro.csv', mimeType: 'text/csv', buffer: Buffer.from(csv(6000))});
   await page.getByLabel('Device of bench gyro.csv').fill('bench-01');
   await page.getByRole('button', {name: /^Upload .*and characterise/}).click();
@@ -42,7 +68,7 @@ test('a refusal is repaired in place, and the recording ends in a figure that is
   assert.match(download.suggestedFilename(), /allan\.svg$/);
   assert.match(svg, /^<svg [^>]*xmlns="http:\/\/www\.w3\.org\/2000\/svg"/);
   assert.match(svg, /<title>Allan deviation\./);
-  assert.match(svg, /driftlab, rec_/);
+  assert.match(svg, /driftlab \d+\.\d+\.\d+, rec_/);
   assert.doesNotMatch(svg, /var\(--|data-cursor|<script/);
   const [table] = await Promise.all([page.waitForEvent('download'), figure.getByRole('button', {name: 'CSV'}).click()]);
   assert.match(readFileSync(await table.path(), 'utf8').split('\n')[0], /averaging time τ, s|classical/);
@@ -163,7 +189,7 @@ test('keys lead everywhere and the find field finds', async () => {
   await page.getByRole('heading', {level: 1, name: 'Jobs'}).waitFor();
   await page.keyboard.press('/');
   await page.keyboard.type('bench');
-  await page.getByRole('option', {name: /bench-01/}).waitFor();
+  await page.getByRole('option', {name: /^bench-01/}).waitFor();  // before its recordings
   await page.keyboard.press('Enter');
   await page.waitForURL(/\/devices\/bench-01/);
   await page.keyboard.press('g');
@@ -181,6 +207,7 @@ test('a daemon that restarts under an open page is waited for, and nothing is lo
   const page = await open(browser, daemon, '/devices/bench-01');
   await page.getByRole('heading', {name: 'Parameters by condition'}).waitFor();
   const {data, port} = daemon;
+  page.away = true;
   await daemon.stop('SIGKILL');
   await page.locator('.offline', {hasText: 'The daemon does not answer. Trying again in 5 s.'}).waitFor();
   assert.ok(await page.getByRole('heading', {name: 'Parameters by condition'}).isVisible(), 'the page stays readable');
@@ -195,7 +222,7 @@ test('a daemon that restarts under an open page is waited for, and nothing is lo
 test('a job that cannot succeed says why where it stands', async () => {
   const recording = await daemon.upload(csv(40, 3), {device: 'short', condition: 'static', rate_hz: 100});
   const job = await daemon.characterise(recording.id);
-  const page = await open(browser, daemon, `/jobs/${job.id}`);
+  const page = await open(browser, daemon, `/jobs/${job.id}`, {absent: [/rec_0{26}/, /\/v1\/devices\/nobody/]});
   await page.locator('.verdict').waitFor();
   if (job.state === 'failed') await page.locator('.verdict', {hasText: job.problem.detail.slice(0, 30)}).waitFor();
   await page.goto(`${daemon.address}/recordings/rec_00000000000000000000000000`);

@@ -44,7 +44,7 @@ before(async () => {
   paths = {
     lab: '/', devices: '/devices', device: '/devices/phone-07', 'device-new': '/devices/new-01', recording: `/recordings/${ids[0]}`, 'recording-new': `/recordings/${waiting.id}`,
     compare: `/compare?with=${ids[0]},${ids[2]}`, 'compare-empty': '/compare', investigations: '/investigations?device=phone-07', investigation: `/investigations/${investigation.id}`,
-    outages: '/outages', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
+    outages: '/outages', 'outages-new': '/outages/new', outage: `/outages/${outages.id}`, jobs: '/jobs', job: `/jobs/${investigate.id}`, upload: '/upload', docs: '/docs', manual: '/docs/units', problem: '/problems/ragged-row',
     model: `/models/${model.id}`, regressions: '/regressions', regression: `/regressions/${regress.id}`, record: '/record',
     populations: '/populations', population: `/populations/${line.model}`, 'device-line': `/devices/${line.devices[0]}`, 'data-sheets': '/data-sheets', 'data-sheet': `/data-sheets/${line.model}`,
     webhooks: '/webhooks', webhook: `/webhooks/${webhook.id}`, 'webhook-refused': `/webhooks/${refused.id}`, drives: '/drives', drive: `/drives/${drive.drive}`,
@@ -52,6 +52,9 @@ before(async () => {
   };
 });
 after(async () => { await browser?.close(); await daemon?.end(); });
+
+// What is absent on purpose among the pages that are shown.
+const NOBODY = [/\/v1\/devices\/nobody/];
 
 const settled = async page => {
   await page.locator('h1').first().waitFor();
@@ -66,7 +69,7 @@ const settled = async page => {
 
 for (const colorScheme of ['light', 'dark']) {
   test(`axe finds nothing on any page, ${colorScheme}`, async () => {
-    const page = await open(browser, daemon, '/', {colorScheme});
+    const page = await open(browser, daemon, '/', {colorScheme, absent: NOBODY});
     const faults = [];
     for (const [name, path] of Object.entries(paths)) {
       await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
@@ -79,17 +82,118 @@ for (const colorScheme of ['light', 'dark']) {
   });
 }
 
-test('no page is wider than a phone', async () => {
-  const page = await open(browser, daemon, '/', {viewport: {width: 390, height: 844}});
+test('no page is wider than its screen, from 320 px, which is 1280 at 400 %, to 2560 px, and no line of text too long there', async () => {
+  const page = await open(browser, daemon, '/', {viewport: {width: 320, height: 844}, absent: NOBODY});
   const wide = [];
   for (const [name, path] of Object.entries(paths)) {
+    await page.setViewportSize({width: 320, height: 844});
     await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
     await settled(page);
-    const width = await page.evaluate(() => document.documentElement.scrollWidth);
-    if (width > 390) wide.push(`${name}: ${width}`);
+    for (const width of [320, 360, 390, 2560]) {
+      await page.setViewportSize({width, height: 844});
+      await page.evaluate(() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve, 60)))));
+      const is = await page.evaluate(() => document.documentElement.scrollWidth);
+      if (is > width) wide.push(`${name} at ${width}: ${is}`);
+    }
+    // Letters a line: those of a paragraph by the lines that it takes.
+    const long = await page.evaluate(() => [...document.querySelectorAll('main p')].filter(p => p.childElementCount === 0 && p.textContent.length > 100 && p.offsetParent).map(p => {
+      const range = document.createRange();
+      range.selectNodeContents(p);
+      const lines = new Set([...range.getClientRects()].map(rectangle => Math.round(rectangle.top))).size;
+      return [Math.round(p.textContent.length / lines), p.textContent.slice(0, 40)];
+    }).filter(([letters]) => letters > 90));
+    wide.push(...long.map(([letters, text]) => `${name}: ${letters} letters a line: ${text}`));
   }
   assert.deepEqual(wide, []);
+  assert.deepEqual(page.loud, []);
   await page.context().close();
+});
+
+// The documents of the daemon with a hostile end on every text that people or files may have written.
+const EVIL = ' <img src=x onerror="window.hurt=1"><b>!</b>';
+const FREE = new Set(['name', 'title', 'subtitle', 'verdict', 'detail', 'explanation', 'statement', 'reason', 'label', 'scenario_name', 'claim', 'because', 'device_name', 'recording_name', 'stage', 'sentence', 'next_measurement', 'needs', 'description',
+  'model', 'imu', 'serial', 'source', 'manufacturer', 'model_note', 'candidate', 'baseline_label', 'why', 'url', 'error', 'product', 'note', 'item', 'last_error', 'vehicle']);
+const LISTS = new Set(['details', 'notes', 'warnings', 'hints', 'alternatives']);
+function hostile(value, key = '') {
+  if (Array.isArray(value)) return value.map(each => LISTS.has(key) && typeof each === 'string' ? each + EVIL : hostile(each, key));
+  if (value && typeof value === 'object') return Object.fromEntries(Object.entries(value).map(([name, each]) => [name, FREE.has(name) && typeof each === 'string' && !/^(dev|rec|job|inv|mod|stu)_/.test(each) ? each + EVIL : hostile(each, name)]));
+  return value;
+}
+
+test('whatever the daemon says is text on every page, on paper too', async () => {
+  const page = await open(browser, daemon, '/docs/units', {absent: [...NOBODY, /onerror/]});
+  await page.route('**/v1/**', async route => {
+    const {url, method} = {url: route.request().url(), method: route.request().method()};
+    if (method !== 'GET' || url.includes('/v1/events')) return route.continue();
+    const answer = await route.fetch();
+    if (!/json/.test(answer.headers()['content-type'] ?? '')) return route.fulfill({response: answer});
+    return route.fulfill({response: answer, body: JSON.stringify(hostile(await answer.json()))});
+  });
+  const unmoved = [];
+  for (const [name, path] of Object.entries(paths)) {
+    for (const end of ['', name === 'device' || name === 'investigation' || name === 'outage' ? `${path.includes('?') ? '&' : '?'}print=1` : null]) {
+      if (end === null) continue;
+      await page.goto(daemon.address + path + end, {waitUntil: 'domcontentloaded'});
+      await settled(page);
+      await page.evaluate(() => { for (const folded of document.querySelectorAll('main details')) folded.open = true; });
+      assert.equal(await page.locator('img, main script, main iframe, main object').count(), 0, name);
+      assert.equal(await page.evaluate(() => window.hurt), undefined, name);
+      if (!(await page.locator('main').innerText()).includes('onerror=')) unmoved.push(name);
+    }
+  }
+  // Pages that show nothing of the daemon's texts; every other one showed the hostile end as it is.
+  assert.deepEqual(unmoved.filter(name => !['upload', 'record', 'docs', 'manual', 'problem', 'outages-new', 'absent', 'compare-empty'].includes(name)), []);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('what is typed, dropped and sought is text, and so is the address', async () => {
+  const evil = '<img src=x onerror="window.hurt=1">';
+  const page = await open(browser, daemon, '/upload', {absent: [/onerror/]});
+  await page.locator('input[type=file]').setInputFiles({name: `${evil}.csv`, mimeType: 'text/csv', buffer: Buffer.from(`gz [deg/s] ${evil}\n1\n2\n`)});
+  await page.getByRole('button', {name: `${evil}.csv`, exact: true}).waitFor();
+  await page.locator('#find').fill(evil);
+  await page.waitForTimeout(400);
+  assert.equal(await page.locator('img').count(), 0);
+  for (const path of [`/devices/${encodeURIComponent(evil)}`, `/devices?q=${encodeURIComponent(evil)}`, `/regressions?label=${encodeURIComponent(evil)}`, `/jobs?kind=${encodeURIComponent(evil)}`, `/problems/${encodeURIComponent(evil)}`, `/docs/${encodeURIComponent(evil)}`]) {
+    await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
+    await settled(page);
+    assert.equal(await page.locator('img').count(), 0, path);
+  }
+  assert.equal(await page.evaluate(() => window.hurt), undefined);
+  await page.context().close();
+});
+
+test('Markdown becomes elements that can do nothing', async () => {
+  const page = await open(browser, daemon, '/docs');
+  const text = ['# Title <img src=x onerror="window.hurt=1">', '', '[run](javascript:window.hurt=1) [data](data:text/html,<script>window.hurt=1</script>) [odd](JaVaScRiPt:window.hurt=1) [good](units.md) [far](https://example.org/)', '',
+    '<script>window.hurt=1</script>', '<iframe src="javascript:window.hurt=1"></iframe>', '', '| <b onclick="window.hurt=1">head</b> | b |', '|---|---|', '| <svg onload="window.hurt=1"> | `<img src=x onerror="window.hurt=1">` |', '',
+    '- <a href="javascript:window.hurt=1">item</a>', '', '```html', '<img src=x onerror="window.hurt=1">', '```', ''].join('\n');
+  await page.route('**/docs/units', route => route.request().isNavigationRequest() ? route.continue() : route.fulfill({status: 200, contentType: 'text/markdown; charset=utf-8', body: text}));
+  await page.goto(`${daemon.address}/docs/units`, {waitUntil: 'domcontentloaded'});
+  await page.getByText('window.hurt=1').first().waitFor();
+  assert.equal(await page.locator('main :is(img, script, iframe, svg, object, b[onclick])').count(), 0);
+  const links = await page.locator('main a').evaluateAll(all => all.map(link => link.getAttribute('href')));
+  assert.ok(links.every(href => /^(https?:|\/|#)/.test(href)), links.join(' '));
+  assert.ok(links.includes('/docs/units') && links.includes('https://example.org/'), links.join(' '));
+  await page.getByText('<script>window.hurt=1</script>').first().waitFor();
+  assert.equal(await page.evaluate(() => window.hurt), undefined);
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});
+
+test('nothing moves for whoever asked for that', async () => {
+  const moving = async reducedMotion => {
+    const page = await open(browser, daemon, paths.recording, {reducedMotion});
+    await settled(page);
+    await page.getByRole('button', {name: 'How computed'}).first().click();
+    await page.getByRole('dialog').waitFor();
+    const found = await page.evaluate(() => [...document.querySelectorAll('*')].filter(each => { const {animationName, animationDuration, transitionDuration} = getComputedStyle(each); return (animationName !== 'none' && parseFloat(animationDuration) > 0.001) || parseFloat(transitionDuration) > 0.001; }).map(each => each.className));
+    await page.context().close();
+    return found;
+  };
+  assert.deepEqual(await moving('no-preference'), ['drawer'], 'only the drawer slides');
+  assert.deepEqual(await moving('reduce'), []);
 });
 
 test('figures that a page draws itself are saved as files and read as tables', async () => {
@@ -104,7 +208,7 @@ test('figures that a page draws itself are saved as files and read as tables', a
     assert.equal(faults[0], '', title);
     assert.ok(faults[1] > 0, `${title}: ${marks}`);
     assert.equal(faults[2], false, `${title}: colours are those of the light theme`);
-    assert.match(svg, /driftlab, job_\w+, algorithm \d+, seed 1/, title);
+    assert.match(svg, /driftlab \d+\.\d+\.\d+, job_\w+, algorithm \d+, seed 1/, title);
     const [, csvText] = await saved('CSV');
     await panel.getByRole('button', {name: 'Table'}).click();
     assert.equal(await panel.locator('.table-view tbody tr').count(), csvText.trim().split('\n').length - 1, title);
@@ -138,6 +242,24 @@ test('a device’s page leads to its comparison and exports its model as the com
   await page.context().close();
 });
 
+// What each report must say word by word. A sentence that sends the reader elsewhere has none of it.
+const MADE = {
+  other: {algorithm: /algorithm version \d+/, seed: /seed \d+/, job: /job_[0-9A-Z]{26}/},
+  recording: {algorithm: /version \d+|algorithm \d+/, seed: /seed\s*\d+/, job: /job_[0-9A-Z]{26}/, revision: /revision \d+/},
+  outage: {algorithm: /algorithm version \d+/, seed: /seed \d+/, job: /job_[0-9A-Z]{26}/, document: /\/v1\/outage-evaluations\/job_[0-9A-Z]{26}, hash [\w-]{16,}/},
+  investigation: {algorithm: /algorithm version \d+/, seed: /seed \d+/, document: /\/v1\/investigations\/inv_[0-9A-Z]{26}, hash [\w-]{16,}/},
+  population: {devices: /devices/},
+};
+
+// The hashes of the files behind a report, from the daemon.
+async function hashesOf(name) {
+  const of = async ids => Promise.all(ids.map(async id => (await daemon.json(`/v1/recordings/${id}`)).file.sha256));
+  if (name === 'recording') return of([paths.recording.split('/').pop()]);
+  if (name === 'device') return of([...new Set((await daemon.json('/v1/parameter-tables?device=phone-07&sensor=gyroscope&axis=z')).rows.flatMap(row => row.recordings))]);
+  if (name === 'investigation') return of((await daemon.json(`/v1/jobs/${paths.job.split('/').pop()}`)).request.inputs.recordings.map(one => one.id));
+  return [];
+}
+
 test('a report on paper has verdict, figures, method, seeds and versions, and none of the controls', async () => {
   const page = await open(browser, daemon, '/');
   const most = {device: 2, recording: 1, investigation: 12, outage: 5, regression: 3, population: 4, 'drive-simulate': 5, 'drive-explain': 6};
@@ -150,7 +272,9 @@ test('a report on paper has verdict, figures, method, seeds and versions, and no
     const shrunk = await page.evaluate(() => [...document.querySelectorAll('main .figure svg')].filter(svg => !svg.closest('.small-multiples') && svg.getBoundingClientRect().width < 0.79 * Number(svg.getAttribute('width'))).length);
     if (name === 'device' || name === 'recording') assert.equal(shrunk, 0, `${name}: figures`);
     const text = await page.locator('main').innerText();
-    assert.match(text, /seed|algorithm|version/i, `${name}: method`);
+    // The job that made it with its algorithm and seed, and every file by its hash, as the daemon has them.
+    for (const [kind, pattern] of Object.entries(MADE[name] ?? MADE.other)) assert.match(text, pattern, `${name}: ${kind}`);
+    for (const sha256 of await hashesOf(name)) assert.ok(text.includes(sha256), `${name}: the hash of a file`);
     assert.ok(await page.locator('.method').filter({visible: true}).count() > 0, `${name}: method`);
     assert.equal(await page.locator('.bar, .tools, .actions').filter({visible: true}).count(), 0, name);
     assert.ok(await page.locator('.verdict').isVisible(), name);
@@ -222,7 +346,7 @@ if (process.env.DRIFTLAB_SCREENS) {
     mkdirSync(process.env.DRIFTLAB_SCREENS, {recursive: true});
     for (const colorScheme of ['light', 'dark']) {
       for (const width of [390, 1440, 2560]) {
-        const page = await open(browser, daemon, '/', {colorScheme, viewport: {width, height: 900}});
+        const page = await open(browser, daemon, '/', {colorScheme, viewport: {width, height: 900}, absent: NOBODY});
         for (const [name, path] of Object.entries(paths)) {
           await page.goto(daemon.address + path, {waitUntil: 'domcontentloaded'});
           await settled(page);

@@ -84,15 +84,25 @@ export const csv = (samples, seed = 1, heading = 'gz [deg/s]') => `${heading}\n$
 
 export const launch = () => chromium.launch({executablePath: process.env.DRIFTLAB_CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--disable-dev-shm-usage']});
 
-// A tab whose console errors, failed scripts and policy violations are kept; `silent` must be empty in the end.
-export async function open(browser, daemon, path, options = {}) {
+// A recording is asked for its result before anybody knows whether it has one.
+const ASKED_IN_DOUBT = [/\/v1\/recordings\/[^/]+\/characterisation/];
+
+// A tab whose console errors, failed scripts, policy violations and refused requests are kept in `loud`, which must be empty in the end.
+// `absent`: addresses that may hold nothing, or that the test lets the daemon refuse; `page.away`: the daemon is stopped on purpose.
+export async function open(browser, daemon, path, {absent = [], ...options} = {}) {
   const context = await browser.newContext({viewport: {width: 1440, height: 900}, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'], ...options});
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   page.loud = [];
   page.on('pageerror', error => page.loud.push(String(error)));
-  // A 404 that a page asks about on purpose and a daemon that is away are told to the reader, not to the console.
-  page.on('console', message => { if (message.type() === 'error' && !/404|ERR_CONNECTION|Failed to load resource|net::/.test(message.text())) page.loud.push(message.text()); });
+  page.absent = [...ASKED_IN_DOUBT, ...absent];
+  page.on('console', message => {
+    const {url} = message.location();
+    const text = message.text();
+    if (message.type() !== 'error' || (page.away && /ERR_|Failed to load resource/.test(text))) return;
+    if (/status of (400|404|422)/.test(text) && page.absent.some(pattern => pattern.test(url))) return;
+    page.loud.push(`${text} ${url}`);
+  });
   await page.goto(daemon.address + path);
   return page;
 }

@@ -32,6 +32,7 @@ const PAGES: Record<string, Load> = {
   investigations: lists(pages => pages.Investigations),
   'investigations/*': results(pages => pages.Investigation),
   outages: lists(pages => pages.Outages),
+  'outages/new': lists(pages => pages.Outages),
   'outages/*': results(pages => pages.Outage),
   drives: lists(pages => pages.Drives),
   'drives/*': lists(pages => pages.Drive),
@@ -59,7 +60,8 @@ const absent: Load = () => import('./pages/Absent').then(page => page.default);
 
 function App(): JSX.Element {
   const place = usePlace();
-  const key = place.parts.length > 1 ? `${place.parts[0]}/*` : place.parts[0] ?? '';
+  const whole = place.parts.join('/');
+  const key = PAGES[whole] ? whole : place.parts.length > 1 ? `${place.parts[0]}/*` : place.parts[0] ?? '';
   const [shown, setShown] = useState<{key: string; Page: Page} | null>(null);
   const main = useRef<HTMLElement>(null);
   const first = useRef(true);

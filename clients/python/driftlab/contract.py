@@ -1280,6 +1280,16 @@ class GetImpliedCurvesAnswer(TypedDict):
     implied: RecordingCharacterisationImplied
 
 
+class GetSchemaAnswer(TypedDict):
+    cases: list[GetSchemaAnswerCase]
+
+
+class GetSchemaAnswerCase(TypedDict):
+    value: float
+    ci95: list[float] | None
+    text: str
+
+
 class HealthAnswer(TypedDict):
     status: Literal['alive']
     version: str
@@ -3676,6 +3686,9 @@ class StoredRecordingQualityChannel(TypedDict):
     # The full-scale values where samples pile up, at the lower and the upper end, in the unit of the column; null where
     # none does. Absent: no sample is at full scale.
     rails: NotRequired[list[float | None]]
+    # Where the numbers are that mean a missing sample (-9999) or are garbage, in order of their rows. Absent: there is
+    # none.
+    implausible_at: NotRequired[list[StoredRecordingQualityChannelImplausibleAtItem]]
     # Samples of a stretch in which the sensor gives one value only.
     frozen: int
     # Its first sample, from 1.
@@ -3686,6 +3699,13 @@ class StoredRecordingQualityChannel(TypedDict):
     last: NotRequired[int]
     # Samples analysed: those of first to last without any of the above.
     analysed: int
+
+
+class StoredRecordingQualityChannelImplausibleAtItem(TypedDict):
+    # The first of the stretch, from 1.
+    row: int
+    # How many.
+    samples: int
 
 
 class StoredRecordingQualityLongestGap(TypedDict):
@@ -3792,8 +3812,9 @@ class Trace(TypedDict):
     mean: list[float | None]
     # From when to when [s] stretches lack samples.
     missing: list[list[float]]
-    # What must not be taken for the sensor's noise. Of the whole file: trimmed ends, its longest gaps, and where the
-    # sensor gives one value only; of the stretches of this trace: those that reach full scale.
+    # What must not be taken for the sensor's noise. Of the whole file: trimmed ends, its longest gaps, numbers that are
+    # no measurements (such as -9999), and where the sensor gives one value only; of the stretches of this trace: those
+    # that reach full scale.
     flags: list[TraceFlag]
     # null where nobody states it.
     unit: str | None
@@ -3803,7 +3824,7 @@ class Trace(TypedDict):
 
 
 class TraceFlag(TypedDict):
-    kind: Literal['trim', 'gap', 'frozen', 'saturated']
+    kind: Literal['trim', 'gap', 'flagged', 'frozen', 'saturated']
     # Of a gap the sample before it.
     t0: float
     # Of a gap the sample after it: times count samples, and a gap has none.
@@ -4005,7 +4026,7 @@ OPERATIONS: dict[str, Operation] = {
     'getProblemType': Operation(
         'GET', '/problems/{slug}', (), (), ('text/markdown',)),
     'getSchema': Operation(
-        'GET', '/schemas/{name}', (), (), ('application/schema+json',)),
+        'GET', '/schemas/{name}', (), (), ('application/schema+json', 'application/json')),
     'getCounts': Operation(
         'GET', '/v1/counts', ('since', 'include'), (), ('application/json',)),
     'listAttention': Operation(
@@ -4015,7 +4036,7 @@ OPERATIONS: dict[str, Operation] = {
     'getSample': Operation(
         'GET', '/v1/samples/{preset}', ('condition', 'seed'), (), ('text/csv',)),
     'listDevices': Operation(
-        'GET', '/v1/devices', ('include', 'limit', 'cursor', 'sort'), (), ('application/json',)),
+        'GET', '/v1/devices', ('include', 'limit', 'cursor', 'sort', 'q'), (), ('application/json',)),
     'createDevice': Operation(
         'POST', '/v1/devices', (), ('Idempotency-Key',), ('application/json',)),
     'getDevice': Operation(

@@ -18,6 +18,7 @@ constexpr std::string_view kInsert =
 constexpr std::string_view kUpdate =
     "UPDATE devices SET model = ?2, imu = ?3, serial = ?4, labels_json = ?5, revision = ?6, updated_at = ?7 "
     "WHERE id = ?1";
+constexpr std::string_view kSought = "name || ' ' || model || ' ' || imu || ' ' || serial || ' ' || id";
 
 Device read_device(const Statement& row) {
   Device device;
@@ -75,8 +76,9 @@ Result<Device> device(Connection& connection, std::string_view id_or_name) {
   return one_device(connection, kByIdOrName, id_or_name);
 }
 
-Result<std::vector<Device>> devices(Connection& connection, const Page& page) {
+Result<std::vector<Device>> devices(Connection& connection, const DeviceFilter& filter, const Page& page) {
   FilteredQuery query(kSelect);
+  query.holds(kSought, filter.text);
   return query.visible(page, "id").read_page(connection, page, read_device);
 }
 

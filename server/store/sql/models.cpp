@@ -68,6 +68,7 @@ Result<std::vector<Model>> models(Connection& connection, const ModelFilter& fil
   FilteredQuery query(kSelect);
   query.where("device_id = ?", filter.device_id);
   query.where("parent_id = ?", filter.parent_id);
+  query.holds("name || ' ' || id", filter.text);
   return query.visible_or_own(page, "device_id", "models.id").read_page(connection, page, read_model);
 }
 

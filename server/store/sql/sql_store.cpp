@@ -71,8 +71,8 @@ Result<Device> SqlStore::device(std::string_view id_or_name) {
   return database_->read([&](Connection& c) { return tables::device(c, id_or_name); });
 }
 
-Result<std::vector<Device>> SqlStore::devices(const Page& page) {
-  return database_->read([&](Connection& c) { return tables::devices(c, page); });
+Result<std::vector<Device>> SqlStore::devices(const DeviceFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::devices(c, filter, page); });
 }
 
 Result<Device> SqlStore::update_device(std::string_view id, const DeviceChange& change,

@@ -43,7 +43,7 @@ class SqlStore : public Store {
 
   [[nodiscard]] Result<DeviceOutcome> ensure_device(const Device& device) override;
   [[nodiscard]] Result<Device> device(std::string_view id_or_name) override;
-  [[nodiscard]] Result<std::vector<Device>> devices(const Page& page) override;
+  [[nodiscard]] Result<std::vector<Device>> devices(const DeviceFilter& filter, const Page& page) override;
   [[nodiscard]] Result<Device> update_device(std::string_view id, const DeviceChange& change,
                                              std::int64_t expected_revision) override;
 

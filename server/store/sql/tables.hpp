@@ -163,7 +163,7 @@ class FilteredQuery {
 // ---- devices
 [[nodiscard]] Result<Store::DeviceOutcome> ensure_device(Connection& connection, const Device& device, UtcMicros now);
 [[nodiscard]] Result<Device> device(Connection& connection, std::string_view id_or_name);
-[[nodiscard]] Result<std::vector<Device>> devices(Connection& connection, const Page& page);
+[[nodiscard]] Result<std::vector<Device>> devices(Connection& connection, const DeviceFilter& filter, const Page& page);
 [[nodiscard]] Result<Device> update_device(Connection& connection, std::string_view id, const DeviceChange& change,
                                            std::int64_t expected_revision, UtcMicros now);
 

@@ -71,7 +71,7 @@ TEST_P(DeviceStore, PagesAscendWithoutOverlapAndWithoutGaps) {
   Page page;
   page.limit = 3;
   while (true) {
-    const auto devices = store().devices(page);
+    const auto devices = store().devices({}, page);
     ASSERT_TRUE(devices);
     ASSERT_LE(devices->size(), 3U);
     if (devices->empty()) {

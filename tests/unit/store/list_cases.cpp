@@ -48,7 +48,7 @@ TEST_P(ListStore, NamesOrderAListAndEqualOnesAreEachThereOnce) {
   const Device device = add_device(store(), "b");
   add_device(store(), "c");
   add_device(store(), "a");
-  EXPECT_EQ(names_by_page([&](const Page& page) { return store().devices(page); }),
+  EXPECT_EQ(names_by_page([&](const Page& page) { return store().devices({}, page); }),
             (std::vector<std::string>{"a", "b", "c"}));
   add_named(store(), device, "same", "1.csv");
   add_named(store(), device, "same", "2.csv");
@@ -63,6 +63,13 @@ TEST_P(ListStore, NamesOrderAListAndEqualOnesAreEachThereOnce) {
     model.unique_key = make_id("key", 0);
     ASSERT_TRUE(store().add_model(model));
   }
+  ModelFilter sought;
+  sought.text = "MOD_";
+  EXPECT_EQ(store().models(sought, {})->size(), 3U);
+  sought.text = "nowhere";
+  EXPECT_TRUE(store().models(sought, {})->empty());
+  EXPECT_EQ(store().devices(DeviceFilter{"DEV_"}, {})->size(), 3U);
+  EXPECT_TRUE(store().devices(DeviceFilter{"nowhere"}, {})->empty());
   EXPECT_EQ(names_by_page([&](const Page& page) { return store().models({}, page); }),
             (std::vector<std::string>{"x", "y", "y"}));
 }

@@ -62,7 +62,8 @@ export interface Characterisation {
   recording: string; revision: number; stale: boolean; job: string; created_at: string; algorithm_version: number;
   parameters: {seed?: number; models?: string[]}; condition: Condition; duration_s: number; rate_hz: number; channels: CharacterisedChannel[];
 }
-export interface Trace { unit: string | null; duration_s: number | null; rate_hz: number | null; samples_per_bucket: number; time_s: number[]; min: Nullable; max: Nullable; mean: Nullable }
+export interface Trace { unit: string | null; duration_s: number | null; rate_hz: number | null; samples_per_bucket: number; time_s: number[]; min: Nullable; max: Nullable; mean: Nullable; missing: [number, number][]; flags: TraceFlag[] }
+export interface TraceFlag { kind: 'trim' | 'gap' | 'flagged' | 'frozen' | 'saturated'; t0: number; t1: number; missing?: number }
 
 export interface Spectrum { unit: string; dt_s: number; samples: number; first_s: number; f_hz: number[]; density: Nullable; ci95: Ends[]; max: Nullable; segments: number; segment_samples: number; window: string }
 export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number }

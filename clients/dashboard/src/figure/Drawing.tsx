@@ -25,13 +25,44 @@ function Axes({place}: {place: Area}): JSX.Element {
   </g>;
 }
 
+const LETTER = 6;
+const LEAST_ZONE = 2;  // px: a single sample of a long recording is seen
+
+function Zones({place}: {place: Area}): JSX.Element {
+  const {plot, x, left, right, top, bottom} = place;
+  const inside = (value: number): number => Math.min(Math.max(x(value), left), right);
+  let written = -Infinity;  // up to where words stand above the plot
+  return <g>{(plot.zones ?? []).filter(zone => x(zone.to) >= left && x(zone.from) <= right).map(zone => {
+    const from = Math.round(inside(zone.from) * 10) / 10;
+    const wide = Math.round(Math.max(inside(zone.to) - from, LEAST_ZONE) * 10) / 10;
+    const key = `${zone.style}${zone.from}`;
+    switch (zone.style) {
+      case 'shade': return <rect key={key} x={from} width={wide} y={top} height={bottom - top} fill={zone.colour} stroke="none" />;
+      case 'hatch': {
+        const strokes = Array.from({length: Math.max(1, Math.min(Math.floor(wide / 4), 400))}, (_, i) => `M${Math.round((from + 1 + i * 4) * 10) / 10},${top}V${bottom}`);
+        return <path key={key} d={strokes.join('')} stroke={zone.colour} stroke-width="1" stroke-dasharray="2 2" fill="none" />;
+      }
+      case 'top': return <rect key={key} x={from} width={wide} y={top - 5} height="4" fill={zone.colour} stroke="none" />;
+      case 'foot': return <rect key={key} x={from} width={wide} y={bottom - 4} height="4" fill={zone.colour} stroke="none" />;
+      case 'mark': {
+        const at = Math.round((from + wide / 2) * 10) / 10;
+        const fits = zone.text !== undefined && at - 4 > written;
+        if (fits) written = at + LETTER * zone.text!.length + 8;
+        return <g key={key}><path d={`M${at - 4},${top - 6}h8l-4,7Z`} fill={zone.colour} stroke="none" />{fits && <text class="s h" x={at + 6} y={top + 1}>{zone.text}</text>}</g>;
+      }
+    }
+  })}</g>;
+}
+
 // Slopes as short strokes near the lower left, where the data of an Allan deviation are not.
 function Guides({place}: {place: Area}): JSX.Element {
-  const {plot, left, bottom} = place;
-  const length = 52;
-  return <g>{(plot.guides ?? []).map((guide, i) => {
-    const x = left + 16 + i * 96;
-    const y = bottom - 22;
+  const {plot, left, right, bottom} = place;
+  const guides = plot.guides ?? [];
+  const apart = Math.min(84, (right - left - 16) / Math.max(guides.length, 1));
+  const length = Math.min(46, apart - 30);
+  return <g>{guides.map((guide, i) => {
+    const x = left + 16 + i * apart;
+    const y = bottom - 30;
     const rise = guide.slope * length;
     return <g key={guide.text}>
       <line class="ax" x1={x} x2={x + length} y1={y + rise / 2} y2={y - rise / 2} />
@@ -106,6 +137,7 @@ export function Drawing({plan, id, cursor}: DrawingProps): JSX.Element {
     {plan.areas.map(place => { const lifted = lifts(place.plot.notes ?? [], place); return <g key={place.plot.id}>
       <clipPath id={`${id}-${place.plot.id}`}><rect x={place.left} y={place.top - 6} width={place.right - place.left + 6} height={place.bottom - place.top + 6} /></clipPath>
       <Axes place={place} />
+      <Zones place={place} />
       <Guides place={place} />
       <g clip-path={`url(#${id}-${place.plot.id})`}>
         {drawn(place).map(series => <Bars key={series.id} series={series} place={place} />)}

@@ -101,6 +101,15 @@ export function defaultReadout(plot: Plot, x: number): JSX.Element {
     <span key={series.id}>{series.name} <b>{writeNumber(value)}</b>{finite(low) && finite(high) ? ` [${writeNumber(low)}, ${writeNumber(high)}]` : ''}</span>)}</>;
 }
 
+// One curve at the cursor, as it is spoken.
+function spokenAt(plots: readonly Plot[], x: number, chosen: string | null): string {
+  const [plot] = plots;
+  if (!plot) return '';
+  const write = plot.x.write ?? ((value: number) => writeNumber(value, 4));
+  return `${plots.map(each => each.x.name).find(Boolean) ?? 'at'} ${write(x)}, ${valuesAt(plot, x).filter(({series, value}) => finite(value) && (chosen === null || series.id === chosen))
+    .map(({series, value, low, high}) => `${series.name} ${writeNumber(value)}${finite(low) && finite(high) ? `, ${writeNumber(low)} to ${writeNumber(high)}` : ''}`).join('; ')}`;
+}
+
 const SAY_MS = 500;
 const PAPER_HEIGHT = 0.6;
 
@@ -112,10 +121,14 @@ export function Figure(props: FigureProps): JSX.Element {
   const [spoken, setSpoken] = useState('');
   const [over, setOver] = useState<number | null>(null);
   const [drag, setDrag] = useState<[number, number] | null>(null);
+  const [exploring, setExploring] = useState(false);
+  const [curve, setCurve] = useState<string | null>(null);  // chosen by the arrows up and down
   const svg = useRef<SVGSVGElement>(null);
   const onPaper = document.documentElement.classList.contains('paper');  // which changes the width, so that this is read again
   const plan = useMemo(() => layout(plots, Math.max(width, 280), onPaper ? PAPER_HEIGHT : 1), [plots, width, onPaper]);
-  const xs = useMemo(() => snapping(plots), [plots]);
+  const curves = (plots[0]?.series ?? []).filter(series => !series.hidden);
+  const chosen = curves.find(series => series.id === curve);
+  const xs = useMemo(() => chosen?.mark ? chosen.x : snapping(plots), [plots, chosen]);
   const log = plots[0]?.x.scale === 'log';
   const given = props.cursor ?? null;
   const [low, high] = plan.areas[0]?.x.domain ?? [0, 0];
@@ -125,9 +138,9 @@ export function Figure(props: FigureProps): JSX.Element {
 
   useEffect(() => {
     if (x === null || document.activeElement !== svg.current) return undefined;
-    const timer = setTimeout(() => setSpoken(box.current?.parentElement?.querySelector('.readout')?.textContent ?? ''), SAY_MS);
+    const timer = setTimeout(() => setSpoken(spokenAt(plots, x, curve)), SAY_MS);
     return () => clearTimeout(timer);
-  }, [x]);
+  }, [x, curve]);
 
   const pointed = (event: MouseEvent): number | null => {
     const place = plan.areas[0];
@@ -152,7 +165,12 @@ export function Figure(props: FigureProps): JSX.Element {
     if (step !== undefined) go(index < 0 ? (step > 0 ? 0 : xs.length - 1) : index + step);
     else if (event.key === 'Home') go(0);
     else if (event.key === 'End') go(xs.length - 1);
-    else if (event.key === 't') setTableShown(!tableShown);
+    else if ((event.key === 'ArrowUp' || event.key === 'ArrowDown') && curves.length > 0) {
+      event.preventDefault();
+      const at = chosen ? curves.indexOf(chosen) + (event.key === 'ArrowDown' ? 1 : -1) : 0;
+      setCurve(curves[(at + curves.length) % curves.length]!.id);
+      if (index < 0) go(0);
+    } else if (event.key === 't') setTableShown(!tableShown);
     else if (event.key === 'Escape') { event.stopPropagation(); setOver(null); props.onCursor?.(null, true); }
     else if (event.key === 'Enter' && x !== null) props.onCursor?.(x, true);
   };
@@ -163,11 +181,12 @@ export function Figure(props: FigureProps): JSX.Element {
         onSvg={() => { if (svg.current) save(`${name}.svg`, 'image/svg+xml', svgText([svg.current], `${title}. ${props.describe}`, props.source)); }}
         onCsv={() => save(`${name}.csv`, 'text/csv', csvOf(table()))} />
     </div>
-    {props.readout && <div class="readout">{x === null ? props.quietReadout ?? <span>Move over the figure, or focus it and use the arrow keys.</span> : props.readout(x)}</div>}
+    {props.readout && <div class="readout">{x === null ? props.quietReadout ?? <span>Move over the figure, or focus it and use the arrow keys.</span> : <>{props.readout(x)}{exploring && chosen && <span>↑↓ {chosen.name}</span>}</>}</div>}
     <div class="figure" ref={box}>
       <div class="visually-hidden" aria-live="polite">{spoken}</div>
-      {width > 0 && <svg ref={svg} viewBox={`0 0 ${plan.width} ${Math.ceil(plan.height)}`} width={plan.width} height={Math.ceil(plan.height)} tabindex={0} role="img"
-        aria-label={`${title}. ${props.describe} Arrow keys move along the points, t shows the table.`}
+      {width > 0 && <svg ref={svg} viewBox={`0 0 ${plan.width} ${Math.ceil(plan.height)}`} width={plan.width} height={Math.ceil(plan.height)} tabindex={0} role={exploring ? 'application' : 'img'}
+        aria-label={`${title}. ${props.describe} Arrow keys left and right move along the points, up and down choose the curve, Enter pins, t shows the table.`}
+        onFocus={() => setExploring(true)} onBlur={() => { setExploring(false); setCurve(null); }}
         onMouseMove={move} onMouseLeave={leave} onKeyDown={key}
         onMouseDown={event => { const value = pointed(event); if (props.onZoom && value !== null) { event.preventDefault(); setDrag([value, value]); } }}
         onMouseUp={event => {
@@ -180,7 +199,7 @@ export function Figure(props: FigureProps): JSX.Element {
         <Drawing plan={plan} id={id} cursor={<g data-cursor="">
           {x !== null && plan.areas.map(place => <g key={place.plot.id}>
             <line x1={place.x(x)} x2={place.x(x)} y1={place.top} y2={place.bottom} stroke="var(--focus)" stroke-width="1.2" />
-            {valuesAt(place.plot, x).filter(v => v.series.mark && finite(v.value)).slice(0, 1).map(v => <circle key={v.series.id} cx={place.x(x)} cy={place.y(v.value!)} r="5.5" fill="none" stroke="var(--focus)" stroke-width="1.6" />)}
+            {valuesAt(place.plot, x).filter(v => finite(v.value) && (chosen && place === plan.areas[0] ? v.series === chosen : v.series.mark)).slice(0, 1).map(v => <circle key={v.series.id} cx={place.x(x)} cy={place.y(v.value!)} r="5.5" fill="none" stroke="var(--focus)" stroke-width="1.6" />)}
           </g>)}
           {drag && plan.areas[0] && <rect x={Math.min(plan.areas[0].x(drag[0]), plan.areas[0].x(drag[1]))} width={Math.abs(plan.areas[0].x(drag[1]) - plan.areas[0].x(drag[0]))} y={plan.areas[0].top} height={plan.areas[0].bottom - plan.areas[0].top} fill="var(--focus)" opacity="0.15" />}
         </g>} />

@@ -24,6 +24,11 @@ function make(name: string, text: string, attributes: Record<string, string | nu
   return element;
 }
 
+declare const DRIFTLAB_VERSION: string;
+
+// 'driftlab, rec_…, seed 1' with the version: 'driftlab 0.1.0, rec_…, seed 1'.
+export const versioned = (source: string): string => source.replace(/^driftlab\b/, `driftlab ${DRIFTLAB_VERSION}`);
+
 // One drawing as a file, or several side by side.
 export function svgText(drawings: readonly SVGSVGElement[], title: string, source: string): string {
   const file = make('svg', '', {role: 'img'});
@@ -43,7 +48,7 @@ export function svgText(drawings: readonly SVGSVGElement[], title: string, sourc
   }
   for (const [key, value] of Object.entries({viewBox: `0 0 ${width} ${height + FOOT}`, width, height: height + FOOT})) file.setAttribute(key, String(value));
   file.prepend(make('title', title), make('style', TEXT_STYLES), make('rect', '', {width, height: height + FOOT, fill: '#ffffff'}));
-  file.append(make('text', source, {class: 's', x: 0, y: height + FOOT - 6}));
+  file.append(make('text', versioned(source), {class: 's', x: 0, y: height + FOOT - 6}));
   return inLight(new XMLSerializer().serializeToString(file));
 }
 

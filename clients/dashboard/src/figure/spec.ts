@@ -43,6 +43,9 @@ export interface Note {
   ring?: boolean;
 }
 
+// A stretch of the x axis that is not like the rest: shaded over the whole height, hatched, a bar along the top or the foot, or a mark above it.
+export interface Zone { from: number; to: number; style: 'shade' | 'hatch' | 'top' | 'foot' | 'mark'; colour: string; text?: string }
+
 export interface Guide { slope: number; text: string }
 
 export interface Plot {
@@ -52,6 +55,7 @@ export interface Plot {
   series: readonly Series[];
   notes?: readonly Note[];
   guides?: readonly Guide[];
+  zones?: readonly Zone[];
   equalDecades?: boolean;
   height?: number;       // of the drawing area; not for equal decades
   rules?: readonly number[];  // horizontal lines

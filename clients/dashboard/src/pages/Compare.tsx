@@ -10,7 +10,8 @@ import {defaultReadout, Figure} from '../figure/Figure';
 import type {Plot, Series} from '../figure/spec';
 import {finite} from '../figure/spec';
 import {choose, hover, usePlace} from '../route';
-import {Head, Report} from '../shell/Head';
+import {Head} from '../shell/Head';
+import {Report} from '../shell/Report';
 import {Panel, Refusal} from '../shell/states';
 import {useTitle} from '../shell/title';
 

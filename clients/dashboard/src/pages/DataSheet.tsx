@@ -40,7 +40,7 @@ export default function DataSheet(): JSX.Element {
   const path = `/v1/data-sheets?model=${encodeURIComponent(name)}`;
   const read = useRead<List<DataSheetDocument>>(path);
   useTitle(name);
-  return <Shown read={read}>{list => { const sheet = list.items.find(each => each.name === name) ?? list.items[0]; return !sheet
+  return <Shown read={read} page="Data sheet">{list => { const sheet = list.items.find(each => each.name === name) ?? list.items[0]; return !sheet
     ? <><Head crumb={[['Data sheets', listOf('data-sheets')], [name, null]]} title={name} facts={[]} /><p class="verdict">No known sensor is named in this text. <a href="/docs/data-sheets">How sensors are recognised</a></p></>
     : <>
       <Head crumb={[['Data sheets', listOf('data-sheets')], [sheet.name, null]]} title={sheet.name} facts={[sheet.manufacturer, sheet.also.length > 0 && `also ${sheet.also.join(', ')}`]}

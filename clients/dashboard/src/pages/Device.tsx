@@ -12,8 +12,10 @@ import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
 import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
-import {Head, Report, Verdict} from '../shell/Head';
+import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
+import {LiveLine, useLiveJobs} from '../shell/Live';
+import {MadeFrom, Report} from '../shell/Report';
 import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {qualityWords} from './Recording';
@@ -84,7 +86,8 @@ function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.
 }
 
 // `onCompared`: told which recordings a comparison would show, the first of each condition.
-function Results({device, summary, onCompared}: {device: Device; summary: DeviceSummary; onCompared: (recordings: string) => void}): JSX.Element {
+// `live`: jobs work on its recordings, and the table fills as they end.
+function Results({device, summary, live, onCompared}: {device: Device; summary: DeviceSummary; live: boolean; onCompared: (recordings: string) => void}): JSX.Element {
   const {query} = usePlace();
   const axes = summary.channels.filter(channel => channel.axis && ['angular_rate', 'specific_force'].includes(channel.quantity));
   const wanted = `${query.get('sensor') ?? ''}:${query.get('axis') ?? ''}`;
@@ -94,14 +97,22 @@ function Results({device, summary, onCompared}: {device: Device; summary: Device
   const asked = chosen ? `/v1/parameter-tables?device=${device.id}&sensor=${sensorOf(chosen.quantity)}&axis=${chosen.axis}&method=${method}${model && method === 'gmwm' ? `&model=${encodeURIComponent(model)}` : ''}` : null;
   const reference = query.get('ref');
   const path = asked && reference ? `${asked}&reference=${encodeURIComponent(reference)}` : asked;
-  const read = useRead<ParameterTable>(path, undefined);
-  const trends = useRead<Trends>(asked ? asked.replace('/v1/parameter-tables', '/v1/trends') : null);
+  const [watched, setWatched] = useState(live);
+  const everyMs = watched ? WAITS_MS : undefined;
+  const read = useRead<ParameterTable>(path, everyMs);
+  const trends = useRead<Trends>(asked ? asked.replace('/v1/parameter-tables', '/v1/trends') : null, everyMs);
+  const pooling = read.data?.pooling.state === 'pending';
+  // Watched from the moment a job is seen until what it made is pooled; then nothing changes under a reader's eyes any more.
+  useEffect(() => {
+    if (live) setWatched(true);
+    else if (watched) { read.again(); trends.again(); if (!pooling) setWatched(false); }
+  }, [live, pooling]);
   const compared = (read.data?.rows ?? []).map(row => row.recordings[0]).slice(0, CONDITIONS).join(',');
   const colour = useMemo(() => new Map(read.data ? colours(read.data.rows).map((one, i) => [read.data!.rows[i]!.label, one] as const) : []), [read.data]);
   const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
   usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (compared) go(`/compare?with=${compared}`); }});
   useEffect(() => onCompared(compared), [compared]);
-  if (!chosen || !path) return <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
+  if (!chosen || !path) return live ? <></> : <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
   const text = async (type: string, extension: string): Promise<void> => save(`${device.name}-${chosen.axis}.${extension}`, type, await (await ask(path, {headers: {Accept: type}})).text());
   const selected = (query.get('sel') ?? '').split('|').filter(Boolean);
   const against = query.get('trend') === 'acceleration' ? 'angular_acceleration' : 'rate';
@@ -114,9 +125,9 @@ function Results({device, summary, onCompared}: {device: Device; summary: Device
         <Segments label="Method" options={[['gmwm', 'GMWM'], ['av', 'Allan']] as const} value={method} onChange={value => choose({method: value === 'gmwm' ? null : value})} />
         {read.data?.model && <span class="sub">model <b>{read.data.model}</b>{model ? <> <button type="button" class="link" onClick={() => choose({model: null})}>best over all rows</button></> : ', best over all rows'}</span>}
         <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button><button type="button" class="quiet" onClick={() => void text('text/x-latex', 'tex')}>LaTeX</button></div>
-        <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. Seed, algorithm version and revision of each recording stand on its own page and in the table’s document.</p>} />
+        <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. The report lists seed, algorithm version and file hash of each recording.</p>} />
       </div>
-      {read.data?.pooling.state === 'pending' && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
+      {pooling && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
       <Shown read={read}>{table => <><Parameters table={table} />{table.data_sheet && <SheetLine comparison={table.data_sheet} />}</>}</Shown>
     </section>
     {read.data && <div class="grid two">
@@ -127,6 +138,7 @@ function Results({device, summary, onCompared}: {device: Device; summary: Device
       </Panel>
     </div>}
     <Recordings device={device} axis={chosen.axis} />
+    {read.data && <MadeFrom recordings={[...new Set(read.data.rows.flatMap(row => row.recordings))]} />}
   </>;
 }
 
@@ -148,14 +160,16 @@ export default function DevicePage(): JSX.Element {
   const read = useRead<Device>(`/v1/devices/${encodeURIComponent(name)}`);
   const [waits, setWaits] = useState(true);
   const [compared, setCompared] = useState('');
-  const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits ? WAITS_MS : undefined);
+  const live = useLiveJobs(read.data?.id ?? null);
+  const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits || live.length > 0 ? WAITS_MS : undefined);
   // Until there is a first result the page looks for one.
   useEffect(() => { if (summary.data) setWaits(summary.data.channels.length === 0); }, [summary.data]);
   useTitle(read.data?.name ?? name);
-  return <Shown read={read}>{device => <>
+  return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
       actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /></>} />
-    <Shown read={summary}>{found => <>{found.channels.length > 0 ? <Results device={device} summary={found} onCompared={setCompared} /> : <><Results device={device} summary={found} onCompared={setCompared} /><Recordings device={device} axis={null} /></>}</>}</Shown>
+    <LiveLine jobs={live} />
+    <Shown read={summary}>{found => <><Results device={device} summary={found} live={live.length > 0} onCompared={setCompared} />{found.channels.length === 0 && <Recordings device={device} axis={null} />}</>}</Shown>
   </>}</Shown>;
 }

@@ -6,6 +6,7 @@ import {writeWhen} from '../format/time';
 import {conditionName} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Sought} from '../shell/Sought';
 import {Panel, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
@@ -14,15 +15,15 @@ export default function Devices(): JSX.Element {
   const {query} = usePlace();
   useTitle('Devices');
   const after = query.get('after');
-  const q = (query.get('q') ?? '').toLowerCase();
-  const read = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
+  const q = query.get('q') ?? '';
+  const read = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=50${q ? `&q=${encodeURIComponent(q)}` : ''}${after ? `&cursor=${after}` : ''}`, 5000);
   return <>
-    <Head title="Devices" facts={['newest first']} actions={<input type="search" aria-label="Only names with" placeholder="Only names with" value={q} onInput={event => choose({q: event.currentTarget.value || null})} />} />
+    <Head title="Devices" facts={['newest first']} actions={<Sought label="Only names and models with" />} />
     <Tabs group="devices" />
     <Panel><Shown read={read}>{list => {
-      const shown = list.items.filter(device => device.name.toLowerCase().includes(q));
+      const shown = list.items;
       return <>
-        {shown.length === 0 ? <p class="sec">{q ? `No device of this page has “${q}” in its name.` : <>No device yet. <a href="/upload">Upload a recording</a> and it has one.</>}</p> : <div class="scroll"><table class="stacked">
+        {shown.length === 0 ? <p class="sec">{q ? `No device has “${q}” in its name, model or serial.` : <>No device yet. <a href="/upload">Upload a recording</a> and it has one.</>}</p> : <div class="scroll"><table class="stacked">
           <thead><tr><th scope="col">device</th><th scope="col">unit</th><th scope="col" class="n">recordings</th><th scope="col">conditions</th><th scope="col">last result</th></tr></thead>
           <tbody>{shown.map(device => <tr key={device.id}>
             <th scope="row"><a href={pageOf('devices', device.name)}>{device.name}</a></th>

@@ -58,7 +58,7 @@ function Page({path}: {path: string}): JSX.Element {
     setText(undefined);
     ask(path, {headers: {Accept: 'text/markdown'}}).then(answer => answer.text()).then(setText, error => setProblem(error as Problem));
   }, [path]);
-  return problem ? <Refusal problem={problem} /> : text === undefined ? <Hairlines /> : <Panel><Markdown text={text} /></Panel>;
+  return problem ? <><h1>Manual</h1><Refusal problem={problem} /></> : text === undefined ? <Hairlines /> : <Panel><Markdown text={text} /></Panel>;
 }
 
 function Contents(): JSX.Element {

@@ -84,5 +84,5 @@ export default function Drive(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<StoredDrive>(`/v1/drives/${encodeURIComponent(parts[1] ?? '')}`);
   useTitle(read.data?.name ?? 'Drive');
-  return <Shown read={read}>{drive => <Body drive={drive} />}</Shown>;
+  return <Shown read={read} page="Drive">{drive => <Body drive={drive} />}</Shown>;
 }

@@ -8,8 +8,9 @@ import {capital, plural, writeSentence, writeUnit} from '../format/words';
 import {csvOf, save} from '../figure/export';
 import {curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
 import {choose, listOf, pageOf, usePlace} from '../route';
-import {Head, MadeBy, Report} from '../shell/Head';
+import {Head} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
+import {MadeBy, Report} from '../shell/Report';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Simulated} from './drive/documents';
@@ -121,11 +122,11 @@ export default function DriveEvaluation(): JSX.Element {
   const read = useRead<Evaluation>(`/v1/drive-evaluations/${encodeURIComponent(parts[1] ?? '')}`);
   useJobEvents(read.data && !read.data.finished_at ? read.data.id : null, read.again);
   useTitle(read.data ? `Drive: ${read.data.name}` : 'Drive');
-  return <Shown read={read}>{stored => <>
+  return <Shown read={read} page="Evaluation of a drive">{stored => <>
     <Head crumb={[['Recorded drives', listOf('drives')], [stored.name, pageOf('drives', stored.drive)], [SHORT[stored.question], null]]} title={`${stored.name}, ${SHORT[stored.question]}`}
       facts={[stored.evaluation?.vehicle, `seed ${stored.seed}`, stored.evaluation && `algorithm ${stored.evaluation.algorithm_version}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']}
       actions={<><a class="btn" href={pageOf('jobs', stored.id)}>Job</a><Report /></>} />
-    <MadeBy job={stored.id} />
+    <MadeBy job={stored.id} document={`/v1/drive-evaluations/${stored.id}`} />
     {stored.evaluation ? (isComparison(stored.evaluation) ? <Compared evaluation={stored.evaluation} /> : <Answer evaluation={stored.evaluation} id={stored.id} />) : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Drive" />}</>}
   </>}</Shown>;
 }

@@ -37,7 +37,7 @@ export default function JobPage(): JSX.Element {
   useJobEvents(live, read.again);
   const [problem, setProblem] = useState<Problem>();
   useTitle(read.data ? capital(jobKind(read.data.kind)) : 'Job');
-  return <Shown read={read}>{job => {
+  return <Shown read={read} page="Job">{job => {
     const request = JSON.stringify(asked(job), null, 2);
     const command = `curl -X POST -H 'Content-Type: application/json' -d '${JSON.stringify(asked(job))}' '${window.location.origin}/v1/jobs'`;
     return <>

@@ -12,6 +12,7 @@ import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
 
 const STATES: Record<string, [string, string]> = {succeeded: ['✓', 'good'], failed: ['✗', 'bad'], dead: ['✗', 'bad'], cancelled: ['–', ''], running: ['●', ''], queued: ['○', '']};
+const KINDS = ['characterise', 'investigate', 'outage_evaluation', 'drive_evaluation', 'regress', 'calibrate', 'pool'];
 const WIDTH = 520;
 const SURE_S = 5;
 
@@ -83,7 +84,8 @@ export default function Jobs(): JSX.Element {
   useNow(1000);
   const state = query.get('state') ?? 'all';
   const after = query.get('after');
-  const path = `/v1/jobs?sort=-created_at&limit=50${state === 'all' ? '' : `&state=${state}`}${after ? `&cursor=${after}` : ''}`;
+  const kind = query.get('kind') ?? '';
+  const path = `/v1/jobs?sort=-created_at&limit=50${state === 'all' ? '' : `&state=${state}`}${kind && `&kind=${encodeURIComponent(kind)}`}${after ? `&cursor=${after}` : ''}`;
   const read = useRead<List<Job>>(path, 2000);
   const counts = useRead<Counts>('/v1/counts', 2000);
   const jobs = read.data?.items ?? [];
@@ -92,14 +94,14 @@ export default function Jobs(): JSX.Element {
   const to = Math.max(...jobs.map(job => job.finished_at ? Date.parse(job.finished_at) : Date.now()), from + 1000);
   return <>
     <Head title="Jobs" facts={[counts.data && `${counts.data.jobs.running} running, ${counts.data.jobs.queued} queued`, 'live']}
-      actions={<Segments label="State" options={[['all', 'All'], ['running', 'Running'], ['failed', 'Failed']] as const} value={state as 'all'} onChange={value => choose({state: value === 'all' ? null : value, after: null})} />} />
+      actions={<><label>kind <select value={kind} onChange={event => choose({kind: event.currentTarget.value || null, after: null})}><option value="">all</option>{KINDS.map(each => <option key={each} value={each}>{jobKind(each)}</option>)}</select></label><Segments label="State" options={[['all', 'All'], ['running', 'Running'], ['failed', 'Failed']] as const} value={state as 'all'} onChange={value => choose({state: value === 'all' ? null : value, after: null})} /></>} />
     <Tabs group="jobs" />
     {running.map(job => <Panel key={job.id} title={<a href={pageOf('jobs', job.id)}>{capital(jobKind(job.kind))}: {what(job)}</a>} sub={`${job.stage ?? 'starting'} · attempt ${job.attempt} · started ${job.started_at ? writeClock(job.started_at) : '–'}`}
       tools={<div class="tools"><Cancel job={job} onDone={read.again} /></div>}>
       <div class="row"><span class="grow"><Progress share={job.progress} label={jobKind(job.kind)} /></span><b>{Math.round(job.progress * 100)} %</b><span class="sec">{timeLeft(job)}</span></div>
     </Panel>)}
     <Panel>
-      <Shown read={read}>{() => jobs.length === 0 ? <p class="sec">{state === 'all' ? 'No job yet. Uploads queue them, and so does every Characterise button.' : `No job is ${state}.`}</p> : <div class="scroll"><table class="stacked">
+      <Shown read={read}>{() => jobs.length === 0 ? <p class="sec">{state === 'all' && !kind ? 'No job yet. Uploads queue them, and so does every Characterise button.' : `No job${kind && ` of the kind ${jobKind(kind)}`} ${state === 'all' ? 'yet' : `is ${state}`}.`}</p> : <div class="scroll"><table class="stacked">
         <thead><tr><th scope="col">kind</th><th scope="col">what</th><th scope="col">state</th><th scope="col" class="n">took</th><th scope="col" class="desk-only">when <span class="dim">dotted: waiting</span></th><th scope="col"><span class="visually-hidden">Result</span></th></tr></thead>
         <tbody>{jobs.map(job => <tr key={job.id}>
           <th scope="row"><a href={pageOf('jobs', job.id)}>{jobKind(job.kind)}</a></th>
@@ -109,7 +111,7 @@ export default function Jobs(): JSX.Element {
           <td class="desk-only" style={{width: '38%'}}><Clock job={job} from={from} to={to} /></td>
           <td class="n">{job.state === 'succeeded' ? <a href={resultPage(job)}>Result</a> : <Cancel job={job} onDone={read.again} />}</td>
         </tr>)}
-        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
+        <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td class="n" /><td><div class="row u" style={{justifyContent: 'space-between'}}><span>{writeMoment(new Date(from).toISOString())}</span><span>{writeClock(new Date(to).toISOString())} UTC</span></div></td><td /></tr>
         </tbody>
       </table></div>}</Shown>
       {(read.data?.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{read.data?.next_cursor && <button type="button" class="btn" onClick={() => choose({after: read.data!.next_cursor})}>Older</button>}</p>}

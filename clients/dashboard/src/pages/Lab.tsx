@@ -10,6 +10,7 @@ import {MarkAt} from '../figure/marks';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {Sought} from '../shell/Sought';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {curlOf, copy} from '../figure/Figure';
@@ -93,10 +94,11 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
   const unit = devices.flatMap(of).find(channel => channel.N)?.N?.unit;
   return <Panel title="Devices" sub={<>white noise N at rest{unit ? `, ${writeUnit(unit)}` : ''}, 95 %: ● x □ y ▲ z</>}
     controls={<Segments label="Sensor" options={[['gyroscope', 'Gyroscopes'], ['accelerometer', 'Accelerometers']] as const} value={quantity === 'specific_force' ? 'accelerometer' : 'gyroscope'} onChange={value => choose({sensor: value === 'gyroscope' ? null : value})} />}
-    tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf('/v1/devices?include=summary'), 'The command is')}>curl</button></div>}>
+    tools={<div class="tools"><Sought label="Only names and models with" /><label class="nowrap">order <select value={query.get('sort') ?? ''} onChange={event => choose({sort: event.currentTarget.value || null, after: null})}><option value="">newest first</option><option value="name">by name</option></select></label>
+      <button type="button" class="quiet" onClick={() => copy(curlOf('/v1/devices?include=summary'), 'The command is')}>curl</button></div>}>
     <div class="scroll"><table class="stacked">
       <thead><tr><th scope="col">device</th><th scope="col" class="n">recordings</th><th scope="col">conditions</th><th scope="col" class="desk-only">white noise N</th><th scope="col">x, y, z</th><th scope="col">last result</th></tr></thead>
-      <tbody>{devices.map(device => {
+      <tbody>{devices.length === 0 && <tr><td colSpan={6} class="sec">No device has “{query.get('q')}” in its name, model or serial.</td></tr>}{devices.map(device => {
         const channels = of(device);
         const worst = channels.find(channel => channel.level !== 'fine');
         return <tr key={device.id}>
@@ -111,7 +113,7 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
       {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18" preserveAspectRatio="xMinYMid meet">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
       </tbody>
     </table></div>
-    {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}
+    {(next || query.get('after')) && <p class="row">{query.get('after') && <button type="button" class="btn" onClick={() => choose({after: null})}>First</button>}{next && <button type="button" class="btn" onClick={() => choose({after: next})}>Next {PAGE}</button>}</p>}
   </Panel>;
 }
 
@@ -129,12 +131,14 @@ export default function Lab(): JSX.Element {
   useTitle('Lab');
   const counts = useRead<Counts>(`/v1/counts?include=attention&since=${new Date().toISOString().slice(0, 10)}T00:00:00Z`, 5000);
   const after = query.get('after');
-  const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=-created_at&limit=${PAGE}${after ? `&cursor=${after}` : ''}`);
+  const q = query.get('q');
+  const sort = query.get('sort') === 'name' ? 'name' : '-created_at';
+  const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=${sort}&limit=${PAGE}${q ? `&q=${encodeURIComponent(q)}` : ''}${after ? `&cursor=${after}` : ''}`, 3000);
   const jobs = useRead<List<Job>>('/v1/jobs?sort=-created_at&limit=50', 3000);
-  if (devices.data?.items.length === 0 && !after) return <EmptyLab />;
+  const [seen, setSeen] = useState(() => localStorage.getItem(SEEN) ?? '');
+  if (devices.data?.items.length === 0 && !after && !q) return <EmptyLab />;
   const list = devices.data?.items ?? [];
   const recent = jobs.data?.items ?? [];
-  const [seen, setSeen] = useState(() => localStorage.getItem(SEEN) ?? '');
   const all = toRead(counts.data?.attention ?? [], recent);
   const wants = all.filter(item => item.at > seen);
   const mark = (until: string): void => { localStorage.setItem(SEEN, until); setSeen(until); };

@@ -7,8 +7,9 @@ import {Drawn} from '../figure/Drawn';
 import type {Table} from '../figure/export';
 import {curlOf} from '../figure/Figure';
 import {choose, usePlace} from '../route';
-import {Head, MadeBy, Report, Verdict} from '../shell/Head';
+import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
+import {MadeBy, Report} from '../shell/Report';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import type {Evaluation, Filter, StoredEvaluation} from './outage/documents';
@@ -65,10 +66,10 @@ export default function OutagePage(): JSX.Element {
   const read = useRead<StoredEvaluation>(`/v1/outage-evaluations/${encodeURIComponent(parts[1] ?? '')}`);
   useJobEvents(read.data && !read.data.finished_at ? read.data.id : null, read.again);
   useTitle(read.data ? `Outages: ${read.data.scenario_name}` : 'Outages');
-  return <Shown read={read}>{stored => <>
+  return <Shown read={read} page="Outages">{stored => <>
     <Head crumb={[['Outages', '/outages'], [stored.scenario_name, null]]} title={`Simulated outages: ${stored.scenario_name}`}
       facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
-    <MadeBy job={stored.id} />
+    <MadeBy job={stored.id} document={`/v1/outage-evaluations/${stored.id}`} />
     {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}</>}
   </>}</Shown>;
 }

@@ -7,8 +7,9 @@ import {capital, conditionName, listWords, plural, writeUnit} from '../format/wo
 import {save} from '../figure/export';
 import {curlOf, Figure, Tools} from '../figure/Figure';
 import {choose, listOf, pageOf, usePlace} from '../route';
-import {Head, Report, Verdict} from '../shell/Head';
+import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
+import {Report} from '../shell/Report';
 import {Panel, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {sourceOf, useSheets, writeStated, type DataSheetDocument, type SensorSheet} from './datasheet/documents';

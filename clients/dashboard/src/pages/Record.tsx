@@ -162,7 +162,7 @@ function Recorder({live, token}: {live: LiveRecording; token: string}): JSX.Elem
 function Continue({id, token}: {id: string; token: string}): JSX.Element {
   const read = useRead<LiveRecording>(`/v1/live-recordings/${encodeURIComponent(id)}`);
   if (read.problem?.document.status === 404) return <p class="verdict">This recording is finished, or was never begun. <a href="/record">Begin another</a> or <a href="/devices">see the devices</a>.</p>;
-  return <Shown read={read}>{live => <Recorder live={live} token={token} />}</Shown>;
+  return <Shown read={read} page="Record this phone">{live => <Recorder live={live} token={token} />}</Shown>;
 }
 
 export default function Record(): JSX.Element {

@@ -11,9 +11,12 @@ import {capital, conditionName, plural, sensorOf, writeUnit} from '../format/wor
 import {curlOf, defaultReadout, Figure} from '../figure/Figure';
 import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
-import {Head, Report, Verdict} from '../shell/Head';
+import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
-import {Hairlines, Panel, Progress, Refusal, Segments, Shown} from '../shell/states';
+import {LiveLine, useLiveJobs} from '../shell/Live';
+import {Report} from '../shell/Report';
+import {say} from '../shell/say';
+import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {describe, variancePlots, type Curve} from './recording/plots';
 import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Side';
@@ -38,11 +41,32 @@ export function qualityWords(recording: Recording): string {
   return faults.length > 0 ? faults.join(', ') : 'no gaps, no frozen stretch';
 }
 
-// A job that works on the recording now.
-function useLiveJob(id: string): Job | undefined {
-  const running = useRead<List<Job>>('/v1/jobs?state=running&limit=50', 2000);
-  const queued = useRead<List<Job>>('/v1/jobs?state=queued&limit=50', 2000);
-  return [...running.data?.items ?? [], ...queued.data?.items ?? []].find(job => job.kind === 'characterise' && job.request.inputs.recordings?.some(one => one.id === id));
+// How long it should take, from the newest characterisation of this daemon; the work grows with the number of values.
+function Expected({recording}: {recording: Recording}): JSX.Element | null {
+  const former = useRead<List<Job>>('/v1/jobs?kind=characterise&state=succeeded&sort=-created_at&limit=1');
+  const job = former.data?.items[0];
+  const inputs = job?.request.inputs.recordings ?? [];
+  const other = useRead<Recording>(inputs.length === 1 ? `/v1/recordings/${inputs[0]!.id}` : null);
+  const values = (of: Recording): number => of.quality.samples * Math.max(1, of.quality.channels?.length ?? 1);
+  if (!job?.started_at || !job.finished_at || !other.data || values(other.data) === 0) return null;
+  const took = (Date.parse(job.finished_at) - Date.parse(job.started_at)) / 1000;
+  const expected = Math.max(1, Math.round(took * values(recording) / values(other.data)));
+  return <small>About {expected < 10 ? `${expected} s` : writeDuration(expected)}, going by the last one: {writeDuration(Math.max(took, 0.1))} for {plural(values(other.data), 'value')}.</small>;
+}
+
+// The recording of the same device before or after this one, in the order of upload; refused at the ends.
+async function neighbourOf(recording: Recording, by: 1 | -1): Promise<string> {
+  let before: string | undefined;
+  for (let cursor: string | null = ''; cursor !== null;) {
+    const page: List<Recording> = await get(`/v1/recordings?device=${recording.device}&sort=${by < 0 ? '' : '-'}created_at&limit=50${cursor ? `&cursor=${cursor}` : ''}`);
+    for (const {id} of page.items) {
+      if (id === recording.id && before) return before;
+      if (id === recording.id) throw new Error('there is none');
+      before = id;
+    }
+    cursor = page.next_cursor;
+  }
+  throw new Error('there is none');
 }
 
 function How({result, channel}: {result: Characterisation; channel: CharacterisedChannel}): JSX.Element {
@@ -119,7 +143,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   const {query} = usePlace();
   const device = useRead<Device>(`/v1/devices/${recording.device}`);
   const read = useRead<Characterisation>(`/v1/recordings/${recording.id}/characterisation`);
-  const live = useLiveJob(recording.id);
+  const live = useLiveJobs(recording.device).find(each => each.request.inputs.recordings?.some(one => one.id === recording.id));
   const liveJob = useRead<Job>(live ? `/v1/jobs/${live.id}` : null);
   useJobEvents(live?.id ?? null, liveJob.again);
   const job = liveJob.data?.finished_at ? undefined : liveJob.data ?? live;
@@ -139,7 +163,8 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   const channel = channels.find(one => one.result.channel === named) ?? channels[0];
   const column = channel?.result.channel ?? (named && columns.includes(named) ? named : columns[0]);
   const select = (name: string): void => choose({ch: name});
-  usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), c: () => go(`/compare?with=${recording.id}`), Escape: () => hover({tau: null})});
+  const step = (by: 1 | -1): void => { neighbourOf(recording, by).then(found => go(`${pageOf('recordings', found)}${named ? `?ch=${encodeURIComponent(named)}` : ''}`), () => say(by < 0 ? 'This is the first recording of the device.' : 'This is the last recording of the device.')); };
+  usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), c: () => go(`/compare?with=${recording.id}`), Escape: () => hover({tau: null}), '[': () => step(-1), ']': () => step(1)});
   const title = recording.metadata.id ?? `Recording of ${device.data?.name ?? '…'}`;
   useTitle(title);
   const deviceName = device.data?.name ?? recording.device;
@@ -157,10 +182,10 @@ function Body({recording}: {recording: Recording}): JSX.Element {
       </>} />
     {newer && <p class="note" role="status">Newer result. <button type="button" class="link" onClick={() => { setNewer(false); read.again(); }}>Show it</button></p>}
     {read.data?.stale && <p class="note">The recording was changed after it was characterised. <Characterise recordings={[recording.id]} label="Characterise again" onQueued={() => undefined} /></p>}
-    {job && <div role="status"><p class="verdict">Characterising: {job.state === 'queued' ? 'waiting for a worker' : `${job.stage ?? 'starting'}, ${Math.round(job.progress * 100)} %`}</p><Progress share={job.progress} label="Characterising" /></div>}
+    {job && <LiveLine jobs={[job]} />}
     {channel && !job && <Verdict summary={channel.summary} />}
     {!read.data && !job && (read.problem?.document.status === 404
-      ? <p class="verdict">Not characterised yet. <Characterise recordings={[recording.id]} label="Characterise" onQueued={read.again} /></p>
+      ? <p class="verdict">Not characterised yet. <Characterise recordings={[recording.id]} label="Characterise" onQueued={read.again} /><Expected recording={recording} /></p>
       : read.problem ? <Refusal problem={read.problem} again={read.again} /> : <Hairlines />)}
     {column && <Signal recording={recording} column={column} quantity={channel?.result.quantity ?? 'sensor'} />}
     {read.data && channel && <Evidence recording={recording} result={read.data} channel={channel} />}
@@ -172,5 +197,5 @@ export default function RecordingPage(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<Recording>(`/v1/recordings/${encodeURIComponent(parts[1] ?? '')}`);
   useTitle('Recording');
-  return <Shown read={read}>{recording => <Body recording={recording} />}</Shown>;
+  return <Shown read={read} page="Recording">{recording => <Body recording={recording} />}</Shown>;
 }

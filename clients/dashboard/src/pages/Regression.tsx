@@ -9,7 +9,8 @@ import {conditionName, plural, writeSentence} from '../format/words';
 import {curlOf, defaultReadout, Figure} from '../figure/Figure';
 import type {Plot, Series} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
-import {Head, MadeBy, Report, Verdict} from '../shell/Head';
+import {Head, Verdict} from '../shell/Head';
+import {MadeBy, Report} from '../shell/Report';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {columnName} from './device/documents';
@@ -36,10 +37,12 @@ const ratioOf = (test: Test): Written => writeQuantity({value: test.ratio, ci95:
 const parameterName = ({name = ''}: Test): string => { const {process, symbol} = columnName(name); return `${process} ${symbol}`; };
 
 function Tests({unit}: {unit: Unit}): JSX.Element {
+  const chosen = usePlace().query.get('param');
   const parameters = unit.tests.filter(test => test.kind === 'parameter');
   return <Panel title="Parameters" sub={unit.structure.changed ? 'not compared: no model describes both arms' : unit.structure.pooled ?? ''}>
     {parameters.length === 0 ? <p class="sec">None is compared; the scales decide.</p> : <table class="stacked"><thead><tr><th scope="col">parameter</th><th scope="col" class="n">candidate ÷ baseline</th><th scope="col">interval</th><th scope="col" class="n">margin</th><th scope="col">word</th></tr></thead>
-      <tbody>{parameters.map(test => <tr key={test.name}><th scope="row">{parameterName(test)}</th><td class="n" data-label="candidate ÷ baseline"><b>{ratioOf(test).value}</b></td><td class="ci">{ratioOf(test).interval}</td><td class="n nowrap" data-label="margin">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
+      <tbody>{parameters.map(test => <tr key={test.name} aria-selected={test.name === chosen}><th scope="row"><button type="button" class="link" aria-pressed={test.name === chosen} onClick={() => choose({param: test.name === chosen ? null : test.name})}>{parameterName(test)}</button></th><td class="n" data-label="candidate ÷ baseline"><b>{ratioOf(test).value}</b></td><td class="ci">{ratioOf(test).interval}</td><td class="n nowrap" data-label="margin">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
+    {parameters.filter(test => test.name === chosen).map(test => <p key={test.name} class="note">{parameterName(test)} is {ratioOf(test).value} times that of the baseline{ratioOf(test).interval && `, 95 % ${ratioOf(test).interval}`}: {WORDS[test.verdict] ?? test.verdict}. {Math.round((test.margin - 1) * 100)} % more would be tolerated{test.p_adjusted !== undefined && test.p_adjusted !== null ? `; ${writeP(test.p_adjusted)} after correction for all tests` : ''}.</p>)}
     <p class="note">Structure: {unit.structure.baseline ?? '…'} before, {unit.structure.candidate ?? '…'} after{unit.structure.p !== undefined && unit.structure.p !== null ? `, ${writeP(unit.structure.p)}` : ''}.</p>
   </Panel>;
 }
@@ -88,7 +91,7 @@ export default function Regression(): JSX.Element {
     {job.data && !job.data.finished_at && <div role="status"><p class="verdict">{job.data.state === 'queued' ? 'Waiting for a worker' : `Comparing: ${job.data.stage ?? ''} ${Math.round(job.data.progress * 100)} %`}</p><Progress share={job.data.progress} label="Comparing" /></div>}
     {job.data?.finished_at && job.data.state !== 'succeeded' && <p class="verdict"><span class="g bad" aria-hidden="true">✗ </span>{job.data.problem?.detail ?? `The run is ${job.data.state}.`}</p>}
     {read.problem && <Refusal problem={read.problem} again={read.again} />}
-    {document && <MadeBy job={id} />}
+    {document && <MadeBy job={id} document={`/v1/regressions/${id}`} />}
     {document ? <Shown document={document} /> : job.data?.state === 'succeeded' && !read.problem && <Hairlines />}
   </>;
 }

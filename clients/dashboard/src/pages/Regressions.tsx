@@ -25,7 +25,7 @@ function History({runs}: {runs: readonly RegressionRun[]}): JSX.Element {
   return <table class="stacked"><thead><tr><th scope="col">device and baseline</th><th scope="col">runs, the last at the right</th><th scope="col">latest candidate</th><th scope="col">what it says</th><th scope="col">when</th></tr></thead>
     <tbody>{[...groups].map(([key, list]) => { const last = list[0]!; return <tr key={key}>
       <th scope="row">{key}</th><td><Strip runs={list} /></td>
-      <td><a href={pageOf('regressions', last.id)}>{last.candidate || 'candidate'}</a></td>
+      <td><a href={pageOf('regressions', last.id)}>{last.candidate || 'candidate'}</a>{last.candidate && <> <button type="button" class="quiet" aria-label={`Only ${last.candidate}`} onClick={() => choose({label: last.candidate, after: null})}>only this</button></>}</td>
       <td>{last.summary ? <><span class={`g ${last.verdict === 'fail' ? 'bad' : last.verdict === 'pass' ? 'good' : 'warn'}`} aria-hidden="true">{last.verdict === 'fail' ? '✗ ' : last.verdict === 'pass' ? '✓ ' : '△ '}</span>{last.summary.verdict}</> : last.state}</td>
       <td class="sec nowrap">{writeWhen(last.created_at)}</td></tr>; })}</tbody></table>;
 }
@@ -34,10 +34,11 @@ export default function Regressions(): JSX.Element {
   const {query} = usePlace();
   useTitle('Regressions');
   const after = query.get('after');
-  const read = useRead<List<RegressionRun>>(`/v1/regressions?sort=-created_at&limit=${SHOWN}${after ? `&cursor=${after}` : ''}`, 5000);
+  const label = query.get('label') ?? '';
+  const read = useRead<List<RegressionRun>>(`/v1/regressions?sort=-created_at&limit=${SHOWN}${label && `&label=${encodeURIComponent(label)}`}${after ? `&cursor=${after}` : ''}`, 5000);
   return <>
-    <Head title="Regressions" facts={['is the noise no worse than before the change?', read.data && plural(read.data.items.length, 'run')]} />
-    <Shown read={read}>{list => list.items.length === 0
+    <Head title="Regressions" facts={['is the noise no worse than before the change?', label ? `candidate ${label}` : '', read.data && plural(read.data.items.length, 'run')]} actions={label && <button type="button" class="btn" onClick={() => choose({label: null, after: null})}>All candidates</button>} />
+    <Shown read={read}>{list => list.items.length === 0 && label ? <Panel><p class="sec">No run has the candidate “{label}”.</p></Panel> : list.items.length === 0
       ? <Panel title="None yet"><p>A run compares recordings after a change with recordings before it, and passes, fails or says how many sessions would decide. Ask for one by the command line or by the API:</p>
         <pre tabIndex={0}><code>{`curl --json '{"kind": "regress", "inputs": {"device": "phone-07", "baseline": {"recordings": [{"recording": "rec_…"}]},\n  "candidate": {"recordings": [{"recording": "rec_…"}]}}}' ${window.location.origin}/v1/jobs`}</code></pre><p><a href="/docs/regression">How it is decided</a></p></Panel>
       : <Panel title="History" sub="● pass ■ fail ○ inconclusive"><History runs={list.items} />

@@ -1,67 +1,27 @@
 // Upload: drop, columns, condition, and the job that follows.
 import type {JSX} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
-import {Problem, ask} from '../api/client';
+import type {Problem} from '../api/client';
 import {writeBytes, writeTick} from '../format/number';
 import {countWord, plural, writeSentence} from '../format/words';
 import {copy} from '../figure/Figure';
-import {choose, go, pageOf, usePlace} from '../route';
-import {characterise} from '../shell/Characterise';
+import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {Panel, Progress, Refusal} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Columns} from './upload/Columns';
 import {ConditionField} from './upload/ConditionField';
 import {DropZone} from './upload/DropZone';
-import {addFiles, change, pending, remember, remove, usePending, type Pending} from './upload/pending';
-import {commandOf, Paused, upload} from './upload/send';
-
-// Which field mends a refusal.
-const wantsRate = (problem: Problem | null): boolean => /rate|sampling|time column/i.test(problem?.document.detail ?? '');
-
-const running = new Map<number, AbortController>();
-
-async function sendOne(each: Pending): Promise<string | null> {
-  change(each.key, {state: 'sending', problem: null});
-  const pause = new AbortController();
-  running.set(each.key, pause);
-  try {
-    const recording = await upload(each, share => change(each.key, {share}), pause.signal);
-    remember(each);
-    change(each.key, {state: 'sent', share: 1, recording: recording.id});
-    return recording.id;
-  } catch (error) {
-    if (error instanceof Paused) change(each.key, {state: 'paused'});
-    else change(each.key, {state: 'refused', problem: error as Problem});
-    return null;
-  } finally {
-    running.delete(each.key);
-  }
-}
-
-async function sendAll(analyse: boolean, refused: (problem: Problem) => void): Promise<void> {
-  const sent: string[] = [];
-  for (const each of pending().filter(one => one.state !== 'sent')) {
-    const id = await sendOne(each);
-    if (id) sent.push(id);
-  }
-  if (!analyse) return;
-  for (const id of sent) {
-    try {
-      const job = await characterise([id]);
-      const mine = pending().find(one => one.recording === id);
-      if (mine) change(mine.key, {job: job.id});
-    } catch (error) { refused(error as Problem); return; }
-  }
-  const left = pending().filter(one => one.state !== 'sent');
-  if (left.length === 0 && sent.length === 1) go(pageOf('recordings', sent[0]!));
-}
+import {change, remove, usePending, type Pending} from './upload/pending';
+import {Repair} from './upload/Repair';
+import {following, pause, runSample, sendAll, sendOne, take, takeHanded, takeSample} from './upload/run';
+import {commandOf} from './upload/send';
 
 // What is known of a file that waits: what would refuse it stands beside the field that mends it.
 function Seen({each}: {each: Pending}): JSX.Element {
   const seen = each.look?.document;
   const problem = seen?.problems[0];
-  if (problem) return <><span class="g bad" aria-hidden="true">✗ </span>{writeSentence(problem.detail)} {problem.fields.parameter === 'rate_hz' && !each.rate && <label class="row">rate <input type="text" size={7} placeholder="Hz" aria-label={`Rate in Hz that repairs ${each.file.name}`} value={each.rate} onChange={event => change(each.key, {rate: event.currentTarget.value})} /></label>}</>;
+  if (problem) return <><span class="g bad" aria-hidden="true">✗ </span>{writeSentence(problem.detail)} <Repair each={each} code={problem.code} detail={problem.detail} fields={problem.fields} /></>;
   const count = seen?.columns.length ?? 0;
   return <span class="sec">{!each.look ? 'reading' : count > 0 ? <><span class="g good" aria-hidden="true">✓ </span>{plural(count, 'column')} read</> : 'ready'}</span>;
 }
@@ -80,25 +40,15 @@ function Row({each, chosen}: {each: Pending; chosen: boolean}): JSX.Element {
     <td class="n" data-label="rate, Hz">{text('rate', 'Rate in Hz', 7, byTime ? writeTick(Number(byTime.value.toPrecision(4))) : 'by time')}</td>
     <td>
       {each.state === 'ready' && <Seen each={each} />}
-      {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Pause ${name}`} onClick={() => running.get(each.key)?.abort()}>Pause</button></span></>}
+      {each.state === 'sending' && <><Progress share={each.share} label={`Uploading ${name}`} /><span class="sec">{writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Pause ${name}`} onClick={() => pause(each.key)}>Pause</button></span></>}
       {each.state === 'paused' && <span class="sec">paused at {writeBytes(each.share * each.file.size)} of {writeBytes(each.file.size)} <button type="button" class="link" aria-label={`Go on with ${name}`} onClick={() => { void sendOne(each); }}>Go on</button></span>}
       {each.state === 'sent' && <><span class="g good" aria-hidden="true">✓ </span><a href={pageOf('recordings', each.recording ?? '')}>stored</a>{each.job && <>, <a href={pageOf('jobs', each.job)}>characterising</a></>}</>}
       {each.state === 'refused' && each.problem && <><Refusal problem={each.problem} />
-        {wantsRate(each.problem) && <label class="row">rate <input type="text" size={7} placeholder="Hz" aria-label={`Rate in Hz that repairs ${name}`} value={each.rate} onInput={event => change(each.key, {rate: event.currentTarget.value})} /></label>}
+        <Repair each={each} code={each.problem.document.code ?? ''} detail={each.problem.document.detail} fields={each.problem.document.where ?? {}} />
         <button type="button" class="link" onClick={() => choose({file: String(each.key)})}>What the columns mean</button></>}
     </td>
     <td class="n"><button type="button" class="quiet" aria-label={`Remove ${name}`} onClick={() => remove(each.key)}>Remove</button></td>
   </tr>;
-}
-
-export async function trySample(): Promise<void> {
-  const files: File[] = [];
-  for (const [condition, name] of [['static', 'iphone5s-z-static'], ['constant_rate:z:9:deg/s', 'iphone5s-z-9-deg-s']] as const) {
-    const answer = await ask(`/v1/samples/iphone5s-z?condition=${encodeURIComponent(condition)}`);
-    files.push(new File([await answer.blob()], `${name}.csv`));
-  }
-  addFiles(files);
-  for (const each of pending()) if (/^iphone5s-z/.test(each.file.name) && each.state === 'ready') change(each.key, {device: 'iphone5s-simulated', rate: '100', condition: each.file.name.includes('static') ? 'static' : 'constant_rate:z:9:deg/s'});
 }
 
 export default function Upload(): JSX.Element {
@@ -108,26 +58,28 @@ export default function Upload(): JSX.Element {
   const [busy, setBusy] = useState(false);
   const [problem, setProblem] = useState<Problem>();
   useTitle('Upload');
+  const received = (dropped: readonly File[]): void => { setProblem(undefined); take(dropped).catch(error => setProblem(error as Problem)); };
   useEffect(() => {
     const over = (event: DragEvent): void => event.preventDefault();
-    const drop = (event: DragEvent): void => { if (!event.defaultPrevented && event.dataTransfer) { event.preventDefault(); addFiles([...event.dataTransfer.files]); } };
+    const drop = (event: DragEvent): void => { if (!event.defaultPrevented && event.dataTransfer) { event.preventDefault(); received([...event.dataTransfer.files]); } };
     document.addEventListener('dragover', over);
     document.addEventListener('drop', drop);
     return () => { document.removeEventListener('dragover', over); document.removeEventListener('drop', drop); };
   }, []);
   const chosen = files.find(each => String(each.key) === query.get('file')) ?? files.find(each => each.state === 'refused') ?? files[0];
   const open = files.filter(each => each.state !== 'sent');
-  const run = (withJobs: boolean): void => {
+  const run = (work: () => Promise<void>): void => {
     setBusy(true);
     setProblem(undefined);
-    void sendAll(withJobs, setProblem).finally(() => setBusy(false));
+    work().catch(error => setProblem(error as Problem)).finally(() => setBusy(false));
   };
+  useEffect(() => { if (takeSample()) run(runSample); const files = takeHanded(); if (files.length > 0) received(files); }, []);
   return <>
     <Head title="Upload" facts={[]} />
-    <DropZone onFiles={addFiles} onSample={() => { trySample().catch(error => setProblem(error as Problem)); }} />
+    <DropZone onFiles={received} onSample={() => run(runSample)} />
     {problem && <Panel><Refusal problem={problem} /></Panel>}
     {files.length > 0 && <Panel title={`${files.length} file${files.length === 1 ? '' : 's'}`} sub={`${files.filter(each => each.state === 'sent').length} stored, ${files.filter(each => each.state === 'refused').length} refused`}
-      tools={<label class="right"><input type="checkbox" checked={analyse} onChange={() => setAnalyse(!analyse)} /> characterise when uploaded</label>}>
+      tools={<label class="right"><input type="checkbox" checked={analyse} onChange={() => setAnalyse(!analyse)} /> {following()} when uploaded</label>}>
       <div class="scroll"><table class="files stacked">
         <thead><tr><th scope="col">file</th><th scope="col">device</th><th scope="col">condition</th><th scope="col" class="n">size</th><th scope="col" class="n">rate, Hz</th><th scope="col">state</th><th scope="col"><span class="visually-hidden">Remove</span></th></tr></thead>
         <tbody>{files.map(each => <Row key={each.key} each={each} chosen={each === chosen} />)}</tbody>
@@ -135,8 +87,8 @@ export default function Upload(): JSX.Element {
     </Panel>}
     {chosen && <Columns each={chosen} />}
     {open.length > 0 && <div class="row" style={{marginTop: '16px'}}>
-      <button type="button" class="btn primary" disabled={busy} onClick={() => run(analyse)}>Upload {open.length === 1 ? '' : countWord(open.length)}{analyse ? ' and characterise' : ''}</button>
-      {analyse && <button type="button" class="btn" disabled={busy} onClick={() => run(false)}>Upload only</button>}
+      <button type="button" class="btn primary" disabled={busy} onClick={() => run(() => sendAll(analyse))}>Upload {open.length === 1 ? '' : countWord(open.length)}{analyse ? ` and ${following()}` : ''}</button>
+      {analyse && <button type="button" class="btn" disabled={busy} onClick={() => run(() => sendAll(false))}>Upload only</button>}
     </div>}
     {chosen && chosen.state !== 'sent' && <p class="note">The same as a command: <code>{commandOf(chosen)}</code> <button type="button" class="link" onClick={() => copy(commandOf(chosen), 'The command is')}>Copy</button></p>}
   </>;

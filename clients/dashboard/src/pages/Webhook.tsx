@@ -84,5 +84,5 @@ export default function Webhook(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<WebhookDocument>(`/v1/webhooks/${encodeURIComponent(parts[1] ?? '')}`, 5000);
   useTitle('Webhook');
-  return <Shown read={read}>{hook => <Body hook={hook} again={read.again} />}</Shown>;
+  return <Shown read={read} page="Webhook">{hook => <Body hook={hook} again={read.again} />}</Shown>;
 }

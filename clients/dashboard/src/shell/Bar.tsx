@@ -1,5 +1,5 @@
 import type {JSX} from 'preact';
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {send, useOffline, useRead} from '../api/client';
 import type {Counts, Session} from '../api/documents';
 import {usePlace} from '../route';
@@ -27,11 +27,12 @@ function LiveJobs(): JSX.Element {
 export function Bar(): JSX.Element {
   const place = usePlace();
   const [open, setOpen] = useState(false);
+  useEffect(() => setOpen(false), [place.path]);
   const first = `/${place.parts[0] ?? ''}`;
   const current = OWNERS[place.parts[0] ?? ''] ?? first;
   return <>
     <a class="skip" href="#main">Skip to the content</a>
-    <header class="bar">
+    <header class={open ? 'bar open' : 'bar'}>
       <a class="word" href="/" aria-label="driftlab, the lab page"><Mark />driftlab</a>
       <nav class={open ? 'open' : ''} aria-label="Pages" id="pages" onClick={() => setOpen(false)}>
         {PAGES.map(([href, name]) => <a key={href} href={href} {...(href === current ? {'aria-current': 'page' as const} : {})}>{name}</a>)}

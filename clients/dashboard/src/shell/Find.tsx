@@ -1,7 +1,8 @@
-// The find field: devices and pages by their beginning; `/` goes to it.
+// The find field: what the daemon finds, and pages by their beginning; `/` goes to it.
 import type {JSX} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {get} from '../api/client';
+import {jobKind} from '../format/words';
 import {go, listOf, pageOf} from '../route';
 
 interface Hit { title: string; subtitle: string; href: string }
@@ -12,16 +13,17 @@ const PLACES: Hit[] = [
   {title: 'Drives', subtitle: 'recorded drives, measured outages', href: listOf('drives')}, {title: 'Webhooks', subtitle: 'who is told when jobs end', href: listOf('webhooks')},
   {title: 'Compare', subtitle: 'several recordings side by side', href: '/compare'}, {title: 'Manual', subtitle: 'the pages of the documentation', href: '/docs'},
 ];
-const IDS: readonly (readonly [string, string])[] = [['rec_', 'recordings'], ['dev_', 'devices'], ['job_', 'jobs'], ['inv_', 'investigations'], ['mod_', 'models'], ['stu_', 'studies'], ['cal_', 'calibrations'], ['drv_', 'drives'], ['whk_', 'webhooks']];
+// What /v1/search does not seek is opened by its whole id.
+const IDS: readonly (readonly [string, string])[] = [['stu_', 'studies'], ['cal_', 'calibrations'], ['drv_', 'drives'], ['whk_', 'webhooks']];
 const WAIT_MS = 120;
 
 async function hitsFor(text: string): Promise<Hit[]> {
   const wanted = text.trim().toLowerCase();
   const id = IDS.find(([prefix]) => text.trim().startsWith(prefix));
   if (id) return [{title: text.trim(), subtitle: `open by id`, href: pageOf(id[1], text.trim())}];
-  const found = await get<{items: {kind: string; title: string; subtitle: string}[]}>(`/v1/search?q=${encodeURIComponent(text.trim())}&limit=10`);
-  const named = found.items.filter(hit => hit.kind === 'device').map(hit => ({title: hit.title, subtitle: hit.subtitle, href: pageOf('devices', hit.title)}));
-  return [...named, ...PLACES.filter(place => place.title.toLowerCase().startsWith(wanted))].slice(0, 10);
+  const found = await get<{items: {kind: string; title: string; subtitle: string; href: string}[]}>(`/v1/search?q=${encodeURIComponent(text.trim())}&limit=10`);
+  const named = found.items.map(hit => ({title: hit.kind === 'job' ? jobKind(hit.title) : hit.title, subtitle: hit.subtitle, href: hit.kind === 'device' ? pageOf('devices', hit.title) : hit.href.replace(/^\/v1/, '')}));
+  return [...PLACES.filter(place => place.title.toLowerCase().startsWith(wanted)), ...named].slice(0, 12);
 }
 
 export function Find(): JSX.Element {

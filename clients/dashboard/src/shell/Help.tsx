@@ -6,7 +6,7 @@ import {Segments} from './states';
 const KEYS: readonly (readonly [string, string])[] = [
   ['/', 'find'], ['g then l d i o r j', 'go to Lab, Devices, Investigations, Outages, Regressions, Jobs'], ['g then p s v w', 'go to Populations, Data sheets, Drives, Webhooks'],
   ['u', 'upload'], ['c', 'compare'], ['1 2 3', 'axis x, y, z'],
-  ['[ ]', 'recording or outage before, after'], ['← →', 'in a figure: point before, after'], ['Home End', 'in a figure: first, last point'], ['Enter', 'in a figure: pin the cursor'],
+  ['[ ]', 'recording or outage before, after'], ['← →', 'in a figure: point before, after'], ['↑ ↓', 'in a figure: curve'], ['Home End', 'in a figure: first, last point'], ['Enter', 'in a figure: pin the cursor'],
   ['t', 'in a figure: its table'], ['Esc', 'close, or unpin'], ['?', 'this list'],
 ];
 

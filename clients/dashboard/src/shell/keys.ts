@@ -13,7 +13,13 @@ export function startKeys(help: () => void): void {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
     if (event.key === '/') {
       event.preventDefault();
-      document.getElementById('find')?.focus();
+      const field = document.getElementById('find');
+      if (field && !field.offsetParent) {  // on a narrow screen it is folded into the menu
+        document.querySelector<HTMLButtonElement>('.bar .menu')?.click();
+        setTimeout(() => field.focus());
+      } else {
+        field?.focus();
+      }
     } else if (event.key === 'g') {
       pressedG = Date.now();
     } else if (Date.now() - pressedG < GO_MS && PLACES[event.key]) {

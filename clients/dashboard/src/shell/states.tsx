@@ -23,10 +23,10 @@ export function Refusal({problem, again}: {problem: Problem; again?: (() => void
   </div>;
 }
 
-// What was read, or how reading goes.
-export function Shown<T>({read, children}: {read: Read<T>; children: (data: T) => ComponentChildren}): JSX.Element {
+// What was read, or how reading goes. `page`: what the page would show, where all of it rests on what is read.
+export function Shown<T>({read, page, children}: {read: Read<T>; page?: string; children: (data: T) => ComponentChildren}): JSX.Element {
   if (read.data !== undefined) return <>{children(read.data)}</>;
-  if (read.problem) return <Refusal problem={read.problem} again={read.again} />;
+  if (read.problem) return <>{page && <h1>{page}</h1>}<Refusal problem={read.problem} again={read.again} /></>;
   return <Hairlines />;
 }
 

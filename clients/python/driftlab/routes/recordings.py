@@ -20,10 +20,10 @@ class RecordingRoutes(UploadRoutes):
     resumable_from = 64 << 20  # bytes from which an upload goes in pieces
 
     @operation("listDevices")
-    def devices(self, *, include: Literal["summary"] | None = None, sort: SortByName | None = None,
+    def devices(self, *, include: Literal["summary"] | None = None, q: str | None = None, sort: SortByName | None = None,
                 page_size: int = PAGE) -> Iterator[Device]:
-        """Every device, oldest first unless sorted otherwise; with `include` each with its summary."""
-        return self._list("listDevices", {"include": include, "sort": sort}, page_size)
+        """Every device, or those that hold `q`, oldest first unless sorted otherwise; with `include` each with its summary."""
+        return self._list("listDevices", {"include": include, "q": q, "sort": sort}, page_size)
 
     @operation("createDevice")
     def create_device(self, name: str, *, model: str | None = None, imu: str | None = None, serial: str | None = None,
@@ -39,7 +39,7 @@ class RecordingRoutes(UploadRoutes):
 
     @operation("search")
     def search(self, q: str, *, limit: int | None = None) -> list[dict[str, str]]:
-        """What a few letters may mean: devices by their names, and whatever has them as its id; the best first."""
+        """What a few letters may mean: devices, recordings, models and investigations, and the beginning of an id; the best first."""
         return cast("list[dict[str, str]]", self._get("search", None, {"q": q, "limit": limit})["items"])
 
     @operation("getDeviceSummary")

@@ -1,6 +1,5 @@
 // The parameter table as a figure: value, arrow, interval, and a dot with whisker on the axis of its column.
 import type {JSX} from 'preact';
-import {useState} from 'preact/hooks';
 import {writeP, writeQuantity, writeTick} from '../../format/number';
 import type {Quantity} from '../../api/documents';
 import {conditionName, conditionText, plural, writeUnit} from '../../format/words';
@@ -65,7 +64,7 @@ function RowHead({row, axis, colour, isReference, onReference, chosen, onChoose}
 export function Parameters({table: given}: {table: ParameterTable}): JSX.Element {
   const table = withDensity(given);
   const {query} = usePlace();
-  const [phoneColumn, setPhoneColumn] = useState(0);
+  const phoneColumn = Math.max(0, table.columns.findIndex(column => column.key === query.get('param')));
   const reference = Math.max(0, table.rows.findIndex(row => conditionText(row.condition) === table.reference));
   const colour = colours(table.rows);
   const scales = table.columns.map(column => scaleOf(table, column.key));
@@ -91,7 +90,7 @@ export function Parameters({table: given}: {table: ParameterTable}): JSX.Element
       </tbody>
     </table></div>
     <div class="phone-only">
-      <Segments label="Parameter" options={table.columns.map((column, i) => [String(i), uniqueName(column.key, table.columns)] as const)} value={String(phoneColumn)} onChange={value => setPhoneColumn(Number(value))} />
+      <Segments label="Parameter" options={table.columns.map((column, i) => [String(i), uniqueName(column.key, table.columns)] as const)} value={String(phoneColumn)} onChange={value => choose({param: value === '0' ? null : table.columns[Number(value)]!.key})} />
       {phone && <><p class="sec">{columnName(phone.key).process}, {writeUnit(phone.unit)}</p><ul class="pl">{table.rows.map((row, i) => { const cell = row.values[phone.key] ?? null; return <li key={row.label}><b>{conditionName(row.condition, table.axis)}</b><Micro cell={cell} reference={against(phone.key)} scale={scales[phoneColumn] ?? null} colour={colour[i]!} /><Value cell={cell} reason={row.reasons[phone.key]} why={row.why[phone.key]} against={referenceLabel} /></li>; })}</ul></>}
     </div>
     <p class="note">Value and 95 % interval; the interval decides the digits. ↑ ↓ changed against the reference row at 5 %. … the data do not identify it. Dotted line: the reference row. Axes logarithmic.</p>

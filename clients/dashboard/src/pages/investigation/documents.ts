@@ -5,10 +5,11 @@ export interface SeriesDocument {
   recording: string; channel: string; unit: string;
   wavelet: {scale_s: number[]; measured: Nullable; baseline: Band; remaining: Nullable; extended: Band};
   spectrum: {f_hz: number[]; measured: Nullable; highest: Nullable; baseline: Band; chance: Nullable; remaining: Nullable; highest_remaining: Nullable};
+  innovations?: {recording: string; scale_s: number; before: number | null; after: number | null; q025: number | null; q975: number | null}[];
   course: {time_s: number[]; error: Nullable; effect: Nullable};
 }
 export interface Finding {
-  cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; channels: string[]; because: string[]; explanation: string; parameters: Record<string, Quantity>; score?: number | null;
+  cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; rivals?: {cause: string; title: string; score: number | null}[]; channels: string[]; because: string[]; explanation: string; parameters: Record<string, Quantity>; score?: number | null;
   gain: {log_score_per_sample: number | null; misfit_before: number | null; misfit_after: number | null; heldout: boolean; of_the_file?: boolean; explained?: number | null}; next_measurement: string | null;
 }
 export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean; failed_after?: boolean; end?: 'finding' | 'mended' | 'unexplained' | null }
@@ -20,6 +21,11 @@ export interface Investigation {
   unexplained: {channel: string; explanation: string; checks: string[]}[]; not_examined?: {cause: string; channel: string; needs: string}[]; notes?: string[];
 }
 export interface InvestigationRow { id: string; job: string; device: string; study: string; created_at: string; findings: {cause: string; status: string; channels: string[]}[] }
+
+// The name of a finding in the address: the how-manieth of its cause.
+export const keyOf = (finding: Finding, findings: readonly Finding[]): string => `${finding.cause}:${findings.filter(each => each.cause === finding.cause).indexOf(finding) + 1}`;
+// The frequency of a finding that is a line; null for any other.
+export const frequencyOf = (finding: Finding): number | null => Object.values(finding.parameters).find(quantity => quantity.unit === 'Hz')?.value ?? null;
 
 export const causeName = (cause: string): string => cause === 'gauss_markov' ? 'Gauss-Markov' : cause.replace(/_/g, ' ');
 

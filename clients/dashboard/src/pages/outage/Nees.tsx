@@ -12,7 +12,7 @@ const HEAD = 16;
 
 export function Nees({filters, colours}: {filters: readonly Filter[]; colours: readonly string[]}): JSX.Element {
   const [box, room] = useWidth();
-  const width = Math.max(room, 300);
+  const width = Math.max(room, 240);
   const values = filters.flatMap(filter => [filter.nees, ...filter.outages.map(one => one.nees)]);
   const low = Math.min(1, ...values) / 1.1;
   const high = Math.max(4, ...values) * 1.1;

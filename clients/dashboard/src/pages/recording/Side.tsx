@@ -103,6 +103,5 @@ export function FilePanel({recording, result}: {recording: Recording; result?: C
       <tr><th scope="row">uploaded</th><td>{writeFull(recording.created_at)}, revision {recording.revision}</td></tr>
       {result && <tr><th scope="row">characterised</th><td>{writeFull(result.created_at)}, algorithm {result.algorithm_version}, seed {result.parameters.seed ?? 1}, <a href={`/jobs/${result.job}`}>job</a></td></tr>}
     </tbody></table>
-    {recording.quality.notes.map(note => <p key={note} class="note">{note}</p>)}
   </Panel>;
 }

@@ -72,7 +72,7 @@ export function variancePlots(channel: Channel, fit: ModelFit | undefined, impli
   const main: Plot = {
     id: 'variance', equalDecades: true, x: {scale: 'log', name: implied ? '' : 'averaging time τ, s'}, y: {scale: 'log', name: `${name}, ${writeUnit(unit)}`},
     series: [measured, ...(robust && shown.robust ? [robust] : []), ...model, ...components],
-    notes: notesOf(channel, fit, components, unit, curve), guides: shown.guides ? [{slope: -1, text: '−1'}, {slope: -0.5, text: '−½'}, {slope: 0.5, text: '+½'}] : [],
+    notes: notesOf(channel, fit, components, unit, curve), guides: shown.guides ? [{slope: -1, text: '−1'}, {slope: -0.5, text: '−½'}, {slope: 0, text: '0'}, {slope: 0.5, text: '+½'}, {slope: 1, text: '+1'}] : [],
   };
   return implied ? [main, ratioPlot(measured, robust && shown.robust ? robust : null, implied, law)] : [{...main, x: {scale: 'log', name: 'averaging time τ, s'}}];
 }

@@ -8,7 +8,7 @@ import {change, type Pending, type Role} from './pending';
 import {rolesOf, type PreviewColumn, type PreviewDocument} from './preview';
 
 const QUANTITIES: readonly (readonly [string, string])[] = [['time', 'time'], ['angular_rate', 'angular rate'], ['specific_force', 'specific force'], ['temperature', 'temperature'], ['reference_angular_rate', 'reference rate'], ['reference_angle', 'reference angle'], ['magnetic_field', 'magnetic field']];
-const UNITS: Record<string, string[]> = {time: ['s', 'ms', 'us', 'ns'], angular_rate: ['deg/s', 'rad/s', 'deg/h', 'mrad/s'], specific_force: ['m/s^2', 'g', 'mg'], temperature: ['degC', 'K'], reference_angular_rate: ['deg/s', 'rad/s'], reference_angle: ['deg', 'rad'], magnetic_field: ['uT', 'T']};
+export const UNITS: Record<string, string[]> = {time: ['s', 'ms', 'us', 'ns'], angular_rate: ['deg/s', 'rad/s', 'deg/h', 'mrad/s'], specific_force: ['m/s^2', 'g', 'mg'], temperature: ['degC', 'K'], reference_angular_rate: ['deg/s', 'rad/s'], reference_angle: ['deg', 'rad'], magnetic_field: ['uT', 'T']};
 const AXES = ['x', 'y', 'z'];
 const MOST_COLUMNS = 64;
 const EMPTY: Role = {quantity: '', axis: '', unit: ''};

@@ -29,7 +29,7 @@ export function DropZone({onFiles, onSample, tall}: {onFiles: (files: File[]) =>
     onDragOver={event => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
     onDrop={event => { event.preventDefault(); setOver(false); if (event.dataTransfer) void filesOf(event.dataTransfer).then(onFiles); }}>
     <svg width="26" height="26" viewBox="0 0 26 26" aria-hidden="true"><path d="M3 17v6h20v-6M13 18V4M7 10l6-6 6 6" fill="none" stroke="var(--ink)" stroke-width="1.8" /></svg>
-    <div class={tall ? '' : 'grow'}><b>Drop recordings or a folder here</b><div class="sec">CSV, npy, npz, MATLAB, phyphox and Sensor Logger exports, board logs; gzip, xz or zstd.</div></div>
+    <div class={tall ? '' : 'grow'}><b>Drop recordings, a folder or a study.json here</b><div class="sec">CSV, npy, npz, MATLAB, phyphox and Sensor Logger exports, board logs; gzip, xz or zstd.</div></div>
     <div class="actions">
       <button type="button" class={`btn${tall ? ' primary' : ''}`} onClick={() => chooser.current?.click()}>Choose files</button>
       <input ref={chooser} type="file" multiple class="visually-hidden" tabIndex={-1} aria-label="Recordings" onChange={event => { onFiles([...event.currentTarget.files ?? []]); event.currentTarget.value = ''; }} />

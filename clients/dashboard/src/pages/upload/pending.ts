@@ -1,6 +1,7 @@
 // Files that wait to be uploaded, and what was said about them. They outlive a change of page, so nothing typed is lost.
 import {useEffect, useState} from 'preact/hooks';
 import type {Problem} from '../../api/client';
+import {forget, keep, keepFile, kept} from './kept';
 import {lookAt, type Look} from './preview';
 
 export interface Role { quantity: string; axis: string; unit: string }
@@ -13,6 +14,8 @@ export interface Pending {
   condition: string;
   rate: string;
   roles: Record<string, Role>;  // only what a person chose
+  name?: string | undefined;               // of the recording, where it is not that of the file
+  trim?: [number, number] | undefined;     // seconds at its beginning and end
   look: Look | null;
   state: State;
   share: number;
@@ -21,7 +24,7 @@ export interface Pending {
   job: string | null;
 }
 
-let next = 1;
+let next = Date.now();  // keys of an earlier load of the page are in its address
 let list: Pending[] = [];
 const listeners = new Set<() => void>();
 
@@ -59,12 +62,16 @@ export function change(key: number, changes: Partial<Pending>): void {
   if (SAID.some(member => member in changes)) {
     clearTimeout(waiting.get(key));
     waiting.set(key, setTimeout(() => { waiting.delete(key); void look(key); }, PAUSE_MS));
+    const said = list.find(each => each.key === key);
+    if (said) keep(said);
   }
+  if (changes.state === 'sent') forget(key);
   tell();
 }
 
 export function remove(key: number): void {
   list = list.filter(each => each.key !== key);
+  forget(key);
   tell();
 }
 
@@ -91,12 +98,29 @@ function conditionIn(name: string): string {
 
 const deviceIn = (name: string): string => name.replace(/\.(csv|txt|npy|npz|mat|json|zip|gz|xz|zst|log|h5|hdf5|bag|ulg|mcap|db3|cwa)\b/gi, '').replace(/[^\w.-]+/g, '-').slice(0, 60) || 'device';
 
-export function addFiles(files: readonly File[]): void {
+// `said`: what is known of them already; else their names and the file before suggest it.
+export function addFiles(files: readonly File[], said: Partial<Pick<Pending, 'device' | 'condition' | 'rate' | 'roles' | 'name' | 'trim'>> = {}): void {
   const device = list[list.length - 1]?.device;
   for (const file of files) {
-    const each: Pending = {key: next++, file, device: device ?? deviceIn(file.name), condition: conditionIn(file.name), rate: '', roles: {}, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null};
+    const again = list.find(one => one.state !== 'sent' && one.file.name === file.name && one.file.size === file.size && one.file.lastModified === file.lastModified);
+    if (again) {  // chosen once more: what was said of it holds
+      change(again.key, {file, ...said});
+      keepFile(again.key, file);
+      continue;
+    }
+    const each: Pending = {key: next++, file, device: device ?? deviceIn(file.name), condition: conditionIn(file.name), rate: '', roles: {}, ...said, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null};
     list = [...list, each];
+    keep(each);
+    keepFile(each.key, file);
     void look(each.key);
   }
   tell();
 }
+
+// What this tab had before it was loaded again.
+kept().then(rows => {
+  if (rows.length === 0) return;
+  list = [...rows.map((row): Pending => ({...row, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null})), ...list];
+  for (const {key} of rows) void look(key);
+  tell();
+}, () => undefined);

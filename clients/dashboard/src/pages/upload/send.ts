@@ -5,8 +5,9 @@ import type {Pending} from './pending';
 import {columnsOf} from './preview';
 
 function queryOf(each: Pending): string {
-  const query = new URLSearchParams({device: each.device, condition: each.condition, id: each.file.name.replace(/\.[^.]+(\.(gz|xz|zst))?$/, ''), file_name: each.file.name});
+  const query = new URLSearchParams({device: each.device, condition: each.condition, id: each.name ?? each.file.name.replace(/\.[^.]+(\.(gz|xz|zst))?$/, ''), file_name: each.file.name});
   if (each.rate.trim()) query.set('rate_hz', each.rate.trim());
+  each.trim?.forEach((seconds, i) => { if (seconds > 0) query.set(i === 0 ? 'trim_start_s' : 'trim_end_s', String(seconds)); });
   const columns = columnsOf(each.roles);
   if (columns) query.set('columns', columns);
   return query.toString();
