@@ -204,8 +204,9 @@ TEST(Migrations, AnchorsOfAnEarlierReleaseKeptNoSettings) {
   ASSERT_TRUE(open_with(directory.path(), then));
   {
     const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
-    ASSERT_TRUE((*old)->execute("INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
-                                "INSERT INTO anchors VALUES ('anc_1', 'dev_1', 'firmware=1.0', 'why', 7)"));
+    ASSERT_TRUE(
+        (*old)->execute("INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+                        "INSERT INTO anchors VALUES ('anc_1', 'dev_1', 'firmware=1.0', 'why', 7)"));
   }
   const auto now = open_with(directory.path(), embedded_migrations());
   ASSERT_TRUE(now) << now.error().message;
