@@ -111,6 +111,18 @@ Result<Inputs> read_study(const std::filesystem::path& path) {
 
 }  // namespace
 
+Result<Inputs> described_file(const std::filesystem::path& path, const RecordingSpec& spec, const FileFlags& flags) {
+  Inputs inputs;
+  inputs.files = {{path, spec}};
+  if (auto left_out = leave_out_lines(flags, inputs); !left_out) {
+    return fail(left_out.error());
+  }
+  if (auto read = read_calibrations({}, inputs); !read) {
+    return fail(read.error());
+  }
+  return inputs;
+}
+
 Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags) {
   if (names.size() == 1 && names.front().ends_with(".json")) {
     if (flags.skip_lines > 0 || !flags.comment.empty()) {

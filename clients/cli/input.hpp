@@ -49,4 +49,9 @@ struct Inputs {
 /// Errors are the user's: unreadable file, malformed study, unknown unit, ...
 [[nodiscard]] Result<Inputs> read_inputs(const std::vector<std::string>& names, const FileFlags& flags);
 
+/// One recording that is described already: without the lines that the flags leave out, and with its calibration read.
+/// Errors are the user's.
+[[nodiscard]] Result<Inputs> described_file(const std::filesystem::path& path, const RecordingSpec& spec,
+                                            const FileFlags& flags);
+
 }  // namespace driftlab::cli

@@ -17,12 +17,15 @@ namespace {
 Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::string& label, const FileFlags& flags) {
   WrittenArm arm;
   arm.label = label;
+  FileFlags described_by = flags;  // lines are left out when a file is read, which is said once
+  described_by.skip_lines = 0;
+  described_by.comment.clear();
   for (const std::string& file : files) {
     WrittenRecording recording;
     if (file.ends_with(".json")) {
       recording.result = file;
     } else {
-      auto described = read_inputs({file}, flags);
+      auto described = read_inputs({file}, described_by);
       if (!described) {
         return fail(described.error());
       }
@@ -57,6 +60,19 @@ Result<std::vector<Json>> results_in(const WrittenRecording& written) {
 
 }  // namespace
 
+Status read_settings(const RegressFlags& flags, WrittenRegression& into) {
+  if (flags.settings.empty()) {
+    return {};
+  }
+  auto document = read_json_file(flags.settings, "the settings of a run");
+  if (!document) {
+    return fail(document.error());
+  }
+  Faults faults;
+  regression_settings_from_json(*document, "", into, faults);
+  return faults.none() ? Status{} : fail(in_file(flags.settings, faults.error()));
+}
+
 Result<WrittenRegression> written_run(const RegressFlags& flags) {
   WrittenRegression run;
   std::filesystem::path folder;
@@ -78,7 +94,7 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
     for (WrittenArm* arm : arms) {
       for (WrittenRecording& recording : arm->recordings) {
         recording.spec.id = recording.spec.id.empty() ? recording.file : recording.spec.id;
-        for (std::string* path : {&recording.file, &recording.result}) {
+        for (std::string* path : {&recording.file, &recording.result, &recording.spec.calibration}) {
           *path = path->empty() ? "" : (folder / *path).string();
         }
       }
@@ -106,16 +122,8 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
     run.history.push_back(std::move(*made));
   }
   run.device = flags.file.device.empty() ? (run.device.empty() ? "device" : run.device) : flags.file.device;
-  if (!flags.settings.empty()) {
-    auto document = read_json_file(flags.settings, "the settings of a run");
-    if (!document) {
-      return fail(document.error());
-    }
-    Faults faults;
-    regression_settings_from_json(*document, "", run, faults);
-    if (!faults.none()) {
-      return fail(in_file(flags.settings, faults.error()));
-    }
+  if (auto read = read_settings(flags, run); !read) {
+    return fail(read.error());
   }
   if (!flags.inconclusive.empty()) {
     run.inconclusive = flags.inconclusive == "pass" ? Inconclusive::Pass : Inconclusive::Fail;
@@ -123,9 +131,8 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
   return run;
 }
 
-ResultReader::ResultReader(std::vector<std::string> models, std::string device) : models_(std::move(models)) {
-  inputs_.device = std::move(device);
-}
+ResultReader::ResultReader(std::vector<std::string> models, FileFlags lines, std::string device)
+    : models_(std::move(models)), lines_(std::move(lines)), device_(std::move(device)) {}
 
 Result<std::vector<StoredRecording>> ResultReader::read(const WrittenArm& arm) {
   std::vector<StoredRecording> stored;
@@ -150,8 +157,12 @@ Result<std::vector<Json>> ResultReader::characterised(const WrittenRecording& wr
   if (!models_.empty()) {
     options.models = models_;
   }
-  inputs_.files = {{written.file, written.spec}};
-  auto files = LocalFiles::of(inputs_);
+  auto inputs = described_file(written.file, written.spec, lines_);
+  if (!inputs) {
+    return fail(inputs.error());
+  }
+  inputs->device = device_;
+  auto files = LocalFiles::of(*inputs);
   if (!files) {
     return fail(files.error());
   }

@@ -11,11 +11,14 @@ namespace driftlab::cli {
 /// The run that the flags ask for. Errors are the user's.
 [[nodiscard]] Result<WrittenRegression> written_run(const RegressFlags& flags);
 
+/// Reads `--settings` into a run. Errors are the user's.
+[[nodiscard]] Status read_settings(const RegressFlags& flags, WrittenRegression& into);
+
 /// Characterises the files of an arm, one after the other, and reads the results that files hold already.
 class ResultReader {
  public:
-  /// `models`: candidates of the fits; empty: the usual ones.
-  ResultReader(std::vector<std::string> models, std::string device);
+  /// `models`: candidates of the fits; empty: the usual ones. `lines`: which lines of a text are left out.
+  ResultReader(std::vector<std::string> models, FileFlags lines, std::string device);
 
   /// Errors: those of reading and characterising a file; Cancelled.
   [[nodiscard]] Result<std::vector<StoredRecording>> read(const WrittenArm& arm);
@@ -24,7 +27,8 @@ class ResultReader {
   [[nodiscard]] Result<std::vector<Json>> characterised(const WrittenRecording& written);
 
   std::vector<std::string> models_;
-  Inputs inputs_;
+  FileFlags lines_;
+  std::string device_;
 };
 
 }  // namespace driftlab::cli

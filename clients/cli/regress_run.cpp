@@ -3,6 +3,8 @@
 #include "clients/cli/regress_input.hpp"
 #include "clients/cli/regress_outputs.hpp"
 #include "clients/cli/regress_state.hpp"
+#include "core/campaign/regression/kept_settings.hpp"
+#include "schema/json/compared_recording.hpp"
 #include "schema/text/regression.hpp"
 
 #include <CLI/CLI.hpp>
@@ -67,7 +69,7 @@ Result<std::vector<StoredRecording>> baseline_of(WrittenRegression& run, Regress
     if (stored && state.kept() && !run.baseline.label.empty()) {
       state.add(run.baseline.label, *stored);
       if (state.anchor().empty()) {
-        state.set_anchor(run.baseline.label, "the first baseline");
+        state.set_anchor(run.baseline.label, "the first baseline", run.settings);
       }
       return state.recordings(run.baseline.label);
     }
@@ -93,6 +95,13 @@ Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultRead
   if (!candidate) {
     return fail(candidate.error());
   }
+  if (state.kept() && !run.baseline.label.empty() && run.baseline.label == state.anchor()) {
+    if (const auto kept = state.kept_settings()) {
+      run.settings = regression::with_kept(*kept, run.settings, run.stated);
+      prepared.request.kept = kept;
+    }
+  }
+  prepared.request.stated = run.stated;
   const bool counted = state.kept() && !run.candidate.label.empty();
   std::vector<std::string> earlier;
   if (counted) {
@@ -189,7 +198,12 @@ Exit accept(const RegressFlags& flags) {
                          "; labels of this state: " + (known.empty() ? "none" : known) + ".",
                      {}});
   }
-  state->set_anchor(flags.accept, flags.reason);
+  WrittenRegression run;
+  run.settings = state->kept_settings().value_or(run.settings);
+  if (auto read = read_settings(flags, run); !read) {
+    return complain(read.error());
+  }
+  state->set_anchor(flags.accept, flags.reason, run.settings);
   if (auto saved = state->save(); !saved) {
     return complain(saved.error());
   }
@@ -209,6 +223,10 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
   command.add_option("--rate-hz", flags.file.rate_hz, "Sampling rate; needed without a time column");
   command.add_option("--columns", flags.file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s");
   command.add_option("--condition", flags.file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
+  command.add_option("--skip-lines", flags.file.skip_lines, "Lines at the front of a text that are no table");
+  command.add_option("--comment", flags.file.comment, "What begins a line that is no row, e.g. ';'");
+  command.add_option("--calibration", flags.file.calibration,
+                     "Calibration that the recordings are corrected with first");
   command.add_option("--models", flags.models, "Candidate models, e.g. WN,WN+GM")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -246,12 +264,12 @@ Exit run_regress(const RegressFlags& flags) {
   if (!state) {
     return complain(state.error());
   }
-  ResultReader reader(flags.models, run->device);
+  ResultReader reader(flags.models, flags.file, run->device);
   auto prepared = prepare(*run, *state, reader);
   if (!prepared) {
     return complain_of_work(prepared.error());
   }
-  const auto report = regress(prepared->request);
+  const auto report = regress(prepared->request, {interrupt_token(), {}});
   if (!report) {
     return complain_of_work(report.error());
   }

@@ -88,8 +88,20 @@ std::string RegressState::anchor() const {
   return found != document_.end() && found->is_object() ? found->value("label", "") : "";
 }
 
-void RegressState::set_anchor(const std::string& label, const std::string& reason) {
-  document_["anchor"] = Json{{"label", label}, {"reason", reason}};
+void RegressState::set_anchor(const std::string& label, const std::string& reason,
+                              const regression::Settings& settings) {
+  document_["anchor"] = Json{{"label", label}, {"reason", reason}, {"settings", kept_settings_json(settings)}};
+}
+
+std::optional<regression::Settings> RegressState::kept_settings() const {
+  const Json anchor = document_.value("anchor", Json());
+  if (!anchor.is_object() || !anchor.contains("settings")) {
+    return std::nullopt;
+  }
+  Faults faults;
+  WrittenRegression kept;
+  regression_settings_from_json(anchor["settings"], "/anchor/settings", kept, faults);
+  return faults.none() ? std::optional(kept.settings) : std::nullopt;
 }
 
 bool RegressState::has(const std::string& label) const { return find_label(document_, label) != nullptr; }

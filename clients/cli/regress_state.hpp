@@ -1,6 +1,6 @@
 #pragma once
-/// What a regression gate remembers without a server, in one JSON file: the anchor, the stored results of every label,
-/// and the runs made of them, from which looks are counted.
+/// What a regression gate remembers without a server, in one JSON file: the anchor with its settings, the stored
+/// results of every label, and the runs made of them, from which looks are counted.
 #include "schema/json/regression.hpp"
 
 #include <optional>
@@ -24,7 +24,9 @@ class RegressState {
 
   [[nodiscard]] bool kept() const { return !path_.empty(); }
   [[nodiscard]] std::string anchor() const;
-  void set_anchor(const std::string& label, const std::string& reason);
+  void set_anchor(const std::string& label, const std::string& reason, const regression::Settings& settings);
+  /// What the anchor keeps of the settings; nothing in a state of before it did.
+  [[nodiscard]] std::optional<regression::Settings> kept_settings() const;
   [[nodiscard]] bool has(const std::string& label) const;
   /// Labels in the order in which they came.
   [[nodiscard]] std::vector<std::string> labels() const;

@@ -27,8 +27,8 @@ tl::expected<std::map<std::string, std::string>, Failure> labels_of(const std::s
 /// Sends the files of a run and has each characterised; arms then name what the daemon has.
 class ArmSender {
  public:
-  ArmSender(HttpClient& client, const WrittenRegression& run, std::vector<std::string> models, std::size_t files)
-      : client_(client), device_(run.device), models_(std::move(models)), files_(files) {}
+  ArmSender(HttpClient& client, const WrittenRegression& run, const RegressFlags& flags, std::size_t files)
+      : client_(client), device_(run.device), models_(flags.models), lines_(flags.file), files_(files) {}
 
   /// The arm as the job's request has it. With labels it is all recordings that have them, those sent now among them.
   [[nodiscard]] tl::expected<Json, Failure> sent(const WrittenArm& arm) {
@@ -66,9 +66,16 @@ class ArmSender {
     if (!recording.recording.empty()) {
       document["recording"] = recording.recording;
     } else if (!recording.file.empty()) {
-      InputFile file;
-      file.path = recording.file;
-      file.spec = recording.spec;
+      auto inputs = described_file(recording.file, recording.spec, lines_);
+      if (!inputs) {
+        return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
+      }
+      inputs->device = device_;
+      auto described = with_stored_calibrations(client_, *inputs);
+      if (!described) {
+        return tl::unexpected(described.error());
+      }
+      InputFile& file = described->front();
       // A name that is only the path differs from machine to machine; the daemon would take it for other metadata.
       if (file.spec.id.ends_with(recording.file) || recording.file.ends_with(file.spec.id)) {
         file.spec.id = file.path.filename().string();
@@ -118,6 +125,7 @@ class ArmSender {
   HttpClient& client_;
   std::string device_;
   std::vector<std::string> models_;
+  FileFlags lines_;
   std::size_t files_;
   std::size_t done_ = 0;
   ProgressBar bar_;
@@ -132,9 +140,8 @@ std::size_t files_in(const WrittenRegression& run) {
 }
 
 /// The request of the job that compares.
-tl::expected<Json, Failure> request_of(HttpClient& client, const WrittenRegression& run,
-                                       const std::vector<std::string>& models) {
-  ArmSender sender(client, run, models, files_in(run));
+tl::expected<Json, Failure> request_of(HttpClient& client, const WrittenRegression& run, const RegressFlags& flags) {
+  ArmSender sender(client, run, flags, files_in(run));
   Json inputs{{"device", run.device}};
   for (const auto& [name, arm] : {std::pair{"baseline", &run.baseline}, {"candidate", &run.candidate}}) {
     auto sent = sender.sent(*arm);
@@ -153,7 +160,14 @@ tl::expected<Json, Failure> request_of(HttpClient& client, const WrittenRegressi
   for (const regression::Exclusion& exclusion : run.excluded) {
     inputs["excluded"].push_back(Json{{"recording", exclusion.recording}, {"reason", exclusion.reason}});
   }
-  return Json{{"kind", "regress"}, {"inputs", std::move(inputs)}, {"parameters", to_json(run.settings, run.looks)}};
+  const Json all = to_json(run.settings, run.looks);
+  Json parameters = Json::object();  // what is not asked for the daemon knows, with what the anchor keeps
+  for (const auto& [name, value] : all.items()) {
+    if (run.stated.contains(name)) {
+      parameters[name] = value;
+    }
+  }
+  return Json{{"kind", "regress"}, {"inputs", std::move(inputs)}, {"parameters", std::move(parameters)}};
 }
 
 /// The forms of a run that a daemon has.
@@ -196,7 +210,17 @@ Exit accept_there(HttpClient& client, const RegressFlags& flags) {
   if (flags.reason.empty() || flags.file.device.empty()) {
     return complain({ErrorCode::InvalidArgument, "--accept with --server needs --device NAME and --reason TEXT.", {}});
   }
-  const Json anchor{{"device", flags.file.device}, {"label", flags.accept}, {"reason", flags.reason}};
+  WrittenRegression run;
+  if (auto read = read_settings(flags, run); !read) {
+    return complain(read.error());
+  }
+  Json anchor{{"device", flags.file.device}, {"label", flags.accept}, {"reason", flags.reason}};
+  const Json all = to_json(run.settings, run.looks);
+  for (const std::string& name : run.stated) {
+    if (all.contains(name)) {
+      anchor["settings"][name] = all[name];
+    }
+  }
   const auto moved = post_for_id(client, "/v1/regression-anchors", anchor, "an anchor");
   if (!moved) {
     return complain(moved.error().error, moved.error().exit);
@@ -234,7 +258,7 @@ Exit regress_there(const RegressFlags& flags) {
                      "A run needs a candidate: --candidate FILE..., --candidate-label, or a run.json that names one.",
                      {}});
   }
-  const auto request = request_of(*client, *run, flags.models);
+  const auto request = request_of(*client, *run, flags);
   if (!request) {
     return complain(request.error().error, request.error().exit);
   }

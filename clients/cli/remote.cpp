@@ -12,23 +12,6 @@ namespace {
 
 constexpr double kUploads = 0.3;  ///< share of the progress bar
 
-/// Stores the calibrations that files name in the daemon, and names those instead.
-tl::expected<std::vector<InputFile>, Failure> with_stored_calibrations(HttpClient& client, const Inputs& inputs) {
-  std::vector<InputFile> files = inputs.files;
-  for (InputFile& file : files) {
-    if (file.spec.calibration.empty()) {
-      continue;
-    }
-    const Json request{{"device", {{"id", inputs.device}}}, {"calibration", file.calibration_document}};
-    auto id = post_for_id(client, "/v1/calibrations", request, "a calibration");
-    if (!id) {
-      return tl::unexpected(id.error());
-    }
-    file.spec.calibration = id->get<std::string>();
-  }
-  return files;
-}
-
 /// What the job works on: the uploaded recordings, or where they are a study, that.
 tl::expected<Json, Failure> job_inputs(HttpClient& client, const Inputs& inputs, const Json& ids) {
   if (!inputs.study.is_string()) {

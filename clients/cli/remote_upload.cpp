@@ -73,6 +73,22 @@ tl::expected<Json, Failure> upload_recording(HttpClient& client, const std::stri
   return (*recording)["id"];
 }
 
+tl::expected<std::vector<InputFile>, Failure> with_stored_calibrations(HttpClient& client, const Inputs& inputs) {
+  std::vector<InputFile> files = inputs.files;
+  for (InputFile& file : files) {
+    if (file.spec.calibration.empty()) {
+      continue;
+    }
+    const Json request{{"device", {{"id", inputs.device}}}, {"calibration", file.calibration_document}};
+    auto id = post_for_id(client, "/v1/calibrations", request, "a calibration");
+    if (!id) {
+      return tl::unexpected(id.error());
+    }
+    file.spec.calibration = id->get<std::string>();
+  }
+  return files;
+}
+
 tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& device, const InputFile& file,
                                         const RecordingTags& tags, const std::function<void(double)>& sent) {
   auto id = upload_recording(client, device, file.spec, tags, file.bytes(), file.path.filename().string(), sent);

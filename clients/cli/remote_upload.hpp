@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace driftlab::cli {
 
@@ -18,7 +19,11 @@ namespace driftlab::cli {
                                                            const std::string& file_name,
                                                            const std::function<void(double)>& sent);
 
-/// The same of a file from the command line, whose path a refusal names.
+/// The files of inputs with the calibrations that they name stored in the daemon, under whose ids they name them.
+[[nodiscard]] tl::expected<std::vector<InputFile>, Failure> with_stored_calibrations(HttpClient& client,
+                                                                                     const Inputs& inputs);
+
+/// `upload_recording` of a file from the command line, whose path a refusal names.
 [[nodiscard]] tl::expected<Json, Failure> upload_file(HttpClient& client, const std::string& device,
                                                       const InputFile& file, const RecordingTags& tags,
                                                       const std::function<void(double)>& sent);

@@ -40,6 +40,16 @@ Status check_settings(const regression::Settings& settings) {
       ranges.push_back({"tau0", sd, 1e-5, 1.0});
     }
   }
+  const regression::EventLimits& limits = settings.limits;
+  ranges.insert(ranges.end(), {{"event_limits", limits.missing, 0.0, 1.0},
+                               {"event_limits", limits.jitter, 1.0, 1000.0},
+                               {"event_limits", limits.jitter_of_interval, 0.0, 10.0},
+                               {"event_limits", limits.resolution, 1.0, 1000.0},
+                               {"event_limits", limits.contamination, 1.0, 1000.0},
+                               {"event_limits", static_cast<double>(limits.findings), 1.0, 1000.0},
+                               {"event_limits", limits.rate, 0.0, 1.0},
+                               {"event_limits", limits.temperature_k, 0.0, 1000.0},
+                               {"event_limits", limits.repeatability, 1.0, 1000.0}});
   for (const Range& range : ranges) {
     if (auto checked = check_range(range.name, range.value, range.low, range.high); !checked) {
       return checked;
@@ -64,7 +74,7 @@ Result<double> look_share(const Look& look) {
   return look.of == 1 ? 1.0 : kShares[look.number - 1];
 }
 
-Result<RegressReport> regress(const RegressRequest& request) {
+Result<RegressReport> regress(const RegressRequest& request, const RunControl& control) {
   if (auto checked = check_settings(request.comparison.settings); !checked) {
     return fail(checked.error());
   }
@@ -74,11 +84,17 @@ Result<RegressReport> regress(const RegressRequest& request) {
   }
   regression::Request comparison = request.comparison;
   comparison.settings.test.look_share = *share;
-  auto report = regression::run_regression(comparison);
+  auto report = regression::run_regression(comparison, control);
   if (!report) {
     return fail(report.error());
   }
-  RegressReport result{std::move(*report), request.look, std::nullopt};
+  RegressReport result{std::move(*report), request.look, std::nullopt, request.stated, request.kept};
+  if (request.kept) {
+    const auto changes = regression::changed_settings(*request.kept, request.comparison.settings);
+    if (!changes.empty()) {
+      result.report.summary.details.push_back(regression::changed_sentence(changes));
+    }
+  }
   if (!request.look.counted) {
     result.report.summary.details.emplace_back(
         "Looks are not counted here: the share of the first look applies. Runs repeated until they pass are no gate.");
@@ -87,7 +103,11 @@ Result<RegressReport> regress(const RegressRequest& request) {
     regression::Request informal = comparison;
     informal.baseline = *request.previous;
     informal.history.clear();
-    if (const auto other = regression::run_regression(informal)) {
+    const auto other = regression::run_regression(informal, control.reporting({}));
+    if (!other && other.error().code == ErrorCode::Cancelled) {
+      return fail(other.error());
+    }
+    if (other) {
       result.versus_previous = PreviousVerdict{request.previous->label, other->verdict, other->summary.verdict};
     }
   }

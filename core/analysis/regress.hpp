@@ -4,16 +4,19 @@
 /// Stored results of two sets of recordings in, one verdict out (core/campaign/regression/report.hpp). Several runs on
 /// one candidate label share the level of the claims: the k-th look takes 0.6, 0.25, 0.15 of alpha, so that
 /// re-recording until it passes is not a way to pass (spec/regression.md, section 8).
+#include "core/campaign/regression/kept_settings.hpp"
 #include "core/campaign/regression/report.hpp"
+#include "core/signal/progress.hpp"
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace driftlab {
 
 /// Changes when a change of the code changes verdicts.
-inline constexpr int kRegressionVersion = 1;
+inline constexpr int kRegressionVersion = 2;
 
 /// Which run on the candidate's label this is.
 struct Look {
@@ -27,6 +30,8 @@ struct RegressRequest {
   Look look;
   /// The label before the candidate's, where it is not the baseline: compared as information.
   std::optional<regression::Recordings> previous;
+  std::set<std::string> stated = {};              ///< names of settings that somebody asked for
+  std::optional<regression::Settings> kept = {};  ///< those that the baseline's anchor keeps
 };
 
 struct PreviousVerdict {
@@ -39,13 +44,15 @@ struct RegressReport {
   regression::Report report;
   Look look;
   std::optional<PreviousVerdict> versus_previous;
+  std::set<std::string> stated = {};              ///< of the request
+  std::optional<regression::Settings> kept = {};  ///< of the request
 };
 
 /// The share of alpha that a look takes. Error: Conflict, for a look after the last ("start a new label").
 [[nodiscard]] Result<double> look_share(const Look& look);
 
 /// Errors: InvalidArgument (a setting outside its range, field "parameter"); Conflict (too many looks); those of
-/// run_regression.
-[[nodiscard]] Result<RegressReport> regress(const RegressRequest& request);
+/// run_regression, Cancelled among them.
+[[nodiscard]] Result<RegressReport> regress(const RegressRequest& request, const RunControl& control = {});
 
 }  // namespace driftlab

@@ -74,7 +74,9 @@ void withdraw_ambiguous(const Model& model, double dt_s, ModelFit& fit) {
 
 }  // namespace
 
-WaveletRecord record_of(const ReportedChannel& channel) {
+WaveletRecord record_of(const ReportedChannel& channel) { return record_of(channel, channel.contaminated()); }
+
+WaveletRecord record_of(const ReportedChannel& channel, bool robust) {
   const double factor = channel.parsed_unit().factor;
   WaveletRecord record;
   record.samples = channel.samples + channel.missing;
@@ -82,16 +84,17 @@ WaveletRecord record_of(const ReportedChannel& channel) {
   record.discrepancy = channel.discrepancy;
   record.from_tau_s = channel.from_tau_s;
   const ReportedHaar& haar = channel.haar;
-  const bool robust = channel.contaminated() && !haar.robust_variance.empty();
-  const std::vector<double>& variances = robust ? haar.robust_variance : haar.variance;
-  const std::vector<double>& efficiencies = robust ? haar.robust_efficiency : haar.efficiency;
+  const std::size_t scales = haar.variance.size();
+  const bool wanted = robust && haar.robust_variance.size() == scales;
   for (std::size_t j = 0; j < haar.scale.size(); ++j) {
+    const bool own = wanted && j < scales && (haar.robust_variance[j] > 0.0 || channel.contaminated());
+    const std::vector<double>& efficiencies = own ? haar.robust_efficiency : haar.efficiency;
     const double efficiency = j < efficiencies.size() ? efficiencies[j] : 1.0;
     record.half.push_back(haar.scale[j] / 2);
     record.inflation.push_back(efficiency > 0.0 ? 1.0 / efficiency : 1.0);
-  }
-  for (const double variance : variances) {
-    record.variance.push_back(variance * factor * factor);
+    if (j < scales) {
+      record.variance.push_back((own ? haar.robust_variance[j] : haar.variance[j]) * factor * factor);
+    }
   }
   return record;
 }

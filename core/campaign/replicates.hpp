@@ -45,6 +45,11 @@ struct WaveletRecord {
 /// classical (verdict `contaminated`).
 [[nodiscard]] WaveletRecord record_of(const ReportedChannel& channel);
 
+/// The same with the estimator that the caller wants, for curves that are compared with each other. A channel without
+/// robust variances gives its classical ones; so does a scale at which the robust estimator of a channel without gross
+/// errors has no root.
+[[nodiscard]] WaveletRecord record_of(const ReportedChannel& channel, bool robust);
+
 /// Do the recordings share their parameters?
 struct Agreement {
   double statistic = 0.0;

@@ -8,60 +8,6 @@
 namespace driftlab {
 namespace {
 
-std::size_t regression_count_member(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
-}
-
-regression::ChannelFacts regression_facts_of(const Json& quality, const Json& channel) {
-  regression::ChannelFacts facts;
-  facts.samples = regression_count_member(quality, "samples");
-  for (const Json& known : quality.value("channels", Json::array())) {
-    if (text_member(known, "column") == text_member(channel, "channel")) {
-      facts.missing = regression_count_member(known, "missing") + regression_count_member(known, "implausible");
-      facts.frozen = regression_count_member(known, "frozen");
-      facts.repeated = regression_count_member(known, "repeated");
-      facts.saturated = regression_count_member(known, "saturated");
-      facts.resolution = finite_member(known, "resolution", 0.0);
-    }
-  }
-  if (const auto mean = channel.find("mean"); mean != channel.end() && mean->is_number()) {
-    facts.mean = mean->get<double>();
-  }
-  facts.mean_of_error = channel.contains("reference");
-  if (const auto found = channel.find("contamination"); found != channel.end() && found->is_object()) {
-    facts.flagged = regression_count_member(*found, "flagged_samples");
-  }
-  return facts;
-}
-
-regression::ComparedRecording regression_compared_of(const Json& document) {
-  regression::ComparedRecording recording;
-  Faults ignored;
-  recording.id = document.at("id").get<std::string>();
-  recording.condition = to_text(condition_from_json(document.at("condition"), "", ignored));
-  recording.duration_s = finite_member(document, "duration_s", 0.0);
-  recording.rate_hz = finite_member(document, "rate_hz", 0.0);
-  const Json quality = document.value("quality", Json::object());
-  const double measured_hz = finite_member(quality, "measured_rate_hz", 0.0);
-  const double ratio = finite_member(quality, "clock_ratio", 0.0);
-  if (ratio > 0.0 && measured_hz > 0.0) {
-    recording.declared_hz = measured_hz / ratio;
-  } else if (!(measured_hz > 0.0)) {
-    recording.declared_hz = recording.rate_hz;  // without time stamps the rate is what somebody said
-  }
-  recording.jitter_s = finite_member(quality, "jitter_s", 0.0);
-  recording.samples = regression_count_member(quality, "samples");
-  recording.missing = regression_count_member(quality, "missing");
-  for (const Json& channel : document.at("channels")) {
-    auto read = reported_channel_from_json(channel);
-    if (read) {
-      recording.channels.push_back({std::move(*read), regression_facts_of(quality, channel)});
-    }
-  }
-  return recording;
-}
-
 Json regression_test_json(const regression::ScaleReport& told) {
   Json test{{"kind", told.name.empty() ? "scale" : "parameter"}};
   if (told.name.empty()) {
@@ -89,6 +35,7 @@ Json regression_unit_json(const regression::Report& report, const regression::Un
               {"condition", unit.condition},
               {"sensor", unit.sensor},
               {"axis", unit.axis},
+              {"robust", unit.robust},
               {"edf", {{"tau_s", unit.tau_s}, {"baseline", unit.edf[0]}, {"candidate", unit.edf[1]}}},
               {"structure",
                {{"baseline", text_or_null(unit.structure[0])},
@@ -114,11 +61,46 @@ Json regression_trend_json(const regression::TrendReport& told) {
 
 Json regression_arm_json(const regression::ArmReport& arm) {
   Json sessions = Json::array();
+  Json merged = Json::array();
   for (const regression::ArmReport::Session& session : arm.sessions) {
     sessions.push_back(Json{
         {"session", session.name}, {"recordings", session.recordings}, {"duration_s", number(session.duration_s)}});
+    if (session.recordings.size() > 1) {
+      merged.push_back(session.name);
+    }
   }
-  return Json{{"label", text_or_null(arm.label)}, {"sessions", std::move(sessions)}, {"rate_hz", number(arm.rate_hz)}};
+  Json rates = Json::array();
+  for (const double rate : arm.rates_hz) {
+    rates.push_back(number(rate));
+  }
+  return Json{{"label", text_or_null(arm.label)},
+              {"sessions", std::move(sessions)},
+              {"rates_hz", std::move(rates)},
+              {"merged", std::move(merged)}};
+}
+
+/// A prior scatter between sessions, in per cent of the deviation.
+Json regression_of_sensors(const regression::Settings& settings, double regression::Tau0::* scatter) {
+  return Json{{"gyroscope", number(100.0 * settings.tau0_gyroscope.*scatter)},
+              {"accelerometer", number(100.0 * settings.tau0_accelerometer.*scatter)}};
+}
+
+/// Sessions of arms and releases that have more than one: what the factors are learnt from.
+Json regression_informing_json(const regression::Report& report) {
+  Json informing = Json::array();
+  const auto add = [&](const regression::ArmReport& arm) {
+    if (arm.sessions.size() > 1) {
+      for (const regression::ArmReport::Session& session : arm.sessions) {
+        informing.push_back(Json{{"label", text_or_null(arm.label)}, {"session", session.name}});
+      }
+    }
+  };
+  add(report.baseline);
+  add(report.candidate);
+  for (const regression::ArmReport& release : report.history) {
+    add(release);
+  }
+  return informing;
 }
 
 Json regression_between_json(const regression::Report& report) {
@@ -132,19 +114,75 @@ Json regression_between_json(const regression::Report& report) {
     }
     posterior.push_back(std::move(row));
   }
-  return Json{{"common",
+  return Json{{"kL",
                {{"value", number(factors.common)},
                 {"ci95", {number(scatter.quantile_common(0.025)), number(scatter.quantile_common(0.975))}}}},
-              {"local",
+              {"kS",
                {{"value", number(factors.local)},
                 {"ci95", {number(scatter.quantile_local(0.025)), number(scatter.quantile_local(0.975))}}}},
               {"factors", regression::factor_grid()},
               {"posterior", std::move(posterior)},
-              {"contrasts", scatter.contrasts}};
+              {"contrasts", scatter.contrasts},
+              {"sessions", regression_informing_json(report)},
+              {"t_d", regression_of_sensors(report.settings, &regression::Tau0::device)},
+              {"t_a", regression_of_sensors(report.settings, &regression::Tau0::axis)},
+              {"t_s", regression_of_sensors(report.settings, &regression::Tau0::scale)}};
+}
+
+/// Every item that must agree: what stands in the way of a comparison, and what does not.
+Json regression_comparability_json(const regression::Report& report) {
+  Json items = Json::array();
+  for (const std::string_view item : regression::kComparedItems) {
+    bool holds = true;
+    for (const regression::Incomparable& found : report.comparability) {
+      if (found.item == item) {
+        items.push_back(Json{{"item", item}, {"comparable", false}, {"sentence", found.sentence}});
+        holds = false;
+      }
+    }
+    if (holds) {
+      items.push_back(Json{{"item", item}, {"comparable", true}, {"sentence", nullptr}});
+    }
+  }
+  return items;
 }
 
 Json regression_tau0_json(const regression::Tau0& tau0) {
   return Json::array({number(100.0 * tau0.device), number(100.0 * tau0.axis), number(100.0 * tau0.scale)});
+}
+
+Json regression_limits_json(const regression::EventLimits& limits) {
+  Json document = Json::object();
+  for (const LimitMember& member : limit_members()) {
+    document[member.name] = number(limits.*member.limit / member.unit);
+  }
+  document["findings"] = limits.findings;
+  return document;
+}
+
+/// The settings of a run, each with where it comes from.
+Json regression_told_settings(const RegressReport& run) {
+  Json settings = driftlab::to_json(run.report.settings, run.look.of);
+  Json origin = Json::object();
+  for (const auto& [name, value] : settings.items()) {
+    origin[name] = run.stated.contains(name)                       ? "asked"
+                   : run.kept && regression::is_kept_setting(name) ? "anchor"
+                                                                   : "default";
+  }
+  settings["origin"] = std::move(origin);
+  return settings;
+}
+
+/// What was kept with the anchor and what this run does otherwise; null where nothing was kept.
+Json regression_kept_json(const RegressReport& run) {
+  if (!run.kept) {
+    return nullptr;
+  }
+  Json changed = Json::array();
+  for (const regression::ChangedSetting& change : regression::changed_settings(*run.kept, run.report.settings)) {
+    changed.push_back(Json{{"setting", change.name}, {"kept", change.kept}, {"now", change.now}});
+  }
+  return Json{{"settings", kept_settings_json(*run.kept)}, {"changed", std::move(changed)}};
 }
 
 }  // namespace
@@ -173,15 +211,33 @@ Json to_json(const regression::Settings& settings, std::size_t looks) {
               {"fail_on", settings.test.fail_on_worse ? "worse" : "beyond_margin"},
               {"two_sided", settings.test.two_sided},
               {"looks", looks},
+              {"event_limits", regression_limits_json(settings.limits)},
               {"seed", settings.test.seed}};
 }
 
-Result<regression::ComparedRecording> compared_recording_from_json(const Json& document) {
-  try {
-    return regression_compared_of(document);
-  } catch (const Json::exception& fault) {
-    return fail(ErrorCode::Internal, "A characterisation cannot be read: " + std::string(fault.what()) + ".");
+const std::vector<LimitMember>& limit_members() {
+  using Limits = regression::EventLimits;
+  constexpr double kPercent = 0.01;
+  static const std::vector<LimitMember> members = {{"missing", &Limits::missing, kPercent},
+                                                   {"jitter", &Limits::jitter, 1.0},
+                                                   {"jitter_of_interval", &Limits::jitter_of_interval, kPercent},
+                                                   {"resolution", &Limits::resolution, 1.0},
+                                                   {"contamination", &Limits::contamination, 1.0},
+                                                   {"rate", &Limits::rate, kPercent},
+                                                   {"temperature", &Limits::temperature_k, 1.0},
+                                                   {"repeatability", &Limits::repeatability, 1.0}};
+  return members;
+}
+
+Json kept_settings_json(const regression::Settings& settings) {
+  const Json all = to_json(settings, 3);
+  Json kept = Json::object();
+  for (const auto& [name, value] : all.items()) {
+    if (regression::is_kept_setting(name)) {
+      kept[name] = value;
+    }
   }
+  return kept;
 }
 
 Json to_json(const RegressReport& run) {
@@ -202,10 +258,6 @@ Json to_json(const RegressReport& run) {
                             {"sessions", check.sessions},
                             {"p", check.p ? number(*check.p) : Json(nullptr)}});
   }
-  Json comparability = Json::array();
-  for (const regression::Incomparable& item : report.comparability) {
-    comparability.push_back(Json{{"item", item.item}, {"sentence", item.sentence}});
-  }
   Json history = Json::array();
   for (const regression::ArmReport& arm : report.history) {
     history.push_back(regression_arm_json(arm));
@@ -224,7 +276,7 @@ Json to_json(const RegressReport& run) {
                   {"level", report.summary.level},
                   {"facts", Json::array()}}},
                 {"scope_s", number(report.scope_s)},
-                {"settings", to_json(report.settings, run.look.of)},
+                {"settings", regression_told_settings(run)},
                 {"arms",
                  {{"baseline", regression_arm_json(report.baseline)},
                   {"candidate", regression_arm_json(report.candidate)},
@@ -236,6 +288,7 @@ Json to_json(const RegressReport& run) {
                   {"c_1", number(report.comparison.c_1)},
                   {"draws", report.settings.test.draws},
                   {"seed", report.settings.test.seed}}},
+                {"kept", regression_kept_json(run)},
                 {"look",
                  {{"number", run.look.number},
                   {"of", run.look.of},
@@ -243,7 +296,7 @@ Json to_json(const RegressReport& run) {
                   {"share", number(report.settings.test.look_share)}}},
                 {"units", std::move(units)},
                 {"findings", std::move(findings)},
-                {"comparability", std::move(comparability)},
+                {"comparability", regression_comparability_json(report)},
                 {"needs",
                  {{"sessions_per_arm", needs.sessions_per_arm ? Json(*needs.sessions_per_arm) : Json(nullptr)},
                   {"length_s", report.needed_length_s ? number(*report.needed_length_s) : Json(nullptr)},

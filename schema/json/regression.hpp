@@ -1,12 +1,13 @@
 #pragma once
-/// A regression run as JSON: what it is asked (spec/regression.md, section 2), what it reads of stored results, and
-/// its document (schema/regression.schema.json).
+/// A regression run as JSON: what it is asked (spec/regression.md, section 2) and its document
+/// (schema/regression.schema.json).
 #include "core/analysis/regress.hpp"
 #include "core/signal/recording.hpp"
 #include "schema/json/json.hpp"
 #include "schema/json/stated_facts.hpp"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ struct WrittenRegression {
   regression::Settings settings;
   std::size_t looks = 3;
   Inconclusive inconclusive = Inconclusive::Inconclusive;
+  std::set<std::string> stated;  ///< settings that the request names
 };
 
 /// `firmware=1.5.0` from {"firmware": "1.5.0"}.
@@ -62,12 +64,19 @@ void regression_settings_from_json(const Json& document, const std::string& poin
 /// Seconds since 1970 of an RFC 3339 time. Error: InvalidArgument.
 [[nodiscard]] Result<double> seconds_of(const std::string& time);
 
-/// What a regression reads of one member of `recordings` of a characterisation document. Session, time, temperature
-/// and causes are not of it. Error: Internal, for a document that driftlab has not written.
-[[nodiscard]] Result<regression::ComparedRecording> compared_recording_from_json(const Json& document);
-
 /// The document of a run. `settings` and `between` are with it, so that it says what it rests on.
 [[nodiscard]] Json to_json(const RegressReport& report);
+
+/// A member of `event_limits` that is a number: its name, what it sets, and what one of its units is there.
+struct LimitMember {
+  const char* name;
+  double regression::EventLimits::* limit;
+  double unit;
+};
+[[nodiscard]] const std::vector<LimitMember>& limit_members();
+
+/// Of the settings those that an anchor keeps (core/campaign/regression/kept_settings.hpp).
+[[nodiscard]] Json kept_settings_json(const regression::Settings& settings);
 
 /// Settings as they are written.
 [[nodiscard]] Json to_json(const regression::Settings& settings, std::size_t looks);

@@ -71,6 +71,20 @@ void regression_read_tau0(const Json& document, const std::string& pointer, regr
   reader.reject_unknown();
 }
 
+void regression_read_limits(const Json& document, const std::string& pointer, regression::EventLimits& limits,
+                            Faults& faults) {
+  ObjectReader reader(document, pointer, faults);
+  for (const LimitMember& member : limit_members()) {
+    if (const auto value = reader.real(member.name)) {
+      limits.*member.limit = member.unit * *value;
+    }
+  }
+  if (const auto sessions = reader.integer("findings")) {
+    limits.findings = static_cast<std::size_t>(std::clamp<std::int64_t>(*sessions, 0, 1000000));
+  }
+  reader.reject_unknown();
+}
+
 WrittenRecording regression_read_recording(const Json& document, const std::string& pointer, Faults& faults) {
   WrittenRecording written;
   written.pointer = pointer;
@@ -213,6 +227,11 @@ void regression_settings_from_json(const Json& document, const std::string& poin
                                    Faults& faults) {
   regression::Settings& settings = into.settings;
   ObjectReader reader(document, pointer, faults);
+  if (document.is_object()) {
+    for (const auto& [name, value] : document.items()) {
+      into.stated.insert(name);
+    }
+  }
   settings.test.alpha = reader.real("alpha").value_or(settings.test.alpha);
   settings.test.event_alpha = 0.2 * settings.test.alpha;
   settings.test.through_s = reader.real("through_s").value_or(settings.test.through_s);
@@ -229,6 +248,9 @@ void regression_settings_from_json(const Json& document, const std::string& poin
   }
   if (const Json* const tau0 = reader.member("tau0")) {
     regression_read_tau0(*tau0, reader.pointer("tau0"), settings, faults);
+  }
+  if (const Json* const limits = reader.member("event_limits")) {
+    regression_read_limits(*limits, reader.pointer("event_limits"), settings.limits, faults);
   }
   if (const auto fail_on = reader.text("fail_on")) {
     settings.test.fail_on_worse = *fail_on == "worse";

@@ -19,13 +19,22 @@ constexpr std::array<std::tuple<const char*, std::optional<double> regression::F
 }  // namespace
 
 bool StatedFacts::empty() const {
-  return !temperature_degc && !full_scale.gyroscope && !full_scale.accelerometer && causes.empty();
+  return !temperature_degc && !full_scale.gyroscope && !full_scale.accelerometer && !causes;
+}
+
+void StatedFacts::add_causes(const std::set<std::string>& found) {
+  std::set<std::string> all = found;
+  if (causes) {
+    all.insert(causes->begin(), causes->end());
+  }
+  causes.emplace(all.begin(), all.end());
 }
 
 void StatedFacts::tell(regression::ComparedRecording& recording) const {
   recording.temperature_degc = temperature_degc;
   recording.full_scale = full_scale;
-  recording.causes = causes;
+  recording.investigated = causes.has_value();
+  recording.causes = causes.value_or(std::vector<std::string>());
 }
 
 bool is_stated_fact(std::string_view member) {
@@ -49,8 +58,9 @@ StatedFacts stated_facts_from_json(ObjectReader& recording, Faults& faults) {
     reader.reject_unknown();
   }
   if (const Json* const causes = recording.member("causes"); causes != nullptr && causes->is_array()) {
+    facts.causes.emplace();
     for (const Json& cause : *causes) {
-      facts.causes.push_back(cause.is_string() ? cause.get<std::string>() : "");
+      facts.causes->push_back(cause.is_string() ? cause.get<std::string>() : "");
     }
   }
   return facts;
@@ -71,8 +81,8 @@ void add_stated_facts(const StatedFacts& facts, Json& recording) {
       recording["full_scale"][name] = *value / si;
     }
   }
-  if (!facts.causes.empty()) {
-    recording["causes"] = facts.causes;
+  if (facts.causes) {
+    recording["causes"] = *facts.causes;
   }
 }
 

@@ -4,6 +4,8 @@
 #include "core/campaign/regression/recordings.hpp"
 #include "schema/json/json.hpp"
 
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,11 +14,13 @@ namespace driftlab {
 
 struct StatedFacts {
   std::optional<double> temperature_degc;
-  regression::FullScales full_scale;  ///< written in deg/s and g
-  std::vector<std::string> causes;
+  regression::FullScales full_scale;               ///< written in deg/s and g
+  std::optional<std::vector<std::string>> causes;  ///< nothing: nobody investigated; empty: nothing was found
 
   /// Nobody said anything.
   [[nodiscard]] bool empty() const;
+  /// Adds causes that stored investigations found.
+  void add_causes(const std::set<std::string>& found);
   void tell(regression::ComparedRecording& recording) const;
 };
 

@@ -10,12 +10,14 @@ namespace driftlab {
 /// The terminal: verdict, details, the worst five tests.
 [[nodiscard]] std::string regression_to_text(const RegressReport& run);
 
-/// A comment on a change, in Markdown: under 60 lines outside of what is folded, first line the verdict, then a hidden
-/// marker by which a bot finds its comment again. `figure` is the path or address of the figure; empty: none is shown.
+/// A comment on a change, in Markdown: under 60 lines whatever was compared, first line the verdict, then a hidden
+/// marker by which a bot finds its comment again. The worst five tests stand above, the next worst are folded, and what
+/// is left out is said to be in the document. `figure` is the path or address of the figure; empty: none is shown.
 [[nodiscard]] std::string regression_to_markdown(const RegressReport& run, const std::string& figure);
 
-/// JUnit XML: a case per gated test, event check and comparability item, and one for the verdict. Open gated tests are
-/// errors of type `inconclusive`, or skipped with `skip_open`; watched tests stand in system-out.
+/// JUnit XML: a suite per device, condition and pair of labels, with a case per gated test; what is of all conditions
+/// (event checks, every item that must agree, and the verdict) is in the one suite there is, or in one of its own. Open
+/// gated tests are errors of type `inconclusive`, or skipped with `skip_open`; watched tests stand in system-out.
 [[nodiscard]] std::string regression_to_junit(const RegressReport& run, bool skip_open);
 
 /// SVG, 20 px high: `sensor noise | no worse, 10 % to 20 s`.

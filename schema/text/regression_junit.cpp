@@ -1,6 +1,11 @@
 /// The JUnit report of a regression run.
 #include "schema/text/regression.hpp"
 
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
 namespace driftlab {
 namespace {
 
@@ -39,6 +44,14 @@ struct CaseCounts {
   std::size_t failures = 0;
   std::size_t errors = 0;
   std::size_t skipped = 0;
+
+  CaseCounts& operator+=(const CaseCounts& other) {
+    tests += other.tests;
+    failures += other.failures;
+    errors += other.errors;
+    skipped += other.skipped;
+    return *this;
+  }
 };
 
 class TestSuite {
@@ -62,6 +75,7 @@ class TestSuite {
 
   CaseCounts counts;
   std::string cases;
+  std::string output;  ///< for people: tests that do not block
 
  private:
   void add(const std::string& name, const std::string& content) {
@@ -84,15 +98,18 @@ std::string case_sentence(const UnitReport& unit, const ScaleReport& test) {
          regression::percent_text(test.test.margin).substr(1);
 }
 
-void add_tests(const regression::Report& report, TestSuite& suite, std::string& watched) {
+void add_tests(const regression::Report& report, const std::string& condition, TestSuite& suite) {
   for (const UnitReport& unit : report.units) {
+    if (unit.condition != condition) {
+      continue;
+    }
     for (const ScaleReport& test : unit.tests) {
       const std::string sentence = case_sentence(unit, test);
       const bool beyond = test.outcome.finding == regression::Finding::Beyond;
       if (beyond) {
         suite.failed(name_of_test(unit, test), sentence);
       } else if (!test.gated) {
-        watched += sentence + " (watched: " + std::string(name_of(test.outcome.finding)) + ")\n";
+        suite.output += sentence + " (watched: " + std::string(name_of(test.outcome.finding)) + ")\n";
       } else if (test.outcome.upper_one >= test.test.margin) {
         suite.open(name_of_test(unit, test), sentence);
       } else {
@@ -102,15 +119,8 @@ void add_tests(const regression::Report& report, TestSuite& suite, std::string& 
   }
 }
 
-}  // namespace
-
-std::string regression_to_junit(const RegressReport& run, bool skip_open) {
-  const regression::Report& report = run.report;
-  const std::string pair = report.baseline.label + " to " + report.candidate.label;
-  const std::string name = "sensor noise of " + report.device + (report.candidate.label.empty() ? "" : ", " + pair);
-  TestSuite suite("driftlab.regression." + report.device, skip_open);
-  std::string watched;
-  add_tests(report, suite, watched);
+/// Event checks, what must agree for a comparison, and the verdict.
+void add_run(const regression::Report& report, TestSuite& suite) {
   for (const regression::EventCheck& check : report.checks) {
     if (check.verdict == regression::CheckVerdict::Fail) {
       suite.failed(check.check, check.sentence);
@@ -118,8 +128,17 @@ std::string regression_to_junit(const RegressReport& run, bool skip_open) {
       suite.passed(check.check);
     }
   }
-  for (const regression::Incomparable& item : report.comparability) {
-    suite.open("comparable: " + item.item, item.sentence);
+  for (const std::string_view item : regression::kComparedItems) {
+    const std::string name = "comparable: " + std::string(item);
+    std::string sentences;
+    for (const regression::Incomparable& found : report.comparability) {
+      sentences += found.item == item ? (sentences.empty() ? "" : " ") + found.sentence : "";
+    }
+    if (sentences.empty()) {
+      suite.passed(name);
+    } else {
+      suite.open(name, sentences);
+    }
   }
   switch (report.verdict) {
     case regression::Verdict::Pass:
@@ -131,13 +150,47 @@ std::string regression_to_junit(const RegressReport& run, bool skip_open) {
     case regression::Verdict::Inconclusive:
       suite.open("verdict", report.summary.verdict);
   }
-  const CaseCounts& counts = suite.counts;
-  const std::string numbers = " tests=\"" + std::to_string(counts.tests) + "\" failures=\"" +
-                              std::to_string(counts.failures) + "\" errors=\"" + std::to_string(counts.errors) +
-                              "\" skipped=\"" + std::to_string(counts.skipped) + "\"";
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + numbers + ">\n  <testsuite name=\"" +
-         xml_text(name) + "\"" + numbers + ">\n" + suite.cases + "    <system-out>" +
-         xml_text(report.summary.verdict + "\n" + watched) + "</system-out>\n  </testsuite>\n</testsuites>\n";
+  suite.output = report.summary.verdict + "\n" + suite.output;
+}
+
+std::string numbers_of(const CaseCounts& counts) {
+  return " tests=\"" + std::to_string(counts.tests) + "\" failures=\"" + std::to_string(counts.failures) +
+         "\" errors=\"" + std::to_string(counts.errors) + "\" skipped=\"" + std::to_string(counts.skipped) + "\"";
+}
+
+}  // namespace
+
+std::string regression_to_junit(const RegressReport& run, bool skip_open) {
+  const regression::Report& report = run.report;
+  std::set<std::string> conditions;
+  for (const UnitReport& unit : report.units) {
+    conditions.insert(unit.condition);
+  }
+  const std::string pair =
+      report.candidate.label.empty() ? "" : ", " + report.baseline.label + " to " + report.candidate.label;
+  CaseCounts all;
+  std::string suites;
+  const auto close = [&](const std::string& condition, const TestSuite& suite) {
+    all += suite.counts;
+    const std::string name = "sensor noise of " + report.device + (condition.empty() ? "" : ", " + condition) + pair;
+    suites += "  <testsuite name=\"" + xml_text(name) + "\"" + numbers_of(suite.counts) + ">\n" + suite.cases +
+              "    <system-out>" + xml_text(suite.output) + "</system-out>\n  </testsuite>\n";
+  };
+  for (const std::string& condition : conditions) {
+    TestSuite suite("driftlab.regression." + report.device, skip_open);
+    add_tests(report, condition, suite);
+    if (conditions.size() == 1) {
+      add_run(report, suite);
+    }
+    close(condition, suite);
+  }
+  if (conditions.size() != 1) {
+    TestSuite suite("driftlab.regression." + report.device, skip_open);
+    add_run(report, suite);
+    close("", suite);
+  }
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + numbers_of(all) + ">\n" + suites +
+         "</testsuites>\n";
 }
 
 }  // namespace driftlab

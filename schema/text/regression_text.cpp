@@ -1,5 +1,6 @@
 /// Terminal text and Markdown page of a regression run.
 #include "core/signal/sort_keeping_ties.hpp"
+#include "core/signal/with_count.hpp"
 #include "schema/text/fields.hpp"
 #include "schema/text/regression.hpp"
 
@@ -16,6 +17,9 @@ using regression::ScaleReport;
 using regression::UnitReport;
 
 constexpr std::size_t kWorstTests = 5;
+/// What keeps a page below 60 lines, whatever was compared: 42 lines are its own.
+constexpr std::size_t kFoldedTests = 15;
+constexpr std::size_t kMostDetails = 12;
 
 struct ListedTest {
   const UnitReport* unit;
@@ -81,6 +85,22 @@ std::string worst_row(const ListedTest& listed) {
          " | " + std::string(name_of(test.outcome.finding)) + (test.gated ? "" : ", watched") + " |\n";
 }
 
+/// Where to find what a bounded list leaves out; empty where it holds everything.
+std::string more_line(const char* bullet, std::size_t all, std::size_t shown, const char* noun, const char* member) {
+  return all <= shown ? std::string()
+                      : bullet + with_count(all - shown, noun) + " more: `" + member + "` of the document" +
+                            " (regression.json).\n";
+}
+
+/// "rec_1 (cable touched); rec_2 (...)": every one, for leaving a recording out must be seen.
+std::string exclusions_text(const std::vector<regression::Exclusion>& excluded) {
+  std::string text;
+  for (const regression::Exclusion& exclusion : excluded) {
+    text += (text.empty() ? "" : "; ") + exclusion.recording + " (" + exclusion.reason + ")";
+  }
+  return text;
+}
+
 const char* const kWorstHead = "| axis | at | change | finding |\n|---|---|---|---|\n";
 
 }  // namespace
@@ -115,13 +135,13 @@ std::string regression_to_markdown(const RegressReport& run, const std::string& 
   const regression::Report& report = run.report;
   std::string page = "**" + head_word(report.verdict) + "**: " + markdown_field(report.summary.verdict) + "\n";
   page += "<!-- driftlab-regression -->\n\n";
-  for (const std::string& detail : report.summary.details) {
-    page += "- " + markdown_field(detail) + "\n";
+  const std::vector<std::string>& details = report.summary.details;
+  for (std::size_t i = 0; i < std::min(kMostDetails, details.size()); ++i) {
+    page += "- " + markdown_field(details[i]) + "\n";
   }
+  page += more_line("- ", details.size(), kMostDetails, "sentence", "summary.details");
   if (!report.excluded.empty()) {
-    for (const regression::Exclusion& exclusion : report.excluded) {
-      page += "- Left out: " + markdown_field(exclusion.recording) + " (" + markdown_field(exclusion.reason) + ")\n";
-    }
+    page += "- Left out: " + markdown_field(exclusions_text(report.excluded)) + "\n";
   }
   if (run.versus_previous) {
     page += "- Against " + markdown_field(run.versus_previous->label) +
@@ -137,14 +157,16 @@ std::string regression_to_markdown(const RegressReport& run, const std::string& 
   if (!figure.empty()) {
     page += "\n![Candidate over baseline against averaging time, with margin and scope](" + figure + ")\n";
   }
-  page += "\n<details><summary>All tests, sessions and settings</summary>\n\n";
+  page += "\n<details><summary>More tests, sessions and settings</summary>\n\n";
   page += "- " + markdown_field(arm_line("Baseline", report.baseline)) + "\n- " +
           markdown_field(arm_line("Candidate", report.candidate)) + "\n- " + look_line(run.look) + "\n\n";
-  if (!tests.empty()) {
+  const std::size_t shown = kWorstTests + kFoldedTests;
+  if (tests.size() > kWorstTests) {
     page += kWorstHead;
-    for (const ListedTest& listed : tests) {
-      page += worst_row(listed);
+    for (std::size_t i = kWorstTests; i < std::min(shown, tests.size()); ++i) {
+      page += worst_row(tests[i]);
     }
+    page += "\n" + more_line("", tests.size(), shown, "test", "units[].tests");
   }
   page += "\n</details>\n";
   return page;

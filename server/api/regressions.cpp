@@ -1,9 +1,10 @@
+#include "core/campaign/regression/kept_settings.hpp"
 #include "schema/json/recording_tags.hpp"
 #include "schema/json/regression.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
-#include "server/jobs/regression_arms.hpp"
+#include "server/jobs/regression_memory.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -33,7 +34,8 @@ Json worst_test(const Json& document) {
 /// How much the sessions scatter, of the document: the factors of spec/regression.md (3).
 Json scatter_of(const Json& document) {
   const Json between = document.value("between", Json());
-  return between.is_object() ? Json{{"common", between["common"]}, {"local", between["local"]}} : Json(nullptr);
+  return between.is_object() && between.contains("kL") ? Json{{"kL", between.at("kL")}, {"kS", between.at("kS")}}
+                                                       : Json(nullptr);
 }
 
 /// A run is its job; its document is the job's result.
@@ -165,6 +167,7 @@ Json to_json(const Anchor& anchor) {
               {"device", anchor.device_id},
               {"label", anchor.label},
               {"reason", anchor.reason},
+              {"settings", anchor.settings_json.empty() ? Json(nullptr) : stored(anchor.settings_json)},
               {"created_at", rfc3339(anchor.created_at)}};
 }
 
@@ -191,6 +194,11 @@ Result<Response> move_anchor(ApiContext& context, const Request& request) {
   anchor.reason = reader.required_text("reason");
   limit_text(anchor.reason, "note_bytes", request.budgets->note_bytes, reader.pointer("reason"), faults);
   limit_text(label, "note_bytes", request.budgets->note_bytes, reader.pointer("label"), faults);
+  WrittenRegression given;
+  const Json* const settings = reader.member("settings");
+  if (settings != nullptr) {
+    regression_settings_from_json(*settings, reader.pointer("settings"), given, faults);
+  }
   reader.reject_unknown();
   auto named = label_named(label);
   if (!named && faults.none()) {
@@ -217,6 +225,13 @@ Result<Response> move_anchor(ApiContext& context, const Request& request) {
     return sentence ? fail(ErrorCode::NotFound, std::move(*sentence), {{"label", anchor.label}})
                     : fail(sentence.error());
   }
+  // What is not named stays as it was with the anchor before.
+  const auto kept = memory->kept_settings();
+  if (!kept) {
+    return fail(kept.error());
+  }
+  anchor.settings_json =
+      to_text(kept_settings_json(*kept ? regression::with_kept(**kept, given.settings, given.stated) : given.settings));
   anchor.device_id = device->id;
   auto moved = context.store.add_anchor(anchor);
   return moved ? Result<Response>(json_response(201, to_json(*moved))) : fail(moved.error());

@@ -61,6 +61,7 @@ struct Anchor {
   std::string label;  ///< `firmware=1.4.2`
   std::string reason;
   UtcMicros created_at = 0;
+  std::string settings_json = {};  ///< margins, scope and alpha that go with it; empty: none were kept
 };
 
 /// A text or a figure that a job made of its result.

@@ -8,10 +8,13 @@ import random
 import re
 import subprocess
 import tempfile
+import threading
 import unittest
 import xml.etree.ElementTree as ElementTree
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
+from urllib.parse import parse_qs
 
 import jsonschema
 import yaml
@@ -124,6 +127,55 @@ class Regress(unittest.TestCase):
         self.regress(2, *state, "--accept", "firmware=1.1")
         self.assertIn("firmware=1.1", self.regress(0, *state, "--accept", "firmware=1.1", "--reason", "meant so"))
 
+    def test_settings_stay_with_the_anchor(self) -> None:
+        (self.folder / "wide.json").write_text(json.dumps({"margin": {"gyroscope": [20, 25, 50]}}))
+        state = ("--state", str(self.folder / "kept.json"), "--inconclusive", "pass")
+        arms = ("--candidate", "candidate/0.csv", "--candidate-label")
+        first = self.document(0, *state, "--settings", "wide.json", "--baseline", "baseline/0.csv", "--baseline-label", "firmware=1.0",
+                              *arms, "firmware=1.1")
+        self.assertEqual((first["settings"]["origin"]["margin"], first["kept"]["changed"]), ("asked", []))
+        later = self.document(0, *state, *arms, "firmware=1.2")
+        self.assertEqual((later["settings"]["margin"]["gyroscope"], later["settings"]["origin"]["margin"]), ([20, 25, 50], "anchor"))
+        self.assertEqual(later["settings"]["origin"]["looks"], "default")
+        (self.folder / "narrow.json").write_text(json.dumps({"margin": {"gyroscope": [5, 25, 50]}, "alpha": 0.1}))
+        other = self.document(0, *state, "--settings", "narrow.json", *arms, "firmware=1.3")
+        self.assertEqual([change["setting"] for change in other["kept"]["changed"]], ["alpha", "margin.gyroscope"])
+        self.assertIn("margin.gyroscope 5, 25, 50 % (kept: 20, 25, 50 %)", " ".join(other["summary"]["details"]))
+        self.regress(0, *state, "--settings", "narrow.json", "--accept", "firmware=1.3", "--reason", "a better sensor")
+        moved = self.document(0, *state, *arms, "firmware=1.4")
+        self.assertEqual((moved["settings"]["margin"]["gyroscope"][0], moved["settings"]["alpha"], moved["kept"]["changed"]), (5, 0.1, []))
+
+    def test_lines_are_left_out_as_in_characterise(self) -> None:
+        """A banner in front and comments of another kind between the rows: with the two flags the run is that of the bare table."""
+        banner: dict[str, list[str]] = {"baseline": [], "worse": []}
+        for arm, names in banner.items():
+            for session in range(2):
+                rows = (self.folder / f"{arm}/{session}.csv").read_text().splitlines()
+                names.append(f"banner_{arm}_{session}.csv")
+                told = [row + ("\n; tick" if number % 1000 == 1 else "") for number, row in enumerate(rows)]
+                (self.folder / names[-1]).write_text("\n".join(["ready 42", "wait", *told]) + "\n")
+        flags = ("--skip-lines", "2", "--comment", ";")
+        left_out = self.document(1, *flags, "--baseline", *banner["baseline"], "--candidate", *banner["worse"])
+        bare = self.document(1, "--baseline", *self.files("baseline")[:2], "--candidate", *self.files("worse")[:2])
+        self.assertEqual(left_out["units"], bare["units"])
+
+    def test_readings_are_corrected_first(self) -> None:
+        """A candidate whose readings are twice too large fails; with the calibration that says so it is the baseline's equal."""
+        for session in range(3):
+            rows = [line.split(",") for line in (self.folder / f"candidate/{session}.csv").read_text().splitlines()[1:]]
+            (self.folder / f"twice_{session}.csv").write_text("\n".join(["t [s],gz [deg/s]", *(f"{time},{2 * float(value):.6f}" for time, value in rows)]) + "\n")
+        half = {"apply": {"reading_unit": "deg/s", "bias": [0, 0, 0], "correction": [[math.pi / 180, 0, 0], [0, math.pi / 180, 0], [0, 0, math.pi / 360]]}}
+        (self.folder / "half.json").write_text(json.dumps({"gyroscope": half}))
+        twice = [{"file": f"twice_{session}.csv"} for session in range(3)]
+        run: dict[str, Any] = {"baseline": {"recordings": [{"file": name} for name in self.files("baseline")]}, "candidate": {"recordings": twice}}
+        (self.folder / "twice.json").write_text(json.dumps(run))
+        self.document(1, "twice.json")
+        for one in twice:
+            one["calibration"] = "half.json"
+        (self.folder / "twice.json").write_text(json.dumps(run))
+        self.assertEqual(self.document(0, "twice.json")["verdict"], "pass")
+        self.assertIn("absent.json", self.regress(2, "--baseline", "baseline/0.csv", "--candidate", "candidate/0.csv", "--calibration", "absent.json"))
+
     def test_a_daemon_runs_it_and_remembers(self) -> None:
         with Daemon() as daemon:
             server = ("--server", f"http://127.0.0.1:{daemon.port}", "--device", "imu-07")
@@ -221,59 +273,122 @@ class Regress(unittest.TestCase):
         summary = (report / "summary.md").read_text().splitlines()
         self.assertEqual(summary[0], "**FAIL**: " + document["summary"]["verdict"].replace("[", "\\[").replace("]", "\\]"))
         self.assertEqual(summary[1], "<!-- driftlab-regression -->")
-        self.assertLess(next(i for i, line in enumerate(summary) if line.startswith("<details>")), 60)
+        self.assertLess(len(summary), 60)
         self.assertIn("](ratio.svg)", "\n".join(summary))
         suites = ElementTree.parse(report / "junit.xml").getroot()
         cases = {case.get("name"): case for case in suites.iter("testcase")}
         self.assertIsNotNone(cases["verdict"].find("failure"))
         self.assertEqual(int(suites.get("failures", "")), len(suites.findall(".//failure")))
         self.assertEqual(int(suites.get("tests", "")), len(cases))
+        self.assertEqual([name for name in cases if name and name.startswith("comparable: ")],
+                         [f"comparable: {item['item']}" for item in document["comparability"]], "passed ones too")
+        [suite] = suites.iter("testsuite")
+        self.assertEqual(suite.get("name"), 'sensor noise of device, static,  to firmware=<1.1>&"')
         badge = ElementTree.parse(report / "badge.svg").getroot()
         self.assertEqual(badge.get("height"), "20")
         self.assertIn("worse: gyro z +", "".join(badge.itertext()))
         self.assertIn("svg", ElementTree.parse(report / "ratio.svg").getroot().tag)
 
 
+class Notes(BaseHTTPRequestHandler):
+    """Where a template posts the note of a merge request."""
+    posted: ClassVar[list[tuple[str, str, str]]] = []
+
+    def do_POST(self) -> None:
+        body = self.rfile.read(int(self.headers["Content-Length"])).decode()
+        self.posted.append((self.path, self.headers["PRIVATE-TOKEN"], parse_qs(body)["body"][0]))
+        self.send_response(201)
+        self.end_headers()
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
 class Templates(unittest.TestCase):
     """Each template's steps, run in a shell in a repository like the one that its first lines describe."""
+    notes: ThreadingHTTPServer
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.notes = ThreadingHTTPServer(("127.0.0.1", 0), Notes)
+        threading.Thread(target=cls.notes.serve_forever, daemon=True).start()
+        cls.addClassCleanup(cls.notes.server_close)
+        cls.addClassCleanup(cls.notes.shutdown)
 
     def steps(self, name: str) -> list[str]:
         text = (DEPLOY / name).read_text()
-        if name == "Jenkinsfile":
-            steps = re.findall(r"script: '([^']+)'", text) + re.findall(r"^\s*sh '([^']+)'", text, re.MULTILINE)
-            self.assertIn("archiveArtifacts 'driftlab-report/**'", text)
-            return steps
+        if name.startswith("Jenkinsfile"):
+            for kept in ("archiveArtifacts 'driftlab-report/**'", "currentBuild.description = sh(", "junit 'driftlab-report/junit.xml'"):
+                self.assertIn(kept, text)
+            return re.findall(r"script: '([^']+)'", text)
         document = yaml.safe_load(text)
-        if name == "gitlab-ci.yml":
+        if name.startswith("gitlab-ci"):
             job = document["sensor-noise"]
             self.assertEqual(job["artifacts"]["reports"]["junit"], "driftlab-report/junit.xml")
             self.assertEqual(job["allow_failure"], {"exit_codes": 3})
             return [*job["script"], *job["after_script"]]
         return [step["run"] for step in document["jobs"]["regress"]["steps"] if "run" in step]
 
+    def posted(self, name: str, repository: Path, last: str) -> str:
+        """The summary as the service of that template shows it."""
+        if name.startswith("github"):
+            return (repository / "posted.md").read_text()
+        if name.startswith("Jenkinsfile"):
+            return last
+        path, token, body = Notes.posted.pop()
+        self.assertEqual((path, token), ("/projects/7/merge_requests/3/notes", "glpat"))
+        return body
+
+    def run_in(self, repository: Path, name: str, label: str, **more: str) -> tuple[list[int], str, str]:
+        environment = {**os.environ, "PATH": f"{Path(PROGRAM).parent}:{os.environ['PATH']}", "GITHUB_STEP_SUMMARY": str(repository / "posted.md"),
+                       "GITHUB_SHA": label, "CI_COMMIT_SHORT_SHA": label, "BUILD_NUMBER": label, "CI_MERGE_REQUEST_IID": "3", "CI_PROJECT_ID": "7",
+                       "GITLAB_TOKEN": "glpat", "CI_API_V4_URL": f"http://127.0.0.1:{self.notes.server_port}", **more}
+        done = [subprocess.run(["bash", "-e", "-c", step], cwd=repository, env=environment, capture_output=True, text=True,
+                               timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL) for step in self.steps(name)]
+        return [each.returncode for each in done], self.posted(name, repository, done[-1].stdout), "\n".join(each.stderr for each in done)
+
+    @staticmethod
+    def fill(folder: Path, white: float, scale: float, seed: int = 1) -> None:
+        folder.mkdir()
+        for session in range(3):
+            (folder / f"{session}.csv").write_text(recording(seed + session, white, scale))
+
     def test_every_template_gates_and_posts_the_summary(self) -> None:
         for name in ("github-actions.yml", "gitlab-ci.yml", "Jenkinsfile"):
-            steps = self.steps(name)
-            self.assertEqual(len(steps), 2, name)
             for white, expected in ((0.1, 0), (0.17, 1)):
                 with self.subTest(name, white=white), tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
                     repository = Path(folder)
-                    for arm, level, scale in (("baseline", 0.1, 1.0), ("candidate", white, 1.01)):
-                        (repository / arm).mkdir()
-                        for session in range(3):
-                            (repository / arm / f"{session}.csv").write_text(recording(1 + session, level, scale))
-                    environment = {**os.environ, "PATH": f"{Path(PROGRAM).parent}:{os.environ['PATH']}",
-                                   "GITHUB_STEP_SUMMARY": str(repository / "posted.md")}
-                    done = [subprocess.run(["bash", "-e", "-c", step], cwd=repository, env=environment, capture_output=True, text=True,
-                                           timeout=PATIENCE_S, check=False, stdin=subprocess.DEVNULL) for step in steps]
-                    self.assertEqual([each.returncode for each in done], [expected, 0], done[0].stderr)
-                    posted = (repository / "posted.md").read_text() if name == "github-actions.yml" else done[1].stdout
+                    self.fill(repository / "baseline", 0.1, 1.0)
+                    self.fill(repository / "candidate", white, 1.01)
+                    codes, posted, said = self.run_in(repository, name, "abcdef12")
+                    self.assertEqual(codes, [expected, 0], said)
                     self.assertTrue(posted.startswith("**PASS**" if expected == 0 else "**FAIL**"), posted)
 
-    def test_templates_are_ten_lines_or_little_more(self) -> None:
-        for name in ("github-actions.yml", "gitlab-ci.yml", "Jenkinsfile"):
+    def test_every_template_works_against_a_daemon(self) -> None:
+        with Daemon() as daemon, tempfile.TemporaryDirectory(prefix="driftlab-ci-") as folder:
+            server = f"http://127.0.0.1:{daemon.port}"
+            old = Path(folder) / "old"
+            self.fill(old, 0.1, 1.0)
+            self.fill(Path(folder) / "first", 0.1, 1.005)
+            begun = subprocess.run([PROGRAM, "ci", "--server", server, "--device", "imu-07", "--baseline", *map(str, sorted(old.iterdir())),
+                                    "--baseline-label", "firmware=1.0", "--candidate", *map(str, sorted((Path(folder) / "first").iterdir())),
+                                    "--candidate-label", "firmware=1.1"], cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+            self.assertIn(begun.returncode, (0, 3), begun.stderr)
+            for number, name in enumerate(("github-actions-server.yml", "gitlab-ci-server.yml", "Jenkinsfile-server")):
+                with self.subTest(name):
+                    repository = Path(folder) / name
+                    repository.mkdir()
+                    self.fill(repository / "candidate", 0.17, 1.0, 40 + 10 * number)
+                    codes, posted, said = self.run_in(repository, name, f"abcdef1{number}", DRIFTLAB_SERVER=server, DRIFTLAB_DEVICE="imu-07")
+                    self.assertEqual(codes, [1, 0], said)
+                    self.assertTrue(posted.startswith("**FAIL**"), posted)
+
+    def test_templates_are_ten_lines_at_most(self) -> None:
+        names = sorted(path.name for path in DEPLOY.iterdir())
+        self.assertEqual(len(names), 6, "each of the three with and without a server")
+        for name in names:
             lines = [line for line in (DEPLOY / name).read_text().splitlines() if not line.startswith(("#", "//"))]
-            self.assertLessEqual(len(lines), 14, name)
+            self.assertLessEqual(len(lines), 10, name)
 
 
 if __name__ == "__main__":

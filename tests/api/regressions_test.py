@@ -168,8 +168,59 @@ class Labels(DaemonTest):
         self.assertEqual({run["candidate"] for run in runs}, {"firmware=1.2"})
         self.assertEqual((runs[0]["id"], runs[0]["verdict"]), (second["id"], "fail"))
         self.assertGreater(runs[0]["worst"]["ci"][0], runs[0]["worst"]["margin"])
-        self.assertGreater(runs[0]["between"]["common"]["value"], 0)
+        self.assertGreater(runs[0]["between"]["kL"]["value"], 0)
         self.problem(404, "not_found", self.daemon.get("/v1/regressions?device=nobody"))
+
+    def test_settings_stay_with_the_anchor(self) -> None:
+        for seed, firmware in ((71, "1.0"), (72, "1.1"), (73, "1.2"), (74, "1.3")):
+            self.recorded(seed, firmware, device="kept")
+
+        def run(candidate: str, baseline: Any = None, **parameters: Any) -> dict[str, Any]:
+            inputs = {"device": "kept", "candidate": self.label(candidate), **({} if baseline is None else {"baseline": baseline})}
+            return self.run_of(self.daemon.post("/v1/jobs", {"kind": "regress", "inputs": inputs, "parameters": parameters}))
+        wide = {"margin": {"gyroscope": [20, 25, 50]}}
+        first = run("1.1", self.label("1.0"), **wide)
+        self.assertEqual((first["settings"]["origin"]["margin"], first["kept"]["changed"]), ("asked", []))
+        later = run("1.2")
+        self.assertEqual((later["settings"]["margin"]["gyroscope"][0], later["settings"]["origin"]["margin"]), (20, "anchor"))
+        other = run("1.3", through_s=0.5)
+        self.assertEqual(other["kept"]["changed"], [{"setting": "through_s", "kept": "1 s", "now": "0.5 s"}])
+        moved = {"device": "kept", "label": "firmware=1.1", "reason": "filter widened", "settings": {"alpha": 0.1}}
+        anchor = self.expect(201, self.daemon.post("/v1/regression-anchors", moved)).json
+        self.assertEqual((anchor["settings"]["alpha"], anchor["settings"]["margin"]["gyroscope"][0]), (0.1, 20))
+        self.problem(400, "invalid_argument", self.daemon.post("/v1/regression-anchors", {**moved, "settings": {"alpha": "much"}}))
+        after = run("1.2")
+        self.assertEqual((after["settings"]["alpha"], after["kept"]["changed"]), (0.1, []))
+
+    def test_causes_that_investigations_identified_are_findings(self) -> None:
+        def stepping(seed: int, firmware: str, step: float) -> str:
+            [column] = samples.noise(4000, 1, seed)
+            content = samples.csv([[value + (step if row >= 2000 else 0.0) for row, value in enumerate(column)]], ["gz"])
+            made = self.expect(201, self.daemon.upload(content, device="stepping", rate_hz=20, columns=samples.GYRO_Z, labels=f"firmware={firmware}",
+                                                       session=f"{firmware}-{seed}")).json["id"]
+            self.daemon.finished(self.daemon.characterise(made, models=["WN"]).json["id"])
+            return str(made)
+
+        def investigate(*recordings: str) -> None:
+            body = {"device": {"id": "stepping"}, "recordings": [{"recording": id_} for id_ in recordings]}
+            study = self.expect(201, self.daemon.post("/v1/studies", body)).json["id"]
+            job = self.daemon.finished(self.daemon.post("/v1/jobs", {"kind": "investigate", "inputs": {"study": study}}).json["id"])
+            self.assertEqual(job["state"], "succeeded", job)
+
+        def said() -> dict[str, Any]:
+            run = self.run_of(self.ask(self.label("1.1"), self.label("1.0"), device="stepping"))
+            [finding] = [each for each in run["findings"] if each["check"] == "findings"]
+            return dict(finding)
+        before = [stepping(seed, "1.0", 0.0) for seed in (81, 82)]
+        now = [stepping(seed, "1.1", 2.0) for seed in (83, 84)]
+        self.assertEqual(said()["verdict"], "ok", "nobody looked")
+        for id_ in now:
+            investigate(id_)
+        self.assertEqual(said()["verdict"], "note", "nobody looked at the baseline")
+        investigate(*before)
+        found = said()
+        self.assertEqual((found["verdict"], found["sessions"]), ("fail", ["1.1-83", "1.1-84"]), found)
+        self.assertIn("bias_step", found["sentence"])
 
     def test_a_run_is_shown_in_every_form(self) -> None:
         arms = {name: {"recordings": [{"recording": self.recorded(41, name, white, device="forms")}]} for name, white in (("baseline", 1.0), ("candidate", 1.09))}

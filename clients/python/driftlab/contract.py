@@ -1957,6 +1957,8 @@ class JobRequestRegressParameters(TypedDict):
     through_s: NotRequired[float]
     min_edf: NotRequired[float]
     design_power: NotRequired[float]
+    # Where facts of the files begin to count.
+    event_limits: NotRequired[JobRequestRegressParametersEventLimits]
     # Scatter between sessions [%]: of the device, of an axis, of a scale.
     tau0: NotRequired[JobRequestRegressParametersTau0]
     prior_df: NotRequired[float]
@@ -1966,6 +1968,29 @@ class JobRequestRegressParameters(TypedDict):
     looks: NotRequired[Literal[1, 3]]
     inconclusive: NotRequired[Literal['inconclusive', 'pass', 'fail']]
     seed: NotRequired[int]
+
+
+class JobRequestRegressParametersEventLimits(TypedDict):
+    """Where facts of the files begin to count."""
+
+    # More missing, frozen or repeated samples than the baseline's largest share [% of the samples].
+    missing: NotRequired[float]
+    # Times the baseline's largest jitter of the time stamps, and
+    jitter: NotRequired[float]
+    # of the sample interval [%].
+    jitter_of_interval: NotRequired[float]
+    # Growth of the step of the values.
+    resolution: NotRequired[float]
+    # Growth of the rate of bursts of gross errors.
+    contamination: NotRequired[float]
+    # Candidate sessions in which a cause is identified.
+    findings: NotRequired[int]
+    # Of the sampling rate [%].
+    rate: NotRequired[float]
+    # Between the arms [K].
+    temperature: NotRequired[float]
+    # kL beyond which a rig does not repeat.
+    repeatability: NotRequired[float]
 
 
 class JobRequestRegressParametersMargin(TypedDict):
@@ -2206,6 +2231,9 @@ class NewRegressionAnchor(TypedDict):
     label: str
     # Why the baseline moves.
     reason: str
+    # Settings of a regression run; margins, scope and alpha of them go with the anchor. What is not named stays as it
+    # was with the anchor before.
+    settings: NotRequired[dict[str, Any]]
 
 
 class NewToken(TypedDict):
@@ -3265,14 +3293,18 @@ class Regression(TypedDict):
     # Largest averaging time to which all axes are gated.
     scope_s: float
     # As asked, with defaults filled in.
-    settings: dict[str, Any]
+    settings: RegressionSettings
     arms: RegressionArms
-    # What a session adds, as factors of its prior scatter: common to all scales of an axis, and local to a scale.
+    # What a session adds, as factors of its prior scatter: kL of what all scales of an axis and all axes of the device
+    # have in common, kS of what is local to a scale.
     between: RegressionBetween | None
     critical: RegressionCritical
+    # Margins, scope and alpha that are kept with the anchor where it is the baseline, and what this run does otherwise.
+    kept: RegressionKept | None
     look: RegressionLook
     units: list[RegressionUnit]
     findings: list[RegressionFinding]
+    # Every item that must agree, in each way in which it does not.
     comparability: list[RegressionComparabilityItem]
     needs: RegressionNeeds
     # Drift over three releases or more: the scales to through_s, and N, regressed on the order of the releases. Ratios
@@ -3287,13 +3319,19 @@ class RegressionAnchor(TypedDict):
     device: str
     label: str
     reason: str
+    # Margins, scope and alpha that runs against it have unless they name others; null for an anchor of before they were
+    # kept.
+    settings: dict[str, Any] | None
     created_at: str
 
 
 class RegressionArm(TypedDict):
     label: str | None
     sessions: list[RegressionArmSession]
-    rate_hz: float
+    # Of all recordings, each once, rising.
+    rates_hz: list[float]
+    # Sessions of several recordings, which count once.
+    merged: list[str]
 
 
 class RegressionArmSession(TypedDict):
@@ -3315,18 +3353,31 @@ class RegressionArmsExcludedItem(TypedDict):
 
 
 class RegressionBetween(TypedDict):
-    """What a session adds, as factors of its prior scatter: common to all scales of an axis, and local to a scale."""
+    """What a session adds, as factors of its prior scatter: kL of what all scales of an axis and all axes of the device
+    have in common, kS of what is local to a scale."""
 
-    common: NotRequired[RegressionFactor]
-    local: NotRequired[RegressionFactor]
-    factors: NotRequired[list[float]]
-    posterior: NotRequired[list[list[float]]]
-    contrasts: NotRequired[int]
+    kL: RegressionFactor
+    kS: RegressionFactor
+    factors: list[float]
+    posterior: list[list[float]]
+    contrasts: int
+    # Those that inform the factors: of arms and releases with more than one.
+    sessions: list[RegressionBetweenSession]
+    t_d: RegressionScatter
+    t_a: RegressionScatter
+    t_s: RegressionScatter
+
+
+class RegressionBetweenSession(TypedDict):
+    label: str | None
+    session: str
 
 
 class RegressionComparabilityItem(TypedDict):
     item: Literal['unit', 'temperature', 'full_scale', 'length', 'repeatability']
-    sentence: str
+    comparable: bool
+    # Why not.
+    sentence: str | None
 
 
 class RegressionCritical(TypedDict):
@@ -3342,12 +3393,26 @@ class RegressionFactor(TypedDict):
 
 
 class RegressionFinding(TypedDict):
-    check: Literal['full_scale', 'missing', 'frozen', 'repeated', 'timestamps', 'resolution', 'contamination',
-                   'findings', 'rate', 'bias', 'scale_factor']
+    check: Literal['saturation', 'missing', 'frozen', 'repeated', 'timestamps', 'resolution', 'contamination',
+                   'findings', 'rate', 'bias', 'scale_factor', 'time_base']
     verdict: Literal['ok', 'note', 'fail']
     sentence: str | None
     sessions: list[str]
     p: float | None
+
+
+class RegressionKept(TypedDict):
+    """Margins, scope and alpha that are kept with the anchor where it is the baseline, and what this run does
+    otherwise."""
+
+    settings: dict[str, Any]
+    changed: list[RegressionKeptChangedItem]
+
+
+class RegressionKeptChangedItem(TypedDict):
+    setting: str
+    kept: str
+    now: str
 
 
 class RegressionLook(TypedDict):
@@ -3388,8 +3453,8 @@ class RegressionRun(TypedDict):
 class RegressionRunBetween(TypedDict):
     """How much sessions scatter, in units of what is expected: of all axes in common, and of scales."""
 
-    common: RegressionRunFactor
-    local: RegressionRunFactor
+    kL: RegressionRunFactor
+    kS: RegressionRunFactor
 
 
 class RegressionRunFactor(TypedDict):
@@ -3411,6 +3476,20 @@ class RegressionRunWorst(TypedDict):
     margin: float
     gated: bool
     verdict: str
+
+
+class RegressionScatter(TypedDict):
+    """Prior scatter between sessions [% of the deviation]: t_d of the device, t_a of an axis, t_s of a scale."""
+
+    gyroscope: float
+    accelerometer: float
+
+
+class RegressionSettings(TypedDict):
+    """As asked, with defaults filled in."""
+
+    # Where each setting comes from: asked in the run, kept with the anchor, or the default.
+    origin: dict[str, Literal['asked', 'anchor', 'default']]
 
 
 class RegressionSummary(TypedDict):
@@ -3456,6 +3535,8 @@ class RegressionUnit(TypedDict):
     condition: str
     sensor: Literal['gyroscope', 'accelerometer']
     axis: str
+    # An arm has gross errors: both are compared by robust variances.
+    robust: bool
     edf: RegressionUnitEdf
     structure: RegressionUnitStructure
     tests: list[RegressionTest]

@@ -15,7 +15,6 @@
 namespace driftlab::regression {
 namespace {
 
-constexpr double kWarmer = 5.0;
 constexpr double kSameRange = 1e-3;  // of a full scale: closer ones are one figure, written in two units
 
 std::set<std::string> units_of(const std::vector<PowerUp>& sessions) {
@@ -113,7 +112,8 @@ std::string full_scale_sentence(Quantity sensor, const std::vector<double>& befo
 
 }  // namespace
 
-std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                                       const EventLimits& limits) {
   std::vector<Incomparable> found;
   const std::set<std::string> before = units_of(baseline);
   const std::set<std::string> now = units_of(candidate);
@@ -136,10 +136,10 @@ std::vector<Incomparable> compare_arms(const std::vector<PowerUp>& baseline, con
   const std::vector<double> warm = temperatures_of(candidate);
   if (!cold.empty() && !warm.empty()) {
     const double apart = warm[warm.size() / 2] - cold[cold.size() / 2];
-    if (std::abs(apart) > kWarmer) {
+    if (std::abs(apart) > limits.temperature_k) {
       found.push_back({"temperature", "The candidate was " + significant(std::abs(apart)) + " K " +
-                                          (apart > 0.0 ? "warmer" : "colder") +
-                                          " than the baseline; at most 5 K apart can be compared."});
+                                          (apart > 0.0 ? "warmer" : "colder") + " than the baseline; at most " +
+                                          short_text(limits.temperature_k) + " K apart can be compared."});
     }
   }
   for (const Quantity sensor : changed_full_scales(baseline, candidate)) {

@@ -180,7 +180,7 @@ Gate choose_gate(const Design& design, const Contrast& contrast, const Critical&
 }
 
 Needs what_would_decide(const Design& design, const Contrast& contrast, const SessionScatter& scatter, const Gate& gate,
-                        const TestSettings& settings) {
+                        const TestSettings& settings, const std::stop_token& stop) {
   Needs needs;
   if (contrast.tests.empty()) {
     return needs;
@@ -211,13 +211,14 @@ Needs what_would_decide(const Design& design, const Contrast& contrast, const Se
   const auto n = static_cast<double>(design.count(Arm::Candidate));
   const auto m = static_cast<double>(design.count(Arm::Baseline));
   const double now = 1.0 / n + 1.0 / m;
-  for (std::size_t sessions = 1; sessions <= kMostSessions && !needs.sessions_per_arm; ++sessions) {
+  for (std::size_t sessions = 1; sessions <= kMostSessions && !needs.sessions_per_arm && !stop.stop_requested();
+       ++sessions) {
     const double factor = 2.0 / static_cast<double>(sessions) / now;
     if (factor < 1.0 && power(factor, factor, 2 * sessions) >= settings.design_power) {
       needs.sessions_per_arm = sessions;
     }
   }
-  for (double longer = 2.0; longer <= kLongestFactor && !needs.length_factor; longer *= 2.0) {
+  for (double longer = 2.0; longer <= kLongestFactor && !needs.length_factor && !stop.stop_requested(); longer *= 2.0) {
     if (power(1.0 / longer, 1.0, compared_sessions(design)) >= settings.design_power) {
       needs.length_factor = longer;
     }

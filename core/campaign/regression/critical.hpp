@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::regression {
@@ -59,7 +60,8 @@ struct Needs {
   std::optional<double> length_factor;          ///< 2, 4, ... 64 times as long, as many sessions
 };
 
+/// `stop` is polled before each trial; what was found until then is of no use.
 [[nodiscard]] Needs what_would_decide(const Design& design, const Contrast& contrast, const SessionScatter& scatter,
-                                      const Gate& gate, const TestSettings& settings);
+                                      const Gate& gate, const TestSettings& settings, const std::stop_token& stop = {});
 
 }  // namespace driftlab::regression

@@ -47,12 +47,12 @@ DesignBuilder::DesignBuilder(const ComparedSessions& sessions, const Settings& s
       has_(all_.size()),
       sampling_(all_.size()) {}
 
-bool DesignBuilder::add(const NamedUnit& named, UnitReport& told) {
+bool DesignBuilder::add(const NamedUnit& named, UnitReport& told, const std::stop_token& stop) {
   std::vector<SessionChannels> channels;
   for (const PowerUp* session : all_) {
     channels.push_back(channels_of(*session, named.name));
   }
-  const auto pooled = pool_unit(channels, sessions_.compared());
+  const auto pooled = pool_unit(channels, sessions_.compared(), stop);
   if (!pooled || rows_of(*pooled) == 0) {
     return false;
   }
@@ -82,6 +82,7 @@ bool DesignBuilder::add(const NamedUnit& named, UnitReport& told) {
     told.tau_s.push_back(tau_s);
   }
   told.model = pooled->model;
+  told.robust = pooled->robust;
   for (std::vector<double>& edf : told.edf) {
     edf.assign(rows, 0.0);
   }

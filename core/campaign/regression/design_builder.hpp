@@ -6,6 +6,7 @@
 #include "core/campaign/regression/report.hpp"
 
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::regression {
@@ -16,8 +17,8 @@ class DesignBuilder {
   DesignBuilder(const ComparedSessions& sessions, const Settings& settings);
 
   /// Adds the rows of one unit and writes its scales, model and degrees of freedom into `told`. False, and nothing
-  /// added, where no scale has enough degrees of freedom in both arms.
-  [[nodiscard]] bool add(const NamedUnit& named, UnitReport& told);
+  /// added, where no scale has enough degrees of freedom in both arms, or once `stop` is requested.
+  [[nodiscard]] bool add(const NamedUnit& named, UnitReport& told, const std::stop_token& stop = {});
 
   /// Once, after the last unit: the sessions with their rows and the laws of their errors of sampling.
   void finish();

@@ -17,12 +17,6 @@
 namespace driftlab::regression {
 namespace {
 
-constexpr double kMoreMissing = 0.005;
-constexpr double kMoreJitter = 2.0;
-constexpr double kJitterOfInterval = 0.05;
-constexpr double kCoarser = 1.5;
-constexpr double kRateOff = 0.005;
-
 template <class... Arguments>
 std::string written(const char* format, Arguments... arguments) {
   std::array<char, 256> buffer{};
@@ -105,7 +99,7 @@ EventCheck told(const char* name, const std::vector<Excess>& found,
 }
 
 EventCheck check_share(const char* name, const char* words, const std::vector<PowerUp>& baseline,
-                       const std::vector<PowerUp>& candidate, std::size_t ChannelFacts::* count) {
+                       const std::vector<PowerUp>& candidate, std::size_t ChannelFacts::* count, double limit) {
   const Figure share = [count](const ComparedRecording& recording, const ComparedChannel& channel) {
     const double samples = static_cast<double>(std::max<std::size_t>(channel.facts.samples, 1));
     const double own = static_cast<double>(channel.facts.*count);
@@ -114,8 +108,7 @@ EventCheck check_share(const char* name, const char* words, const std::vector<Po
     return (own + lost) / (samples + lost);
   };
   return told(
-      name,
-      exceeding(baseline, candidate, share, [](double now, double before) { return now > before + kMoreMissing; }),
+      name, exceeding(baseline, candidate, share, [limit](double now, double before) { return now > before + limit; }),
       [&](const Excess& excess) {
         return written("%s: %.2g %% of the samples are %s, in the baseline at most %.2g %%.", excess.unit.c_str(),
                        100.0 * excess.candidate, words, 100.0 * excess.baseline);
@@ -127,7 +120,7 @@ EventCheck check_saturation(const std::vector<PowerUp>& baseline, const std::vec
     return static_cast<double>(channel.facts.saturated);
   };
   return told(
-      "full_scale",
+      "saturation",
       exceeding(baseline, candidate, saturated, [](double now, double before) { return now > 0.0 && before == 0.0; }),
       [](const Excess& excess) {
         return written("%s: %.0f samples lie at the full scale, in the baseline none.", excess.unit.c_str(),
@@ -135,18 +128,20 @@ EventCheck check_saturation(const std::vector<PowerUp>& baseline, const std::vec
       });
 }
 
-EventCheck check_jitter(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+EventCheck check_jitter(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                        const EventLimits& limits) {
   const Figure jitter = [](const ComparedRecording& recording, const ComparedChannel& /*channel*/) {
     return recording.jitter_s * recording.rate_hz;
   };
-  return told(
-      "timestamps",
-      exceeding(baseline, candidate, jitter,
-                [](double now, double before) { return now > kMoreJitter * before && now > kJitterOfInterval; }),
-      [](const Excess& excess) {
-        return written("The time stamps jitter by %.2g of a sample interval, in the baseline by %.2g.",
-                       excess.candidate, excess.baseline);
-      });
+  return told("timestamps",
+              exceeding(baseline, candidate, jitter,
+                        [&](double now, double before) {
+                          return now > limits.jitter * before && now > limits.jitter_of_interval;
+                        }),
+              [](const Excess& excess) {
+                return written("The time stamps jitter by %.2g of a sample interval, in the baseline by %.2g.",
+                               excess.candidate, excess.baseline);
+              });
 }
 
 /// What a full scale that somebody changed would explain: all axes of the sensor have steps larger by one factor.
@@ -165,7 +160,7 @@ std::string full_scale_hint(const std::vector<Excess>& found) {
                          factor);
 }
 
-EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate, double limit) {
   const std::set<Quantity> changed = changed_full_scales(baseline, candidate);  // their steps say nothing
   const Figure step = [&](const ComparedRecording& /*recording*/, const ComparedChannel& channel) {
     const auto quantity = parse_quantity(channel.result.quantity);
@@ -177,12 +172,12 @@ EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vec
                    excess.candidate);
   };
   const std::vector<Excess> coarser = exceeding(
-      baseline, candidate, step, [](double now, double before) { return before > 0.0 && now > kCoarser * before; });
+      baseline, candidate, step, [limit](double now, double before) { return before > 0.0 && now > limit * before; });
   EventCheck check = told("resolution", coarser,
                           [&](const Excess& excess) { return sentence(excess) + full_scale_hint(coarser) + "."; });
   if (check.verdict == CheckVerdict::Ok) {
     const auto finer = exceeding(baseline, candidate, step,
-                                 [](double now, double before) { return now > 0.0 && before > kCoarser * now; });
+                                 [limit](double now, double before) { return now > 0.0 && before > limit * now; });
     if (!finer.empty()) {
       check = {"resolution", CheckVerdict::Note, sentence(finer.front()) + ".", finer.front().sessions, std::nullopt};
     }
@@ -190,7 +185,7 @@ EventCheck check_resolution(const std::vector<PowerUp>& baseline, const std::vec
   return check;
 }
 
-EventCheck check_rate(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+EventCheck check_rate(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate, double limit) {
   EventCheck check{"rate", CheckVerdict::Ok, "", {}, std::nullopt};
   for (const PowerUp& session : candidate) {
     for (const ComparedRecording* now : session.recordings) {
@@ -201,7 +196,7 @@ EventCheck check_rate(const std::vector<PowerUp>& baseline, const std::vector<Po
           const double declared =
               now->declared_hz && before->declared_hz ? *now->declared_hz / *before->declared_hz : 1.0;
           before_hz = before->rate_hz * declared;
-          like_one = like_one || std::abs(now->rate_hz / before_hz - 1.0) <= kRateOff;
+          like_one = like_one || std::abs(now->rate_hz / before_hz - 1.0) <= limit;
         }
       }
       if (!like_one && before_hz > 0.0) {
@@ -215,10 +210,13 @@ EventCheck check_rate(const std::vector<PowerUp>& baseline, const std::vector<Po
   return check;
 }
 
-EventCheck check_findings(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate) {
+EventCheck check_findings(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
+                          std::size_t limit) {
   std::set<std::string> before;
+  bool known = false;
   for (const PowerUp& session : baseline) {
     for (const ComparedRecording* recording : session.recordings) {
+      known = known || recording->investigated;
       before.insert(recording->causes.begin(), recording->causes.end());
     }
   }
@@ -234,11 +232,11 @@ EventCheck check_findings(const std::vector<PowerUp>& baseline, const std::vecto
   }
   EventCheck check{"findings", CheckVerdict::Ok, "", {}, std::nullopt};
   for (const auto& [cause, sessions] : fresh) {
-    const bool fails = sessions.size() >= 2;
+    const bool fails = known && sessions.size() >= limit;
     if (check.verdict != CheckVerdict::Fail && (fails || check.verdict == CheckVerdict::Ok)) {
       check.verdict = fails ? CheckVerdict::Fail : CheckVerdict::Note;
       check.sentence = "Investigations find " + cause + " in " + with_count(sessions.size(), "candidate session") +
-                       " and in no baseline session.";
+                       (known ? " and in no baseline session." : "; no baseline session was investigated.");
       check.sessions.assign(sessions.begin(), sessions.end());
     }
   }
@@ -252,7 +250,7 @@ std::map<std::string, ErrorCounts> counts_of(const std::vector<PowerUp>& session
     for (const ComparedRecording* recording : session.recordings) {
       for (const ComparedChannel& channel : recording->channels) {
         auto& [errors, hours] = own[unit_name(*recording, channel.result)];
-        errors += channel.result.contaminated() ? static_cast<double>(channel.facts.flagged) : 0.0;
+        errors += channel.result.contaminated() ? static_cast<double>(channel.facts.bursts) : 0.0;
         hours += std::max(recording->duration_s, 1.0) / 3600.0;
       }
     }
@@ -265,7 +263,7 @@ std::map<std::string, ErrorCounts> counts_of(const std::vector<PowerUp>& session
 }
 
 EventCheck check_contamination(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
-                               double event_alpha) {
+                               double limit, double event_alpha) {
   EventCheck check{"contamination", CheckVerdict::Ok, "", {}, std::nullopt};
   const auto before = counts_of(baseline);
   std::string worst;
@@ -277,11 +275,11 @@ EventCheck check_contamination(const std::vector<PowerUp>& baseline, const std::
     }
     ++tests;
     if (now.sum() > 0.0) {
-      const double p = error_rate_p(known->second, now);
+      const double p = error_rate_p(known->second, now, limit);
       if (!check.p || p < *check.p) {
         check.p = p;
         worst = unit;
-        check.sentence = written("%s: %.3g gross errors an hour, in the baseline %.3g.", unit.c_str(),
+        check.sentence = written("%s: %.3g bursts of gross errors an hour, in the baseline %.3g.", unit.c_str(),
                                  now.sum() / now.time_h(), known->second.sum() / known->second.time_h());
       }
     }
@@ -329,16 +327,18 @@ std::string unit_name(const ComparedRecording& recording, const ReportedChannel&
 }
 
 std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
-                                     double event_alpha) {
-  return {check_saturation(baseline, candidate),
-          check_share("missing", "missing", baseline, candidate, &ChannelFacts::missing),
-          check_share("frozen", "of a sensor that gives one value only", baseline, candidate, &ChannelFacts::frozen),
-          check_share("repeated", "equal to the one before", baseline, candidate, &ChannelFacts::repeated),
-          check_jitter(baseline, candidate),
-          check_resolution(baseline, candidate),
-          check_contamination(baseline, candidate, event_alpha),
-          check_findings(baseline, candidate),
-          check_rate(baseline, candidate)};
+                                     double event_alpha, const EventLimits& limits) {
+  return {
+      check_saturation(baseline, candidate),
+      check_share("missing", "missing", baseline, candidate, &ChannelFacts::missing, limits.missing),
+      check_share("frozen", "of a sensor that gives one value only", baseline, candidate, &ChannelFacts::frozen,
+                  limits.missing),
+      check_share("repeated", "equal to the one before", baseline, candidate, &ChannelFacts::repeated, limits.missing),
+      check_jitter(baseline, candidate, limits),
+      check_resolution(baseline, candidate, limits.resolution),
+      check_contamination(baseline, candidate, limits.contamination, event_alpha),
+      check_findings(baseline, candidate, limits.findings),
+      check_rate(baseline, candidate, limits.rate)};
 }
 
 }  // namespace driftlab::regression

@@ -4,8 +4,8 @@
 ///
 /// Saturation, missing, frozen and repeated samples, jitter of the time stamps, resolution, sampling rate and
 /// identified causes are compared as facts. Gross errors are counted (gross_errors.hpp); their p share the level of the
-/// event family by Holm. Stored results count the samples with gross errors and do not say when they came, so that a
-/// burst counts as often as it has samples.
+/// event family by Holm. Gross errors within a second of each other are one burst; results that were stored before
+/// bursts were counted give one for each sample.
 #include "core/campaign/regression/sessions.hpp"
 
 #include <string>
@@ -17,8 +17,8 @@ enum class CheckVerdict { Ok, Note, Fail };
 [[nodiscard]] std::string_view name_of(CheckVerdict verdict);
 
 struct EventCheck {
-  std::string check;  ///< full_scale, missing, frozen, repeated, timestamps, resolution, contamination, findings, rate,
-                      ///< bias (bias_check.hpp), scale_factor (scale_check.hpp)
+  std::string check;  ///< saturation, missing, frozen, repeated, timestamps, resolution, contamination, findings, rate,
+                      ///< bias (bias_check.hpp), scale_factor (scale_check.hpp), time_base (time_base.hpp)
   CheckVerdict verdict = CheckVerdict::Ok;
   std::string sentence;               ///< empty where it is fine
   std::vector<std::string> sessions;  ///< the candidate's that show it
@@ -27,7 +27,8 @@ struct EventCheck {
 
 /// One entry per check, in the order above. `event_alpha` is the level of the family of tests in this look.
 [[nodiscard]] std::vector<EventCheck> check_events(const std::vector<PowerUp>& baseline,
-                                                   const std::vector<PowerUp>& candidate, double event_alpha);
+                                                   const std::vector<PowerUp>& candidate, double event_alpha,
+                                                   const EventLimits& limits = {});
 
 /// `gyroscope z`, `accelerometer x, 9 deg/s about z`: how a channel under a condition is called; empty for a channel
 /// that is not compared, for nobody said what it measures or along which axis.

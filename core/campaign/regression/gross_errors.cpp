@@ -9,8 +9,6 @@
 namespace driftlab::regression {
 namespace {
 
-constexpr double kRateOfErrors = 2.0;
-
 /// Chi-square of equal rates within the arm and its degrees of freedom, added to the arguments.
 void add_scatter(const ErrorCounts& counts, double& chi_square, double& dof) {
   const double sum = counts.sum();
@@ -26,13 +24,13 @@ void add_scatter(const ErrorCounts& counts, double& chi_square, double& dof) {
 double ErrorCounts::sum() const { return std::accumulate(errors.begin(), errors.end(), 0.0); }
 double ErrorCounts::time_h() const { return std::accumulate(hours.begin(), hours.end(), 0.0); }
 
-double error_rate_p(const ErrorCounts& baseline, const ErrorCounts& candidate) {
+double error_rate_p(const ErrorCounts& baseline, const ErrorCounts& candidate, double times) {
   double chi_square = 8.0;  // four degrees of freedom at 2
   double dof = 4.0;
   add_scatter(baseline, chi_square, dof);
   add_scatter(candidate, chi_square, dof);
   const double scatter = std::max(1.0, chi_square / dof);
-  const double odds = kRateOfErrors * candidate.time_h() / baseline.time_h();
+  const double odds = times * candidate.time_h() / baseline.time_h();
   return beta_probability(odds / (1.0 + odds), candidate.sum() / scatter + 0.5, baseline.sum() / scatter + 0.5);
 }
 

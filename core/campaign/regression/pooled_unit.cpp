@@ -32,9 +32,9 @@ struct Grid {
   [[nodiscard]] double tau_s(std::size_t row) const { return std::ldexp(dt_s, static_cast<int>(row)); }
 };
 
-std::optional<Curve> curve_of(const ReportedChannel& channel) {
+std::optional<Curve> curve_of(const ReportedChannel& channel, bool robust) {
   Curve curve;
-  curve.record = record_of(channel);
+  curve.record = robust ? record_of(channel, true) : record_of(channel);
   curve.channel = &channel;
   const std::size_t scales = curve.record.half.size();
   if (scales < 2 || curve.record.variance.size() != scales || !(curve.record.dt_s > 0.0) ||
@@ -263,16 +263,28 @@ void fit_levels(const Grid& grid, const Pool& pool, const std::string& model, Po
   }
 }
 
+/// Gross errors in one of the arms: all sessions are then compared by one estimator.
+bool ask_for_robust(const std::vector<SessionChannels>& sessions, std::size_t compared) {
+  return std::any_of(sessions.begin(), sessions.begin() + static_cast<std::ptrdiff_t>(compared),
+                     [](const SessionChannels& session) {
+                       return std::any_of(session.begin(), session.end(), [](const ReportedChannel* channel) {
+                         return channel->contaminated() && !channel->haar.robust_variance.empty();
+                       });
+                     });
+}
+
 }  // namespace
 
-std::optional<PooledUnit> pool_unit(const std::vector<SessionChannels>& sessions, std::size_t compared) {
+std::optional<PooledUnit> pool_unit(const std::vector<SessionChannels>& sessions, std::size_t compared,
+                                    const std::stop_token& stop) {
   std::vector<std::vector<Curve>> curves(sessions.size());
   Grid grid;
+  const bool robust = ask_for_robust(sessions, compared);
   double longest_s = 0.0;
   double finest = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     for (const ReportedChannel* channel : sessions[s]) {
-      if (auto curve = curve_of(*channel)) {
+      if (auto curve = curve_of(*channel, robust)) {
         if (s < compared) {
           grid.dt_s = std::max(grid.dt_s, curve->record.dt_s);
           finest = std::min(finest, curve->record.dt_s);
@@ -311,14 +323,18 @@ std::optional<PooledUnit> pool_unit(const std::vector<SessionChannels>& sessions
   }
   HaarCovariance plan(pool.curve.half, pool.curve.samples, grid.dt_s);
   pool.mixture = variance_intervals(pool.curve, plan).mixture;
-  pool.shape = shape_of(pool, curves, compared);
+  pool.shape = robust ? NoiseShape{} : shape_of(pool, curves, compared);
   PooledUnit unit;
+  unit.robust = robust;
   unit.mixed_rates = grid.dt_s / finest > 1.0 + kSameTau;
   for (std::size_t row = 0; row < grid.rows; ++row) {
     unit.tau_s.push_back(grid.tau_s(row));
   }
   Plans plans(pool);
   for (const std::vector<Curve>& session : curves) {
+    if (stop.stop_requested()) {
+      return std::nullopt;
+    }
     unit.sessions.push_back(merge(grid, pool, plans, session));
   }
   fit_levels(grid, pool, best_model(curves, compared), unit);

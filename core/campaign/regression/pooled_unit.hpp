@@ -6,8 +6,10 @@
 /// has no scale at that tau, its nearest is taken times the ratio of the mixture at both. Several recordings of a
 /// session are averaged with weights edf_j. S and eta come from the mixture fitted to the pooled curve of both arms,
 /// not from that of a session, so that its own fluctuation does not choose its weight; what the samples' kurtosis adds
-/// is taken from the degrees of freedom that were stored. Channels with gross errors are compared by their robust
-/// variances.
+/// is taken from the degrees of freedom that were stored. Where a channel of one arm has gross errors all sessions are
+/// compared by their robust variances, those without gross errors too: noise with heavy tails has a smaller robust
+/// variance than its classical one, and an arm that changes the estimator would show a change that is none. Kurtosis is
+/// then not asked for, and the efficiency of each estimate is that of its recording.
 ///
 /// The model is the candidate with the least sum of criteria over all recordings, fitted to the pooled curve. Its
 /// levels are named by the registry, so that a new process is compared as soon as it is fitted.
@@ -16,6 +18,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -38,11 +41,14 @@ struct PooledUnit {
   Eigen::VectorXd modelled;            ///< 1/2 ln nu per row
   Eigen::MatrixXd sensitivity;
   std::size_t shapes = 0;
+  bool robust = false;       ///< by robust variances, for one of the arms has gross errors
   bool mixed_rates = false;  ///< the recordings have different sample intervals
 };
 
 /// `sessions`: those of both arms and, after them, those of earlier releases; the first `compared` make the pooled
 /// curve. Nothing where no curve is left. Cost: one lag plan per length of recording, some ms each.
-[[nodiscard]] std::optional<PooledUnit> pool_unit(const std::vector<SessionChannels>& sessions, std::size_t compared);
+/// `stop` is polled before each session; nothing then.
+[[nodiscard]] std::optional<PooledUnit> pool_unit(const std::vector<SessionChannels>& sessions, std::size_t compared,
+                                                  const std::stop_token& stop = {});
 
 }  // namespace driftlab::regression

@@ -22,7 +22,7 @@ struct ChannelFacts {
   std::size_t frozen = 0;                     ///< samples of a stretch in which the sensor gives one value only
   std::size_t repeated = 0;                   ///< samples equal to the one before
   std::size_t saturated = 0;                  ///< samples at a full-scale value
-  std::size_t flagged = 0;                    ///< gross errors
+  std::size_t bursts = 0;                     ///< of gross errors: those within 1 s of each other are one
   double resolution = 0.0;                    ///< step of the lattice [channel unit]; 0: none
   std::optional<double> mean = std::nullopt;  ///< of the analysed samples [channel unit]
   bool mean_of_error = false;                 ///< a reference was subtracted first
@@ -42,7 +42,7 @@ struct FullScales {
 struct ComparedRecording {
   std::string id;
   std::string session;            ///< empty: not stated
-  std::optional<double> began_s;  ///< time of its first sample, seconds since any fixed moment
+  std::optional<double> began_s;  ///< time of its first sample, seconds since 1970 (UTC)
   std::string condition;          ///< compact form, `static`
   double duration_s = 0.0;
   double rate_hz = 0.0;               ///< 1/dt of the analysed samples
@@ -52,7 +52,8 @@ struct ComparedRecording {
   std::size_t missing = 0;  ///< samples that the time column says are missing
   std::optional<double> temperature_degc;
   FullScales full_scale = {};
-  std::vector<std::string> causes;  ///< identified by a stored investigation
+  bool investigated = false;        ///< somebody looked for causes
+  std::vector<std::string> causes;  ///< identified ones
   std::vector<ComparedChannel> channels;
 };
 
@@ -86,6 +87,19 @@ struct ScaleMargins {
   [[nodiscard]] bool any() const { return gyroscope > 0.0 || accelerometer > 0.0; }
 };
 
+/// Where facts of the files begin to count (event_checks.hpp, comparability.hpp).
+struct EventLimits {
+  double missing = 0.005;            ///< share of missing, frozen or repeated samples above the baseline's largest
+  double jitter = 2.0;               ///< of the stamps, times the baseline's largest, and
+  double jitter_of_interval = 0.05;  ///< of the sample interval
+  double resolution = 1.5;           ///< growth of the step of the values
+  double contamination = 2.0;        ///< growth of the rate of bursts of gross errors
+  std::size_t findings = 2;          ///< candidate sessions that show an identified cause
+  double rate = 0.005;               ///< of the sampling rate
+  double temperature_k = 5.0;        ///< between the arms
+  double repeatability = 4.0;        ///< kL of session_scatter.hpp
+};
+
 struct Settings {
   TestSettings test;
   Margins gyroscope = {};
@@ -97,6 +111,7 @@ struct Settings {
   double min_edf = 10.0;
   BiasMargins bias = {};
   ScaleMargins scale_factor = {};
+  EventLimits limits = {};
 };
 
 struct Request {

@@ -4,33 +4,21 @@
 #include "core/campaign/regression/compared_sessions.hpp"
 #include "core/campaign/regression/design_builder.hpp"
 #include "core/campaign/regression/release_order.hpp"
+#include "core/campaign/regression/request_checks.hpp"
 #include "core/campaign/regression/scale_check.hpp"
+#include "core/campaign/regression/time_base.hpp"
+#include "core/signal/number.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 namespace driftlab::regression {
 namespace {
 
-constexpr double kDoesNotRepeat = 4.0;
-
-ArmReport arm_report(const Recordings& arm, const PowerUps& sessions) {
-  ArmReport told;
-  told.label = arm.label;
-  for (const PowerUp& session : sessions.sessions) {
-    ArmReport::Session one{session.name, {}, 0.0};
-    for (const ComparedRecording* recording : session.recordings) {
-      one.recordings.push_back(recording->id);
-      one.duration_s += recording->duration_s;
-      told.rate_hz = told.rate_hz > 0.0 ? told.rate_hz : recording->rate_hz;
-    }
-    told.sessions.push_back(std::move(one));
-  }
-  return told;
-}
+tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The regression run was cancelled."); }
 
 void tell_trends(const Design& design, const ReleaseOrder& order, Report& report) {
   const Comparison& comparison = report.comparison;
@@ -72,66 +60,79 @@ void check_length(const Design& design, Report& report) {
   if (2.0 * reach_s > through_s) {
     return;
   }
-  double length_s = 0.0;
+  double length_s = std::numeric_limits<double>::infinity();
+  std::size_t sessions = 0;
   for (const ArmReport* arm : {&report.baseline, &report.candidate}) {
     for (const ArmReport::Session& session : arm->sessions) {
-      length_s = length_s > 0.0 ? std::min(length_s, session.duration_s) : session.duration_s;
+      if (session.duration_s < length_s) {
+        length_s = session.duration_s;
+        sessions = arm->sessions.size();
+      }
     }
   }
   const double enough_s = 60.0 * std::ceil(length_s * through_s / reach_s / 60.0);
-  report.comparability.push_back({"length", "Too short: a session of " + duration_text(length_s) + " reaches " +
+  report.comparability.push_back({"length", "Too short: " + with_count(sessions, "session") + " of " +
+                                                duration_text(length_s) + (sessions == 1 ? " reaches " : " reach ") +
                                                 duration_text(reach_s) + "; " + duration_text(enough_s) + " reach " +
                                                 duration_text(through_s) + "."});
 }
 
-/// The same samples twice are no second session, and candidate and baseline at once show that nothing changed.
-Status check_copies(const Request& request) {
-  std::vector<const ComparedRecording*> all;
-  for (const Recordings* arm : {&request.baseline, &request.candidate}) {
-    for (const ComparedRecording& recording : arm->recordings) {
-      all.push_back(&recording);
-    }
-  }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const auto& a = all[i]->channels;
-      const auto& b = all[j]->channels;
-      const bool copies = !a.empty() && a.size() == b.size() &&
-                          std::equal(a.begin(), a.end(), b.begin(), [](const auto& one, const auto& other) {
-                            return one.result.haar.variance == other.result.haar.variance;
-                          });
-      if (copies) {
-        return fail(ErrorCode::InvalidArgument,
-                    "The recordings " + all[j]->id + " and " + all[i]->id + " hold the same samples.",
-                    {{"recording", all[i]->id}});
+void note_sessions(const ComparedSessions& sessions, Report& report) {
+  for (const PowerUps* arm : {&sessions.baseline, &sessions.candidate}) {
+    for (const std::string& note : arm->notes) {
+      if (std::find(report.notes.begin(), report.notes.end(), note) == report.notes.end()) {
+        report.notes.push_back(note);
       }
     }
   }
-  return {};
 }
 
-Status check_arms(const Request& request) {
-  for (const auto& [arm, name] : {std::pair{&request.baseline, "baseline"}, {&request.candidate, "candidate"}}) {
-    if (arm->recordings.empty()) {
-      return fail(ErrorCode::InvalidArgument, std::string("The ") + name + " has no recordings.", {{"arm", name}});
+/// Adds every unit that both arms have to design and report. Error: Cancelled.
+Status add_units(const ComparedSessions& sessions, const RunControl& control, DesignBuilder& builder, Report& report) {
+  const auto now = units_of(sessions.candidate.sessions);
+  const auto before = units_of(sessions.baseline.sessions);
+  double done = 0.0;
+  for (const auto& [name, unit] : before) {
+    control.report("compare", 0.9 * done++ / static_cast<double>(before.size()));
+    if (control.stop.stop_requested()) {
+      return cancelled();
+    }
+    if (!now.contains(name)) {
+      continue;
+    }
+    UnitReport told;
+    told.name = name;
+    told.condition = unit.condition;
+    told.sensor = sensor_of(unit.quantity);
+    told.axis = unit.axis;
+    told.structure = {structure_of(sessions.baseline.sessions, name), structure_of(sessions.candidate.sessions, name)};
+    if (builder.add(unit, told, control.stop)) {
+      report.units.push_back(std::move(told));
+    } else {
+      report.comparability.push_back({"length", "Too short: no scale of " + name + " has " +
+                                                    std::to_string(static_cast<int>(report.settings.min_edf)) +
+                                                    " degrees of freedom in both arms."});
     }
   }
-  std::set<std::string> base;
-  for (const ComparedRecording& recording : request.baseline.recordings) {
-    base.insert(recording.id);
-  }
-  for (const ComparedRecording& recording : request.candidate.recordings) {
-    if (base.contains(recording.id)) {
-      return fail(ErrorCode::InvalidArgument, "The recording " + recording.id + " is in both arms.",
-                  {{"recording", recording.id}});
-    }
-  }
-  return check_copies(request);
+  return control.stop.stop_requested() ? Status(cancelled()) : Status{};
+}
+
+/// What is no level of noise. Gross errors, and bias and scale factor where they are tested, share the level of events.
+void check_facts(const ComparedSessions& sessions, Report& report) {
+  const Settings& settings = report.settings;
+  const double tests = 1.0 + (settings.bias.any() ? 1.0 : 0.0) + (settings.scale_factor.any() ? 1.0 : 0.0);
+  const double level = settings.test.look_share * settings.test.event_alpha / tests;
+  const std::vector<PowerUp>& before = sessions.baseline.sessions;
+  const std::vector<PowerUp>& candidate = sessions.candidate.sessions;
+  report.checks = check_events(before, candidate, level, settings.limits);
+  report.checks.push_back(check_bias(before, candidate, settings.bias, level));
+  report.checks.push_back(check_scale_factor(before, candidate, settings.scale_factor, level));
+  report.checks.push_back(check_time_base(report.units, settings.test.through_s));
 }
 
 }  // namespace
 
-Result<Report> run_regression(const Request& request) {
+Result<Report> run_regression(const Request& request, const RunControl& control) {
   if (auto checked = check_arms(request); !checked) {
     return fail(checked.error());
   }
@@ -146,33 +147,11 @@ Result<Report> run_regression(const Request& request) {
     sessions.history.push_back(group_sessions(release));
     report.history.push_back(arm_report(release, sessions.history.back()));
   }
-  for (const PowerUps* arm : {&sessions.baseline, &sessions.candidate}) {
-    for (const std::string& note : arm->notes) {
-      if (std::find(report.notes.begin(), report.notes.end(), note) == report.notes.end()) {
-        report.notes.push_back(note);
-      }
-    }
-  }
-  report.comparability = compare_arms(sessions.baseline.sessions, sessions.candidate.sessions);
+  note_sessions(sessions, report);
+  report.comparability = compare_arms(sessions.baseline.sessions, sessions.candidate.sessions, request.settings.limits);
   DesignBuilder builder(sessions, request.settings);
-  const auto now = units_of(sessions.candidate.sessions);
-  for (const auto& [name, unit] : units_of(sessions.baseline.sessions)) {
-    if (!now.contains(name)) {
-      continue;
-    }
-    UnitReport told;
-    told.name = name;
-    told.condition = unit.condition;
-    told.sensor = sensor_of(unit.quantity);
-    told.axis = unit.axis;
-    told.structure = {structure_of(sessions.baseline.sessions, name), structure_of(sessions.candidate.sessions, name)};
-    if (builder.add(unit, told)) {
-      report.units.push_back(std::move(told));
-    } else {
-      report.comparability.push_back({"length", "Too short: no scale of " + name + " has " +
-                                                    std::to_string(static_cast<int>(request.settings.min_edf)) +
-                                                    " degrees of freedom in both arms."});
-    }
+  if (auto added = add_units(sessions, control, builder, report); !added) {
+    return fail(added.error());
   }
   if (report.units.empty() && report.comparability.empty()) {
     return fail(ErrorCode::InvalidArgument,
@@ -181,32 +160,27 @@ Result<Report> run_regression(const Request& request) {
   }
   if (!report.units.empty()) {
     builder.finish();
-    report.comparison = compare(builder.design(), request.settings.test);
+    report.comparison = compare(builder.design(), request.settings.test, control.stop);
+    if (control.stop.stop_requested()) {
+      return cancelled();
+    }
     report.scope_s = report.comparison.gate.scope_s;
     tell_tests(builder.design(), report);
     tell_trends(builder.design(), order_of(request, sessions), report);
     check_length(builder.design(), report);
   }
   if (builder.mixed_rates()) {
-    report.notes.push_back("The recordings have different rates: scales are compared at equal averaging time, from " +
-                           duration_text(report.units.front().tau_s.front()) + " on.");
+    report.notes.push_back(rates_sentence(report.baseline, report.candidate, report.units.front().tau_s.front()));
   }
   if (report.comparison.scatter.contrasts > 0 &&
-      std::sqrt(report.comparison.scatter.mean_square_common()) > kDoesNotRepeat) {
-    report.comparability.push_back(
-        {"repeatability",
-         "The rig does not repeat: sessions without a change differ more than four times as much as "
-         "sessions of such sensors do."});
+      std::sqrt(report.comparison.scatter.mean_square_common()) > request.settings.limits.repeatability) {
+    report.comparability.push_back({"repeatability",
+                                    "The rig does not repeat: sessions without a change differ more "
+                                    "than " +
+                                        short_text(request.settings.limits.repeatability) +
+                                        " times as much as sessions of such sensors do."});
   }
-  // Gross errors, and bias and scale factor where they are tested, share the level of the events.
-  const Settings& settings = request.settings;
-  const double tests = 1.0 + (settings.bias.any() ? 1.0 : 0.0) + (settings.scale_factor.any() ? 1.0 : 0.0);
-  const double level = settings.test.look_share * settings.test.event_alpha / tests;
-  const std::vector<PowerUp>& before = sessions.baseline.sessions;
-  const std::vector<PowerUp>& candidate = sessions.candidate.sessions;
-  report.checks = check_events(before, candidate, level);
-  report.checks.push_back(check_bias(before, candidate, settings.bias, level));
-  report.checks.push_back(check_scale_factor(before, candidate, settings.scale_factor, level));
+  check_facts(sessions, report);
   const bool event = std::any_of(report.checks.begin(), report.checks.end(),
                                  [](const EventCheck& check) { return check.verdict == CheckVerdict::Fail; });
   report.verdict = event                           ? Verdict::Fail

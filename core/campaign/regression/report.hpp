@@ -1,9 +1,11 @@
 #pragma once
 /// The use of it all: a request in, a verdict in sentences out.
+#include "core/campaign/regression/arms.hpp"
 #include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/event_checks.hpp"
 #include "core/campaign/regression/release_trend.hpp"
 #include "core/campaign/regression/verdict.hpp"
+#include "core/signal/progress.hpp"
 
 #include <array>
 #include <optional>
@@ -12,17 +14,6 @@
 #include <vector>
 
 namespace driftlab::regression {
-
-struct ArmReport {
-  std::string label;
-  struct Session {
-    std::string name;
-    std::vector<std::string> recordings;
-    double duration_s = 0.0;
-  };
-  std::vector<Session> sessions;
-  double rate_hz = 0.0;  ///< of the first recording
-};
 
 struct ScaleReport {
   Test test;
@@ -38,6 +29,7 @@ struct UnitReport {
   std::string sensor;
   std::string axis;
   std::vector<double> tau_s;               ///< rows
+  bool robust = false;                     ///< both arms by robust variances
   std::array<std::vector<double>, 2> edf;  ///< baseline, candidate: sum over the sessions, per row
   std::array<std::string, 2> structure;    ///< best model of each arm
   std::string model;                       ///< of the pooled curve; empty: none
@@ -81,8 +73,8 @@ struct Report {
 };
 
 /// Errors: InvalidArgument (an arm without recordings; no channel that both arms can be compared in), each with the
-/// field "arm" where it concerns one.
-[[nodiscard]] Result<Report> run_regression(const Request& request);
+/// field "arm" where it concerns one; Cancelled.
+[[nodiscard]] Result<Report> run_regression(const Request& request, const RunControl& control = {});
 
 /// `+23 % [+14, +33]`: a difference in ln deviation as people read it.
 [[nodiscard]] std::string percent_text(double ln_deviation);

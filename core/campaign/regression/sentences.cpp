@@ -143,7 +143,6 @@ void note_scatter(Report& report) {
               100.0 * sd, gyroscope ? "gyro" : "accel"));
 }
 
-/// All axes move by one factor: so does a clock that is off (a clock error d moves N by d/2).
 /// Drifts over the releases, each unit once: by its scales where these show it, else by N.
 void note_trends(Report& report) {
   std::string told;
@@ -159,33 +158,16 @@ void note_trends(Report& report) {
   }
 }
 
-void note_time_base(Report& report) {
-  std::vector<double> shifts;
+/// Units in which gross errors of an arm asked for the robust variances of both.
+void note_robust(Report& report) {
+  std::string units;
   for (const UnitReport& unit : report.units) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const ScaleReport& test : unit.tests) {
-      if (test.name.empty() && test.test.tau_s <= report.settings.test.through_s) {
-        sum += test.theta;
-        ++count;
-      }
-    }
-    if (count > 0.0) {
-      shifts.push_back(sum / count);
+    if (unit.robust) {
+      units += (units.empty() ? "" : ", ") + short_name(unit.name);
     }
   }
-  if (shifts.size() < 3) {
-    return;
-  }
-  double mean = 0.0;
-  for (const double shift : shifts) {
-    mean += shift / static_cast<double>(shifts.size());
-  }
-  const bool alike = std::all_of(shifts.begin(), shifts.end(),
-                                 [&](double shift) { return std::abs(shift - mean) < std::abs(mean) / 3.0; });
-  if (alike && std::abs(mean) > 0.03) {
-    report.notes.push_back(written("All axes move by one factor, as a clock %.0f %% %s would; stamp the samples.",
-                                   std::abs(percent_of(2.0 * mean)), mean > 0.0 ? "fast" : "slow"));
+  if (!units.empty()) {
+    report.notes.push_back(units + ": an arm has gross errors, so that both are compared by robust variances.");
   }
 }
 
@@ -222,7 +204,7 @@ void tell(Report& report) {
   note_structures(report);
   note_improvement(report);
   note_scatter(report);
-  note_time_base(report);
+  note_robust(report);
   note_trends(report);
   const Told beyond = largest(
       report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Beyond; },

@@ -148,7 +148,8 @@ double SessionScatter::mean_square_local() const { return mean_square(posterior.
 double SessionScatter::quantile_common(double p) const { return quantile(posterior.rowwise().sum(), p); }
 double SessionScatter::quantile_local(double p) const { return quantile(posterior.colwise().sum().transpose(), p); }
 
-SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, double prior_df) {
+SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, double prior_df,
+                             const std::stop_token& stop) {
   SessionScatter scatter;
   Grid log_density;
   for (std::size_t a = 0; a < kFactors; ++a) {
@@ -166,8 +167,8 @@ SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, do
     scatter.contrasts += static_cast<std::size_t>(group.values.cols());
     const Eigen::MatrixXd common = restricted(terms.common, group.rows);
     const Eigen::MatrixXd local = restricted(terms.local, group.rows);
-    for (std::size_t a = 0; a < kFactors; ++a) {
-      for (std::size_t b = 0; b < kFactors; ++b) {
+    for (std::size_t a = 0; a < kFactors && !stop.stop_requested(); ++a) {
+      for (std::size_t b = 0; b < kFactors && !stop.stop_requested(); ++b) {
         const double kl = factor_grid()[a];
         const double ks = factor_grid()[b];
         log_density(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) +=

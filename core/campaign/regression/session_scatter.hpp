@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::regression {
@@ -47,8 +48,9 @@ struct SessionScatter {
   [[nodiscard]] double quantile_local(double p) const;
 };
 
-/// `prior_df` is v above. Of `arms` only those named take part; all: baseline, candidate and history. Cost: 81 Cholesky
-/// factors of the size of the rows per set of sessions with equal lengths.
-[[nodiscard]] SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, double prior_df);
+/// `prior_df` is v above. Baseline, candidate and history take part. Cost: 81 Cholesky factors of the size of the rows
+/// per set of sessions with equal lengths; `stop` is polled before each, and what was learnt of a part is of no use.
+[[nodiscard]] SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, double prior_df,
+                                           const std::stop_token& stop = {});
 
 }  // namespace driftlab::regression

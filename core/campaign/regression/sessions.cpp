@@ -1,6 +1,11 @@
 #include "core/campaign/regression/sessions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 
 namespace driftlab::regression {
@@ -8,10 +13,44 @@ namespace {
 
 constexpr double kSamePowerUp = 600.0;
 
+/// A time as people read it.
+struct Moment {
+  std::string day;    ///< `22 Nov`
+  std::string clock;  ///< `10:00`
+};
+
+Moment moment_of(double seconds) {
+  static constexpr std::array<const char*, 12> kMonths = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                                          "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  const auto minutes = std::chrono::sys_time<std::chrono::minutes>(
+      std::chrono::minutes(static_cast<std::int64_t>(std::floor(seconds / 60.0))));
+  const auto days = std::chrono::floor<std::chrono::days>(minutes);
+  const std::chrono::year_month_day date(days);
+  const std::chrono::hh_mm_ss<std::chrono::minutes> of_day(minutes - days);
+  const auto two = [](auto number) { return (number < 10 ? "0" : "") + std::to_string(number); };
+  return {std::to_string(static_cast<unsigned>(date.day())) + " " + kMonths[static_cast<unsigned>(date.month()) - 1],
+          two(of_day.hours().count()) + ":" + two(of_day.minutes().count())};
+}
+
 struct Timed {
   double began_s = 0.0;
   const ComparedRecording* recording = nullptr;
 };
+
+/// `22 Nov, 10:00-10:50`, `22 Nov, 23:50 to 23 Nov, 00:20`, in UTC: from the first sample to the last one.
+std::string span_of(const PowerUp& session) {
+  double first_s = std::numeric_limits<double>::infinity();
+  double last_s = -first_s;
+  for (const ComparedRecording* recording : session.recordings) {
+    const double began_s = recording->began_s.value_or(0.0);
+    first_s = std::min(first_s, began_s);
+    last_s = std::max(last_s, began_s + recording->duration_s);
+  }
+  const Moment first = moment_of(first_s);
+  const Moment last = moment_of(last_s);
+  return first.day == last.day ? first.day + ", " + first.clock + "-" + last.clock
+                               : first.day + ", " + first.clock + " to " + last.day + ", " + last.clock;
+}
 
 /// Recordings without a session but with a time, cut where more than ten minutes lie between two of them.
 void group_by_time(std::vector<Timed> timed, PowerUps& found) {
@@ -30,8 +69,8 @@ void group_by_time(std::vector<Timed> timed, PowerUps& found) {
   }
   for (PowerUp& session : sessions) {
     if (const std::size_t count = session.recordings.size(); count > 1) {
-      found.notes.push_back(std::to_string(count) + " recordings are one session (" + session.recordings.front()->id +
-                            " to " + session.recordings.back()->id + ", less than 10 min apart) and count once.");
+      found.notes.push_back(std::to_string(count) + " recordings are one session (" + span_of(session) +
+                            ") and count once.");
     }
     found.sessions.push_back(std::move(session));
   }

@@ -54,10 +54,13 @@ std::string_view name_of(Finding finding) {
   return "open";
 }
 
-Comparison compare(const Design& design, const TestSettings& settings) {
+Comparison compare(const Design& design, const TestSettings& settings, const std::stop_token& stop) {
   Comparison comparison;
   const ScatterTerms terms = scatter_terms(design);
-  comparison.scatter = learn_scatter(design, terms, settings.prior_df);
+  comparison.scatter = learn_scatter(design, terms, settings.prior_df, stop);
+  if (stop.stop_requested()) {
+    return comparison;
+  }
   comparison.contrast = make_contrast(design, terms, comparison.scatter);
   const Contrast& contrast = comparison.contrast;
   const Critical critical = critical_values(design, contrast, comparison.scatter, settings);
@@ -88,7 +91,7 @@ Comparison compare(const Design& design, const TestSettings& settings) {
   }
   comparison.verdict = fail ? Verdict::Fail : pass ? Verdict::Pass : Verdict::Inconclusive;
   if (comparison.verdict == Verdict::Inconclusive) {
-    comparison.needs = what_would_decide(design, contrast, comparison.scatter, comparison.gate, settings);
+    comparison.needs = what_would_decide(design, contrast, comparison.scatter, comparison.gate, settings, stop);
   }
   return comparison;
 }

@@ -9,6 +9,7 @@
 /// by c_max. Each of pass and fail is a claim that is wrong in at most 5 % of the runs whose truth contradicts it.
 #include "core/campaign/regression/critical.hpp"
 
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct Comparison {
 
 /// The whole comparison of noise. Deterministic in design and settings; the order of the sessions changes nothing but
 /// rounding. Without a test that both arms have the verdict is inconclusive. Cost at 6 axes of 13 scales: some 50 ms.
-[[nodiscard]] Comparison compare(const Design& design, const TestSettings& settings);
+/// Once `stop` is requested it ends soon, with what is of no use.
+[[nodiscard]] Comparison compare(const Design& design, const TestSettings& settings, const std::stop_token& stop = {});
 
 }  // namespace driftlab::regression

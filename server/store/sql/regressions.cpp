@@ -3,14 +3,15 @@
 namespace driftlab::server::tables {
 namespace {
 
-constexpr std::string_view kSelectAnchors = "SELECT id, device_id, label, reason, created_at FROM anchors";
+constexpr std::string_view kSelectAnchors =
+    "SELECT id, device_id, label, reason, created_at, settings_json FROM anchors";
 constexpr std::string_view kInsertAnchor =
-    "INSERT INTO anchors (id, device_id, label, reason, created_at) VALUES (?, ?, ?, ?, ?)";
+    "INSERT INTO anchors (id, device_id, label, reason, created_at, settings_json) VALUES (?, ?, ?, ?, ?, ?)";
 constexpr std::string_view kInsertArtefact = "INSERT INTO artefacts (job_id, name, content) VALUES (?, ?, ?)";
 constexpr std::string_view kArtefact = "SELECT content FROM artefacts WHERE job_id = ? AND name = ?";
 
 Anchor read_anchor(const Statement& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)};
+  return {row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4), row.text(5)};
 }
 
 std::string read_content(const Statement& row) { return row.text(0); }
@@ -21,8 +22,9 @@ Result<Anchor> add_anchor(Connection& connection, const Anchor& anchor, UtcMicro
   Anchor made = anchor;
   made.id = make_id("anc", now);
   made.created_at = now;
-  Status inserted =
-      connection.prepare(kInsertAnchor).bind(made.id, made.device_id, made.label, made.reason, made.created_at).run();
+  Status inserted = connection.prepare(kInsertAnchor)
+                        .bind(made.id, made.device_id, made.label, made.reason, made.created_at, made.settings_json)
+                        .run();
   return inserted ? Result<Anchor>(std::move(made)) : fail(inserted.error());
 }
 

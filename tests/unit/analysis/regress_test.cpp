@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace driftlab {
 namespace {
 
@@ -40,6 +42,24 @@ TEST(Regress, ALaterLookIsStricterBothWays) {
   ASSERT_TRUE(first && third);
   EXPECT_GT(third->report.comparison.c_1, first->report.comparison.c_1);
   EXPECT_GT(third->report.comparison.c_max, first->report.comparison.c_max);
+}
+
+TEST(Regress, ARunWithOtherSettingsThanItsAnchorSaysWhatChanged) {
+  RegressRequest wanted = request();
+  wanted.kept = wanted.comparison.settings;
+  const auto says_so = [&] {
+    const auto report = regress(wanted);
+    const auto& details = report->report.summary.details;
+    return std::find(details.begin(), details.end(),
+                     "Settings differ from those kept with the anchor: margin.gyroscope 20, 25, 50 % (kept: 10, 25, 50 "
+                     "%).") != details.end();
+  };
+  EXPECT_FALSE(says_so());
+  wanted.comparison.settings.gyroscope.percent[0] = 20.0;
+  EXPECT_TRUE(says_so());
+  const regression::Settings own = wanted.comparison.settings;
+  EXPECT_EQ(regression::with_kept(*wanted.kept, own, {}).gyroscope.percent[0], 10.0);
+  EXPECT_EQ(regression::with_kept(*wanted.kept, own, {"margin"}).gyroscope.percent[0], 20.0);
 }
 
 TEST(Regress, ASettingOutsideItsRangeIsNamed) {

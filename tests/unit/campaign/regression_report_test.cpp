@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <stop_token>
+#include <thread>
 
 namespace driftlab::regression {
 namespace {
@@ -85,11 +88,76 @@ TEST(RegressionReport, CountsPartsOfOnePowerUpOnce) {
   ASSERT_TRUE(report);
   EXPECT_EQ(report->candidate.sessions.size(), 1U);
   EXPECT_EQ(report->baseline.sessions.size(), 3U);
-  EXPECT_TRUE(report->notes[1].starts_with("3 recordings are one session")) << report->notes[1];
+  EXPECT_EQ(report->notes[1], "3 recordings are one session (1 Jan, 00:00-00:43) and count once.");
   made.candidate.recordings[2].began_s = 1e6;
   EXPECT_EQ(run_regression(made)->candidate.sessions.size(), 2U);
   made.candidate.recordings[2].session = made.candidate.recordings[1].session = "one";
   EXPECT_EQ(run_regression(made)->candidate.sessions.size(), 2U);
+}
+
+TEST(RegressionReport, ASessionOverMidnightNamesBothDays) {
+  Request made = request(0.05);
+  for (std::size_t i = 0; i < 3; ++i) {  // 22 November 2026, 23:55 UTC, and two at once with it
+    made.candidate.recordings[i].began_s = 1795391700.0 + 60.0 * static_cast<double>(i);
+  }
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->notes[1], "3 recordings are one session (22 Nov, 23:55 to 23 Nov, 00:07) and count once.");
+}
+
+TEST(RegressionReport, StopsSoonAfterItIsAskedTo) {
+  std::stop_source stop;
+  std::size_t reports = 0;
+  const RunControl control{stop.get_token(), [&](std::string_view /*stage*/, double /*fraction*/) {
+                             ++reports;
+                             stop.request_stop();
+                           }};
+  const auto report = run_regression(request(0.05), control);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::Cancelled);
+  EXPECT_EQ(reports, 1U);
+}
+
+TEST(RegressionReport, ALongComparisonEndsWithinASecondOfTheStop) {
+  // Six axes and sixty sessions of different lengths: each has a covariance of its own to factor, 81 times.
+  Request made = request(0.05);
+  for (std::size_t s = 0; s < 60; ++s) {
+    ComparedRecording one =
+        session("old/" + std::to_string(s), 0.05, 100 + s % 3, 0.04 + 1e-4 * static_cast<double>(s));
+    made.history.push_back({"firmware=0." + std::to_string(s / 6), {}});
+    made.history[s / 6].recordings.push_back(std::move(one));
+  }
+  std::erase_if(made.history, [](const Recordings& release) { return release.recordings.empty(); });
+  const auto six = [](Recordings& arm) {
+    for (ComparedRecording& recording : arm.recordings) {
+      const ComparedChannel first = recording.channels.front();
+      recording.channels.clear();
+      for (int c = 0; c < 6; ++c) {
+        recording.channels.push_back(first);
+        recording.channels.back().result.quantity = c < 3 ? "angular_rate" : "specific_force";
+        recording.channels.back().result.unit = c < 3 ? "deg/s" : "m/s^2";
+        recording.channels.back().result.axis = std::string(1, "xyz"[c % 3]);
+      }
+    }
+  };
+  six(made.baseline);
+  six(made.candidate);
+  for (Recordings& release : made.history) {
+    six(release);
+  }
+  std::stop_source stop;
+  std::chrono::steady_clock::time_point asked;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    asked = std::chrono::steady_clock::now();
+    stop.request_stop();
+  });
+  const auto report = run_regression(made, {stop.get_token(), {}});
+  const auto ended = std::chrono::steady_clock::now();
+  later.join();
+  ASSERT_FALSE(report) << "it ended before it was asked to: make it longer";
+  EXPECT_EQ(report.error().code, ErrorCode::Cancelled);
+  EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 1.0);
 }
 
 TEST(RegressionReport, TheOrderOfRecordingsChangesNothing) {
@@ -122,6 +190,10 @@ TEST(RegressionReport, ComparesRecordingsOfDifferentRatesAtEqualTau) {
       EXPECT_NEAR(test.theta, 0.0, 0.06) << test.test.tau_s;
     }
   }
+  EXPECT_NE(std::find(report->notes.begin(), report->notes.end(),
+                      "Baseline 25 Hz, candidate 50 Hz: compared from 0.04 s on; 0.02 s exists only in the candidate."),
+            report->notes.end());
+  EXPECT_EQ(report->candidate.rates_hz, std::vector<double>{50.0});
   made.candidate.recordings[0].declared_hz.reset();
   EXPECT_EQ(check(*run_regression(made), "rate").verdict, CheckVerdict::Fail);
 }
@@ -132,10 +204,93 @@ TEST(RegressionReport, FactsFailWhateverTheNoiseSays) {
   const auto report = run_regression(made);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->verdict, Verdict::Fail);
-  EXPECT_EQ(check(*report, "full_scale").sessions, std::vector<std::string>{"1.1/1"});
-  EXPECT_EQ(report->summary.verdict, check(*report, "full_scale").sentence);
+  EXPECT_EQ(check(*report, "saturation").sessions, std::vector<std::string>{"1.1/1"});
+  EXPECT_EQ(report->summary.verdict, check(*report, "saturation").sentence);
   made.baseline.recordings[0].channels[0].facts.saturated = 1;
   EXPECT_EQ(run_regression(made)->verdict, Verdict::Pass);
+}
+
+TEST(RegressionReport, LimitsOfFactsAreSettings) {
+  Request made = request(0.05);
+  made.candidate.recordings[1].channels[0].facts.repeated = 300;  // 2 % of 15,000
+  EXPECT_EQ(check(*run_regression(made), "repeated").verdict, CheckVerdict::Fail);
+  made.settings.limits.missing = 0.03;
+  EXPECT_EQ(check(*run_regression(made), "repeated").verdict, CheckVerdict::Ok);
+}
+
+TEST(RegressionReport, ACauseFailsInTwoSessionsIfTheBaselineWasInvestigatedToo) {
+  Request made = request(0.05);
+  const auto found = [&](std::size_t sessions, bool baseline) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      made.baseline.recordings[i].investigated = baseline;
+      made.candidate.recordings[i].investigated = true;
+      made.candidate.recordings[i].causes =
+          i < sessions ? std::vector<std::string>{"aliasing"} : std::vector<std::string>{};
+    }
+    return check(*run_regression(made), "findings").verdict;
+  };
+  EXPECT_EQ(found(2, true), CheckVerdict::Fail);
+  EXPECT_EQ(found(1, true), CheckVerdict::Note);
+  EXPECT_EQ(found(0, true), CheckVerdict::Ok);
+  EXPECT_EQ(found(3, false), CheckVerdict::Note) << "nobody knows whether the baseline has it";
+}
+
+TEST(RegressionReport, AClockThatIsOffIsANoteAndNotAFailure) {
+  Request made = request(0.05);
+  for (Recordings* arm : {&made.baseline, &made.candidate}) {
+    for (ComparedRecording& recording : arm->recordings) {
+      const ComparedChannel first = recording.channels.front();
+      for (const char* const axis : {"x", "y"}) {
+        recording.channels.push_back(first);
+        recording.channels.back().result.axis = axis;
+      }
+      for (ComparedChannel& channel : recording.channels) {
+        for (double& variance : channel.result.haar.variance) {
+          variance *= arm == &made.candidate ? 1.12 : 1.0;  // a clock 12 % fast
+        }
+      }
+    }
+  }
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(check(*report, "time_base").verdict, CheckVerdict::Note);
+  EXPECT_NE(check(*report, "time_base").sentence.find("% fast would"), std::string::npos);
+  EXPECT_NE(report->verdict, Verdict::Fail) << report->summary.verdict;
+}
+
+/// Noise with heavy tails as a characterisation would store it: what the robust estimator sees is 30 % less deviation.
+TEST(RegressionReport, GrossErrorsInOneArmLetBothBeComparedByRobustVariances) {
+  // The story: three power-ups of a sensor with heavy-tailed noise, unchanged; cables were touched in the baseline. Its
+  // recordings were compared by robust variances and the candidate's by classical ones, and the run failed with +35 %.
+  const auto stored = [](Recordings& arm, const char* verdict) {
+    for (ComparedRecording& recording : arm.recordings) {
+      ReportedHaar& haar = recording.channels[0].result.haar;
+      haar.robust_variance.clear();
+      for (const double variance : haar.variance) {
+        haar.robust_variance.push_back(variance / (1.35 * 1.35));
+      }
+      haar.robust_efficiency.assign(haar.variance.size(), 0.6);
+      recording.channels[0].result.contamination = verdict;
+    }
+  };
+  Request made = request(0.05);
+  stored(made.baseline, "contaminated");
+  stored(made.candidate, "undecided");
+  const auto report = run_regression(made);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(report->units[0].robust);
+  EXPECT_NE(report->verdict, Verdict::Fail) << report->summary.verdict;
+  for (const ScaleReport& test : report->units[0].tests) {
+    if (test.name.empty() && test.test.tau_s < 0.5) {
+      EXPECT_NEAR(test.theta, 0.0, 0.06) << test.test.tau_s;  // sd 0.02, as above
+    }
+  }
+  // One estimator an arm, as it was: the candidate's robust curve put in the place of a classical one of that size.
+  Request mixed = made;
+  for (ComparedRecording& recording : mixed.candidate.recordings) {
+    recording.channels[0].result.haar.robust_variance.clear();
+  }
+  EXPECT_EQ(run_regression(mixed)->verdict, Verdict::Fail) << "the old way";
 }
 
 TEST(RegressionReport, WhatCannotBeComparedIsInconclusive) {
@@ -187,10 +342,10 @@ TEST(RegressionReport, MoreGrossErrorsThanTwiceAsManyFail) {
   Request made = request(0.05);
   const auto with = [&](std::size_t before, std::size_t now) {
     for (ComparedRecording& recording : made.baseline.recordings) {
-      recording.channels[0].facts.flagged = before;
+      recording.channels[0].facts.bursts = before;
     }
     for (ComparedRecording& recording : made.candidate.recordings) {
-      recording.channels[0].facts.flagged = now;
+      recording.channels[0].facts.bursts = now;
       recording.channels[0].result.contamination = "contaminated";
     }
     for (ComparedRecording& recording : made.baseline.recordings) {

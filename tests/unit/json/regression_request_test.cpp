@@ -47,9 +47,15 @@ TEST(RegressionRequest, ReadsFullScalesAndMarginsOfTheScaleFactor) {
   stated_facts_of(kept).tell(recording);
   EXPECT_DOUBLE_EQ(recording.full_scale.accelerometer.value_or(0.0), 2.0 * 9.80665);
   EXPECT_EQ(recording.temperature_degc, 25.0);
+  EXPECT_TRUE(recording.investigated);
   EXPECT_EQ(recording.causes, std::vector<std::string>{"aliasing"});
   EXPECT_TRUE(StatedFacts{}.empty());
   EXPECT_FALSE(stated.empty());
+  StatedFacts searched;
+  searched.add_causes({});
+  searched.tell(recording);
+  EXPECT_TRUE(recording.investigated) << "an investigation that found nothing is one";
+  EXPECT_TRUE(recording.causes.empty());
 }
 
 TEST(RegressionRequest, RefusesFullScalesAndMarginsThatAreNone) {

@@ -198,6 +198,26 @@ TEST(Migrations, RecordingsOfAnEarlierReleaseHaveTheirNamesAndJobs) {
   EXPECT_EQ((*now)->recording("rec_1")->latest_job, "job_1");
 }
 
+TEST(Migrations, AnchorsOfAnEarlierReleaseKeptNoSettings) {
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 11);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  {
+    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    ASSERT_TRUE(
+        (*old)->execute("INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);"
+                        "INSERT INTO anchors VALUES ('anc_1', 'dev_1', 'firmware=1.0', 'why', 7)"));
+  }
+  const auto now = open_with(directory.path(), embedded_migrations());
+  ASSERT_TRUE(now) << now.error().message;
+  const auto anchors = (*now)->anchors("dev_1", {});
+  ASSERT_TRUE(anchors);
+  ASSERT_THAT(*anchors, SizeIs(1));
+  EXPECT_EQ(anchors->front().label, "firmware=1.0");
+  EXPECT_EQ(anchors->front().created_at, 7);
+  EXPECT_EQ(anchors->front().settings_json, "");
+}
+
 TEST(Migrations, ABackupIsMadeBeforeAndCanBeOpenedByTheOldRelease) {
   const TemporaryDirectory directory;
   Device device;

@@ -222,11 +222,12 @@ TEST_P(RecordingStore, AnchorsAreAHistoryAndGoWithTheirDevice) {
   const Device device = add_device(store());
   for (const char* const label : {"firmware=1.0", "firmware=1.1"}) {
     clock_.advance(kSecond);
-    ASSERT_TRUE(store().add_anchor({"", device.id, label, "why", 0}));
+    ASSERT_TRUE(store().add_anchor({"", device.id, label, "why", 0, R"({"alpha":0.05})"}));
   }
   const auto all = store().anchors(device.id, {});
   ASSERT_EQ(all->size(), 2U);
   EXPECT_TRUE(all->front().id.starts_with("anc_"));
+  EXPECT_EQ(all->front().settings_json, R"({"alpha":0.05})");
   EXPECT_EQ(store().anchors(device.id, {.after = "", .limit = 1, .order = PageOrder::NewestFirst})->front().label,
             "firmware=1.1");
   ASSERT_TRUE(store().remove_device(device.id, device.revision));

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 from ..contract import DataSheet, RegressionAnchor
 from ..contract import Export, ExportTarget, Fit, GetImpliedCurvesAnswer, InvestigationSummary, Regression, RegressionRun
@@ -159,7 +159,8 @@ class ResultRoutes(Routes):
         return self._list("listRegressionAnchors", {"device": device}, page_size)
 
     @operation("moveRegressionAnchor")
-    def move_regression_anchor(self, device: str, label: str, reason: str, *, idempotency_key: str | None = None) -> RegressionAnchor:
-        """Runs of the device compare with this label from now on."""
-        body = {"device": device, "label": label, "reason": reason}
+    def move_regression_anchor(self, device: str, label: str, reason: str, *, settings: dict[str, Any] | None = None,
+                               idempotency_key: str | None = None) -> RegressionAnchor:
+        """Runs of the device compare with this label from now on, with these margins, scope and alpha; left out: as before."""
+        body: dict[str, Any] = {"device": device, "label": label, "reason": reason, **({} if settings is None else {"settings": settings})}
         return cast(RegressionAnchor, self._post("moveRegressionAnchor", body, idempotency_key))

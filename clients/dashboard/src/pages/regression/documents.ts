@@ -9,11 +9,11 @@ export interface RegressionRun {
 export interface Test { kind: string; tau_s?: number; name?: string; ratio: number | null; ci: Nullable; upper_single?: number | null; margin: number; gated: boolean; verdict: string; p_adjusted?: number | null }
 export interface Unit { device: string; condition: string; sensor: string; axis: string; structure: {baseline: string | null; candidate: string | null; pooled: string | null; changed: boolean; p?: number | null}; tests: Test[] }
 export interface Finding { check: string; verdict: string; sentence: string | null }
-interface Arm { label: string | null; sessions: {session: string; recordings: string[]; duration_s: number}[]; rate_hz: number }
+interface Arm { label: string | null; sessions: {session: string; recordings: string[]; duration_s: number}[]; rates_hz: number[]; merged: string[] }
 export interface Regression {
   id: string; device: string; verdict: string; summary: Summary; scope_s: number; settings: Record<string, unknown>;
   arms: {baseline: Arm; candidate: Arm; history: Arm[]; excluded: {recording: string; reason: string}[]};
-  look: {number: number; of: number}; units: Unit[]; findings: Finding[]; comparability: {item: string; sentence: string}[]; needs: Needs | null;
+  look: {number: number; of: number}; units: Unit[]; findings: Finding[]; comparability: {item: string; comparable: boolean; sentence: string | null}[]; needs: Needs | null;
   versus_previous: {label: string; verdict: string; sentence: string} | null; critical: {seed?: number}; algorithm_version: number;
 }
 

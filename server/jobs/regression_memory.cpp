@@ -1,33 +1,13 @@
-#include "server/jobs/regression_arms.hpp"
+#include "server/jobs/regression_memory.hpp"
 
 #include "core/signal/text.hpp"
 #include "schema/json/recording_tags.hpp"
+#include "server/jobs/every_row.hpp"
 
 #include <algorithm>
 
 namespace driftlab::server {
 namespace {
-
-constexpr int kPage = 500;
-
-/// Calls `take` with every row of a list, page by page.
-template <class Fetch, class Take>
-Status for_each_row(const Fetch& fetch, const Take& take) {
-  Page page{.after = "", .limit = kPage};
-  while (true) {
-    const auto rows = fetch(page);
-    if (!rows) {
-      return fail(rows.error());
-    }
-    for (const auto& row : *rows) {
-      take(row);
-    }
-    if (static_cast<int>(rows->size()) < kPage) {
-      return {};
-    }
-    page.after = rows->back().id;
-  }
-}
 
 WrittenRecording labelled_recording(const Recording& row, const std::string& pointer) {
   Faults ignored;
@@ -87,6 +67,7 @@ Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device
         const std::string candidate = inputs["candidate"].value("label", "");
         if (memory.first_baseline_.empty()) {
           memory.first_baseline_ = inputs["baseline"].value("label", "");
+          memory.first_settings_ = (*request)["parameters"];
         }
         if (job.state == JobState::Succeeded) {
           memory.succeeded_.push_back(job.id);
@@ -105,6 +86,29 @@ Result<std::string> RegressionMemory::anchor() const {
     return fail(moved.error());
   }
   return moved->empty() ? first_baseline_ : moved->front().label;
+}
+
+Result<std::optional<regression::Settings>> RegressionMemory::kept_settings() const {
+  const auto moved = store_->anchors(device_.id, {.after = "", .limit = 1, .order = PageOrder::NewestFirst});
+  if (!moved) {
+    return fail(moved.error());
+  }
+  Json kept = first_settings_;
+  if (!moved->empty()) {
+    const std::string& text = moved->front().settings_json;
+    const auto document = text.empty() ? Result<Json>(Json(nullptr)) : parse_json(text);
+    if (!document) {
+      return fail(document.error());
+    }
+    kept = *document;
+  }
+  if (!kept.is_object()) {
+    return std::optional<regression::Settings>();
+  }
+  Faults faults;
+  WrittenRegression read;
+  regression_settings_from_json(kept, "", read, faults);
+  return faults.none() ? std::optional(read.settings) : std::nullopt;
 }
 
 Result<std::string> RegressionMemory::last_pass() const {

@@ -6,6 +6,7 @@
 #include "server/store/store.hpp"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -27,6 +28,9 @@ class RegressionMemory {
   [[nodiscard]] const std::vector<std::string>& labels() const { return labels_; }
   /// The label that was made the baseline last; until somebody does, the first baseline that had one. Empty: none.
   [[nodiscard]] Result<std::string> anchor() const;
+  /// What goes with the anchor of the settings: those that were kept when it was moved, else those of the run that made
+  /// the first baseline. Nothing where neither is known.
+  [[nodiscard]] Result<std::optional<regression::Settings>> kept_settings() const;
   /// The candidate of the newest run that passed; empty: none.
   [[nodiscard]] Result<std::string> last_pass() const;
   /// The device's recordings that have the label, `firmware=1.5.0,board=b` all of it; without any, those that runs
@@ -45,6 +49,7 @@ class RegressionMemory {
   Device device_;
   std::vector<std::string> labels_;
   std::string first_baseline_;
+  Json first_settings_ = nullptr;                                        ///< of the run that named it
   std::vector<std::string> succeeded_;                                   ///< ids of runs, oldest first
   std::map<std::string, std::set<std::string>> named_;                   ///< recordings by label
   std::map<std::string, std::vector<std::vector<std::string>>> looked_;  ///< candidates by label, each set once

@@ -1,0 +1,13 @@
+#pragma once
+/// Does the change look like one of the clock? Internal to core/campaign/regression.
+#include "core/campaign/regression/report.hpp"
+
+#include <vector>
+
+namespace driftlab::regression {
+
+/// A note where the scales to `through_s` of three axes or more move by one factor, by more than 3 %: so does a clock
+/// that is off, whose error d moves a white density by d/2. Never fails.
+[[nodiscard]] EventCheck check_time_base(const std::vector<UnitReport>& units, double through_s);
+
+}  // namespace driftlab::regression
