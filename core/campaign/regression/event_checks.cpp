@@ -279,7 +279,7 @@ EventCheck check_contamination(const std::vector<PowerUp>& baseline, const std::
       if (!check.p || p < *check.p) {
         check.p = p;
         worst = unit;
-        check.sentence = written("%s: %.3g bursts of gross errors an hour, in the baseline %.3g.", unit.c_str(),
+        check.sentence = written("%s: %.3g gross errors an hour, in the baseline %.3g.", unit.c_str(),
                                  now.sum() / now.time_h(), known->second.sum() / known->second.time_h());
       }
     }

@@ -4,8 +4,8 @@
 ///
 /// Saturation, missing, frozen and repeated samples, jitter of the time stamps, resolution, sampling rate and
 /// identified causes are compared as facts. Gross errors are counted (gross_errors.hpp); their p share the level of the
-/// event family by Holm. Gross errors within a second of each other are one burst; results that were stored before
-/// bursts were counted give one for each sample.
+/// event family by Holm. A result counts flagged samples; where it counts bursts, those within a second of each other
+/// are one.
 #include "core/campaign/regression/sessions.hpp"
 
 #include <string>
