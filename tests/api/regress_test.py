@@ -142,7 +142,7 @@ class Regress(unittest.TestCase):
         self.assertEqual([change["setting"] for change in other["kept"]["changed"]], ["alpha", "margin.gyroscope"])
         self.assertIn("margin.gyroscope 5, 25, 50 % (kept: 20, 25, 50 %)", " ".join(other["summary"]["details"]))
         self.regress(0, *state, "--settings", "narrow.json", "--accept", "firmware=1.3", "--reason", "a better sensor")
-        moved = self.document(0, *state, *arms, "firmware=1.4")
+        moved = self.document(0, *state, "--candidate", "candidate/1.csv", "--candidate-label", "firmware=1.4")
         self.assertEqual((moved["settings"]["margin"]["gyroscope"][0], moved["settings"]["alpha"], moved["kept"]["changed"]), (5, 0.1, []))
 
     def test_lines_are_left_out_as_in_characterise(self) -> None:
@@ -160,10 +160,12 @@ class Regress(unittest.TestCase):
         self.assertEqual(left_out["units"], bare["units"])
 
     def test_readings_are_corrected_first(self) -> None:
-        """A candidate whose readings are twice too large fails; with the calibration that says so it is the baseline's equal."""
+        """A candidate whose readings are twice too large fails; with the calibration that says so it is the baseline's equal.
+        (The step of its readings is finer, for a step is compared as it was written.)"""
+        finer = random.Random(7)
         for session in range(3):
             rows = [line.split(",") for line in (self.folder / f"candidate/{session}.csv").read_text().splitlines()[1:]]
-            (self.folder / f"twice_{session}.csv").write_text("\n".join(["t [s],gz [deg/s]", *(f"{time},{2 * float(value):.6f}" for time, value in rows)]) + "\n")
+            (self.folder / f"twice_{session}.csv").write_text("\n".join(["t [s],gz [deg/s]", *(f"{time},{2 * float(value) + finer.uniform(-1e-6, 1e-6):.9f}" for time, value in rows)]) + "\n")
         half = {"apply": {"reading_unit": "deg/s", "bias": [0, 0, 0], "correction": [[math.pi / 180, 0, 0], [0, math.pi / 180, 0], [0, 0, math.pi / 360]]}}
         (self.folder / "half.json").write_text(json.dumps({"gyroscope": half}))
         twice = [{"file": f"twice_{session}.csv"} for session in range(3)]

@@ -188,7 +188,7 @@ class Labels(DaemonTest):
         moved = {"device": "kept", "label": "firmware=1.1", "reason": "filter widened", "settings": {"alpha": 0.1}}
         anchor = self.expect(201, self.daemon.post("/v1/regression-anchors", moved)).json
         self.assertEqual((anchor["settings"]["alpha"], anchor["settings"]["margin"]["gyroscope"][0]), (0.1, 20))
-        self.problem(400, "invalid_argument", self.daemon.post("/v1/regression-anchors", {**moved, "settings": {"alpha": "much"}}))
+        self.problem(400, "parse_error", self.daemon.post("/v1/regression-anchors", {**moved, "settings": {"alpha": "much"}}))
         after = run("1.2")
         self.assertEqual((after["settings"]["alpha"], after["kept"]["changed"]), (0.1, []))
 

@@ -1795,6 +1795,10 @@ class JobRequestMember(TypedDict):
     kind: str
     inputs: JobRequestMemberInputs
     parameters: JobRequestMemberParameters
+    # Of a regression run against the anchor: the settings kept with it.
+    kept: NotRequired[dict[str, Any] | None]
+    # Of a regression run: the settings that the request named.
+    stated: NotRequired[list[str]]
     # Of a regression run: which look at the candidate label it is.
     look: NotRequired[JobRequestMemberLook]
     algorithm_version: int
@@ -1851,7 +1855,7 @@ class JobRequestMemberLook(TypedDict):
 
 
 class JobRequestMemberParameters(TypedDict):
-    models: NotRequired[list[str]]
+    models: NotRequired[list[str | dict[str, Any]]]
     seed: NotRequired[int]
     search: NotRequired[Literal['listed', 'stepwise']]
     bootstrap: NotRequired[int]
@@ -1882,6 +1886,7 @@ class JobRequestMemberParameters(TypedDict):
     session_df: NotRequired[int]
     fail_on: NotRequired[str]
     two_sided: NotRequired[bool]
+    event_limits: NotRequired[dict[str, Any]]
     looks: NotRequired[int]
 
 
@@ -3490,6 +3495,19 @@ class RegressionSettings(TypedDict):
 
     # Where each setting comes from: asked in the run, kept with the anchor, or the default.
     origin: dict[str, Literal['asked', 'anchor', 'default']]
+    alpha: NotRequired[float]
+    margin: NotRequired[dict[str, Any]]
+    through_s: NotRequired[float]
+    min_edf: NotRequired[float]
+    design_power: NotRequired[float]
+    tau0: NotRequired[dict[str, Any]]
+    prior_df: NotRequired[float]
+    session_df: NotRequired[int]
+    fail_on: NotRequired[Literal['worse', 'beyond_margin']]
+    two_sided: NotRequired[bool]
+    looks: NotRequired[int]
+    event_limits: NotRequired[dict[str, Any]]
+    seed: NotRequired[int]
 
 
 class RegressionSummary(TypedDict):
