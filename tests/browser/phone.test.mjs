@@ -94,7 +94,7 @@ test('a browser that withholds the sensors is told of in words', async () => {
 });
 
 test('where nothing can be recorded the page says why', async () => {
-  const page = await open(browser, daemon, '/record?live=live_00000000000000000000000000#lt_none');
+  const page = await open(browser, daemon, '/record?live=live_00000000000000000000000000#lt_none', {absent: [/live_0{26}/]});
   await page.getByText('This recording is finished, or was never begun.').waitFor();
   await page.addInitScript(() => { delete window.Gyroscope; delete window.DeviceMotionEvent; });
   await page.goto(`${daemon.address}/record`);
