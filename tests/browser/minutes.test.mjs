@@ -98,17 +98,20 @@ test('from the address that quickstart prints to a saved figure in two minutes, 
 
 test('from an empty lab to a saved figure in two minutes, by clicks', {timeout: 300000}, async () => {
   const daemon = await Daemon.start();
-  const page = await open(browser, daemon, '/');
-  const visitor = new Visitor(page);
-  await visitor.click('the sample', page.getByRole('button', {name: 'Try the sample'}));
-  await page.waitForURL(/\/devices\/iphone5s-simulated/);
-  await page.locator('[role=progressbar]').first().waitFor();  // the real job, live
-  assertWorthPrinting(await visitor.saves());
-  await page.getByText('White noise is 1.03').first().waitFor();
-  const rows = page.locator('table.pt tbody tr', {hasText: /static|9 deg\/s/});
-  while (await rows.count() < 2) await page.waitForTimeout(100);  // the second condition comes without a click
-  await page.getByText(/still being fitted/).waitFor({state: 'detached'});
-  assert.deepEqual(page.loud, []);
-  await page.context().close();
-  await daemon.end();
+  try {
+    const page = await open(browser, daemon, '/');
+    const visitor = new Visitor(page);
+    await visitor.click('the sample', page.getByRole('button', {name: 'Try the sample'}));
+    await page.waitForURL(/\/devices\/iphone5s-simulated/);
+    await page.locator('[role=progressbar]').first().waitFor();  // the real job, live
+    assertWorthPrinting(await visitor.saves());
+    await page.getByText('The white-noise density N is 1.03').first().waitFor();
+    const rows = page.locator('table.pt tbody tr', {hasText: /static|9 deg\/s/});
+    while (await rows.count() < 2) await page.waitForTimeout(100);  // the second condition comes without a click
+    await page.getByText(/still being fitted/).waitFor({state: 'detached'});
+    assert.deepEqual(page.loud, []);
+    await page.context().close();
+  } finally {
+    await daemon.end();
+  }
 });
