@@ -3,13 +3,13 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::string_view kDigits = "0123456789abcdef";
+constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 std::string hexadecimal(std::string_view text) {
   std::string digits;
   for (const char c : text) {
-    digits += kDigits[static_cast<unsigned char>(c) >> 4U];
-    digits += kDigits[static_cast<unsigned char>(c) & 15U];
+    digits += kHexDigits[static_cast<unsigned char>(c) >> 4U];
+    digits += kHexDigits[static_cast<unsigned char>(c) & 15U];
   }
   return digits;
 }
@@ -17,8 +17,8 @@ std::string hexadecimal(std::string_view text) {
 std::optional<std::string> from_hexadecimal(std::string_view digits) {
   std::string text;
   for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    const std::size_t high = kDigits.find(digits[i]);
-    const std::size_t low = kDigits.find(digits[i + 1]);
+    const std::size_t high = kHexDigits.find(digits[i]);
+    const std::size_t low = kHexDigits.find(digits[i + 1]);
     if (high == std::string_view::npos || low == std::string_view::npos) {
       return std::nullopt;
     }
