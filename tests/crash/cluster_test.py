@@ -157,6 +157,14 @@ class Killed(unittest.TestCase):
             self.assertLess(time.monotonic(), until, answer.describe())
             time.sleep(0.05)
 
+    def found_again(self, daemon: Daemon) -> None:
+        """Waits while the daemon answers 503, for it has not found its database again."""
+        until = time.monotonic() + PATIENCE_S
+        while (answer := daemon.get("/v1/recordings?limit=1")).status == 503:
+            self.assertLess(time.monotonic(), until, answer.describe())
+            time.sleep(0.05)
+        self.assertEqual(answer.status, 200, answer.describe())
+
     def check(self, cluster: Cluster, history: History) -> None:
         a, b = (cluster.running[name] for name in DAEMONS)
         begun = time.monotonic()
@@ -164,6 +172,7 @@ class Killed(unittest.TestCase):
             document = self.finished(a, job)
             self.assertEqual(document["state"], "succeeded", document)
         self.assertLess(time.monotonic() - begun, PATIENCE_S, "the queue is worked off")
+        self.found_again(b)
         listed = {recording["id"]: recording for recording in b.items("/v1/recordings")}
         self.assertLessEqual(set(history.recordings), set(listed), "an acknowledged recording is lost")
         for identity, content in history.recordings.items():
