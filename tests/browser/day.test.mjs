@@ -90,7 +90,12 @@ test('what the first values say of units and condition is said before anything i
   await page.getByText('where gravity is').waitFor({state: 'detached'});
   // What would refuse the upload stands there already, beside the field that mends it; nothing is stored by looking.
   await page.getByLabel('Rate in Hz that repairs table.csv').fill('100');
+  // What is typed survives that the list is drawn again before the field is left.
+  await page.locator('input[type=file]').setInputFiles({name: 'another.csv', mimeType: 'text/csv', buffer: Buffer.from(csv(100, 5))});
+  await page.getByRole('button', {name: 'another.csv', exact: true}).waitFor();
+  assert.equal(await page.getByLabel('Rate in Hz that repairs table.csv').inputValue(), '100');
   await page.getByLabel('Rate in Hz that repairs table.csv').blur();
+  await page.getByRole('button', {name: 'Remove another.csv'}).click();
   await visible(page, '6 columns read');
   const device = await page.getByLabel('Device of table.csv').inputValue();
   assert.equal((await fetch(`${daemon.address}/v1/devices/${device}`)).status, 404);
