@@ -53,10 +53,10 @@ ReportedFit reported(const ModelFit& fit, const Unit& unit) {
   for (const FittedProcess& process : fit.processes) {
     ReportedProcess told_process{std::string(process.kind->name), {}};
     for (const FittedParameter& parameter : process.parameters) {
-      const Dimension dimension = parameter.channel_power == 0 ? Dimension::One : unit.dimension;
+      const ParameterSpec& spec = *parameter.declared;
+      const Dimension dimension = spec.channel_power == 0 ? Dimension::One : unit.dimension;
       told_process.parameters.emplace_back(
-          parameter.name,
-          told(parameter.estimate, lab_unit(dimension, parameter.second_power_halves), parameter.reason));
+          spec.name, told(parameter.estimate, lab_unit(dimension, spec.second_power_halves), parameter.reason));
     }
     told_fit.processes.push_back(std::move(told_process));
   }

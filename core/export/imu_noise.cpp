@@ -49,7 +49,7 @@ const FittedParameter* find(const ModelFit& fit, std::string_view process, std::
   for (const FittedProcess& one : fit.processes) {
     if (one.kind != nullptr && one.kind->name == process) {
       for (const FittedParameter& parameter : one.parameters) {
-        if (parameter.name == name) {
+        if (parameter.declared->name == name) {
           return &parameter;
         }
       }

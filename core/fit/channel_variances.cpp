@@ -13,6 +13,16 @@
 namespace driftlab {
 namespace {
 
+/// Events among flagged grid points (ascending): those within a second of the one before belong to its event.
+std::size_t count_bursts(const std::vector<std::size_t>& flagged, double dt_s) {
+  constexpr double kApart = 1.0;  // [s]
+  std::size_t bursts = 0;
+  for (std::size_t i = 0; i < flagged.size(); ++i) {
+    bursts += i == 0 || static_cast<double>(flagged[i] - flagged[i - 1]) * dt_s > kApart ? 1 : 0;
+  }
+  return bursts;
+}
+
 void take_sample_wise(SampleWiseVariance found, double unit_square, const VarianceIntervals& intervals,
                       HaarCovariance& plan, RobustVariances& result) {
   HaarVariance curve = std::move(found.curve);
@@ -29,6 +39,7 @@ void take_sample_wise(SampleWiseVariance found, double unit_square, const Varian
   result.ci95 = std::move(own.ci95);
   result.efficiency = std::move(found.efficiency);
   result.contamination.flagged_samples = found.flagged.size();
+  result.contamination.bursts = count_bursts(found.flagged, plan.dt_s());
 }
 
 }  // namespace

@@ -49,15 +49,16 @@ struct Contamination {
   /// Samples with an error that passes a false-discovery rate of 1 %; where the sample-wise estimate was not asked for
   /// or found nothing, first differences beyond 4.5 robust standard deviations.
   std::size_t flagged_samples = 0;
+  /// Events of gross errors: flagged samples within 1 s of one another are one. Empty where samples were not flagged
+  /// one by one.
+  std::optional<std::size_t> bursts;
   bool not_gaussian = false;  ///< they differ by the shape of the noise, not by a few samples
 };
 
-/// One named parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says
-/// why in a sentence. Its unit is channel unit^`channel_power` * s^(second_power_halves/2).
+/// One parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says why
+/// in a sentence.
 struct FittedParameter {
-  std::string name;             ///< `N`, `sigma`, `beta`, `K`, `R`, `Q`, `B`
-  int channel_power = 1;        ///< 0 for beta, 1 for the rest
-  int second_power_halves = 0;  ///< N: +1, K: -1, R: -2, Q: +2, sigma and B: 0, beta: -2
+  const ParameterSpec* declared = nullptr;  ///< one of the process' kind->parameters: name and unit
   std::optional<Estimate> estimate;
   std::string reason;
   /// Where there is no estimate: the level is below this with 95 % confidence (infinite: nothing bounds it).

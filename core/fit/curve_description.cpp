@@ -68,8 +68,7 @@ std::vector<FittedProcess> told_processes(const CompositeBasis& basis, const Com
       const ParameterSpec& spec = values.kind->parameters[i];
       const double value = values.parameters[i] * (i == 0 ? unit : 1.0);
       const double half = 1.96 * errors(k) * (i == 0 ? 0.5 : 1.0) + (i == 0 ? 0.5 * found.delta : 0.0);
-      FittedParameter& told = process.parameters.emplace_back(
-          FittedParameter{std::string(spec.name), spec.channel_power, spec.second_power_halves, std::nullopt, {}});
+      FittedParameter& told = process.parameters.emplace_back(FittedParameter{&spec, std::nullopt, {}});
       if (errors(k) < kUnknown) {
         told.estimate = Estimate{value, {value * std::exp(-half), value * std::exp(half)}};
       } else {

@@ -100,9 +100,7 @@ std::vector<FittedProcess> report_with(Candidate& candidate, double unit, Interv
     for (std::size_t k = 0; k < process.parameters.size(); ++k) {
       const ParameterSpec& spec = process.kind->parameters[k];
       FittedParameter parameter;
-      parameter.name = spec.name;
-      parameter.channel_power = spec.channel_power;
-      parameter.second_power_halves = spec.second_power_halves;
+      parameter.declared = &spec;
       if (!alive) {
         parameter.reason = vanished(*process.kind);
       } else if (!level_known) {
@@ -205,8 +203,8 @@ ModelFit report_fit(Candidate& candidate, double unit, double samples, IntervalM
     for (const FittedParameter& parameter : fit.processes[p].parameters) {
       if (!parameter.estimate) {
         unidentified = true;
-        fit.warnings.push_back(std::string(fit.processes[p].kind->name) + "." + parameter.name + ": " +
-                               parameter.reason);
+        fit.warnings.push_back(std::string(fit.processes[p].kind->name) + "." + std::string(parameter.declared->name) +
+                               ": " + parameter.reason);
       }
     }
   }

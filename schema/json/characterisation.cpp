@@ -91,11 +91,15 @@ Json psd_json(const PowerSpectrum& spectrum, double factor) {
 }
 
 Json contamination_json(const Contamination& contamination) {
-  return Json{{"verdict", contamination.verdict},
-              {"p", number(contamination.p)},
-              {"disjoint_scales", contamination.disjoint_scales},
-              {"flagged_samples", contamination.flagged_samples},
-              {"not_gaussian", contamination.not_gaussian}};
+  Json document{{"verdict", contamination.verdict},
+                {"p", number(contamination.p)},
+                {"disjoint_scales", contamination.disjoint_scales},
+                {"flagged_samples", contamination.flagged_samples},
+                {"not_gaussian", contamination.not_gaussian}};
+  if (contamination.bursts) {
+    document["bursts"] = *contamination.bursts;
+  }
+  return document;
 }
 
 Json allan_parameters_json(const ReportedValues& parameters) {

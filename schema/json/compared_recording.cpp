@@ -30,7 +30,7 @@ regression::ChannelFacts compared_facts(const Json& quality, const Json& channel
   }
   facts.mean_of_error = channel.contains("reference");
   if (const auto found = channel.find("contamination"); found != channel.end() && found->is_object()) {
-    // Results of before bursts were counted have the samples alone.
+    // Where samples were not flagged one by one, and in results of before bursts were counted, each counts by itself.
     facts.bursts = compared_count(*found, found->contains("bursts") ? "bursts" : "flagged_samples");
   }
   return facts;

@@ -100,7 +100,7 @@ TEST(Accuracy, IntervalsHoldTheTruthThroughGaps) {
           for (std::size_t i = 0; i < truth.model[p].parameters.size(); ++i, ++k) {
             const FittedParameter& parameter = found->fits[0].processes[p].parameters[i];
             parameters.resize(std::max(parameters.size(), k + 1));
-            parameters[k].first = parameter.name;
+            parameters[k].first = parameter.declared->name;
             const double value = truth.model[p].parameters[i];
             const bool inside =
                 parameter.estimate ? parameter.estimate->ci95.contains(value) : value <= parameter.upper_limit;

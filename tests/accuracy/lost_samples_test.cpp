@@ -180,7 +180,7 @@ TEST(Accuracy, FilesThatLostRowsHaveTheNoiseOfTheirSensor) {
           for (std::size_t i = 0; i < truth.model[p].parameters.size(); ++i, ++k) {
             const FittedParameter& parameter = found->fits[0].processes[p].parameters[i];
             held.resize(std::max(held.size(), k + 1));
-            held[k].first = parameter.name;
+            held[k].first = parameter.declared->name;
             const double value = truth.model[p].parameters[i];
             held[k].second +=
                 (parameter.estimate ? parameter.estimate->ci95.contains(value) : value <= parameter.upper_limit) ? 1

@@ -286,6 +286,9 @@ class CharacterisationChannelContamination(TypedDict):
     p: float | None
     disjoint_scales: list[int]
     flagged_samples: int
+    # Events of gross errors: flagged samples within 1 s of one another are one. Absent where samples were not flagged
+    # one by one.
+    bursts: NotRequired[int]
     not_gaussian: NotRequired[bool]
 
 

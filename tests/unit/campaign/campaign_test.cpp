@@ -25,7 +25,8 @@ TEST(Campaign, TableHoldsTheTruthWithinThreeIntervals) {
         const double reach = std::pow(ci.high / ci.low, 1.5);
         const double centre = std::sqrt(ci.high * ci.low);
         const double truth = experiment.truth[p].parameters[k];
-        EXPECT_LT(std::fabs(std::log(truth / centre)), std::log(reach)) << experiment.name << " " << parameter.name;
+        EXPECT_LT(std::fabs(std::log(truth / centre)), std::log(reach))
+            << experiment.name << " " << parameter.declared->name;
       }
     }
     EXPECT_GT(row.agreement_p, 1e-5) << experiment.name;

@@ -235,6 +235,20 @@ TEST(Characterise, GrossErrorsAreFittedAround) {
   }
 }
 
+TEST(Characterise, ErrorsWithinASecondAreOneBurst) {
+  auto x = make(model_of({{"white_noise", {0.02}}}), 1 << 14, 31);
+  const auto second = static_cast<std::size_t>(std::lround(1.0 / kDt));
+  for (std::size_t burst = 0; burst < 12; ++burst) {
+    for (std::size_t i = 0; i < 5; ++i) {  // the five within half a second, the next burst more than two later
+      x[second * (4 + 3 * burst) + i * (second / 10)] += i % 2 == 0 ? 5.0 : -5.0;
+    }
+  }
+  const auto found = characterise_channel({.values = x, .dt_s = kDt}, {.models = {"WN"}});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->contamination.flagged_samples, 60U);
+  EXPECT_EQ(found->contamination.bursts, 12U);
+}
+
 TEST(Characterise, MissingSamplesAreNeitherBridgedNorCutAway) {
   const auto good = make(model_of({{"white_noise", {0.02}}, {"random_walk", {0.01}}}), 1 << 14, 23);
   std::vector<double> rows;
