@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kMethods{"GET", "POST", "PATCH", "DELETE"};
 
-struct Flags {
+struct ApiFlags {
   std::vector<std::string> words;  ///< METHOD PATH, or PATH
   std::string server = "http://127.0.0.1:8477";
   std::string data;
@@ -35,7 +35,7 @@ struct Wanted {
   std::string path;
 };
 
-Result<Wanted> wanted_of(const Flags& flags) {
+Result<Wanted> wanted_of(const ApiFlags& flags) {
   Wanted wanted{"GET", flags.words.back()};
   if (flags.words.size() == 2) {
     wanted.method = flags.words.front();
@@ -99,7 +99,7 @@ std::string shown(const HttpReply& reply) {
   return text && !reply.body.empty() && reply.body.back() != '\n' ? reply.body + "\n" : reply.body;
 }
 
-Exit run(const Flags& flags) {
+Exit run(const ApiFlags& flags) {
   const auto wanted = wanted_of(flags);
   if (!wanted) {
     return complain(wanted.error());
@@ -137,7 +137,7 @@ Exit run(const Flags& flags) {
 void add_api(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("api", "Any resource of a daemon: devices, recordings, studies, models, webhooks, ...");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<ApiFlags>();
   command->add_option("REQUEST", flags->words, "[METHOD] PATH, e.g. /v1/devices, or DELETE /v1/devices/imu-07")
       ->required()
       ->expected(1, 2);

@@ -15,14 +15,14 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct CalibrateFlags {
   std::vector<std::string> files;
   FileFlags file;
   CalibrateOptions options;
   bool json = false;
 };
 
-Exit run(const Flags& flags) {
+Exit run(const CalibrateFlags& flags) {
   auto inputs = read_inputs(flags.files, flags.file);
   if (!inputs) {
     return complain(inputs.error());
@@ -51,7 +51,7 @@ void add_calibrate(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand(
       "calibrate",
       "Bias, scale factor and misalignment of a triad from a six-position test, or from rests in any attitude");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<CalibrateFlags>();
   command->add_option("FILE", flags->files, "One study.json of positions, or one recording with rests")->required();
   command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
   command->add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. 1=specific_force:x");

@@ -10,7 +10,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct CharacteriseFlags {
   std::vector<std::string> files;
   FileFlags file;
   std::string server;
@@ -25,7 +25,7 @@ struct Flags {
   std::string plot;
 };
 
-Exit run(const Flags& flags) {
+Exit run(const CharacteriseFlags& flags) {
   CharacteriseOptions options;
   options.seed = flags.seed;
   options.search = flags.stepwise ? ModelSearch::Stepwise : ModelSearch::Listed;
@@ -75,7 +75,7 @@ void add_characterise(CLI::App& app, Command& chosen) {
       "characterise",
       "Variances, Allan coefficients and ranked error models of recordings (CSV, .npy; also .gz .xz .zst) or "
       "of a study.json");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<CharacteriseFlags>();
   command->add_option("FILE", flags->files, "Recordings that share the flags below, or one study.json")->required();
   command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
   command->add_option("--columns", flags->file.columns,

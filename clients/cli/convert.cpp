@@ -15,7 +15,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct ConvertFlags {
   std::string file;
   std::string job;
   std::string server = "http://127.0.0.1:8477";
@@ -23,7 +23,7 @@ struct Flags {
 };
 
 /// The document from a file, from standard input, or of a daemon's job.
-tl::expected<Json, Failure> document_of(const Flags& flags) {
+tl::expected<Json, Failure> document_of(const ConvertFlags& flags) {
   if (!flags.job.empty()) {
     return fetch_document(flags.server, "/v1/jobs/" + percent_encode(flags.job) + "/result");
   }
@@ -35,7 +35,7 @@ tl::expected<Json, Failure> document_of(const Flags& flags) {
   return std::move(*document);
 }
 
-Exit run(const Flags& flags) {
+Exit run(const ConvertFlags& flags) {
   if (flags.file.empty() == flags.job.empty()) {
     return complain({ErrorCode::InvalidArgument, "Name one document, or a --job of a daemon.", {}});
   }
@@ -62,7 +62,7 @@ Exit run(const Flags& flags) {
 void add_convert(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("convert", "Any result as CSV or as a MATLAB file, for R, MATLAB, Octave and spreadsheets");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<ConvertFlags>();
   command->add_option("FILE", flags->file, "A document that --json wrote; - reads it from standard input");
   command->add_option("--job", flags->job, "The result of this job of a daemon instead");
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();

@@ -10,12 +10,12 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct DatasheetFlags {
   std::string model;
   bool json = false;
 };
 
-Exit run(const Flags& flags) {
+Exit run(const DatasheetFlags& flags) {
   if (flags.model.empty()) {
     return write_text("", flags.json ? data_sheets_document(data_sheets()).dump(2) + "\n" : data_sheets_to_text());
   }
@@ -31,7 +31,7 @@ Exit run(const Flags& flags) {
 void add_datasheet(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("datasheet", "What the manufacturer states of a sensor, with the source");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<DatasheetFlags>();
   command->add_option("MODEL", flags->model,
                       "MPU-6050, 'phone with LSM6DSO', …; without it the known sensors are listed");
   command->add_flag("--json", flags->json, "Print the document instead of text");

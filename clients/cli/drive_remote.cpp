@@ -13,8 +13,6 @@
 namespace driftlab::cli {
 namespace {
 
-constexpr double kUploads = 0.3;  ///< share of the progress bar
-
 /// The members of a document that name a file, what lies in another before it: a member that is added moves what is
 /// within.
 std::vector<Json*> sources_in(Json& document) {

@@ -19,7 +19,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct ExportFlags {
   std::vector<std::string> files;
   FileFlags file;
   std::string target;
@@ -70,7 +70,7 @@ std::string why_no_density(const ImuNoise& imu) {
 }
 
 /// Device and document of what the user named: a characterisation as it stands, recordings characterised now.
-tl::expected<std::pair<std::string, Json>, Failure> characterised(const Flags& flags) {
+tl::expected<std::pair<std::string, Json>, Failure> characterised(const ExportFlags& flags) {
   if (auto document = as_characterisation(flags.files)) {
     std::string device = flags.file.device;
     if (device.empty()) {
@@ -92,7 +92,7 @@ tl::expected<std::pair<std::string, Json>, Failure> characterised(const Flags& f
   return std::pair(inputs->device, std::move(*document));
 }
 
-Exit run_here(const Flags& flags, const ExportTarget& target) {
+Exit run_here(const ExportFlags& flags, const ExportTarget& target) {
   const auto found = characterised(flags);
   if (!found) {
     return complain(found.error().error, found.error().exit);
@@ -115,7 +115,7 @@ Exit run_here(const Flags& flags, const ExportTarget& target) {
   return write_text(flags.output, export_to_text(target, *imu));
 }
 
-Exit run(const Flags& flags) {
+Exit run(const ExportFlags& flags) {
   if (flags.list) {
     return write_text("", export_targets_to_text());
   }
@@ -147,7 +147,7 @@ Exit run(const Flags& flags) {
 void add_export(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand(
       "export", "Noise parameters in the file of another program: Kalibr, VINS-Fusion, PX4, Gazebo, ... (--list)");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<ExportFlags>();
   command->add_option("FILE", flags->files,
                       "Recordings that share the flags below, one study.json, or a document of characterise --json");
   command->add_option("--target", flags->target, "Which program: a name of --list")->capture_default_str();

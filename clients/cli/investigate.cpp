@@ -17,7 +17,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct InvestigateFlags {
   std::string study;
   std::string out;
   std::string markdown;
@@ -25,7 +25,7 @@ struct Flags {
   std::string plot;
 };
 
-Exit run(const Flags& flags) {
+Exit run(const InvestigateFlags& flags) {
   auto inputs = read_inputs({flags.study}, {});
   if (!inputs) {
     return complain(inputs.error());
@@ -71,7 +71,7 @@ Exit run(const Flags& flags) {
 void add_investigate(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("investigate", "Say what a simulation gets wrong about a study's recordings, and why");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<InvestigateFlags>();
   command->add_option("STUDY", flags->study, "study.json beside its recordings")->required();
   command->add_option("--out", flags->out, "Write the report document to this file");
   command->add_option("--markdown", flags->markdown, "Write the report as a Markdown page to this file");

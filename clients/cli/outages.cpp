@@ -18,7 +18,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct OutagesFlags {
   std::string scenario = "paper";
   int runs = 400;
   std::uint64_t seed = 1;
@@ -29,12 +29,12 @@ struct Flags {
   std::string plot;
 };
 
-Status draw_result(const Flags& flags, const Json& document) {
+Status draw_result(const OutagesFlags& flags, const Json& document) {
   return flags.plot.empty() ? Status{} : write_plots(document, flags.plot);
 }
 
 /// The same evaluation as a job of a daemon, which may name its stored fits and tables.
-Exit run_there(const Flags& flags) {
+Exit run_there(const OutagesFlags& flags) {
   auto scenario = scenario_document(flags.scenario);
   if (!scenario) {
     return complain(scenario.error());
@@ -63,7 +63,7 @@ Exit run_there(const Flags& flags) {
   return Exit::Success;
 }
 
-Exit run(const Flags& flags) {
+Exit run(const OutagesFlags& flags) {
   if (!flags.server.empty()) {
     return run_there(flags);
   }
@@ -101,7 +101,7 @@ Exit run(const Flags& flags) {
 void add_outages(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("outages", "Compare what error models are worth in navigation through GNSS outages");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<OutagesFlags>();
   command
       ->add_option("--scenario", flags->scenario,
                    "paper, paper-position-only, paper-nhc, paper-s-curves, or a scenario.json")

@@ -18,7 +18,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct PlanFlags {
   std::string study;
   std::string out;
   std::size_t runs = 6;
@@ -26,7 +26,7 @@ struct Flags {
   bool json = false;
 };
 
-Exit run(const Flags& flags) {
+Exit run(const PlanFlags& flags) {
   auto inputs = read_inputs({flags.study}, {});
   if (!inputs) {
     return complain(inputs.error());
@@ -67,7 +67,7 @@ Exit run(const Flags& flags) {
 void add_plan(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("plan", "Propose the recordings that would decide most of what an investigation leaves open");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PlanFlags>();
   command->add_option("STUDY", flags->study, "study.json beside its recordings")->required();
   command->add_option("--runs", flags->runs, "Simulated studies for each question and proposal (6)")
       ->check(CLI::Range(1, 1000));

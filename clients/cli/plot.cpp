@@ -12,7 +12,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct PlotFlags {
   std::vector<std::string> files;
   FileFlags file;
   std::string output = "-";
@@ -26,7 +26,7 @@ struct Documented {
 };
 
 /// A document as it stands, or recordings characterised now, with the name of their device.
-tl::expected<Documented, Failure> document_of(const Flags& flags) {
+tl::expected<Documented, Failure> document_of(const PlotFlags& flags) {
   if (flags.files.size() == 1 && flags.files.front().ends_with(".json")) {
     auto document = read_json_file(flags.files.front(), kWrittenByJson);
     if (!document) {
@@ -52,7 +52,7 @@ tl::expected<Documented, Failure> document_of(const Flags& flags) {
   return Documented{inputs->device, inputs->hardware, std::move(*document)};
 }
 
-Exit run_plot(const Flags& flags) {
+Exit run_plot(const PlotFlags& flags) {
   const auto document = document_of(flags);
   if (!document) {
     return complain(document.error().error, document.error().exit);
@@ -61,7 +61,7 @@ Exit run_plot(const Flags& flags) {
   return written ? Exit::Success : complain(written.error());
 }
 
-Exit run_report(const Flags& flags) {
+Exit run_report(const PlotFlags& flags) {
   const auto document = document_of(flags);
   if (!document) {
     return complain(document.error().error, document.error().exit);
@@ -81,7 +81,7 @@ Exit run_report(const Flags& flags) {
   return write_text(flags.output == "-" ? "" : flags.output, *page);
 }
 
-void add_inputs(CLI::App& command, const std::shared_ptr<Flags>& flags) {
+void add_inputs(CLI::App& command, const std::shared_ptr<PlotFlags>& flags) {
   command.add_option("FILE", flags->files, "A document that --json wrote, recordings, or one study.json")->required();
   command.add_option("--rate-hz", flags->file.rate_hz, "Sampling rate of recordings; needed without a time column");
   command.add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… as for characterise");
@@ -98,7 +98,7 @@ void add_inputs(CLI::App& command, const std::shared_ptr<Flags>& flags) {
 void add_plot(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("plot", "Figures of a result or a recording: SVG, PNG, or in the terminal");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PlotFlags>();
   add_inputs(*command, flags);
   command->add_option("--output", flags->output, "File (.svg, .png); - draws in the terminal")->capture_default_str();
   command->add_option("--channel", flags->channel, "Only this channel, or this parameter of a table");
@@ -108,7 +108,7 @@ void add_plot(CLI::App& app, Command& chosen) {
 void add_report(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("report", "One HTML page of a device, a recording, an investigation or a regression run");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PlotFlags>();
   add_inputs(*command, flags);
   command->add_option("--output", flags->output, "File; - prints it")->capture_default_str();
   command->callback([flags, &chosen] { chosen = [flags] { return run_report(*flags); }; });

@@ -15,7 +15,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct PopulationFlags {
   std::vector<std::string> files;
   std::string server = "http://127.0.0.1:8477";
   std::string model;
@@ -50,7 +50,7 @@ Status add_tables(const std::string& file, const std::string& sensor, std::vecto
   return {};
 }
 
-Exit run_here(const Flags& flags) {
+Exit run_here(const PopulationFlags& flags) {
   std::vector<ParameterTable> tables;
   for (const std::string& file : flags.files) {
     if (auto added = add_tables(file, flags.sensor, tables); !added) {
@@ -64,7 +64,7 @@ Exit run_here(const Flags& flags) {
                                                      : populations_to_text(report));
 }
 
-Exit run(const Flags& flags) {
+Exit run(const PopulationFlags& flags) {
   if (!flags.files.empty()) {
     return run_here(flags);
   }
@@ -90,7 +90,7 @@ Exit run(const Flags& flags) {
 void add_population(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand(
       "population", "All devices of a model: mean, spread between them, and which of them is not of the line");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PopulationFlags>();
   command->add_option("FILE", flags->files, "Results of characterise --json, one a device, named after it");
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
   command->add_option("--model", flags->model, "Model or IMU of the stored devices, e.g. MPU-6050");

@@ -11,7 +11,7 @@
 namespace driftlab::cli {
 namespace {
 
-constexpr double kUploads = 0.2;  ///< shares of the progress bar
+constexpr double kUploaded = 0.2;  ///< shares of the progress bar
 constexpr double kAnalysis = 0.95;
 
 /// The labels of `firmware=1.5.0,board=b`; empty where it is none.
@@ -80,10 +80,10 @@ class ArmSender {
       if (file.spec.id.ends_with(recording.file) || recording.file.ends_with(file.spec.id)) {
         file.spec.id = file.path.filename().string();
       }
-      const double before = kUploads * static_cast<double>(done_) / static_cast<double>(files_);
+      const double before = kUploaded * static_cast<double>(done_) / static_cast<double>(files_);
       auto id =
           upload_file(client_, device_, file, {labels, recording.session, recording.recorded_at}, [&](double fraction) {
-            bar_.show("upload " + recording.file, before + kUploads * fraction / static_cast<double>(files_));
+            bar_.show("upload " + recording.file, before + kUploaded * fraction / static_cast<double>(files_));
           });
       if (!id) {
         return tl::unexpected(id.error());
@@ -115,8 +115,8 @@ class ArmSender {
     if (!models_.empty()) {
       request["parameters"] = Json{{"models", models_}};
     }
-    const double step = (kAnalysis - kUploads) / static_cast<double>(files_);
-    const double before = kUploads + step * static_cast<double>(done_);
+    const double step = (kAnalysis - kUploaded) / static_cast<double>(files_);
+    const double before = kUploaded + step * static_cast<double>(done_);
     ++done_;
     auto job = succeeded_job(client_, request, bar_, before, before + step);
     return job ? tl::expected<void, Failure>() : tl::unexpected(job.error());

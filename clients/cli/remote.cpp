@@ -10,8 +10,6 @@
 namespace driftlab::cli {
 namespace {
 
-constexpr double kUploads = 0.3;  ///< share of the progress bar
-
 /// What the job works on: the uploaded recordings, or where they are a study, that.
 tl::expected<Json, Failure> job_inputs(HttpClient& client, const Inputs& inputs, const Json& ids) {
   if (!inputs.study.is_string()) {

@@ -7,6 +7,9 @@
 
 namespace driftlab::cli {
 
+/// Share of the progress bar that the uploads before one job take.
+inline constexpr double kUploads = 0.3;
+
 /// What went wrong and how the process ends because of it.
 struct Failure {
   Error error;

@@ -15,7 +15,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct SimulateFlags {
   std::string preset = "iphone5s-z";
   std::string condition = "static";
   std::string model;
@@ -30,7 +30,7 @@ struct Flags {
   std::string truth;
 };
 
-std::string provenance(const Flags& flags) {
+std::string provenance(const SimulateFlags& flags) {
   std::string text = "Simulated by driftlab " DRIFTLAB_VERSION ", ";
   if (!flags.scenario.empty()) {
     text.append("scenario ").append(flags.scenario).append(", run ").append(std::to_string(flags.run));
@@ -65,7 +65,7 @@ Result<investigate::Baseline> read_model(const std::string& path) {
   return model;
 }
 
-Result<AxisSimulation> axis_of(const Flags& flags) {
+Result<AxisSimulation> axis_of(const SimulateFlags& flags) {
   auto condition = parse_condition(flags.condition);
   if (!condition) {
     return fail(condition.error());
@@ -74,7 +74,7 @@ Result<AxisSimulation> axis_of(const Flags& flags) {
 }
 
 /// An .npy file has no names: what reads it must be told them, and this says how.
-void say_columns(const Flags& flags, const SampleTable& table) {
+void say_columns(const SimulateFlags& flags, const SampleTable& table) {
   if (!flags.out.ends_with(".npy")) {
     return;
   }
@@ -88,7 +88,7 @@ void say_columns(const Flags& flags, const SampleTable& table) {
 }
 
 /// One axis at one condition.
-Exit write_preset(const Flags& flags) {
+Exit write_preset(const SimulateFlags& flags) {
   const auto wanted = axis_of(flags);
   const auto table = wanted ? simulate_preset(flags.preset, *wanted) : fail(wanted.error());
   const Status written = table ? write_table(flags.out, provenance(flags), *table) : fail(table.error());
@@ -100,7 +100,7 @@ Exit write_preset(const Flags& flags) {
 }
 
 /// One channel of a simulation model. What cannot be brought about is named on standard error and in the file.
-Exit write_model(const Flags& flags) {
+Exit write_model(const SimulateFlags& flags) {
   const auto model = read_model(flags.model);
   if (!model) {
     return complain(model.error());
@@ -125,7 +125,7 @@ Exit write_model(const Flags& flags) {
 }
 
 /// All axes along a drive, with fixes and truth.
-Exit write_drive(const Flags& flags) {
+Exit write_drive(const SimulateFlags& flags) {
   auto scenario = read_scenario(flags.scenario);
   if (!scenario) {
     return complain(scenario.error());
@@ -150,7 +150,7 @@ Exit write_drive(const Flags& flags) {
   return written ? Exit::Success : complain(written.error());
 }
 
-Exit run(const Flags& flags) {
+Exit run(const SimulateFlags& flags) {
   if (!flags.scenario.empty()) {
     return write_drive(flags);
   }
@@ -162,7 +162,7 @@ Exit run(const Flags& flags) {
 void add_simulate(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand(
       "simulate", "Write a recording simulated from an error model, of one axis or of a whole drive");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<SimulateFlags>();
   command->add_option("--preset", flags->preset, "Published model: iphone5s-z (Radi et al. 2017, Table 4)")
       ->capture_default_str();
   command->add_option("--model", flags->model,

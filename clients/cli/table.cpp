@@ -9,7 +9,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct TableFlags {
   std::string server = "http://127.0.0.1:8477";
   std::string device;
   std::string sensor = "gyroscope";
@@ -34,7 +34,7 @@ std::string media_type(const std::string& format) {
   return format == "json" ? "application/json" : "text/plain";
 }
 
-Exit run(const Flags& flags) {
+Exit run(const TableFlags& flags) {
   std::string target = "/v1/parameter-tables?device=" + percent_encode(flags.device) +
                        "&sensor=" + percent_encode(flags.sensor) + "&method=" + percent_encode(flags.method);
   if (!flags.axis.empty()) {
@@ -62,7 +62,7 @@ Exit run(const Flags& flags) {
 
 void add_table(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand("table", "Parameter table of one sensor axis over all its conditions");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<TableFlags>();
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
   command->add_option("--device", flags->device, "Name or id of the device")->required();
   command->add_option("--sensor", flags->sensor, "gyroscope or accelerometer")->capture_default_str();

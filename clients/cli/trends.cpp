@@ -8,7 +8,7 @@
 namespace driftlab::cli {
 namespace {
 
-struct Flags {
+struct TrendsFlags {
   std::string server = "http://127.0.0.1:8477";
   std::string device;
   std::string sensor = "gyroscope";
@@ -18,7 +18,7 @@ struct Flags {
   std::string format = "text";
 };
 
-Exit run(const Flags& flags) {
+Exit run(const TrendsFlags& flags) {
   std::string target = "/v1/trends?device=" + percent_encode(flags.device) + "&sensor=" + percent_encode(flags.sensor) +
                        "&method=" + percent_encode(flags.method);
   for (const auto& [name, value] : {std::pair{"&axis=", flags.axis}, std::pair{"&model=", flags.model}}) {
@@ -38,7 +38,7 @@ Exit run(const Flags& flags) {
 void add_trends(CLI::App& app, Command& chosen) {
   CLI::App* const command =
       app.add_subcommand("trends", "How each parameter of one sensor axis moves with rate and angular acceleration");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<TrendsFlags>();
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();
   command->add_option("--device", flags->device, "Name or id of the device")->required();
   command->add_option("--sensor", flags->sensor, "gyroscope or accelerometer")->capture_default_str();

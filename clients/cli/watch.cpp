@@ -17,7 +17,7 @@ namespace {
 constexpr std::chrono::seconds kPause{1};
 constexpr int kMostRefusals = 30;  ///< of a daemon that is restarted; then it is taken to be gone
 
-struct Flags {
+struct WatchFlags {
   std::string server = "http://127.0.0.1:8477";
   std::string job;
   bool all = false;
@@ -129,7 +129,7 @@ Exit watch_job(HttpClient& client, const std::string& job, bool json) {
   return complain(lost, Exit::ServerOrJob);
 }
 
-Exit run(const Flags& flags) {
+Exit run(const WatchFlags& flags) {
   if (flags.all != flags.job.empty()) {
     return complain({ErrorCode::InvalidArgument, "Name one job, or say --all.", {}});
   }
@@ -146,7 +146,7 @@ Exit run(const Flags& flags) {
 
 void add_watch(CLI::App& app, Command& chosen) {
   CLI::App* const command = app.add_subcommand("watch", "Follow a job of a daemon to its end, or all of them");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<WatchFlags>();
   command->add_option("JOB", flags->job, "Id of the job");
   command->add_flag("--all", flags->all, "Everything that jobs do, and their results, until interrupted");
   command->add_option("--server", flags->server, "Address of the daemon")->capture_default_str();

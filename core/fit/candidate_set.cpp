@@ -18,7 +18,7 @@ constexpr int kMostRounds = 3;
 constexpr double kEqual = 0.05;
 constexpr double kFirstGuess = 0.02;
 
-tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The fit of the models was cancelled."); }
+tl::unexpected<Error> cancelled_fit() { return fail(ErrorCode::Cancelled, "The fit of the models was cancelled."); }
 
 /// The largest candidate that can be tested; of two as large the closer one.
 const Candidate* largest_testable(const CandidateSet& set) {
@@ -71,7 +71,7 @@ Result<CandidateSet> fit_candidates(const WaveletMoments& moments, std::span<con
   });
   for (std::size_t i = 0; i < rising.size(); ++i) {
     if (control.stop.stop_requested()) {
-      return cancelled();
+      return cancelled_fit();
     }
     control.report("fit " + model_name(rising[i]), static_cast<double>(i) / static_cast<double>(rising.size()));
     Candidate candidate = fit_candidate(moments, rising[i], sd, set.curve, set.candidates);
@@ -88,7 +88,7 @@ Status forgive(const WaveletMoments& moments, CandidateSet& set, const RunContro
   }
   for (int round = 0; round < kMostRounds; ++round) {
     if (control.stop.stop_requested()) {
-      return cancelled();
+      return cancelled_fit();
     }
     const Candidate& largest = *largest_testable(set);
     if (round > 0 && std::fabs(largest.fit.objective / distance_dof(largest) - 1.0) < kEqual) {
@@ -100,7 +100,7 @@ Status forgive(const WaveletMoments& moments, CandidateSet& set, const RunContro
     std::vector<Candidate> again;
     for (const Candidate& candidate : set.candidates) {
       if (control.stop.stop_requested()) {
-        return cancelled();
+        return cancelled_fit();
       }
       again.push_back(refit_candidate(moments, candidate, set.curve, again));
     }

@@ -118,6 +118,7 @@ RobustVariances robust_variances(std::span<const double> samples, double mean, c
                           .p = test.p,
                           .disjoint_scales = test.disjoint_scales,
                           .flagged_samples = test.flagged_coefficients,
+                          .bursts = std::nullopt,
                           .not_gaussian = test.not_gaussian};
   if (coefficients.shape.refused) {
     result.warnings.emplace_back(

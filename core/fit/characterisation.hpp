@@ -55,6 +55,9 @@ struct Contamination {
   bool not_gaussian = false;  ///< they differ by the shape of the noise, not by a few samples
 };
 
+/// The limit of what nothing bounds.
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
 /// One parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says why
 /// in a sentence.
 struct FittedParameter {
@@ -62,7 +65,7 @@ struct FittedParameter {
   std::optional<Estimate> estimate;
   std::string reason;
   /// Where there is no estimate: the level is below this with 95 % confidence (infinite: nothing bounds it).
-  double upper_limit = std::numeric_limits<double>::infinity();
+  double upper_limit = kUnbounded;
 };
 
 /// A process with estimates in the place of values (core/process/process.hpp).
@@ -118,11 +121,11 @@ struct AllanParameters {
   std::optional<Estimate> k;  ///< rate random walk [channel unit / sqrt(s)]
   std::optional<Estimate> r;  ///< rate ramp [channel unit / s]
   std::string q_reason, n_reason, b_reason, k_reason, r_reason;
-  double q_limit = std::numeric_limits<double>::infinity();
-  double n_limit = std::numeric_limits<double>::infinity();
-  double b_limit = std::numeric_limits<double>::infinity();
-  double k_limit = std::numeric_limits<double>::infinity();
-  double r_limit = std::numeric_limits<double>::infinity();
+  double q_limit = kUnbounded;
+  double n_limit = kUnbounded;
+  double b_limit = kUnbounded;
+  double k_limit = kUnbounded;
+  double r_limit = kUnbounded;
   double b_tau_s = 0.0;  ///< averaging time at which B takes the largest share of the Allan variance; 0 without B
 };
 

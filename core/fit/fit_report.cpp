@@ -14,7 +14,6 @@
 namespace driftlab {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A preview whose logarithm is this uncertain is no estimate.
 constexpr double kPreviewLimit = 2.0;
 constexpr double kPoorlyConditioned = 1e4;
@@ -44,7 +43,7 @@ Interval coordinate_interval(LogFit& fit, std::size_t k, IntervalMethod method, 
 struct Reported {
   std::optional<Estimate> estimate;
   std::string reason;
-  double upper_limit = kInfinity;
+  double upper_limit = kUnbounded;
 };
 
 Reported report_parameter(Candidate& candidate, const Process& process, std::size_t active_index, std::size_t parameter,
@@ -64,7 +63,7 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
   if (parameter == 0 && !bounded_below) {
     reported.reason =
         "Not identifiable: the data are compatible with no " + std::string(process.kind->title) + " at all.";
-    reported.upper_limit = bounded_above ? std::exp(scale * log_interval.high) : kInfinity;
+    reported.upper_limit = bounded_above ? std::exp(scale * log_interval.high) : kUnbounded;
     return reported;
   }
   if (parameter > 0 && !bounded_below && !bounded_above) {
@@ -73,8 +72,8 @@ Reported report_parameter(Candidate& candidate, const Process& process, std::siz
   }
   Estimate estimate;
   estimate.value = std::exp(scale * fit.best()(static_cast<Eigen::Index>(k)));
-  estimate.ci95.low = bounded_below ? std::exp(scale * log_interval.low) : -kInfinity;
-  estimate.ci95.high = bounded_above ? std::exp(scale * log_interval.high) : kInfinity;
+  estimate.ci95.low = bounded_below ? std::exp(scale * log_interval.low) : -kUnbounded;
+  estimate.ci95.high = bounded_above ? std::exp(scale * log_interval.high) : kUnbounded;
   reported.estimate = estimate;
   return reported;
 }

@@ -156,7 +156,7 @@ void projected_residual(const Search& search, LastLook& last, const Eigen::Vecto
   }
 }
 
-struct Candidate {
+struct ScannedStart {
   Eigen::VectorXd log_shapes;
   double objective = std::numeric_limits<double>::infinity();
 };
@@ -188,7 +188,7 @@ std::vector<GridBlock> grid_blocks(const Search& search, const ModelStructure& s
 }
 
 /// Scans all combinations of grid points (rising within one kind) and keeps the best few that are not neighbours.
-std::vector<Candidate> scan(const Search& search, const ModelStructure& structure) {
+std::vector<ScannedStart> scan(const Search& search, const ModelStructure& structure) {
   const std::size_t shapes = search.shapes();
   const bool several = std::any_of(structure.kinds.begin(), structure.kinds.end(),
                                    [](const ProcessKind* kind) { return kind->shape_count() > 1; });
@@ -220,7 +220,7 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
     }
   }
   const GramProblem problem(all, search.target());
-  std::vector<Candidate> candidates;
+  std::vector<ScannedStart> candidates;
   std::vector<int> index(shapes, 0);
   std::vector<std::vector<int>> tried;
   std::vector<double> value;
@@ -276,7 +276,7 @@ std::vector<Candidate> scan(const Search& search, const ModelStructure& structur
     }
   }
   for (const std::size_t i : kept) {
-    Candidate candidate;
+    ScannedStart candidate;
     candidate.log_shapes.resize(static_cast<Eigen::Index>(shapes));
     for (std::size_t s = 0; s < shapes; ++s) {
       candidate.log_shapes(static_cast<Eigen::Index>(s)) = at(s, tried[i][s]);
@@ -350,7 +350,7 @@ Eigen::VectorXd modelled_variance(const WaveletMoments& moments, const Model& mo
 
 GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& structure, const MomentWeights& weights) {
   const Search search(moments, structure, weights);
-  Candidate best;
+  ScannedStart best;
   GmwmSolution solution;
   solution.converged = true;
   if (search.shapes() == 0) {
@@ -361,7 +361,7 @@ GmwmSolution fit_gmwm(const WaveletMoments& moments, const ModelStructure& struc
       projected_residual(search, last, at, residuals, jacobian);
     };
     LeastSquaresLimits limits{.max_iterations = 60, .gradient_tolerance = 1e-13, .parameter_tolerance = 1e-8};
-    for (Candidate candidate : scan(search, structure)) {
+    for (ScannedStart candidate : scan(search, structure)) {
       // A minimum that three times what its slope promises would not lower below the best is none worth finding.
       if (candidate.objective - 3.0 * promised_fall(residual, candidate.log_shapes) > best.objective) {
         continue;

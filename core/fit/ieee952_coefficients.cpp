@@ -16,11 +16,10 @@ constexpr double kRise95 = 3.841458820694124;
 constexpr double kRise95OneSided = 2.705543454095404;
 /// Relative standard error of a squared level above which the curvature is not trusted and the profile is taken.
 constexpr double kCurvatureHolds = 0.01;
-constexpr double kDescribed = 0.05;
+constexpr double kMostDiscrepancy = 0.05;
 /// A coefficient is there if it is in every model whose cost is this close to the best: less than a parameter costs, or
 /// any larger model would speak against it.
 constexpr double kAsGood = 3.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A coefficient: its term, and the place of its results.
 struct Term {
@@ -104,7 +103,7 @@ double Coefficients::upper_limit(const Term& term, const CompositeFit& without) 
     ++kind;
   }
   if (kind == basis_.kinds().size()) {
-    return kInfinity;
+    return kUnbounded;
   }
   Composite model = without.model;
   model.push_back({kind, 0.0, {}});
@@ -112,7 +111,7 @@ double Coefficients::upper_limit(const Term& term, const CompositeFit& without) 
   LogColumn column;
   basis_.column(model.back(), false, column);
   const Eigen::VectorXd& y = distance_.log_variance();
-  double start = kInfinity;
+  double start = kUnbounded;
   for (Eigen::Index j = 0; j < y.size(); ++j) {
     start = std::min(start, y(j) - column.value(distance_.used()[static_cast<std::size_t>(j)]));
   }
@@ -141,7 +140,7 @@ double Coefficients::upper_limit(const Term& term, const CompositeFit& without) 
     }
     return level(outside);
   }
-  return kInfinity;
+  return kUnbounded;
 }
 
 std::string Coefficients::names(bool with, const Term& term) const {
@@ -223,7 +222,7 @@ double Coefficients::flicker_tau() const {
 
 AllanParameters ieee952_coefficients(const CompositeBasis& basis, const CompositeSearchResult& found, double unit) {
   AllanParameters result;
-  if (found.fits.empty() || found.delta < 0.0 || found.delta > kDescribed) {
+  if (found.fits.empty() || found.delta < 0.0 || found.delta > kMostDiscrepancy) {
     result.q_reason = result.n_reason = result.b_reason = result.k_reason = result.r_reason =
         "These terms do not describe the curve: no sum of the registered processes comes within 5 % of it.";
     return result;

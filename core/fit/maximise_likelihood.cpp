@@ -12,7 +12,7 @@ namespace driftlab {
 namespace {
 
 constexpr double kDifference = 1e-3;  ///< step of the differences, on logarithms
-constexpr int kMostSteps = 60;
+constexpr int kMostRounds = 60;
 constexpr double kEnough = 2e-4;  ///< a predicted gain of ln L below this ends the search
 constexpr double kLongestStep = 2.0;
 constexpr double kFarthest = 60.0;  ///< logarithms of squared levels stay within this of the reference
@@ -179,7 +179,7 @@ Result<LikelihoodFit> maximise_likelihood(std::span<const double> samples, const
   fit.converged = at.size() == 0;
   Slope slope = slope_at(objective, at, here);
   Eigen::MatrixXd metric = first_metric(slope);
-  for (int round = 0; round < kMostSteps && !fit.converged; ++round) {
+  for (int round = 0; round < kMostRounds && !fit.converged; ++round) {
     Eigen::VectorXd direction = -metric * slope.gradient;
     if (!(direction.dot(slope.gradient) < 0.0)) {
       metric = first_metric(slope);

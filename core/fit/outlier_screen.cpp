@@ -104,18 +104,18 @@ std::vector<double> median_residuals(std::span<const double> samples, std::size_
   return residual;
 }
 
-constexpr std::array<std::size_t, 3> kReach{7, 31, 125};
+constexpr std::array<std::size_t, 3> kReaches{7, 31, 125};
 
-/// 0: neighbours, 1: four neighbours, 2 + i: kReach[i].
+/// 0: neighbours, 1: four neighbours, 2 + i: kReaches[i].
 std::size_t best_predictor(std::span<const double> samples) {
   Predictor predictor(samples);
-  std::array<std::vector<double>, 2 + kReach.size()> errors;
+  std::array<std::vector<double>, 2 + kReaches.size()> errors;
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / kLooks);
   for (std::size_t t = 0; t < samples.size(); t += stride) {
     errors[0].push_back(std::fabs(samples[t] - predictor.neighbours(t)));
     errors[1].push_back(std::fabs(samples[t] - predictor.around(t, 2)));
-    for (std::size_t i = 0; i < kReach.size(); ++i) {
-      errors[2 + i].push_back(std::fabs(samples[t] - predictor.window(t, kReach[i])));
+    for (std::size_t i = 0; i < kReaches.size(); ++i) {
+      errors[2 + i].push_back(std::fabs(samples[t] - predictor.window(t, kReaches[i])));
     }
   }
   std::size_t best = 0;
@@ -159,7 +159,7 @@ void mark_patches(const std::vector<double>& residual, std::size_t length, std::
 OutlierScreen screen_outliers(std::span<const double> samples, const RunControl& control) {
   OutlierScreen screen;
   screen.patch.assign(samples.size(), 0);
-  std::vector<double> residual = median_residuals(samples, kReach.back(), control);
+  std::vector<double> residual = median_residuals(samples, kReaches.back(), control);
   for (const std::size_t length : {std::size_t{8}, std::size_t{20}}) {
     if (!control.stop.stop_requested()) {
       mark_patches(residual, length, screen.patch);
@@ -174,8 +174,8 @@ OutlierScreen screen_outliers(std::span<const double> samples, const RunControl&
       }
       residual[t] = samples[t] - (best == 0 ? predictor.neighbours(t) : predictor.around(t, 2));
     }
-  } else if (best < 1 + kReach.size()) {
-    residual = median_residuals(samples, kReach[best - 2], control);
+  } else if (best < 1 + kReaches.size()) {
+    residual = median_residuals(samples, kReaches[best - 2], control);
   }
   if (control.stop.stop_requested()) {
     return {};

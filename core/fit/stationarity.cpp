@@ -17,7 +17,7 @@ constexpr std::size_t kBlock = 3 * kTriplesPerBlock;
 constexpr std::array<std::size_t, 3> kFactors{1, 8, 64};  ///< of blocks, and half lengths of coefficients
 constexpr std::size_t kFewestLevels = 30;
 constexpr double kJump = 8.0;
-constexpr double kReach =
+constexpr double kFarthest =
     6.0;  ///< means of medians of three |c| at half length 1: four standard deviations of white noise
 constexpr std::size_t kBatches = 32;
 constexpr std::size_t kFewestMedians = 192;
@@ -204,7 +204,7 @@ std::optional<NoiseChange> find_change(std::span<const double> samples, double d
   for (const std::size_t factor : kFactors) {
     const std::vector<double> medians = coefficient_medians(samples, factor);
     if (factor == 1) {
-      levels = block_levels(samples, kReach * mean_of(medians));
+      levels = block_levels(samples, kFarthest * mean_of(medians));
     }
     take(find_jump(samples, factor == 1 ? levels : coarsened(levels, factor), factor, dt_s));
     take(find_level_change(medians, factor, dt_s));

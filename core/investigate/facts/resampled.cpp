@@ -10,7 +10,7 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kMost = 10;  ///< samples made of one
+constexpr std::size_t kMostSamples = 10;  ///< samples made of one
 
 double deviation_of_differences(std::span<const double> rows) {
   double square = 0.0;
@@ -103,7 +103,7 @@ Interpolation find_interpolation(std::span<const double> rows, double digit) {
     return {};
   }
   const std::span<const double> look = rows.first(std::min(rows.size(), kLook));
-  for (std::size_t every = kMost; every >= 2; --every) {
+  for (std::size_t every = kMostSamples; every >= 2; --every) {
     for (std::size_t phase = 0; phase < every; ++phase) {
       if (share_on_chords(look, every, phase, code) > kShare && share_on_chords(rows, every, phase, code) > kShare) {
         return {every, phase};
@@ -120,7 +120,7 @@ std::size_t find_running_mean(std::span<const double> error, double digit) {
   }
   const std::vector<double> power = mean_periodogram(error, length);
   const double rounding = digit * digit / 12.0;
-  for (std::size_t m = kMost; m >= 2; --m) {
+  for (std::size_t m = kMostSamples; m >= 2; --m) {
     if (is_running_mean(power, m, rounding)) {
       return m;
     }
