@@ -26,7 +26,7 @@ double quantile(std::vector<double>& values, double p) {
   return *at;
 }
 
-std::vector<Group> group_by_stamp(const std::vector<double>& stamps) {
+std::vector<Group> group_by_stamp(std::span<const double> stamps) {
   std::vector<Group> groups{{0, 1}};
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] == stamps[i - 1]) {
@@ -40,7 +40,7 @@ std::vector<Group> group_by_stamp(const std::vector<double>& stamps) {
 
 /// Median over the advancing steps of step per sample, 0 if none advances. Between groups of a and b samples lie
 /// (a + b)/2 sample intervals on average, so repeated stamps (coarse clocks, FIFOs stamped at once) do not bias it.
-double median_interval(const std::vector<double>& stamps, const std::vector<Group>& groups) {
+double median_interval(std::span<const double> stamps, const std::vector<Group>& groups) {
   std::vector<double> intervals;
   intervals.reserve(groups.size());
   for (std::size_t g = 1; g < groups.size(); ++g) {
@@ -54,7 +54,7 @@ double median_interval(const std::vector<double>& stamps, const std::vector<Grou
 
 /// The rows before which samples are missing: a step is a gap if it exceeds what the samples of both its groups can
 /// span, a + b - 1 intervals, by more than half an interval. Without repeated stamps that is 1.5 intervals.
-std::vector<std::size_t> find_long_steps(const std::vector<double>& stamps, const std::vector<Group>& groups,
+std::vector<std::size_t> find_long_steps(std::span<const double> stamps, const std::vector<Group>& groups,
                                          double interval_s) {
   std::vector<std::size_t> gaps;
   for (std::size_t g = 1; g < groups.size(); ++g) {
@@ -67,7 +67,7 @@ std::vector<std::size_t> find_long_steps(const std::vector<double>& stamps, cons
 }
 
 /// Every step forward of the stamps.
-std::vector<double> forward_steps(const std::vector<double>& stamps) {
+std::vector<double> forward_steps(std::span<const double> stamps) {
   std::vector<double> steps;
   steps.reserve(stamps.size());
   for (std::size_t i = 1; i < stamps.size(); ++i) {
@@ -79,7 +79,7 @@ std::vector<double> forward_steps(const std::vector<double>& stamps) {
 }
 
 /// Mean step a sample over the groups that are not behind a gap (rows, rising).
-double mean_interval(const std::vector<double>& stamps, const std::vector<Group>& groups,
+double mean_interval(std::span<const double> stamps, const std::vector<Group>& groups,
                      const std::vector<std::size_t>& gaps) {
   double sum = 0.0;
   double samples = 0.0;
@@ -113,8 +113,7 @@ double mean_up_to(const std::vector<double>& steps, double longest) {
   return sum / static_cast<double>(count);
 }
 
-void read_as_grid(SampleGrid grid, const std::vector<double>& stamps, const std::vector<Group>& groups,
-                  Spacing& spacing) {
+void read_as_grid(SampleGrid grid, std::span<const double> stamps, const std::vector<Group>& groups, Spacing& spacing) {
   spacing.interval_s = grid.interval_s;
   spacing.long_steps = find_long_steps(stamps, groups, grid.interval_s);
   std::vector<double> steps;
@@ -133,7 +132,7 @@ void read_as_grid(SampleGrid grid, const std::vector<double>& stamps, const std:
 }
 
 /// Returns the mean step a sample.
-double read_as_bursts(const std::vector<double>& stamps, std::vector<double> steps, Spacing& spacing) {
+double read_as_bursts(std::span<const double> stamps, std::vector<double> steps, Spacing& spacing) {
   const double largest_common = quantile(steps, 0.99);
   spacing.interval_s = mean_up_to(steps, largest_common);
   const double longest = std::max(20.0 * spacing.interval_s, 5.0 * largest_common);
@@ -148,7 +147,7 @@ double read_as_bursts(const std::vector<double>& stamps, std::vector<double> ste
 
 }  // namespace
 
-Spacing find_spacing(const std::vector<double>& stamps, std::span<const std::size_t> backward, double stated_s) {
+Spacing find_spacing(std::span<const double> stamps, std::span<const std::size_t> backward, double stated_s) {
   constexpr double kManyGaps = 0.005;  // more of the steps than this look like gaps: they are seen together
   constexpr double kBurstGaps = 0.02;  // more than this, on no grid
   const std::vector<Group> groups = group_by_stamp(stamps);

@@ -1,5 +1,5 @@
 #pragma once
-/// The spacing of time stamps: where samples are missing, and how evenly the rest lie. Internal to core/signal.
+/// The spacing of time stamps: where samples are missing, and how evenly the rest lie.
 ///
 /// Readings are tried in this order. Samples of the rate that is stated, where it is a whole number of times what the
 /// stamps show at first sight, for most are lost. Samples of an even sampler of which some are lost: steps are whole
@@ -26,7 +26,7 @@ struct Spacing {
 
 /// `stamps` [s] of all rows, which start anew at the rows `backward` (ascending). `stated_s`: the interval that the
 /// user states, 0 for none. O(rows log rows) where there are gaps, else O(rows).
-[[nodiscard]] Spacing find_spacing(const std::vector<double>& stamps, std::span<const std::size_t> backward,
+[[nodiscard]] Spacing find_spacing(std::span<const double> stamps, std::span<const std::size_t> backward,
                                    double stated_s);
 
 }  // namespace driftlab

@@ -1,10 +1,15 @@
 #include "core/investigate/study/time_grid.hpp"
 
+#include "core/signal/gappy_samples.hpp"
+#include "core/signal/spacing.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace driftlab::investigate {
 namespace {
+
+constexpr std::size_t kLongestGrid = 10'000'000;  // where less than a third of it has samples
 
 double median_step(std::span<const double> stamps) {
   std::vector<double> steps;
@@ -22,20 +27,20 @@ double median_step(std::span<const double> stamps) {
   return *middle;
 }
 
-/// Slope and offset of stamps over places by least squares.
-std::pair<double, double> line_through(std::span<const double> stamps, const std::vector<std::size_t>& place) {
+/// Slope and offset of stamps over places by least squares. `place` as in TimeGrid.
+std::pair<double, double> line_through(std::span<const double> stamps, const TimeGrid& grid) {
   double mean_t = 0.0;
   double mean_p = 0.0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     mean_t += stamps[i];
-    mean_p += static_cast<double>(place[i]);
+    mean_p += static_cast<double>(grid.place_of(i));
   }
   mean_t /= static_cast<double>(stamps.size());
   mean_p /= static_cast<double>(stamps.size());
   double cross = 0.0;
   double square = 0.0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    const double p = static_cast<double>(place[i]) - mean_p;
+    const double p = static_cast<double>(grid.place_of(i)) - mean_p;
     cross += p * (stamps[i] - mean_t);
     square += p * p;
   }
@@ -43,23 +48,22 @@ std::pair<double, double> line_through(std::span<const double> stamps, const std
   return {slope, mean_t - slope * mean_p};
 }
 
-/// Places by rounding each step; false where two rows meet or the scatter makes rounding a guess.
-bool place_rows(std::span<const double> stamps, double dt, std::vector<std::size_t>& place) {
-  place.resize(stamps.size());
-  double offset = stamps[0];  // follows the grid slowly, so that a small error of dt does not add up
-  std::size_t doubtful = 0;
-  place[0] = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    const double exact = (stamps[i] - offset) / dt;
-    const double rounded = std::round(exact);
-    if (rounded <= static_cast<double>(place[i - 1])) {
-      return false;
-    }
-    doubtful += std::fabs(exact - rounded) > 0.4 ? 1 : 0;
-    place[i] = static_cast<std::size_t>(rounded);
-    offset += 0.01 * dt * (exact - rounded);
+/// Where each row lies on the grid: behind a gap, farther on by what it lacks. Empty where nothing is missing.
+std::vector<std::size_t> places_of(std::size_t rows, const std::vector<Gap>& gaps) {
+  std::vector<std::size_t> place;
+  if (gaps.empty()) {
+    return place;
   }
-  return static_cast<double>(doubtful) < 0.01 * static_cast<double>(stamps.size());
+  place.reserve(rows);
+  std::size_t lost = 0;
+  auto gap = gaps.begin();
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (; gap != gaps.end() && gap->row == i; ++gap) {
+      lost += gap->missing;
+    }
+    place.push_back(i + lost);
+  }
+  return place;
 }
 
 /// The step of which all stamps are multiples, of those that decimal text has; 0 where there is none.
@@ -142,32 +146,29 @@ Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<d
   }
   grid.stamps.bursts = bursts_of(stamps_s, typical, rate_hz);
   const bool bursts = grid.stamps.bursts.count > 0;
-  grid.dt_s = rate_hz ? 1.0 / *rate_hz : typical;
-  bool placed = !bursts && place_rows(stamps_s, grid.dt_s, grid.place);
-  if (!placed && !bursts && rate_hz) {
-    placed = place_rows(stamps_s, typical, grid.place);
+  const Spacing spacing = find_spacing(stamps_s, {}, rate_hz ? 1.0 / *rate_hz : 0.0);
+  grid.dt_s = rate_hz ? 1.0 / *rate_hz : spacing.interval_s;
+  if (!bursts) {
+    grid.place = places_of(rows, spacing.gaps);
   }
-  if (!placed) {
-    grid.place.resize(rows);
-    for (std::size_t i = 0; i < rows; ++i) {
-      grid.place[i] = i;
-    }
+  grid.length = grid.place_of(rows - 1) + 1;
+  grid.stamps.missing = grid.length - rows;
+  if (grid.length > std::max(kLongestGrid, (1 + kMostMissingPerRow) * rows)) {
+    return fail(ErrorCode::LimitExceeded,
+                "The time column spans " + std::to_string(grid.length) + " sample intervals and has " +
+                    std::to_string(rows) + " samples: make a recording of each part.",
+                {{"rows", std::to_string(rows)}});
   }
-  const auto [slope, offset] = line_through(stamps_s, grid.place);
+  const auto [slope, offset] = line_through(stamps_s, grid);
   double square = 0.0;
   for (std::size_t i = 0; i < rows; ++i) {
-    const double residual = stamps_s[i] - offset - slope * static_cast<double>(grid.place[i]);
+    const double residual = stamps_s[i] - offset - slope * static_cast<double>(grid.place_of(i));
     square += residual * residual;
   }
   const double own = grid.stamps.resolution_s * grid.stamps.resolution_s / 12.0;
   grid.stamps.scatter_s = std::sqrt(std::max(0.0, square / static_cast<double>(rows) - own));
   if (bursts || std::fabs(slope * (rate_hz ? *rate_hz : 1.0 / slope) - 1.0) > 1e-5) {
     grid.dt_s = slope;
-  }
-  grid.length = grid.place.back() + 1;
-  grid.stamps.missing = grid.length - rows;
-  if (grid.stamps.missing == 0) {
-    grid.place.clear();
   }
   return grid;
 }

@@ -12,12 +12,15 @@ struct TimeGrid {
   std::size_t length = 0;
   std::vector<std::size_t> place;  ///< grid place of each row, strictly rising; empty: row i is place i
   Stamps stamps;
+
+  [[nodiscard]] std::size_t place_of(std::size_t row) const { return place.empty() ? row : place[row]; }
 };
 
-/// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. The sample interval starts as
-/// 1/`rate_hz` if a rate is stated, else as the median step, and is then fitted. If stamps scatter so much that two
-/// rows would share a place, the rows are taken as evenly spaced, because their number is then more reliable than their
-/// stamps.
+/// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. Lost samples are found as in every
+/// recording (core/signal/spacing.hpp), so that a sensor that lost a fifth of them at random keeps its rate. The sample
+/// interval is 1/`rate_hz` if a rate is stated and the stamps agree with it, else what they show.
+/// Errors: NonFinite; NonMonotonicTime; InconsistentSampling (time never advances); LimitExceeded (a grid of more than
+/// ten million points less than a third of which have samples).
 ///
 /// Where more than a fifth of the steps are below a quarter of the mean step, samples arrive in bursts
 /// (`Stamps::bursts`) and the stamps are those of the arrival: the rows are evenly spaced at the mean step, whatever
