@@ -82,14 +82,14 @@ void without_reference(const Channel& channel, const std::vector<ChannelGroup>& 
   }
 }
 
-std::vector<std::string> channels_of(const Evidence& evidence, const std::vector<ChannelGroup>& groups) {
-  std::vector<std::string> names;
+std::vector<ChannelName> channels_of(const Evidence& evidence, const std::vector<ChannelGroup>& groups) {
+  std::vector<ChannelName> names;
   std::vector<std::size_t> all{evidence.group};
   all.insert(all.end(), evidence.also_groups.begin(), evidence.also_groups.end());
   for (const std::size_t g : all) {
     for (const std::size_t r : evidence.members) {
       if (r < groups[g].members.size()) {
-        names.push_back(groups[g].members[r].name());
+        names.push_back(groups[g].members[r].channel_name());
       }
     }
   }

@@ -25,9 +25,8 @@ Estimate share_of(std::size_t k, std::size_t n) {
 /// The investigation of a simulated study names the answer and nothing beside it.
 bool decides(const Report& report, const std::string& cause, const std::string& column) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-    const bool here = std::any_of(finding.channels.begin(), finding.channels.end(), [&](const std::string& channel) {
-      return channel.substr(channel.rfind('/') + 1) == column;
-    });
+    const bool here = std::any_of(finding.channels.begin(), finding.channels.end(),
+                                  [&](const ChannelName& channel) { return channel.column == column; });
     return here && finding.evidence.cause->name == cause && !finding.evidence.ambiguous;
   });
 }
@@ -140,8 +139,7 @@ std::vector<OpenQuestion> open_questions(const Report& report) {
     if (!finding.evidence.ambiguous || finding.channels.empty()) {
       continue;
     }
-    const std::string& channel = finding.channels.front();
-    OpenQuestion question{std::string(finding.evidence.cause->name), channel.substr(channel.rfind('/') + 1), {}, ""};
+    OpenQuestion question{std::string(finding.evidence.cause->name), finding.channels.front().column, {}, ""};
     for (const Evidence& rival : finding.evidence.rivals) {
       question.rivals.emplace_back(rival.cause->name);
     }

@@ -15,11 +15,9 @@ namespace {
 
 constexpr double kOracle = 12.0;  ///< standard deviations
 
-std::string column_of(const std::string& channel) { return channel.substr(channel.rfind('/') + 1); }
-
 bool acts_on(const Finding& finding, const std::string& column) {
   return std::any_of(finding.channels.begin(), finding.channels.end(),
-                     [&](const std::string& channel) { return column_of(channel) == column; });
+                     [&](const ChannelName& channel) { return channel.column == column; });
 }
 
 /// What a finding says, as an effect of a model.
@@ -33,9 +31,9 @@ GivenEffect effect_of(const Finding& finding, const std::string& column) {
     effect.values.resize(1);
     effect.values.push_back(finding.evidence.shape);
   }
-  for (const std::string& channel : finding.channels) {
-    if (!finding.everywhere && column_of(channel) == column) {
-      effect.recordings.push_back(channel.substr(0, channel.rfind('/')));
+  for (const ChannelName& channel : finding.channels) {
+    if (!finding.everywhere && channel.column == column) {
+      effect.recordings.push_back(channel.recording);
     }
   }
   return effect;

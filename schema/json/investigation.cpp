@@ -156,7 +156,7 @@ Json finding_json(const Finding& finding) {
               {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
               {"alternatives", std::move(alternatives)},
               {"rivals", std::move(rivals)},
-              {"channels", finding.channels},
+              {"channels", texts_of(finding.channels)},
               {"because", finding.because},
               {"explanation", finding.explanation},
               {"parameters", parameters_json(finding.evidence)},
@@ -232,7 +232,7 @@ Json change_json(const Finding& finding) {
   return Json{{"change", "added"},
               {"cause", std::string(finding.evidence.cause->name)},
               {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
-              {"channels", finding.channels},
+              {"channels", texts_of(finding.channels)},
               {"why", finding.explanation},
               {"log_score_per_sample", number(finding.gain.log_score_per_sample)}};
 }

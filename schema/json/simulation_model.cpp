@@ -50,6 +50,7 @@ void read_channels(const Json& channels, const std::string& pointer, Baseline& m
     std::optional<Dimension> channel;
     model.by_channel[column] =
         model_from_json(processes != nullptr ? *processes : Json(), channel, here + "/processes", faults);
+    model.quantity_by_channel[column] = quantity_of(channel.value_or(Dimension::AngularRate));
   }
 }
 
@@ -139,6 +140,14 @@ void read_effect(const Json& document, const std::string& pointer, Baseline& mod
   }
 }
 
+/// Is the unit that of the quantity, over s^`per_seconds`?
+bool measures(const ParameterUnitValue& unit, Quantity quantity, int per_seconds) {
+  const int seconds = unit.second + 2 * per_seconds;  // exponents in halves
+  return quantity == Quantity::Unspecified ||
+         (quantity == Quantity::AngularRate ? unit.angle == 2 && unit.length == 0 && seconds == -2
+                                            : unit.angle == 0 && unit.length == 2 && seconds == -4);
+}
+
 void read_deterministic(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {
   for (const auto& [column, terms] : document.items()) {
     for (const char* const name : {"bias", "drift"}) {
@@ -153,7 +162,15 @@ void read_deterministic(const Json& document, const std::string& pointer, Baseli
         faults.add(here + "/unit", unit.error());
         continue;
       }
-      (name == std::string_view("bias") ? model.bias : model.drift)[column] = measured.value * unit->factor;
+      const bool bias = name == std::string_view("bias");
+      const auto own = model.quantity_by_channel.find(column);
+      const Quantity quantity = own == model.quantity_by_channel.end() ? model.quantity : own->second;
+      if (!measures(*unit, quantity, bias ? 0 : 1)) {
+        faults.add(here + "/unit", ErrorCode::UnitMismatch,
+                   "This unit does not measure the " + std::string(name) + " of channel " + column + ".");
+        continue;
+      }
+      (bias ? model.bias : model.drift)[column] = measured.value * unit->factor;
     }
   }
 }
@@ -185,12 +202,6 @@ Json given_effects_json(const Baseline& baseline, const Unit& channel) {
   return list;
 }
 
-/// "static-1/gz" apart.
-std::pair<std::string, std::string> apart(const std::string& channel) {
-  const std::size_t slash = channel.rfind('/');
-  return {channel.substr(0, slash), channel.substr(slash + 1)};
-}
-
 Json found_effect_json(const Finding& finding) {
   std::vector<std::string> columns;
   std::vector<std::string> recordings;
@@ -199,8 +210,7 @@ Json found_effect_json(const Finding& finding) {
       list.push_back(name);
     }
   };
-  for (const std::string& channel : finding.channels) {
-    const auto [recording, column] = apart(channel);
+  for (const auto& [recording, column] : finding.channels) {
     add(recordings, recording);
     add(columns, column);
   }

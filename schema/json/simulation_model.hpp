@@ -3,7 +3,7 @@
 ///
 ///   {"processes": [{"process", "params": {name: {"value", "unit"}}}],      what every channel has, or the first one
 ///    "channels": {column: {"processes": [...]}},                           where channels differ
-///    "deterministic": {column: {"bias": {...}, "drift": {...}}},
+///    "deterministic": {column: {"bias": {...}, "drift": {...}}},        in units of the column's sensor
 ///    "effects": [{"cause", "channels", "recordings", "params"}]}           what processes cannot hold
 ///
 /// The same members make the `baseline` of a study, where `channels` may be a list of columns that narrows it.

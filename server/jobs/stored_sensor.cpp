@@ -1,10 +1,12 @@
 #include "server/jobs/stored_sensor.hpp"
 
-#include "core/process/parameter_unit.hpp"
+#include "core/process/registry.hpp"
 #include "core/signal/angle.hpp"
+#include "schema/json/simulation_model.hpp"
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -33,21 +35,14 @@ Place place_of(const std::string& pointer) {
   return place;
 }
 
-const Json* member_of(const Json& document, const char* name, const std::string& column) {
-  const auto part = document.find(name);
-  if (part == document.end() || !part->is_object()) {
-    return nullptr;
-  }
-  const auto own = part->find(column);
-  return own == part->end() ? nullptr : &*own;
-}
+using investigate::Baseline;
 
-bool knows(const Json& model, const std::string& column) {
-  return member_of(model, "channels", column) != nullptr || member_of(model, "deterministic", column) != nullptr;
+bool knows(const Baseline& model, const std::string& column) {
+  return model.by_channel.count(column) > 0 || model.bias.count(column) > 0 || model.drift.count(column) > 0;
 }
 
 /// The column of one axis; empty where the model does not tell channels apart, nothing where it is not clear.
-std::optional<std::string> column_of(const Json& model, const std::string& named, const Place& place,
+std::optional<std::string> column_of(const Baseline& model, const std::string& named, const Place& place,
                                      std::size_t axis) {
   if (!named.empty()) {
     return knows(model, named) ? std::optional(named) : std::nullopt;
@@ -57,62 +52,55 @@ std::optional<std::string> column_of(const Json& model, const std::string& named
   if (knows(model, usual)) {
     return usual;
   }
-  const Json channels = model.value("channels", Json::object());
-  if (channels.empty()) {
+  if (model.by_channel.empty()) {
     return std::string();
   }
-  return channels.size() == 1 ? std::optional(channels.begin().key()) : std::nullopt;
+  return model.by_channel.size() == 1 ? std::optional(model.by_channel.begin()->first) : std::nullopt;
 }
 
-Json plain(const Json& quantity) {
-  return Json{{"value", quantity.value("value", Json())}, {"unit", quantity.value("unit", Json())}};
+double value_of(const std::map<std::string, double>& by_column, const std::string& column) {
+  const auto own = by_column.find(column);
+  return own == by_column.end() ? 0.0 : own->second;
 }
 
-/// Processes of the column, its drift as one of them.
-Json processes_of(const Json& model, const std::string& column) {
-  const Json* const own = member_of(model, "channels", column);
-  Json processes = Json::array();
-  for (const Json& process : own != nullptr ? own->value("processes", Json::array()) : model.at("processes")) {
-    Json params = Json::object();
-    for (const auto& [name, value] : process.at("params").items()) {
-      params[name] = plain(value);
-    }
-    processes.push_back(Json{{"process", process.at("process")}, {"params", std::move(params)}});
+/// Processes of the column with their numbers in SI, its drift as one of them. A fault where they are of another
+/// quantity than the sensor's.
+Json processes_of(const Baseline& model, const std::string& column, const Place& place, const std::string& pointer,
+                  Faults& faults) {
+  const auto own = model.by_channel.find(column);
+  const bool apart = own != model.by_channel.end();
+  const Quantity quantity = apart ? model.quantity_by_channel.at(column) : model.quantity;
+  if (quantity != Quantity::Unspecified && quantity != (place.gyro ? Quantity::AngularRate : Quantity::SpecificForce)) {
+    faults.add(pointer, ErrorCode::UnitMismatch,
+               std::string("The model describes ") + (place.gyro ? "an accelerometer" : "a gyroscope") +
+                   ", and this is " + (place.gyro ? "a gyroscope." : "an accelerometer."));
   }
-  const Json* const terms = member_of(model, "deterministic", column);
-  if (terms != nullptr && terms->contains("drift")) {
-    processes.push_back(Json{{"process", "linear_drift"}, {"params", {{"R", plain(terms->at("drift"))}}}});
+  driftlab::Model all = apart ? own->second : model.processes;
+  if (const double drift = value_of(model.drift, column); drift != 0.0) {
+    all.push_back({find_process("linear_drift"), {drift}});
+  }
+  Json processes = Json::array();
+  for (const Process& process : all) {
+    Json params = Json::object();
+    for (std::size_t k = 0; k < process.parameters.size(); ++k) {
+      params[std::string(process.kind->parameters[k].name)] = process.parameters[k];
+    }
+    processes.push_back(Json{{"process", process.kind->name}, {"params", std::move(params)}});
   }
   return processes;
 }
 
-/// In deg/s or m/s^2.
-double bias_of(const Json& model, const std::string& column, const Place& place, const std::string& pointer,
-               Faults& faults) {
-  const Json* const terms = member_of(model, "deterministic", column);
-  if (terms == nullptr || !terms->contains("bias")) {
-    return 0.0;
-  }
-  const Json& bias = terms->at("bias");
-  const auto unit = parse_parameter_unit(bias.value("unit", std::string()));
-  if (!unit || (place.gyro ? unit->angle : unit->length) != 2) {
-    faults.add(pointer, ErrorCode::UnitMismatch, "The bias of channel " + column + " is not one of this sensor.");
-    return 0.0;
-  }
-  return bias.value("value", 0.0) * unit->factor / (place.gyro ? kDegree : 1.0);
-}
-
 /// Names of what the scenario cannot hold of the columns in use.
-void leave_out(const Json& model, const std::vector<std::string>& columns, bool biased, const Place& place,
+void leave_out(const Baseline& model, const std::vector<std::string>& columns, bool biased, const Place& place,
                const std::string& id, const std::string& pointer, StoredSensors& found) {
   Json what = Json::array();
-  for (const Json& effect : model.value("effects", Json::array())) {
-    const Json channels = effect.value("channels", Json::array());
+  for (const investigate::GivenEffect& effect : model.effects) {
+    const std::vector<std::string>& channels = effect.channels;
     const bool here = channels.empty() || std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
                         return column.empty() || std::find(channels.begin(), channels.end(), column) != channels.end();
                       });
     if (here) {
-      what.push_back(effect.value("cause", std::string()));
+      what.push_back(effect.cause);
     }
   }
   if (biased && !place.truth) {
@@ -123,6 +111,28 @@ void leave_out(const Json& model, const std::vector<std::string>& columns, bool 
     std::string where = pointer.starts_with(kScenario) ? pointer.substr(kScenario.size()) : pointer;
     found.left_out.push_back(Json{{"where", std::move(where)}, {"simulation_model", id}, {"what", std::move(what)}});
   }
+}
+
+/// The stored model `id`; empty after a fault at `pointer` (there is none, or it cannot be read). The error is the
+/// store's.
+Result<std::optional<Baseline>> stored_model(const std::string& id, Store& store, const std::string& pointer,
+                                             Faults& faults) {
+  auto stored = store.model(id);
+  if (!stored && stored.error().code != ErrorCode::NotFound) {
+    return fail(stored.error());
+  }
+  auto document = stored ? parse_json(stored->document_json) : Result<Json>(Json::object());
+  if (!stored || !document || !document->contains("processes")) {
+    faults.add(pointer, ErrorCode::NotFound, "There is no simulation model " + id + ".");
+    return std::nullopt;
+  }
+  Faults within;
+  Baseline model = simulation_model_from_json(*document, "", within);
+  if (!within.none()) {
+    faults.add(pointer, within.error());
+    return std::nullopt;
+  }
+  return model;
 }
 
 }  // namespace
@@ -136,31 +146,30 @@ Status resolve_simulation_model(Json& sensor, const std::string& pointer, Store&
   const std::string named = reader.text("channel").value_or("");
   const std::optional<double> bias_sd = reader.real(bias_member);
   reader.reject_unknown();
-  auto stored = store.model(id);
-  if (!stored && stored.error().code != ErrorCode::NotFound) {
+  const auto stored = stored_model(id, store, pointer + "/simulation_model", faults);
+  if (!stored) {
     return fail(stored.error());
   }
-  auto model = stored ? parse_json(stored->document_json) : Result<Json>(Json::object());
-  if (!stored || !model || !model->contains("processes")) {
-    faults.add(pointer + "/simulation_model", ErrorCode::NotFound, "There is no simulation model " + id + ".");
+  if (!*stored) {
     return {};
   }
+  const Baseline& model = **stored;
   Json axes = Json::object();
   std::vector<std::string> columns;
   bool biased = false;
   for (std::size_t k = place.axis < 3 ? place.axis : 0; k < (place.axis < 3 ? place.axis + 1 : 3); ++k) {
-    const auto column = column_of(*model, named, place, k);
+    const auto column = column_of(model, named, place, k);
     if (!column) {
       faults.add(pointer + "/channel", named.empty() ? ErrorCode::InvalidArgument : ErrorCode::NotFound,
                  named.empty() ? "The model tells channels apart; name the one that is meant."
                                : "The model has no channel '" + named + "'.");
       return {};
     }
-    Json axis{{"processes", processes_of(*model, *column)}};
+    Json axis{{"processes", processes_of(model, *column, place, pointer, faults)}};
     if (bias_sd) {
       axis[bias_member] = *bias_sd;
     }
-    const double bias = bias_of(*model, *column, place, pointer, faults);
+    const double bias = value_of(model.bias, *column) / (place.gyro ? kDegree : 1.0);  // [deg/s] or [m/s^2]
     biased = biased || bias != 0.0;
     if (place.truth && bias != 0.0) {
       Json& list = found.truth_bias[place.gyro ? "gyro_errors" : "accelerometer_errors"];
@@ -170,7 +179,7 @@ Status resolve_simulation_model(Json& sensor, const std::string& pointer, Store&
     columns.push_back(*column);
     axes[kAxes[k]] = std::move(axis);
   }
-  leave_out(*model, columns, biased, place, id, pointer, found);
+  leave_out(model, columns, biased, place, id, pointer, found);
   sensor = place.axis < 3 ? Json(axes[kAxes[place.axis]]) : std::move(axes);
   return {};
 }

@@ -160,6 +160,14 @@ class OutageEvaluations(DaemonTest):
             answer = self.expect(status, self.daemon.post("/v1/outage-evaluations", {
                 "scenario": {**scenario, "truth": {**scenario["truth"], "gyro": sensor}}}))
             self.assertEqual([e["pointer"] for e in answer.json["errors"]], [pointer], answer.describe())
+        force = {"process": "white_noise", "params": {"N": level(80, "ug/sqrt(Hz)")}}
+        accelerometer = self.expect(201, self.daemon.post("/v1/models", {"name": "force", "processes": [force]})).json["id"]
+        answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {
+            "scenario": {**scenario, "truth": {**scenario["truth"], "gyro": {"simulation_model": accelerometer}}}}))
+        self.assertEqual({(e["pointer"], e["code"]) for e in answer.json["errors"]}, {("/scenario/truth/gyro", "unit_mismatch")}, answer.describe())
+        answer = self.expect(400, self.daemon.post("/v1/models", {"name": "mixed", "processes": [force],
+                                                                 "deterministic": {"fx": {"bias": level(0.7, "deg/s")}}}))
+        self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/deterministic/fx/bias/unit"], answer.describe())
         # A truth that is no object, beside a stored model with a bias, was answered with 500: the bias was written into it.
         for truth in ([{"gyro": scenario["truth"]["gyro"]}], "paper"):
             nested = {**scenario, "truth": truth, "filters": [{"name": "a", "truth": scenario["truth"]}]}

@@ -129,7 +129,7 @@ struct FileFact {
 
 /// One thing that is wrong with some recordings, and how it is put right.
 struct FaultyRecordings {
-  std::vector<std::string> channels;  ///< recording/column
+  std::vector<ChannelName> channels;
   std::vector<FoundParameter> parameters;
   std::string sentence;  ///< what is wrong where, and what was done about it
   /// Puts the recordings right. Rows of a file that must be written anew are kept in `rows`.

@@ -7,9 +7,7 @@
 
 namespace driftlab::investigate {
 
-std::string name_of(const StudyRecording& recording, const Channel& channel) {
-  return recording.id + "/" + channel.column;
-}
+ChannelName name_of(const StudyRecording& recording, const Channel& channel) { return {recording.id, channel.column}; }
 
 std::string list_of_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
@@ -21,6 +19,8 @@ std::string list_of_names(const std::vector<std::string>& names) {
   }
   return shown < names.size() ? text.append(" and others") : text;
 }
+
+std::string list_of_names(const std::vector<ChannelName>& names) { return list_of_names(texts_of(names)); }
 
 void renew_error(Channel& channel) { channel.error = channel.error.empty() ? Series() : channel.against_reference(); }
 

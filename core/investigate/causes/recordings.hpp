@@ -11,11 +11,11 @@
 
 namespace driftlab::investigate {
 
-/// "recording/column".
-[[nodiscard]] std::string name_of(const StudyRecording& recording, const Channel& channel);
+[[nodiscard]] ChannelName name_of(const StudyRecording& recording, const Channel& channel);
 
 /// "a, b and c"; of more than six the first five and "others".
 [[nodiscard]] std::string list_of_names(const std::vector<std::string>& names);
+[[nodiscard]] std::string list_of_names(const std::vector<ChannelName>& names);
 
 /// error = measured - reference, where the channel had one.
 void renew_error(Channel& channel);

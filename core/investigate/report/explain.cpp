@@ -53,8 +53,8 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
   text.append(evidence.members.size() == group.members.size()
                   ? std::string("all recordings")
                   : list_of(finding.channels.size() <= 6
-                                ? finding.channels
-                                : std::vector<std::string>{finding.channels.front(), "others"}));
+                                ? texts_of(finding.channels)
+                                : std::vector<std::string>{finding.channels.front().text(), "others"}));
   text.append(".");
   if (evidence.cause->as<FileFact>() != nullptr) {
     text.append(" The file itself shows it.").append(evidence.note.empty() ? "" : " ").append(evidence.note);

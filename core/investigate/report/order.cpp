@@ -37,10 +37,9 @@ std::vector<FindingGroup> groups_of(const std::vector<Finding>& findings) {
     FindingGroup& group = groups.back();
     group.findings.push_back(i);
     group.ambiguous = group.ambiguous && evidence.ambiguous;
-    for (const std::string& channel : findings[i].channels) {
-      std::string column = channel.substr(channel.rfind('/') + 1);
+    for (const auto& [recording, column] : findings[i].channels) {
       if (std::find(group.columns.begin(), group.columns.end(), column) == group.columns.end()) {
-        group.columns.push_back(std::move(column));
+        group.columns.push_back(column);
       }
     }
   }

@@ -93,7 +93,7 @@ void append_evidence(const Report& report, std::string& page) {
     page.append("| ")
         .append(finding.evidence.cause->name)
         .append(" | ")
-        .append(finding.channels.empty() ? "-" : list_of(finding.channels));
+        .append(finding.channels.empty() ? "-" : list_of(texts_of(finding.channels)));
     page.append(" | ").append(significant(finding.evidence.score)).append(" | ");
     page.append(finding.gain.heldout ? significant(finding.gain.log_score_per_sample) : "-");
     page.append(finding.gain.heldout && finding.gain.of_the_file ? " (of the file's digits and rows)" : "");

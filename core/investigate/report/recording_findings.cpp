@@ -37,10 +37,8 @@ void report_recordings(const RightedRecordings& righted, Report& report) {
     finding.gain.of_the_file = true;
     finding.gain.misfit_before = finding.gain.misfit_after = report.misfit_after;
     if (!found.fault.channels.empty()) {
-      const std::string& name = found.fault.channels.front();
-      const std::size_t slash = name.rfind('/');
-      checks.push_back(
-          certain_check(name + "." + std::string(found.cause->name), name.substr(0, slash), name.substr(slash + 1)));
+      const ChannelName& name = found.fault.channels.front();
+      checks.push_back(certain_check(name.text() + "." + std::string(found.cause->name), name.recording, name.column));
       checks.back().title = std::string(found.cause->title);
       checks.back().observed = 1.0;
       checks.back().end = CheckEnd::Finding;

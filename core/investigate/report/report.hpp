@@ -89,9 +89,9 @@ struct AllanChange {
 
 struct Finding {
   Evidence evidence;
-  std::vector<std::string> channels;  ///< recording/column
-  bool everywhere = true;             ///< in every recording of its channels
-  std::vector<std::string> because;   ///< ids of checks
+  std::vector<ChannelName> channels;
+  bool everywhere = true;            ///< in every recording of its channels
+  std::vector<std::string> because;  ///< ids of checks
   std::string explanation;
   std::string next_measurement;
   FindingGain gain;

@@ -188,6 +188,14 @@ Status set_window(StudyRecording& recording, const Trim& trim) {
 
 }  // namespace
 
+std::vector<std::string> texts_of(const std::vector<ChannelName>& names) {
+  std::vector<std::string> texts;
+  for (const ChannelName& name : names) {
+    texts.push_back(name.text());
+  }
+  return texts;
+}
+
 std::optional<std::size_t> axis_index(std::string_view axis) { return driftlab::axis_index(axis); }
 
 Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,

@@ -87,10 +87,11 @@ struct Baseline {
   bool automatic = true;
   Model processes;  ///< given baselines only
   Quantity quantity = Quantity::AngularRate;
-  std::vector<std::string> channels;        ///< columns it applies to; empty: all of its quantity
-  std::map<std::string, Model> by_channel;  ///< where columns have processes of their own
-  std::map<std::string, double> drift;      ///< by column [SI/s]
-  std::map<std::string, double> bias;       ///< by column [SI]; for simulations
+  std::vector<std::string> channels;                    ///< columns it applies to; empty: all of its quantity
+  std::map<std::string, Model> by_channel;              ///< where columns have processes of their own
+  std::map<std::string, Quantity> quantity_by_channel;  ///< of what these are
+  std::map<std::string, double> drift;                  ///< by column [SI/s]
+  std::map<std::string, double> bias;                   ///< by column [SI]; for simulations
   std::vector<GivenEffect> effects;
 };
 
@@ -116,6 +117,17 @@ void settle_channels(Study& study);
 /// 0, 1, 2 for x, y, z; nothing for another label.
 [[nodiscard]] std::optional<std::size_t> axis_index(std::string_view axis);
 
+/// A channel of a recording by name. A column may be called "gz [deg/s]": names are kept apart, not parted at slashes.
+struct ChannelName {
+  std::string recording;
+  std::string column;
+
+  [[nodiscard]] std::string text() const { return recording + "/" + column; }
+};
+
+/// "recording/column" of each.
+[[nodiscard]] std::vector<std::string> texts_of(const std::vector<ChannelName>& names);
+
 /// One channel through all recordings that hold it: the unit that one base model describes.
 struct ChannelGroup {
   std::string column;
@@ -124,7 +136,8 @@ struct ChannelGroup {
   struct Member {
     const StudyRecording* recording = nullptr;
     const Channel* channel = nullptr;
-    [[nodiscard]] std::string name() const { return recording->id + "/" + channel->column; }
+    [[nodiscard]] ChannelName channel_name() const { return {recording->id, channel->column}; }
+    [[nodiscard]] std::string name() const { return channel_name().text(); }
   };
   std::vector<Member> members;
 

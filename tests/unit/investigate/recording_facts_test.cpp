@@ -210,7 +210,7 @@ TEST(RightRecordings, ATurnedSignIsNamedAndTurnedBack) {
   const RightedRecordings righted = right_recordings(table.study);
   ASSERT_EQ(righted.findings.size(), 1U);
   EXPECT_EQ(righted.findings[0].cause->name, "turned_sign");
-  EXPECT_EQ(righted.findings[0].fault.channels, std::vector<std::string>{"spoilt/gz"});
+  EXPECT_EQ(texts_of(righted.findings[0].fault.channels), std::vector<std::string>{"spoilt/gz"});
   EXPECT_NEAR(mean_error(*righted.study, 3, 1), 0.3, 0.02);
 }
 

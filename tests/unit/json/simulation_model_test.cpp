@@ -47,6 +47,19 @@ TEST(SimulationModel, IsReadInSi) {
   EXPECT_EQ(model.effects[2].values[1], 3.0);  // the power of the rate is the template's shape
 }
 
+/// The effect of an extended model acted on a channel called "s]", and so on none.
+TEST(SimulationModel, AnEffectNamesColumnsThatHoldASlash) {
+  investigate::Report report;
+  investigate::Finding finding;
+  finding.evidence.cause = investigate::find_cause("bias_step");
+  finding.channels = {{"night/1", "gz [deg/s]"}};
+  finding.everywhere = false;
+  report.findings.push_back(std::move(finding));
+  const Json effect = extended_json(report).at("effects").at(0);
+  EXPECT_EQ(effect.at("channels"), Json::array({"gz [deg/s]"}));
+  EXPECT_EQ(effect.at("recordings"), Json::array({"night/1"}));
+}
+
 TEST(SimulationModel, EveryParameterOfEveryCauseComesBack) {
   for (const investigate::Cause& cause : investigate::cause_registry()) {
     for (const char* const sensor : {"deg/s", "m/s^2"}) {
