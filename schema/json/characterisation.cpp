@@ -164,7 +164,7 @@ Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimensio
       entry["convention"] = one.convention;
       all.push_back(std::move(entry));
     }
-    document[level.name] = std::move(all);
+    document[std::string(level.declared->name)] = std::move(all);
   }
   return document;
 }
