@@ -12,14 +12,13 @@ import signal
 import sqlite3
 import subprocess
 import tempfile
-import threading
 import time
 import unittest
 from pathlib import Path
 
 import samples
 from daemon import PATIENCE_S, PROGRAM, Daemon, events
-from history import LOST, MODELS, Client, History, Judge
+from history import LOST, MODELS, Client, History, Judge, at_work
 
 LIVES = int(os.environ.get("DRIFTLAB_CRASH_LIVES", "30"))
 SEED = int(os.environ.get("DRIFTLAB_CRASH_SEED", "20261121"))
@@ -170,20 +169,9 @@ class RandomMoments(Judge):
             with Daemon(folder / "data") as daemon:
                 self.assertEqual(daemon.files("incoming"), [])
                 self.judge(daemon, history)
-
-                def work(client: Client, daemon: Daemon = daemon) -> None:
-                    try:
-                        while True:
-                            client.step(daemon)
-                    except LOST:
-                        pass
-                    except Exception as unforeseen:  # noqa: BLE001: told at the end, by the thread of the test
-                        failures.append(repr(unforeseen))
                 before = history.snapshot()
                 backup = self.begin_backup(folder, life) if life % 4 == 3 else None
-                threads = [threading.Thread(target=work, args=(client,)) for client in clients]
-                for thread in threads:
-                    thread.start()
+                threads = at_work(clients, daemon, failures)
                 time.sleep(generator.uniform(0.02, 0.5))
                 if backup is not None and generator.random() < 0.3:
                     backup.kill()

@@ -12,7 +12,6 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 from pathlib import Path
@@ -20,7 +19,7 @@ from typing import Any
 
 from daemon import PATIENCE_S, Answer, Daemon, events
 from disk import FOR_EVER, KINDS, SHIM, Disk
-from history import LOST, Client, History, Judge, Unknown
+from history import Client, History, Judge, Unknown, at_work
 
 SEED = int(os.environ.get("DRIFTLAB_CRASH_SEED", "20261124"))
 POWER_LIVES = int(os.environ.get("DRIFTLAB_POWER_LIVES", "5"))
@@ -142,18 +141,7 @@ class PowerCuts(Round):
         for _ in range(lives):
             with self.daemon(disk) as daemon:
                 self.judge(daemon, history)
-
-                def work(client: Client, daemon: Daemon = daemon) -> None:
-                    try:
-                        while True:
-                            client.step(daemon)
-                    except LOST:
-                        pass
-                    except Exception as unforeseen:  # noqa: BLE001: told at the end, by the thread of the test
-                        failures.append(repr(unforeseen))
-                threads = [threading.Thread(target=work, args=(client,)) for client in clients]
-                for thread in threads:
-                    thread.start()
+                threads = at_work(clients, daemon, failures)
                 time.sleep(generator.uniform(0.05, 0.6))
                 if generator.random() < 0.25:  # power often goes with a disk that fails before
                     disk.arm("fsync", fails=FOR_EVER)

@@ -165,6 +165,23 @@ class Client:
                 self.history.results.setdefault(job, hashlib.sha256(answer.body).hexdigest())
 
 
+def at_work(clients: list[Client], daemon: Daemon, failures: list[str]) -> list[threading.Thread]:
+    """The clients, each doing one thing after the other in a thread of its own until the daemon is gone. What nobody
+    foresaw goes to `failures`, for the thread of the test to tell."""
+    def work(client: Client) -> None:
+        try:
+            while True:
+                client.step(daemon)
+        except LOST:
+            pass
+        except Exception as unforeseen:  # noqa: BLE001
+            failures.append(repr(unforeseen))
+    threads = [threading.Thread(target=work, args=(client,)) for client in clients]
+    for thread in threads:
+        thread.start()
+    return threads
+
+
 class Judge(unittest.TestCase):
     """Nothing that was acknowledged is lost, nothing is there twice, nothing by half."""
 

@@ -1,30 +1,15 @@
 /// gyro_scale_factor_error: the gyroscope reads too much of every turn.
-#include "core/navigate/drive/causes/cause.hpp"
+#include "core/navigate/drive/causes/gyroscope_error.hpp"
 
 namespace driftlab::drive {
-namespace {
-
-template <int Axis>
-constexpr Knob gyro_scale(std::string_view parameter, std::string_view title) {
-  return {.parameter = parameter,
-          .title = title,
-          .unit = "%",
-          .per_si = 100.0,
-          .step = 0.005,
-          .most = 0.3,
-          .turn = [](FilterOptions& o, double by) { o.errors.gyroscope(Axis, Axis) += by; },
-          .value = [](const FilterOptions& o) { return o.errors.gyroscope(Axis, Axis); },
-          .told_apart = "grows with the angle turned, with the sign of the turn"};
-}
-
-}  // namespace
 
 Cause gyro_scale_factor_error() {
+  constexpr std::string_view kToldApart = "grows with the angle turned, with the sign of the turn";
   return {.name = "gyro_scale_factor_error",
           .words = "scale factors of the gyroscope",
-          .knobs = {gyro_scale<0>("x", "the gyroscope about x reads too much by"),
-                    gyro_scale<1>("y", "the gyroscope about y reads too much by"),
-                    gyro_scale<2>("z", "the gyroscope about z reads too much by")}};
+          .knobs = {gyroscope_error<0, 0>("x", "the gyroscope about x reads too much by", kToldApart),
+                    gyroscope_error<1, 1>("y", "the gyroscope about y reads too much by", kToldApart),
+                    gyroscope_error<2, 2>("z", "the gyroscope about z reads too much by", kToldApart)}};
 }
 
 }  // namespace driftlab::drive
