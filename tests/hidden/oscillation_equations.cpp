@@ -1,7 +1,8 @@
-/// The equations of oscillations that are no line, by another hand than their injections: inner products with the
-/// oscillations that they should be made of.
+/// The equations of oscillations that are no line and of noise that jumps, by another hand than their injections: inner
+/// products with the oscillations that they should be made of, and for what is random its moments over many draws.
 #include "tests/hidden/equations.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -54,12 +55,63 @@ Figures modulated(const Injected& injected) {
           {"mean square of the whole", whole(injected), 3.0 / 16.0 * a * a, 0.01 * a * a}};
 }
 
+Figures bursts(const Injected& injected) {
+  constexpr std::uint64_t kDraws = 60;
+  double loud = 0.0;
+  double square = 0.0;
+  double crossings = 0.0;
+  double samples = 0.0;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const investigate::Draft draft = injected.again(seed);
+    double last = 0.0;
+    for (std::size_t i = 0; i < draft.mean.size(); ++i) {
+      const double added = draft.mean[i] - injected.before.mean[i];
+      loud += added != 0.0 ? 1.0 : 0.0;
+      square += added * added;
+      crossings += added * last < 0.0 ? 1.0 : 0.0;
+      last = added;
+    }
+    samples += static_cast<double>(draft.mean.size());
+  }
+  const double seconds = loud * injected.dt_s();
+  const double a = injected.values[0];
+  const double f = injected.values[1];
+  const double share = injected.values[2];
+  return {{"share of the time", loud / samples, share, 0.1 * share},
+          {"rms in a burst", std::sqrt(square / loud), a, 0.05 * a},
+          {"half the changes of sign per second", 0.5 * crossings / seconds, f, 0.03 * f}};
+}
+
+/// Two values, and a mean time between changes.
+Figures telegraph(const Injected& injected) {
+  constexpr std::uint64_t kDraws = 20;
+  double changes = 0.0;
+  double samples = 0.0;
+  double off = 0.0;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const investigate::Draft draft = injected.again(seed);
+    double last = draft.mean[0] - injected.before.mean[0];
+    for (std::size_t i = 0; i < draft.mean.size(); ++i) {
+      const double added = draft.mean[i] - injected.before.mean[i];
+      off = std::max(off, std::fabs(std::fabs(added) - injected.values[0]));
+      changes += added * last < 0.0 ? 1.0 : 0.0;
+      last = added;
+      samples += 1.0;
+    }
+  }
+  const double expected = samples * injected.dt_s() / injected.values[1];
+  return {{"how far a value is from either level", off, 0.0, 1e-12},
+          {"changes", changes, expected, 5.0 * std::sqrt(expected)}};
+}
+
 }  // namespace
 
 std::vector<Equation> oscillation_equations() {
   return {
+      {"random_telegraph_noise", {0.02, 10.0}, telegraph},
       {"chirped_disturbance", {0.03, 3.0, 11.0}, chirped},
       {"modulated_disturbance", {0.03, 1.7, 0.03}, modulated},
+      {"vibration_bursts", {0.05, 7.0, 0.15}, bursts},
   };
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 /// Frames of a recording in which a narrow band is louder than in the others.
 ///
-/// A recording is cut into frames of one second. With x the mean power of a frame inside a band over that outside it, m
-/// and M ordinates each, x / s is F-distributed under the model whatever the level of the frame is, s the scale of the
-/// band; its density is, but for a constant, s^-m (1 + m x / (M s))^-(m + M). In a burst s is larger by a factor rho.
-/// The likelihood of two kinds of frames, a fraction p of them loud, is compared with that of one kind, s free in both.
+/// A recording is cut into frames of one second. Its innovations are whitened by an autoregression first, and each
+/// ordinate of the frames' periodograms is divided by its mean over the recording: under any stationary Gaussian noise,
+/// however narrow its band, an ordinate is then about a unit exponential. So what bursts are compared with is the best
+/// stationary noise, which has every spectrum at its disposal, and not the model's. With x the mean power of a frame
+/// inside a band over that outside it, the likelihood of two kinds of frames, a fraction of them louder by a factor, is
+/// compared with that of one kind (two_kinds.hpp), whatever the level of each frame is. Noise whose band is narrow
+/// against a hertz swells and fades by itself over many frames; its phase goes on from one frame to the next, and by
+/// this it is told from bursts.
 #include "core/investigate/fullrate/full_rate.hpp"
 
 #include <cstddef>
@@ -14,18 +18,20 @@
 namespace driftlab::investigate {
 
 struct Burstiness {
-  double centre_hz = 0.0;
-  double width_hz = 0.0;
-  double scale = 1.0;     ///< of the band at rest
-  double ratio = 1.0;     ///< rho
-  double fraction = 0.0;  ///< p
-  double gain = 0.0;      ///< twice the log likelihood over one kind of frames
-  double frames = 0.0;
-  double ordinates = 0.0;  ///< m
+  double centre_hz = 0.0;  ///< of the band
+  double gain = 0.0;       ///< twice the log likelihood over one kind of frames
+  double fraction = 0.0;   ///< p
+  double bursts = 0.0;     ///< runs of loud frames
+  double amplitude = 0.0;  ///< rms of what the band holds more in loud frames [SI]
+  double amplitude_sd = 0.0;
+  double frequency_hz = 0.0;  ///< centroid of the power that it holds more
+  double frequency_sd = 0.0;
+  double coherence = 0.0;  ///< share of that power that goes on in the next frame with its phase
 };
 
 /// The band of a scope in which frames differ most; `tried` is set to the number of bands. Nothing below 2 Hz, where
-/// what is slow comes and goes too, and nothing in fewer than thirty frames.
+/// what is slow comes and goes too, nothing in fewer than thirty frames, and nothing that comes no more than once a
+/// recording: that is a change, or an oscillation whose frequency runs through the band. Nothing that is nearly a line.
 [[nodiscard]] std::optional<Burstiness> strongest_bursts(const FullRate& data, const std::vector<std::size_t>& scope,
                                                          double& tried);
 
@@ -36,8 +42,9 @@ struct Burstiness {
 [[nodiscard]] double burst_gain(const FullRate& data, const std::vector<std::size_t>& scope, double centre_hz,
                                 double amplitude, double fraction);
 
-/// What the band holds in the loud frames of member r, to be subtracted [SI].
-[[nodiscard]] std::vector<double> burst_values(const FullRate& data, std::size_t r, double centre_hz, double amplitude,
-                                               double fraction);
+/// What the band holds more in the loud frames of member r of the scope, to be subtracted [SI]: the noise that is left
+/// has the power that the band has at rest.
+[[nodiscard]] std::vector<double> burst_values(const FullRate& data, const std::vector<std::size_t>& scope,
+                                               std::size_t r, double centre_hz);
 
 }  // namespace driftlab::investigate

@@ -10,6 +10,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -127,6 +128,15 @@ struct FileFact {
   bool gives_lattice_step = false;
 };
 
+/// Noise that jumps between levels: not Gaussian, though its spectrum is that of a slow process. It is sought in what
+/// the search for slow effects leaves, taken off the error, and then that search is made once more, for a process of
+/// the baseline may have been fitted to it. `find` holds it out itself.
+struct SwitchingNoise {
+  std::optional<Evidence> (*find)(const FullRate& data);
+  /// Its expected course over the analysed part of member r, to be subtracted.
+  std::vector<double> (*values)(const FullRate& data, std::size_t r, const Evidence& found);
+};
+
 /// One thing that is wrong with some recordings, and how it is put right.
 struct FaultyRecordings {
   std::vector<ChannelName> channels;
@@ -145,6 +155,6 @@ struct RecordingFault {
 };
 
 using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, NoiseTails, SpectralLine,
-                            CommonNoise, FileFact, RecordingFault>;
+                            CommonNoise, SwitchingNoise, FileFact, RecordingFault>;
 
 }  // namespace driftlab::investigate

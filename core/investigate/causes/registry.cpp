@@ -9,11 +9,13 @@
   CAUSE(random_walk)                  \
   CAUSE(linear_drift)                 \
   CAUSE(flicker_noise)                \
+  CAUSE(random_telegraph_noise)       \
   CAUSE(quantization_noise)           \
   CAUSE(output_resolution)            \
   CAUSE(periodic_disturbance)         \
   CAUSE(chirped_disturbance)          \
   CAUSE(modulated_disturbance)        \
+  CAUSE(vibration_bursts)             \
   CAUSE(band_limited_noise)           \
   CAUSE(heavy_tailed_noise)           \
   CAUSE(noise_level_change)           \

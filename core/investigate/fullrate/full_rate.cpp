@@ -1,5 +1,6 @@
 #include "core/investigate/fullrate/full_rate.hpp"
 
+#include "core/investigate/fullrate/autoregression.hpp"
 #include "core/investigate/slow/whitening_walk.hpp"
 #include "core/investigate/study/measured_constants.hpp"
 
@@ -11,69 +12,7 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::size_t kOrder = 24;
-
 using Innovations = std::vector<std::vector<double>>;
-
-/// The last kOrder values of a walk through a series.
-class Recent {
- public:
-  /// The value `lag` places before the present one, 1 to kOrder.
-  [[nodiscard]] double operator[](std::size_t lag) const {
-    return values_[(at_ + values_.size() - lag) % values_.size()];
-  }
-  void push(double value) {
-    values_[at_] = value;
-    at_ = (at_ + 1) % values_.size();
-  }
-
- private:
-  std::array<double, 32> values_{};
-  std::size_t at_ = 0;
-};
-
-/// Coefficients of an autoregression by Levinson's recursion on the pooled autocovariance of all recordings.
-std::vector<double> fit_autoregression(const Innovations& series, const std::vector<std::vector<unsigned char>>& used) {
-  std::vector<double> covariance(kOrder + 1, 0.0);
-  double samples = 0.0;
-  for (std::size_t r = 0; r < series.size(); ++r) {
-    // Gross values would stretch the covariance; clipping at 4 changes a Gaussian one by 1e-4.
-    std::array<double, kOrder + 1> sum{};
-    Recent recent;
-    for (std::size_t i = 0; i < series[r].size(); ++i) {
-      const double x = used[r][i] != 0 ? std::clamp(series[r][i], -4.0, 4.0) : 0.0;
-      samples += used[r][i] != 0 ? 1.0 : 0.0;
-      sum[0] += x * x;
-      for (std::size_t lag = 1; lag <= std::min(i, kOrder); ++lag) {
-        sum[lag] += x * recent[lag];
-      }
-      recent.push(x);
-    }
-    for (std::size_t lag = 0; lag <= kOrder; ++lag) {
-      covariance[lag] += sum[lag];
-    }
-  }
-  std::vector<double> a(kOrder, 0.0);
-  if (!(covariance[0] > 0.0) || samples < 50.0 * kOrder) {
-    return {};
-  }
-  double error = covariance[0];
-  for (std::size_t k = 0; k < kOrder; ++k) {
-    double reflection = covariance[k + 1];
-    for (std::size_t j = 0; j < k; ++j) {
-      reflection -= a[j] * covariance[k - j];
-    }
-    reflection /= error;
-    std::vector<double> next = a;
-    next[k] = reflection;
-    for (std::size_t j = 0; j < k; ++j) {
-      next[j] = a[j] - reflection * a[k - 1 - j];
-    }
-    a = next;
-    error *= 1.0 - reflection * reflection;
-  }
-  return a;
-}
 
 /// Samples that the autoregression cannot foresee as it does in the middle of a record: at its start and, where it
 /// foresees much (`strong`), after every sample that is missing.
@@ -81,12 +20,19 @@ void leave_out_starts(std::vector<unsigned char>& used, bool strong) {
   std::size_t since = 0;
   for (unsigned char& u : used) {
     since = u == 0 && strong ? 0 : since + 1;
-    u = since > kOrder ? u : 0;
+    u = since > kAutoregressionOrder ? u : 0;
   }
 }
 
 void whiten_further(FullRate& data, Innovations& innovation) {
-  const std::vector<double> a = fit_autoregression(innovation, data.used);
+  PooledAutocovariance covariance;
+  for (std::size_t r = 0; r < innovation.size(); ++r) {
+    covariance.begin_recording();
+    for (std::size_t i = 0; i < innovation[r].size(); ++i) {
+      covariance.take(innovation[r][i], data.used[r][i] != 0);
+    }
+  }
+  const std::vector<double> a = covariance.autoregression();
   if (a.empty()) {
     return;
   }

@@ -9,6 +9,7 @@
 #include "core/investigate/search/joint_refit.hpp"
 #include "core/investigate/search/slow_search.hpp"
 #include "core/investigate/search/take_out.hpp"
+#include "core/investigate/search/take_switching.hpp"
 #include "core/investigate/search/thresholds.hpp"
 #include "core/investigate/search/usable_group.hpp"
 #include "core/process/gauss_markov.hpp"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -176,6 +178,9 @@ class GroupSearch {
     if (stopped()) {
       return;
     }
+    if (take_switching_off(search)) {
+      return search_slow();
+    }
     control_.report("intervals of " + group_.column, 0.7);
     // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
     for (std::size_t i = slow_found.size(); i-- > 0;) {
@@ -243,7 +248,8 @@ class GroupSearch {
       if (evidence.cause->is_slow()) {
         search.reject(evidence);
       }
-      any = any || evidence.cause->is_slow() || evidence.cause->as<SpectralLine>() != nullptr;
+      any = any || evidence.cause->is_slow() || evidence.cause->as<SpectralLine>() != nullptr ||
+            evidence.cause->as<SwitchingNoise>() != nullptr;
     }
     if (any) {
       search.fit_null();
@@ -261,6 +267,16 @@ class GroupSearch {
                       [](const Evidence& evidence) { return evidence.cause->as<SlowNoise>() != nullptr; }));
     noise.components.resize(noise.components.size() - std::min(extras, noise.components.size()));
     return noise;
+  }
+
+  /// Takes noise that jumps between levels off the error, once; true if there was some.
+  [[nodiscard]] bool take_switching_off(const SlowSearch& search) {
+    const std::size_t before = outcome_.found.size();
+    if (!std::exchange(switching_sought_, true)) {
+      take_switching(full_rate(search, error_, false), error_, mask_, outcome_.found);
+    }
+    keep_best(outcome_.examined, {outcome_.found.begin() + static_cast<std::ptrdiff_t>(before), outcome_.found.end()});
+    return outcome_.found.size() > before;
   }
 
   /// Sinusoids in the innovations, each with its cause.
@@ -413,6 +429,7 @@ class GroupSearch {
   std::optional<SlowModel> given_;
   std::vector<Series> error_;
   std::vector<std::vector<unsigned char>> mask_;
+  bool switching_sought_ = false;
   double lattice_step_ = 0.0;
   double given_white_ = 0.0;
   double quantization_ = 0.0;
