@@ -83,6 +83,35 @@ class CommandLine(DaemonTest):
         self.assertIn("skipped: 'q_w'", table)
         self.assertNotIn("sensor q_w", table)
 
+    def test_counts_are_read_by_their_scale_and_offset_at_every_door(self) -> None:
+        """A thermometer of raw/340+36.53 and a gyroscope of 131 LSB/(deg/s) could not be said where the header does not say them."""
+        noise = random.Random(9)
+        counts = [round(131 * noise.gauss(9, 0.1)) for _ in range(4000)]
+        heat = [-3000 + i // 100 for i in range(4000)]
+        (self.folder / "counts.csv").write_text("gz,temp\n" + "".join(f"{c},{h}\n" for c, h in zip(counts, heat)))
+        (self.folder / "plain.csv").write_text("gz,temp\n" + "".join(f"{c / 131!r},{h / 340 + 36.53!r}\n" for c, h in zip(counts, heat)))
+        turning = ("--rate-hz", "100", "--condition", "constant_rate:z:9:deg/s", "--models", "WN")
+        stated = "gz=angular_rate:z:deg/s/131,temp=temperature::raw/340+36.53 degC"
+
+        def noise_of(*arguments: str) -> float:
+            [recording] = json.loads(self.said("characterise", *arguments, "--json"))["recordings"]
+            return float(recording["channels"][0]["allan_parameters"]["N"]["value"])
+
+        plain = noise_of("plain.csv", *turning, "--columns", "gz=angular_rate:z:deg/s,temp=temperature::degC")
+        self.assertAlmostEqual(noise_of("counts.csv", *turning, "--columns", stated) / plain, 1, delta=1e-9)
+        self.assertAlmostEqual(noise_of("counts.csv", *turning, "--columns", stated, *self.server, "--device", "counts") / plain, 1, delta=1e-9)
+        [recording] = self.daemon.items("/v1/recordings?device=counts")
+        self.assertEqual({name: role["unit"] for name, role in recording["metadata"]["columns"].items()}, {"gz": "deg/s/131", "temp": "raw/340+36.53 degC"})
+        columns = {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "131 LSB/(deg/s)"}, "temp": {"quantity": "temperature", "unit": "degC/340+36.53"}}
+        study: dict[str, Any] = {"device": {"id": "counted"}, "recordings": [
+            {"file": "counts.csv", "rate_hz": 100, "columns": columns, "condition": {"kind": "constant_rate", "axis": "z", "value": 9, "unit": "deg/s"}}]}
+        (self.folder / "counted.json").write_text(json.dumps(study))
+        self.assertAlmostEqual(noise_of("counted.json", "--models", "WN") / plain, 1, delta=1e-9)
+        columns["temp"]["unit"] = "degC/0+36.53"
+        (self.folder / "counted.json").write_text(json.dumps(study))
+        for wrong in (("counted.json",), ("counts.csv", "--rate-hz", "100", "--columns", "temp=temperature::degC/0+36.53")):
+            self.assertIn("The scale in the unit 'degC/0+36.53' must be a positive number; write ", self.refused(2, "characterise", *wrong))
+
     def test_noise_that_is_not_one_noise_is_said_to_be_several(self) -> None:
         # One jump of 50 standard deviations was fitted as WN+GM with a J-test of p = 0.97, and nothing said.
         noise = random.Random(6)

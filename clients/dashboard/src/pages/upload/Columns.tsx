@@ -6,6 +6,7 @@ import {quantityName, writeSentence, writeUnit} from '../../format/words';
 import {Panel, Refusal} from '../../shell/states';
 import {change, type Pending, type Role} from './pending';
 import {rolesOf, type PreviewColumn, type PreviewDocument} from './preview';
+import {UnitField} from './UnitField';
 
 const QUANTITIES: readonly (readonly [string, string])[] = [['time', 'time'], ['angular_rate', 'angular rate'], ['specific_force', 'specific force'], ['temperature', 'temperature'], ['reference_angular_rate', 'reference rate'], ['reference_angle', 'reference angle'], ['magnetic_field', 'magnetic field']];
 export const UNITS: Record<string, string[]> = {time: ['s', 'ms', 'us', 'ns'], angular_rate: ['deg/s', 'rad/s', 'deg/h', 'mrad/s'], specific_force: ['m/s^2', 'g', 'mg'], temperature: ['degC', 'K'], reference_angular_rate: ['deg/s', 'rad/s'], reference_angle: ['deg', 'rad'], magnetic_field: ['uT', 'T']};
@@ -43,7 +44,7 @@ function ColumnRow({each, column}: {each: Pending; column: PreviewColumn}): JSX.
     <th scope="row"><code>{column.name}</code></th>
     <td><select aria-label={label('Quantity')} value={role.quantity} onChange={event => { const quantity = event.currentTarget.value; const guessed = column.axis ?? /([xyz])(?:\W|_|$)/i.exec(column.name)?.[1]?.toLowerCase(); set({quantity, unit: quantity === column.quantity && column.unit ? column.unit : UNITS[quantity]?.[0] ?? '', axis: quantity && quantity !== 'time' && quantity !== 'temperature' ? role.axis || guessed || 'z' : ''}); }}><option value="">{role.quantity ? 'as the file says' : read}</option>{QUANTITIES.map(([value, text]) => <option key={value} value={value}>{text}</option>)}</select></td>
     <td>{axes ? <select aria-label={label('Axis')} value={role.axis} onChange={event => set({axis: event.currentTarget.value})}>{AXES.map(axis => <option key={axis}>{axis}</option>)}</select> : column.axis ?? '–'}</td>
-    <td>{role.quantity ? <select aria-label={label('Unit')} value={role.unit} onChange={event => set({unit: event.currentTarget.value})}>{(UNITS[role.quantity] ?? []).map(unit => <option key={unit}>{unit}</option>)}</select> : column.unit ? writeUnit(column.unit) : '–'}</td>
+    <td>{role.quantity ? <UnitField name={column.name} unit={role.unit} known={UNITS[role.quantity] ?? []} set={unit => set({unit})} /> : column.unit ? writeUnit(column.unit) : '–'}</td>
     <td class="n"><code>{column.first[0] ?? '–'}</code></td>
     <td class="desk-only"><Course values={column.course} /></td>
     <td class="sec">{whyOf(column)}</td>
