@@ -75,8 +75,12 @@ std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>&
   std::vector<SensorSources> sensors;
   for (const CharacterisedRecording& recording : recordings) {
     for (const CharacterisedChannel& channel : recording.channels) {
+      const auto& known = recording.window.quality.channels;
+      const auto quality = std::find_if(known.begin(), known.end(),
+                                        [&](const ChannelQuality& one) { return one.column == channel.column; });
       add_source(sensors, {recording.spec.id, to_text(recording.spec.condition),
-                           reported(channel.column, channel.role, channel.result)});
+                           reported(channel.column, channel.role, channel.result), "",
+                           quality == known.end() ? 0 : quality->frozen});
     }
   }
   return sensors;
