@@ -14,7 +14,7 @@ Result<CharacterisedRecording> characterise_recording(const RecordingSpec& spec,
     return fail(applied.error());
   }
   std::vector<ReferenceAlignment> alignments = align_references(view);
-  CharacterisedRecording found{spec, {}, {}};
+  CharacterisedRecording found{spec, {}, {}, {}};
   const auto count = static_cast<double>(view.channels.size());
   for (const ChannelView& channel : view.channels) {
     const auto done = static_cast<double>(found.channels.size());
@@ -59,7 +59,14 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
     if (!calibration) {
       return fail(calibration.error());
     }
-    return characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
+    auto temperature = measured_temperature(recording->spec, recording->columns.names(), *view,
+                                            [&](std::size_t k) { return recording->columns.column(k); });
+    auto found_one =
+        characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
+    if (found_one) {
+      found_one->temperature = std::move(temperature);
+    }
+    return found_one;
   };
   for (std::size_t i = 0; i < recordings.count(); ++i) {
     auto recording = one(i);
