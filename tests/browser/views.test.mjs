@@ -133,7 +133,7 @@ test('a unit that is not known is mended beside the sentence that refuses it', a
 });
 
 test('counts have their scale and their offset beside the unit', async () => {
-  const page = await open(browser, daemon, '/upload');
+  const page = await open(browser, daemon, '/upload', {absent: [/recordings\/preview/]});
   const rows = noise(400, 63).map((x, i) => `${i * 10},${(1179 + 13 * x).toFixed(0)},${-3000 + i % 9}`).join('\n');
   await page.locator('input[type=file]').setInputFiles({name: 'counts.csv', mimeType: 'text/csv', buffer: Buffer.from(`time (ms),gz,temp\n${rows}\n`)});
   await page.getByRole('row', {name: /^temp .*read from the header/}).waitFor();

@@ -4,7 +4,7 @@ import type {Nullable} from '../../api/documents';
 import {writeTick} from '../../format/number';
 import {quantityName, writeSentence, writeUnit} from '../../format/words';
 import {Panel, Refusal} from '../../shell/states';
-import {change, type Pending, type Role} from './pending';
+import {change, pending, type Pending, type Role} from './pending';
 import {rolesOf, type PreviewColumn, type PreviewDocument} from './preview';
 import {UnitField} from './UnitField';
 
@@ -33,7 +33,9 @@ function whyOf(column: PreviewColumn): string {
 function ColumnRow({each, column}: {each: Pending; column: PreviewColumn}): JSX.Element {
   const role = each.roles[column.name] ?? EMPTY;
   const set = (changes: Partial<Role>): void => {
-    const roles = {...each.roles, [column.name]: {...role, ...changes}};
+    // As said by now: leaving one field and choosing in another come before the row is drawn again.
+    const said = pending().find(one => one.key === each.key)?.roles ?? each.roles;
+    const roles = {...said, [column.name]: {...(said[column.name] ?? EMPTY), ...changes}};
     if (!roles[column.name]!.quantity) delete roles[column.name];
     change(each.key, {roles});
   };
@@ -65,12 +67,17 @@ function Doubts({each, seen}: {each: Pending; seen: PreviewDocument}): JSX.Eleme
   </>;
 }
 
+// What a person said of columns, where it was refused and has to be put right: no file is read then.
+const saidOf = (each: Pending): PreviewColumn[] => Object.entries(each.roles).map(([name, role]) => ({name, quantity: role.quantity, axis: role.axis || null, unit: role.unit || null, from: 'stated', first: [], course: []}));
+
 export function Columns({each}: {each: Pending}): JSX.Element {
   const seen = each.look?.document;
+  const columns = seen?.columns ?? (each.look?.problem ? saidOf(each) : []);
   return <Panel title={`What the columns of ${each.file.name} mean`} sub="change what is wrong; nothing is kept until you say so">
-    {each.look?.problem ? <Refusal problem={each.look.problem} /> : !seen ? <p class="sec">Reading the beginning of the file.</p> : seen.columns.length === 0 ? seen.problems.length === 0 && <p class="sec">The columns of this format are read once all of the file is there.</p> : <div class="scroll"><table>
+    {each.look?.problem ? <Refusal problem={each.look.problem} /> : !seen ? <p class="sec">Reading the beginning of the file.</p> : columns.length === 0 && seen.problems.length === 0 && <p class="sec">The columns of this format are read once all of the file is there.</p>}
+    {columns.length > 0 && <div class="scroll"><table>
       <thead><tr><th scope="col">column</th><th scope="col">quantity</th><th scope="col">axis</th><th scope="col">unit</th><th scope="col" class="n">first value</th><th scope="col" class="desk-only">course</th><th scope="col">why</th></tr></thead>
-      <tbody>{seen.columns.slice(0, MOST_COLUMNS).map(column => <ColumnRow key={column.name} each={each} column={column} />)}</tbody>
+      <tbody>{columns.slice(0, MOST_COLUMNS).map(column => <ColumnRow key={column.name} each={each} column={column} />)}</tbody>
     </table></div>}
     {seen && <Doubts each={each} seen={seen} />}
   </Panel>;
