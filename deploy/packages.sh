@@ -6,7 +6,7 @@
 #   build     compiler, headers and tools that make them
 #   dashboard node and npm, which build the pages; whatever of the two is there already stays as it is
 #   test      what the suites of tests/ need beside that
-#   browser   Chromium, which tests/browser drives
+#   browser   Chromium, which tests/browser drives, and what reads the pages that it prints
 #   python    what tests/python needs beside the set test: builds and checks the package clients/python, runs its notebook
 #   fuzz      clang 19 for the libFuzzer targets
 #   sanitize  clang 19 for the asan-ubsan and tsan presets
@@ -22,7 +22,7 @@ driftlab_packages() {
                 libspdlog-dev libfmt-dev libcli11-dev libtomlplusplus-dev libssl-dev libexpected-dev libarchive-dev liblzma-dev libzstd-dev zlib1g-dev \
                 libgeographiclib-dev libcairo2-dev python3 python3-yaml ;;
     dashboard) command -v node >/dev/null || echo nodejs; command -v npm >/dev/null || echo npm ;;
-    browser) echo chromium fonts-liberation ;;
+    browser) echo chromium fonts-liberation poppler-utils ;;
     test) echo libgtest-dev libgmock-dev libbenchmark-dev python3-numpy python3-jsonschema xz-utils zstd sqlite3 postgresql prometheus zsh fish ;;
     python) echo python3-venv python3-pip python3-setuptools python3-wheel python3-yaml mypy flake8 jupyter-nbconvert python3-ipykernel ;;
     fuzz) echo clang-19 libclang-rt-19-dev ;;

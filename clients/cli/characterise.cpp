@@ -78,8 +78,10 @@ void add_characterise(CLI::App& app, Command& chosen) {
   const auto flags = std::make_shared<CharacteriseFlags>();
   command->add_option("FILE", flags->files, "Recordings that share the flags below, or one study.json")->required();
   command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
-  command->add_option("--columns", flags->file.columns,
-                      "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s; columns without names are 0, 1, …");
+  command->add_option(
+      "--columns", flags->file.columns,
+      "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s; columns without names are 0, 1, …; counts have "
+      "their scale and offset with the unit: gx=angular_rate:x:deg/s/131,temp=temperature::degC/340+36.53");
   command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
       ->capture_default_str();
   command->add_option("--device", flags->file.device,

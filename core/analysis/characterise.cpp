@@ -14,7 +14,7 @@ Result<CharacterisedRecording> characterise_recording(const RecordingSpec& spec,
     return fail(applied.error());
   }
   std::vector<ReferenceAlignment> alignments = align_references(view);
-  CharacterisedRecording found{spec, {}, {}};
+  CharacterisedRecording found{spec, {}, {}, {}};
   const auto count = static_cast<double>(view.channels.size());
   for (const ChannelView& channel : view.channels) {
     const auto done = static_cast<double>(found.channels.size());
@@ -59,7 +59,14 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
     if (!calibration) {
       return fail(calibration.error());
     }
-    return characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
+    auto temperature = measured_temperature(recording->spec, recording->columns.names(), *view,
+                                            [&](std::size_t k) { return recording->columns.column(k); });
+    auto found_one =
+        characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
+    if (found_one) {
+      found_one->temperature = std::move(temperature);
+    }
+    return found_one;
   };
   for (std::size_t i = 0; i < recordings.count(); ++i) {
     auto recording = one(i);
@@ -75,8 +82,12 @@ std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>&
   std::vector<SensorSources> sensors;
   for (const CharacterisedRecording& recording : recordings) {
     for (const CharacterisedChannel& channel : recording.channels) {
+      const auto& known = recording.window.quality.channels;
+      const auto quality = std::find_if(known.begin(), known.end(),
+                                        [&](const ChannelQuality& one) { return one.column == channel.column; });
       add_source(sensors, {recording.spec.id, to_text(recording.spec.condition),
-                           reported(channel.column, channel.role, channel.result)});
+                           reported(channel.column, channel.role, channel.result), "",
+                           quality == known.end() ? 0 : quality->frozen});
     }
   }
   return sensors;

@@ -9,6 +9,7 @@
 #include "core/calibrate/aligned_reference.hpp"
 #include "core/campaign/sensor_sources.hpp"
 #include "core/fit/characterise.hpp"
+#include "core/signal/measured_temperature.hpp"
 
 #include <optional>
 #include <string>
@@ -25,7 +26,8 @@ struct CharacterisedChannel {
 
 struct CharacterisedRecording {
   RecordingSpec spec;
-  Window window;  ///< time base and quality
+  Window window;                                        ///< time base and quality
+  std::optional<MeasuredTemperature> temperature = {};  ///< where the recording has a column of it
   std::vector<CharacterisedChannel> channels;
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/fit/j_test.hpp"
 #include "core/process/distributions.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,6 +87,7 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
     TableRow& shown = row->shown;
     shown.recordings.push_back(source.recording_id);
     shown.duration_s += static_cast<double>(source.channel.samples) * source.channel.dt_s;
+    shown.frozen += source.frozen;
     row->members.push_back(source.member_id());
     shown.contamination = worse_verdict(shown.contamination, source.channel.contamination);
     row->densities.push_back(allan_cells(source.channel).front().second);
@@ -99,6 +101,12 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
       if (!fit->j_test || !(fit->j_test->p > kRejected)) {
         row->descriptions.push_back(source.channel.description);
       }
+    }
+  }
+  for (OpenRow& row : rows) {
+    if (row.shown.frozen > 0) {
+      note(row.shown, "The sensor is frozen for " + with_count(row.shown.frozen, "sample, which is not analysed.",
+                                                               "samples, which are not analysed."));
     }
   }
   // No two rows have the same text, so the order is complete.

@@ -72,7 +72,8 @@ struct TableRow {
       {};                     ///< of the one fit shown; nothing where several are averaged, and without a test
   std::string contamination;  ///< worst verdict of the recordings; empty where none has one
   Pooling pooling = Pooling::Single;
-  bool robust = false;  ///< the values come from robust variances
+  bool robust = false;     ///< the values come from robust variances
+  std::size_t frozen = 0;  ///< samples of all recordings that are not analysed because the sensor gave one value only
   std::optional<RecordingAgreement> agreement;
   std::vector<std::string> warnings;  ///< what the fits shown say against themselves, each once
   /// The density N of rate at low frequencies, whatever the model: the averaged coefficients N of the recordings.

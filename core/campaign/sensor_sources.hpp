@@ -3,6 +3,7 @@
 #include "core/campaign/reported_channel.hpp"
 #include "core/signal/condition.hpp"
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@ struct TableSource {
   std::string condition;  ///< compact text form (core/signal/condition.hpp)
   ReportedChannel channel;
   std::string result_id = {};  ///< of the stored result; empty outside a store
+  std::size_t frozen = 0;      ///< samples of the channel left out because the sensor gave one value only
 
   /// Under which it counts as a member of what is computed together: the result, or else the recording.
   [[nodiscard]] const std::string& member_id() const { return result_id.empty() ? recording_id : result_id; }

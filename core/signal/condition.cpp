@@ -38,6 +38,11 @@ Result<double> angular_rate_factor(std::string_view symbol) {
                 "The unit '" + std::string(symbol) + "' does not measure an angular rate; use deg/s, rad/s or deg/h.",
                 {{"unit", std::string(symbol)}});
   }
+  if (unit->offset != 0.0) {
+    return fail(ErrorCode::UnitMismatch,
+                "The unit '" + std::string(symbol) + "' has an offset, which a condition does not take; use deg/s.",
+                {{"unit", std::string(symbol)}});
+  }
   return unit->factor;
 }
 

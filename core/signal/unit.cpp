@@ -1,12 +1,11 @@
 #include "core/signal/unit.hpp"
 
 #include "core/signal/angle.hpp"
-#include "core/signal/number.hpp"
+#include "core/signal/written_scale.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace driftlab {
@@ -93,25 +92,6 @@ std::optional<Unit> plain_unit(std::string_view symbol) {
   return found == units.end() ? std::nullopt : std::optional(*found);
 }
 
-/// `deg/s/131` and `0.061 mg`: a unit over a number, or a number of them.
-std::optional<Unit> scaled_unit(std::string_view symbol) {
-  const auto scaled = [&](std::string_view base, std::optional<double> factor) -> std::optional<Unit> {
-    auto unit = plain_unit(as_quotient(base));
-    if (!unit || !factor || !(*factor > 0.0) || !std::isfinite(*factor) || unit->offset != 0.0) {
-      return std::nullopt;
-    }
-    return Unit{std::string(symbol), unit->dimension, unit->factor * *factor, 0.0};
-  };
-  if (const std::size_t slash = symbol.rfind('/'); slash != std::string_view::npos) {
-    if (const auto divisor = parse_double(symbol.substr(slash + 1)); divisor && *divisor > 0.0) {
-      return scaled(symbol.substr(0, slash), 1.0 / *divisor);
-    }
-  }
-  const std::size_t blank = symbol.find(' ');
-  return blank == std::string_view::npos ? std::nullopt
-                                         : scaled(symbol.substr(blank + 1), parse_double(symbol.substr(0, blank)));
-}
-
 }  // namespace
 
 const std::vector<Unit>& all_units() {
@@ -144,12 +124,37 @@ const std::vector<Unit>& all_units() {
   return units;
 }
 
+namespace {
+
+/// The unit of counts that are scaled and shifted into `unit`.
+Result<Unit> scaled(const std::string& symbol, const WrittenScale& written, const Unit& unit) {
+  if (!(written.scale > 0.0) || !std::isfinite(written.scale)) {
+    return fail(ErrorCode::UnknownUnit,
+                "The scale in the unit '" + symbol +
+                    "' must be a positive number; write deg/s/131 for 131 counts in a deg/s, or degC/340+36.53 with an "
+                    "offset.",
+                {{"unit", symbol}});
+  }
+  if (written.offset != 0.0 && (unit.dimension == Dimension::One || unit.dimension == Dimension::Time)) {
+    return fail(ErrorCode::UnknownUnit,
+                "The unit '" + symbol + "' has an offset, but " +
+                    (unit.dimension == Dimension::One ? "names no unit in which it is" : "a time has none") +
+                    "; write for example degC/340+36.53 for a temperature of counts/340 + 36.53 degrees.",
+                {{"unit", symbol}});
+  }
+  return Unit{written.canonical, unit.dimension, unit.factor * written.scale,
+              unit.factor * written.offset + unit.offset};
+}
+
+}  // namespace
+
 Result<Unit> parse_unit(std::string_view symbol) {
   if (auto unit = plain_unit(as_quotient(symbol))) {
     return *std::move(unit);
   }
-  if (auto unit = scaled_unit(symbol)) {
-    return *std::move(unit);
+  const auto plain = [](std::string_view written) { return plain_unit(as_quotient(written)); };
+  if (const auto written = read_scale(symbol, [&](std::string_view base) { return plain(base).has_value(); })) {
+    return scaled(std::string(symbol), *written, *plain(written->unit));
   }
   std::string known;
   for (const Unit& unit : all_units()) {

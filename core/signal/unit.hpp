@@ -1,9 +1,10 @@
 #pragma once
 /// Physical units of inputs and outputs. Inside driftlab every number is SI (rad/s, m/s^2, s, rad, m, K).
 ///
-/// A `Unit` is an affine map to SI: si = value * factor + offset. Only degC has an offset. Known symbols
-/// (spec/study.md): s ms us ns; deg/s rad/s deg/h; m/s^2 g mg; degC K; deg rad; m; m/s; uT; and `1` for a column whose
-/// unit is not stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
+/// A `Unit` is an affine map to SI: si = value * factor + offset. Of those below degC alone has an offset; a unit that
+/// is written with a scale and an offset of counts, `degC/340+36.53` (core/signal/written_scale.hpp), has one too.
+/// Known symbols (spec/study.md): s ms us ns; deg/s rad/s deg/h; m/s^2 g mg; degC K; deg rad; m; m/s; uT; and `1` for a
+/// column whose unit is not stated. g is the standard acceleration 9.80665 m/s^2 (CGPM 1901).
 #include "core/signal/result.hpp"
 
 #include <string>
@@ -40,7 +41,8 @@ struct Unit {
 };
 
 /// The unit written as `symbol`. Spelling variants users write (`m/s2`, `rad/sec`, `dps`, `°/s`, `degree/s`) are
-/// accepted and come back under the canonical symbol. Error: UnknownUnit, naming the symbol and the known ones.
+/// accepted and come back under the canonical symbol; with a scale or an offset the symbol is what was written. Error:
+/// UnknownUnit, naming the symbol and the known ones, or what is wrong with the scale and how to write it.
 [[nodiscard]] Result<Unit> parse_unit(std::string_view symbol);
 
 /// Every canonical unit, for documentation and tests.

@@ -169,8 +169,39 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
   return {};
 }
 
-void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& window) {
+/// Rows [first, last) of a part of the recording, and of the rows that the trims leave.
+struct Rows {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  [[nodiscard]] std::size_t count() const { return last - first; }
+};
+
+/// The part between two steps back that `row` lies in.
+Rows part_around(std::size_t row, const std::vector<std::size_t>& backward, Rows all) {
+  for (const std::size_t step : backward) {
+    if (step <= row) {
+      all.first = std::max(all.first, step);
+    } else {
+      all.last = std::min(all.last, step);
+    }
+  }
+  return all;
+}
+
+/// What was done where the clock was set back: which part is analysed, and how much that leaves out.
+std::string split_text(const std::vector<std::size_t>& backward, Rows part, Rows all) {
+  if (part.count() == all.count()) {
+    return "; the recording is split there.";
+  }
+  return (backward.size() == 1 ? ", before sample " + std::to_string(backward.front() + 1) : std::string()) +
+         "; the recording is split there and its longest part analysed, samples " + std::to_string(part.first + 1) +
+         " to " + std::to_string(part.last) + "; the other " + std::to_string(all.count() - part.count()) +
+         " are left out.";
+}
+
+void note_irregularities(Rows all, const TimeColumn& time, Window& window) {
   Quality& quality = window.quality;
+  const Rows part = part_around(window.first, time.backward, all);
   if (quality.repeated_stamps > 0) {
     quality.notes.push_back(with_count(quality.repeated_stamps, "time stamp repeats the one before.",
                                        "time stamps repeat the one before."));
@@ -189,17 +220,17 @@ void note_irregularities(std::size_t trimmed_rows, double step_back_s, Window& w
   }
   if (quality.backward_steps > 0) {
     quality.notes.push_back("The time column steps back " + how_often(quality.backward_steps) +
-                            (quality.backward_steps == 1 ? ", by " : ", by at most ") + short_text(step_back_s) +
-                            " s; the recording is split there.");
+                            (quality.backward_steps == 1 ? ", by " : ", by at most ") +
+                            short_text(time.largest_step_back_s) + " s" + split_text(time.backward, part, all));
   }
   if (quality.missing > 0) {
     quality.notes.push_back(
         with_count(quality.missing, "sample is missing in the gaps of the analysed part; nothing is put in its place.",
                    "samples are missing in the gaps of the analysed part; nothing is put in their place."));
   }
-  if (window.count < trimmed_rows) {
+  if (window.count < part.count()) {
     quality.notes.push_back("Too much is missing to analyse the recording as one: " + std::to_string(window.count) +
-                            " of " + std::to_string(trimmed_rows) + " samples are analysed, from sample " +
+                            " of " + std::to_string(part.count()) + " samples are analysed, from sample " +
                             std::to_string(window.first + 1) + ".");
   }
 }
@@ -249,7 +280,7 @@ Result<Window> plan_stamped(const RecordingSpec& spec, std::span<const double> c
   if (auto status = settle_rate(spec, unit, span / steps, window); !status) {
     return fail(status.error());
   }
-  note_irregularities(last - first, time->largest_step_back_s, window);
+  note_irregularities({first, last}, *time, window);
   return window;
 }
 

@@ -18,13 +18,25 @@ Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
       if (!channel) {
         return fail(channel.error());
       }
-      add_source(sensors, {recording.at("id").get<std::string>(), condition, std::move(*channel), ""});
+      const std::size_t frozen = frozen_samples(recording.value("quality", Json()), channel->channel);
+      add_source(sensors, {recording.at("id").get<std::string>(), condition, std::move(*channel), "", frozen});
     }
   }
   return sensors;
 }
 
 }  // namespace
+
+std::size_t frozen_samples(const Json& quality, const std::string& column) {
+  if (const auto channels = quality.find("channels"); quality.is_object() && channels != quality.end()) {
+    for (const Json& channel : *channels) {
+      if (channel.value("column", "") == column) {
+        return channel.value("frozen", std::size_t{0});
+      }
+    }
+  }
+  return 0;
+}
 
 Result<std::vector<SensorSources>> sensors_of(const Json& characterisation) {
   try {

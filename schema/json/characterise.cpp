@@ -1,6 +1,7 @@
 #include "schema/json/characterise.hpp"
 
 #include "schema/json/characterisation.hpp"
+#include "schema/json/measured_temperature.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,9 @@ Json to_json(const CharacterisedRecording& recording) {
     }
   }
   Json document = recording_document(recording.spec.id, recording.spec, recording.window, std::move(channels));
+  if (recording.temperature) {
+    document["quality"]["temperature"] = to_json(*recording.temperature);
+  }
   if (!recording.spec.calibration.empty()) {
     document["calibration"] = recording.spec.calibration;
   }

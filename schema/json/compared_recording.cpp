@@ -74,6 +74,12 @@ void tell_quality(const Json& quality, regression::ComparedRecording& recording)
   recording.jitter_s = finite_member(quality, "jitter_s", 0.0);
   recording.samples = compared_count(quality, "samples");
   recording.missing = compared_count(quality, "missing");
+  if (const auto temperature = quality.find("temperature"); temperature != quality.end() && temperature->is_object()) {
+    const auto median = temperature->find("median_degc");
+    if (median != temperature->end() && median->is_number()) {
+      recording.temperature_degc = median->get<double>();
+    }
+  }
 }
 
 Result<regression::ComparedRecording> compared_recording_from_json(const Json& document) {

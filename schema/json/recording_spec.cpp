@@ -39,6 +39,13 @@ ColumnRole role_from_json(const std::string& column, const Json& document, const
       sound = false;
     }
   }
+  for (const char* const member : {"scale", "offset"}) {
+    if (reader.member(member) != nullptr) {
+      faults.add(
+          reader.pointer(member), ErrorCode::InvalidArgument,
+          "A scale and an offset stand with the unit: {\"unit\": \"deg/s/131\"}, {\"unit\": \"degC/340+36.53\"}.");
+    }
+  }
   reader.reject_unknown();
   if (sound) {
     if (auto checked = check_role(column, role); !checked) {

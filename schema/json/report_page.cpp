@@ -44,7 +44,7 @@ Result<std::string> report_page(const Json& document, const std::string& device,
                                                    ? document.value("study", "driftlab report")
                                                    : "driftlab report"
                                              : device;
-    const std::string printed = tables.empty() ? "" : "<h2>Parameters</h2>\n<pre>" + page::html(tables) + "</pre>\n";
+    const std::string printed = tables.empty() ? "" : "<h2>Parameters</h2>\n" + page::aligned_html(tables);
     return page::framed(title, body + printed + "<footer>driftlab " DRIFTLAB_VERSION ", algorithm " +
                                    std::to_string(kAlgorithmVersion) + "</footer>\n");
   } catch (const Json::exception& error) {

@@ -31,7 +31,9 @@ void StatedFacts::add_causes(const std::set<std::string>& found) {
 }
 
 void StatedFacts::tell(regression::ComparedRecording& recording) const {
-  recording.temperature_degc = temperature_degc;
+  if (temperature_degc) {
+    recording.temperature_degc = temperature_degc;  // what somebody says stands above the recording's own column
+  }
   recording.full_scale = full_scale;
   recording.investigated = causes.has_value();
   recording.causes = causes.value_or(std::vector<std::string>());

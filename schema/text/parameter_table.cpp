@@ -73,7 +73,9 @@ std::string notes_of(const ParameterTable& table) {
 }
 
 /// `*` where a note below speaks of the row itself.
-std::string marked_label(const TableRow& row) { return row.label + (contaminated(row) || disagrees(row) ? " *" : ""); }
+std::string marked_label(const TableRow& row) {
+  return row.label + (contaminated(row) || disagrees(row) || row.frozen > 0 ? " *" : "");
+}
 
 std::string heading_of(const ParameterTable& table) {
   std::string text = table.device + ", " + std::string(sensor_of(table.quantity));

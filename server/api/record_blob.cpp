@@ -7,6 +7,7 @@
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/full_scale.hpp"
 #include "core/signal/recording_columns.hpp"
+#include "schema/json/measured_temperature.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/stored_blob.hpp"
@@ -203,10 +204,14 @@ Json implausible_in(const std::string& column, std::span<const double> values) {
   return stretches;
 }
 
-/// The quality with what a drawing of the samples marks: where the longest gaps are, what is no measurement, and the
-/// ends of the range.
-Json quality_of(const OpenRecording& opened) {
+/// The quality with how warm the recording was and what a drawing of the samples marks: where the longest gaps are,
+/// what is no measurement, and the ends of the range.
+Json quality_of(const OpenRecording& opened, const RecordingSpec& spec) {
   Json quality = driftlab::to_json(opened.view.window.quality);
+  if (const auto temperature = measured_temperature(spec, opened.columns.names(), opened.view,
+                                                    [&](std::size_t index) { return opened.columns.column(index); })) {
+    quality["temperature"] = driftlab::to_json(*temperature);
+  }
   for (const Gap& gap : longest_of(opened.view.window.gaps)) {
     quality["longest_gaps"].push_back(Json{{"row", gap.row + 1}, {"missing", gap.missing}});
   }
@@ -242,7 +247,7 @@ Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem:
     return fail(opened.error());
   }
   add_unit_notes(opened->view, opened->columns, spec, hardware_of(device));
-  std::string quality = to_text(quality_of(*opened));
+  std::string quality = to_text(quality_of(*opened, spec));
   if (!calibrated) {
     return quality;
   }

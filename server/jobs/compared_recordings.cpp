@@ -50,8 +50,8 @@ Result<const std::vector<ChannelResult>*> pinned_results(const Json& pinned, con
 
 }  // namespace
 
-Result<ResultsByRecording> results_by_recording(Store& store, const std::string& device_id,
-                                                const std::stop_token& stop) {
+Result<ResultsByRecording> results_by_recording(Store& store, const std::string& device_id, const std::stop_token& stop,
+                                                const std::set<std::string>& only) {
   ResultsByRecording results;
   for (const Quantity quantity : {Quantity::AngularRate, Quantity::SpecificForce}) {
     for (const char* const axis : {"x", "y", "z"}) {
@@ -63,7 +63,9 @@ Result<ResultsByRecording> results_by_recording(Store& store, const std::string&
         return fail(latest.error());
       }
       for (ChannelResult& result : *latest) {
-        results[result.recording_id].push_back(std::move(result));
+        if (only.empty() || only.contains(result.recording_id)) {
+          results[result.recording_id].push_back(std::move(result));
+        }
       }
     }
   }

@@ -5,6 +5,7 @@
 #include "server/store/store.hpp"
 
 #include <map>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -14,9 +15,11 @@ namespace driftlab::server {
 /// The latest results of all sensor axes of a device, by recording.
 using ResultsByRecording = std::map<std::string, std::vector<ChannelResult>>;
 
-/// Errors: Cancelled; those of the store.
+/// `only`: recordings whose results are kept; empty: all of the device, of which there may be very many. Errors:
+/// Cancelled; those of the store.
 [[nodiscard]] Result<ResultsByRecording> results_by_recording(Store& store, const std::string& device_id,
-                                                              const std::stop_token& stop = {});
+                                                              const std::stop_token& stop = {},
+                                                              const std::set<std::string>& only = {});
 
 /// The recordings of a pinned arm (pinned_arms.hpp). `stop` is polled before each. Errors: Cancelled, also where a
 /// recording has newer results than the pinned ones; Internal, for a row that driftlab has not written.

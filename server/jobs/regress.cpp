@@ -16,6 +16,7 @@
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/pinned_arms.hpp"
 
+#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -43,6 +44,20 @@ Result<std::optional<regression::Settings>> kept_for(const std::string& baseline
     return std::optional<regression::Settings>();
   }
   return anchor->empty() ? std::optional(own) : memory.kept_settings();
+}
+
+/// The recordings of both arms and of the history.
+void for_each_pinned(const Json& inputs, const std::function<void(const Json&)>& take) {
+  const auto each = [&](const Json& arm) {
+    for (const Json& recording : arm["recordings"]) {
+      take(recording);
+    }
+  };
+  each(inputs["baseline"]);
+  each(inputs["candidate"]);
+  for (const Json& release : inputs["history"]) {
+    each(release);
+  }
 }
 
 class Regress final : public JobKind {
@@ -99,10 +114,23 @@ class Regress final : public JobKind {
                 {"algorithm_version", kRegressionVersion}};
   }
 
+  /// Measured (tests/RELIABILITY.md): what is held of the result of each channel, and the draws over all of them.
+  [[nodiscard]] JobCost cost(const Json& request, JobContext& /*context*/) const override {
+    constexpr std::int64_t kBytesPerResult = std::int64_t{128} << 10;
+    constexpr double kSecondsOfDraws = 0.5;
+    constexpr double kSecondsPerResult = 0.005;
+    std::size_t results = 0;
+    for_each_pinned(request["inputs"], [&](const Json& recording) { results += recording["results"].size(); });
+    return {JobCost{}.memory_bytes + kBytesPerResult * static_cast<std::int64_t>(results),
+            kSecondsOfDraws + kSecondsPerResult * static_cast<double>(results)};
+  }
+
   [[nodiscard]] Result<JobResults> run(const Json& request, JobContext& context,
                                        const RunControl& control) const override {
     const Json& inputs = request["inputs"];
-    auto results = results_by_recording(context.store, inputs["device"].get<std::string>(), control.stop);
+    std::set<std::string> pinned;
+    for_each_pinned(inputs, [&](const Json& recording) { pinned.insert(recording["recording"].get<std::string>()); });
+    auto results = results_by_recording(context.store, inputs["device"].get<std::string>(), control.stop, pinned);
     if (!results) {
       return fail(results.error());
     }

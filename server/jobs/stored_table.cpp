@@ -1,5 +1,6 @@
 #include "server/jobs/stored_table.hpp"
 
+#include "schema/json/campaign_summary.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "server/jobs/axis_sources.hpp"
 #include "server/jobs/stored_recordings.hpp"
@@ -88,6 +89,22 @@ Status check_axis_named(Store& store, const Device& device, const TableRequest& 
               {{"parameter", "axis"}});
 }
 
+/// The samples that the qualities of the recordings call frozen.
+Status tell_frozen(Store& store, std::vector<TableSource>& sources) {
+  for (TableSource& source : sources) {
+    const auto recording = store.recording(source.recording_id);
+    if (!recording) {
+      if (recording.error().code == ErrorCode::NotFound) {
+        continue;
+      }
+      return fail(recording.error());
+    }
+    const auto quality = parse_json(recording->quality_json);
+    source.frozen = quality ? frozen_samples(*quality, source.channel.channel) : 0;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string_view name_of(PoolingState state) {
@@ -120,9 +137,12 @@ Result<StoredTable> stored_table(Store& store, const StoredTableRequest& request
       return fail(named.error());
     }
   }
-  const auto sources = sources_of(*results);
+  auto sources = sources_of(*results);
   if (!sources) {
     return fail(sources.error());
+  }
+  if (auto told = tell_frozen(store, *sources); !told) {
+    return fail(told.error());
   }
   std::optional<PooledSensor> together;
   if (!results->pooled_json.empty()) {

@@ -23,7 +23,7 @@ import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from daemon import PROGRAM, Daemon, read_all, read_answer
+from daemon import PROGRAM, Answer, Daemon, read_all, read_answer
 from suite import DaemonTest
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -385,6 +385,28 @@ class JobsHaveABudget(unittest.TestCase):
                 self.assertEqual(answer.status, 413, answer.describe())
                 self.assertIn("(budget job_memory_bytes = ", answer.json["detail"])
             self.assertLess(daemon.memory_kib("VmHWM"), 200 * 1024)
+
+    def test_a_regression_run_is_admitted_by_the_results_that_it_reads(self) -> None:
+        """It stated nothing but the least that every job takes. 32 MiB and 128 KiB for each of six results are 34,340,864."""
+        noise = random.Random(6)
+        with Daemon(arguments=("--budget", "job_memory_bytes=34300000")) as daemon:
+            ids = []
+            for _ in range(6):
+                table = "gz [deg/s]\n" + "".join(f"{noise.gauss(0.0, 0.05):.6f}\n" for _ in range(6000))
+                ids.append(daemon.upload(table.encode(), device="gated", rate_hz=100).json["id"])
+                self.assertEqual(daemon.finished(daemon.characterise(ids[-1], models=["WN"]).json["id"])["state"], "succeeded")
+
+            def ask(of_arm: int) -> Answer:
+                arms = {name: {"labels": {"firmware": name}, "recordings": [{"recording": each} for each in part[:of_arm]]}
+                        for name, part in (("baseline", ids[:3]), ("candidate", ids[3:]))}
+                return daemon.post("/v1/jobs", {"kind": "regress", "inputs": {"device": "gated", **arms}})
+
+            refused = ask(3)
+            self.assertEqual(refused.status, 413, refused.describe())
+            self.assertRegex(refused.json["detail"], r"would take about 32 MiB of memory.*\(budget job_memory_bytes = 34300000\)")
+            admitted = ask(2)
+            self.assertEqual(admitted.status, 202, admitted.describe())
+            self.assertEqual(daemon.finished(admitted.json["id"])["state"], "succeeded")
 
     @unittest.skipIf(os.environ.get("DRIFTLAB_SANITIZE"), "sanitizers keep memory of their own")
     def test_an_investigation_takes_no_more_than_it_is_admitted_for(self) -> None:

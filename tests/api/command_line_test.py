@@ -80,8 +80,59 @@ class CommandLine(DaemonTest):
         self.own_file("frozen.csv", values[:2000] + [values[1999]] * 3000 + values[2000:])
         table = self.said("characterise", "frozen.csv", "--models", "WN")
         self.assertIn("! frozen: Column 'gz [mdps]': the sensor is frozen for 300", table)
+        self.assertIn("\nstatic *  ", table, "the row is marked")
+        self.assertIn("! static: The sensor is frozen for 3001 samples, which are not analysed.", table)
+        self.assertEqual(self.said("characterise", "frozen.csv", "--models", "WN", *self.server, "--device", "frozen"), table)
+        stored = self.said("table", *self.server, "--device", "frozen", "--sensor", "gyroscope", "--axis", "z")
+        self.assertIn("\nstatic *  ", stored)
+        self.assertIn("frozen for 3001 samples", stored)
         self.assertIn("skipped: 'q_w'", table)
         self.assertNotIn("sensor q_w", table)
+
+    def test_a_clock_that_starts_again_is_said_with_the_part_that_is_analysed(self) -> None:
+        # A logger that restarts begins at 0 again: half a file was left out unmentioned.
+        noise = random.Random(8)
+        values = [noise.gauss(0, 0.1) for _ in range(12000)]
+        self.own_file("restart.csv", values, [0.01 * (i if i < 5000 else i - 5000) for i in range(12000)])
+        self.own_file("second.csv", values[5000:])
+        text = self.said("characterise", "restart.csv", "--models", "WN")
+        self.assertIn("! restart: The time column steps back once, by 49.99 s, before sample 5001; the recording is split there and its longest "
+                      "part analysed, samples 5001 to 12000; the other 5000 are left out.\n", text)
+        self.assertNotIn("Too much is missing", text)
+        whole, part = (json.loads(self.said("characterise", name, "--models", "WN", "--json"))["recordings"][0] for name in ("restart.csv", "second.csv"))
+        self.assertEqual(whole["quality"]["backward_steps"], 1)
+        for mine, other in zip(whole["channels"][0]["allan"]["deviation"], part["channels"][0]["allan"]["deviation"], strict=True):
+            self.assertAlmostEqual(mine / other, 1, delta=1e-9)
+        self.assertEqual(self.said("characterise", "restart.csv", "--models", "WN", *self.server, "--device", "restarted").splitlines()[-2:], text.splitlines()[-2:])
+
+    def test_counts_are_read_by_their_scale_and_offset_at_every_door(self) -> None:
+        """A thermometer of raw/340+36.53 and a gyroscope of 131 LSB/(deg/s) could not be said where the header does not say them."""
+        noise = random.Random(9)
+        counts = [round(131 * noise.gauss(9, 0.1)) for _ in range(4000)]
+        heat = [-3000 + i // 100 for i in range(4000)]
+        (self.folder / "counts.csv").write_text("gz,temp\n" + "".join(f"{c},{h}\n" for c, h in zip(counts, heat)))
+        (self.folder / "plain.csv").write_text("gz,temp\n" + "".join(f"{c / 131!r},{h / 340 + 36.53!r}\n" for c, h in zip(counts, heat)))
+        turning = ("--rate-hz", "100", "--condition", "constant_rate:z:9:deg/s", "--models", "WN")
+        stated = "gz=angular_rate:z:deg/s/131,temp=temperature::raw/340+36.53 degC"
+
+        def noise_of(*arguments: str) -> float:
+            [recording] = json.loads(self.said("characterise", *arguments, "--json"))["recordings"]
+            return float(recording["channels"][0]["allan_parameters"]["N"]["value"])
+
+        plain = noise_of("plain.csv", *turning, "--columns", "gz=angular_rate:z:deg/s,temp=temperature::degC")
+        self.assertAlmostEqual(noise_of("counts.csv", *turning, "--columns", stated) / plain, 1, delta=1e-9)
+        self.assertAlmostEqual(noise_of("counts.csv", *turning, "--columns", stated, *self.server, "--device", "counts") / plain, 1, delta=1e-9)
+        [recording] = self.daemon.items("/v1/recordings?device=counts")
+        self.assertEqual({name: role["unit"] for name, role in recording["metadata"]["columns"].items()}, {"gz": "deg/s/131", "temp": "raw/340+36.53 degC"})
+        columns = {"gz": {"quantity": "angular_rate", "axis": "z", "unit": "131 LSB/(deg/s)"}, "temp": {"quantity": "temperature", "unit": "degC/340+36.53"}}
+        study: dict[str, Any] = {"device": {"id": "counted"}, "recordings": [
+            {"file": "counts.csv", "rate_hz": 100, "columns": columns, "condition": {"kind": "constant_rate", "axis": "z", "value": 9, "unit": "deg/s"}}]}
+        (self.folder / "counted.json").write_text(json.dumps(study))
+        self.assertAlmostEqual(noise_of("counted.json", "--models", "WN") / plain, 1, delta=1e-9)
+        columns["temp"]["unit"] = "degC/0+36.53"
+        (self.folder / "counted.json").write_text(json.dumps(study))
+        for wrong in (("counted.json",), ("counts.csv", "--rate-hz", "100", "--columns", "temp=temperature::degC/0+36.53")):
+            self.assertIn("The scale in the unit 'degC/0+36.53' must be a positive number; write ", self.refused(2, "characterise", *wrong))
 
     def test_noise_that_is_not_one_noise_is_said_to_be_several(self) -> None:
         # One jump of 50 standard deviations was fitted as WN+GM with a J-test of p = 0.97, and nothing said.

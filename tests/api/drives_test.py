@@ -101,6 +101,7 @@ class MadeUp(Folder):
             ("gnss/time/scale", "boot", "clock"),
             ("gnss/columns/lat/unit", "rad", "latitude"),
             ("imu/columns/gx/unit", "furlong", "furlong"),
+            ("imu/columns/gx/unit", "deg/s/131+0.2", "offset, which a drive does not take"),
             ("imu/mounting_deg", [180, 0, 0], "down"),
             ("outages", {"duration_s": [10], "every_s": [20]}, "20 s of fixes"),
             ("outages", {"duration_s": [900], "every_s": [1000]}, "fits the drive"),

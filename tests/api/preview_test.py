@@ -36,6 +36,18 @@ class Preview(DaemonTest):
         self.assertEqual((found["problems"], found["time_guess"]), ([], None))
         self.assertEqual((self.daemon.items("/v1/recordings"), self.daemon.items("/v1/devices")), ([], []))
 
+    def test_counts_are_seen_in_the_unit_that_their_scale_and_offset_make(self) -> None:
+        counts = samples.noise(400, seed=12)[0]
+        content = ("gz,temp\n" + "\n".join(f"{1179 + 7 * value:.0f},{-3000 + i % 3}" for i, value in enumerate(counts)) + "\n").encode()
+        asked = "?rate_hz=100&condition=static&columns=gz=angular_rate:z:deg/s/131,temp=temperature::degC/340%2B36.53"
+        found = self.preview(content, asked)
+        self.assertEqual([c["unit"] for c in found["columns"]], ["deg/s/131", "degC/340+36.53"])
+        self.assertEqual(found["condition_guess"]["text"], "constant_rate:z:9:deg/s")
+        self.assertEqual(self.preview(content, asked.replace("%2B", "+"))["columns"][1]["unit"], "degC/340+36.53")
+        problem = self.problem(400, "unknown_unit", self.daemon.request(
+            "POST", "/v1/recordings/preview?columns=temp=temperature::degC/0", content, {"Content-Type": "application/octet-stream"}))
+        self.assertIn("must be a positive number; write", str(problem["detail"]))
+
     def test_a_refusal_is_known_before_the_file_has_gone(self) -> None:
         """The same sentence and the same field as the upload's, and no more once the rate is said."""
         content = samples.gyro_csv(seed=3)

@@ -253,6 +253,34 @@ class Regress(unittest.TestCase):
             self.assertIn(words, bad.stderr)
             self.assertEqual(len(bad.stderr.strip().splitlines()), 1)
 
+    def test_the_temperature_column_keeps_a_warm_candidate_from_being_judged(self) -> None:
+        """A temperature column was not used: noise that had grown with 15 K failed the firmware."""
+        def warmed(name: str, seed: int, white: float, degc: float) -> str:
+            head, *rows = recording(seed, white).splitlines()
+            lines = [head + ",temp"] + [f"{row},{round((degc + 0.5 * math.sin(i / 900) - 36.53) * 340)}" for i, row in enumerate(rows)]
+            (self.folder / name).write_text("\n".join(lines) + "\n")
+            return name
+
+        cold = [warmed(f"cold_{i}.csv", 41 + i, 0.1, 25) for i in range(3)]
+        warm = [warmed(f"warm_{i}.csv", 51 + i, 0.17, 40) for i in range(3)]
+        near = [warmed(f"near_{i}.csv", 51 + i, 0.17, 28) for i in range(3)]
+        columns = ("--columns", "t [s]=time:s,gz [deg/s]=angular_rate:z:deg/s,temp=temperature:degC/340+36.53")
+
+        def apart(document: dict[str, Any]) -> list[tuple[str, str]]:
+            return [(item["item"], item["sentence"]) for item in document["comparability"] if not item["comparable"]]
+
+        self.assertEqual(apart(self.document(3, "--baseline", *cold, "--candidate", *warm, *columns)),
+                         [("temperature", "The candidate was 15.0 K warmer than the baseline; at most 5 K apart can be compared.")])
+        self.assertEqual(apart(self.document(1, "--baseline", *cold, "--candidate", *near, *columns)), [])
+        # Counts without a unit say nothing of a temperature, and what somebody states stands above the column.
+        self.assertEqual(apart(self.document(1, "--baseline", *cold, "--candidate", *warm)), [])
+        roles = {"t [s]": {"quantity": "time", "unit": "s"}, "gz [deg/s]": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"},
+                 "temp": {"quantity": "temperature", "unit": "degC/340+36.53"}}
+        arms = {arm: {"labels": {"firmware": arm}, "recordings": [{"file": name, "columns": roles, **more} for name in names]}
+                for arm, names, more in (("baseline", cold, {}), ("candidate", warm, {"temperature_degc": 27}))}
+        (self.folder / "stated.json").write_text(json.dumps({"device": {"id": "imu-07"}, **arms}))
+        self.assertEqual(apart(self.document(1, "stated.json")), [])
+
     def test_bad_input_is_one_sentence(self) -> None:
         self.assertIn("in both arms", self.regress(2, "--baseline", "baseline/0.csv", "--candidate", "baseline/0.csv"))
         (self.folder / "copy.csv").write_text((self.folder / "baseline/0.csv").read_text())

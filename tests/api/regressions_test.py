@@ -128,6 +128,26 @@ class Labels(DaemonTest):
     def label(firmware: str) -> dict[str, Any]:
         return {"labels": {"firmware": firmware}}
 
+    def test_recordings_that_were_warmer_by_their_own_column_are_not_compared(self) -> None:
+        def warm(seed: int, firmware: str, degc: float) -> None:
+            [column] = samples.noise(12000, 1, seed)
+            content = samples.csv([column, [degc + 0.2 * value for value in column]], ["gz", "temp"])
+            made = self.expect(201, self.daemon.upload(content, device="imu-11", rate_hz=20, columns=samples.GYRO_Z + ",temp=temperature::degC",
+                                                       labels=f"firmware={firmware}")).json
+            self.assertEqual(made["quality"]["temperature"]["column"], "temp")
+            self.assertAlmostEqual(made["quality"]["temperature"]["median_degc"], degc, delta=0.02)
+            self.assertAlmostEqual(made["quality"]["temperature"]["high_degc"], degc + 0.2 * 1.645, delta=0.05)
+            self.daemon.finished(self.daemon.characterise(made["id"], models=["WN"]).json["id"])
+
+        for seed in (1, 2, 3):
+            warm(seed, "1.0", 25)
+            warm(10 + seed, "1.1", 33)
+        run = self.run_of(self.ask(self.label("1.1"), self.label("1.0"), device="imu-11"))
+        self.assertEqual(run["verdict"], "inconclusive")
+        [item] = (item for item in run["comparability"] if not item["comparable"])
+        self.assertEqual(item["item"], "temperature")
+        self.assertRegex(item["sentence"], "^The candidate was [78][0-9.]* K warmer than the baseline; at most 5 K apart")
+
     def test_labels_alone_mean_all_recordings_and_the_daemon_remembers(self) -> None:
         first = [self.recorded(seed, "1.0") for seed in (1, 2, 3)]
         for seed in (1, 2, 3):

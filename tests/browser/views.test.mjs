@@ -132,6 +132,31 @@ test('a unit that is not known is mended beside the sentence that refuses it', a
   await closed(page);
 });
 
+test('counts have their scale and their offset beside the unit', async () => {
+  const page = await open(browser, daemon, '/upload', {absent: [/recordings\/preview/]});
+  const rows = noise(400, 63).map((x, i) => `${i * 10},${(1179 + 13 * x).toFixed(0)},${-3000 + i % 9}`).join('\n');
+  await page.locator('input[type=file]').setInputFiles({name: 'counts.csv', mimeType: 'text/csv', buffer: Buffer.from(`time (ms),gz,temp\n${rows}\n`)});
+  await page.getByRole('row', {name: /^temp .*read from the header/}).waitFor();
+  for (const [column, quantity, scale] of [['gz', 'angular_rate', '/131'], ['temp', 'temperature', '/340+36.53']]) {
+    await page.getByLabel(`Quantity of ${column}`).selectOption({value: quantity});  // the first option has the same word, as read
+    await page.getByLabel(`Scale and offset of ${column}`).fill(scale);
+    await page.getByLabel(`Scale and offset of ${column}`).blur();
+  }
+  await page.getByText('The gyroscope about z reads 9').first().waitFor();
+  assert.equal(await page.getByLabel('Unit of temp').inputValue(), 'degC');
+  await page.getByLabel('Scale and offset of gz').fill('/0');
+  await page.getByLabel('Scale and offset of gz').blur();
+  await page.getByText("The scale in the unit 'deg/s/0' must be a positive number").first().waitFor();
+  await page.getByLabel('Scale and offset of gz').fill('/131');
+  await page.getByLabel('Scale and offset of gz').blur();
+  await page.getByText('The gyroscope about z reads 9').first().waitFor();
+  await page.getByRole('button', {name: 'Upload only'}).click();
+  await page.getByRole('link', {name: 'stored'}).waitFor();
+  const stored = (await daemon.json('/v1/recordings?sort=-created_at')).items[0];
+  assert.deepEqual([stored.metadata.columns.gz.unit, stored.metadata.columns.temp.unit], ['deg/s/131', 'degC/340+36.53']);
+  await closed(page);
+});
+
 test('a study.json says what its files are, and leads to their investigation', async () => {
   const file = (name, text) => ({name, mimeType: 'text/plain', buffer: Buffer.from(text)});
   const columns = {gz: {quantity: 'angular_rate', axis: 'z', unit: 'deg/s'}};

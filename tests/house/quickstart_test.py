@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import random
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -61,6 +62,57 @@ class Quickstart(unittest.TestCase):
         second = self.quickstart("--once")
         self.assertEqual(second.returncode, 0, second.stdout + second.stderr)
         self.assertEqual(second.stdout, first.stdout, "the same sample and seed give the same table")
+
+    def test_once_says_what_it_leaves_and_leaves_nothing_else(self) -> None:
+        before = set(self.folder.rglob("*"))
+        ran = self.quickstart("--once")
+        self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
+        last = ran.stdout.rstrip().splitlines()[-1]
+        said = re.fullmatch(r"Done: the daemon that served at (\S+) is stopped\. It leaves its data in (.+), logs in (.+) and the programs in (.+); "
+                            r"nothing else runs or stays\.", last)
+        assert said is not None, last
+        data, logs = self.folder / "data", self.folder / "data/logs"
+        self.assertEqual(said.groups(), (f"http://127.0.0.1:{self.port}", str(data), str(logs), str(PROGRAMS)))
+        self.assertTrue((logs / "daemon.log").is_file())
+        self.assertTrue(any(path.suffix == ".csv" for path in (data / "sample").iterdir()))
+        outside = [path for path in set(self.folder.rglob("*")) - before if path != data and data not in path.parents]
+        self.assertEqual(outside, [])
+        running = []
+        for process in Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                running.append(process.read_bytes())
+            except OSError:
+                continue  # it has ended meanwhile
+        self.assertFalse(any(str(data).encode() in line for line in running), "a process of it still runs")
+
+    def test_a_build_without_a_terminal_shows_how_far_it_is(self) -> None:
+        """Half an hour of silence in a pipeline's log looks like a hang. The compiler is played by a script, and minutes are tenths of seconds."""
+        repository, tools = self.folder / "repository", self.folder / "tools"
+        (repository / "build/release/bin").mkdir(parents=True)
+        (repository / "build/release/CMakeCache.txt").touch()
+        (repository / "deploy").mkdir()
+        shutil.copy(REPOSITORY / "deploy/quickstart.sh", repository / "deploy")
+        (repository / "deploy/packages.sh").write_text("install_packages() { :; }\n")
+        tools.mkdir()
+        scripts = {"sleep": 'exec /bin/sleep 0.1',
+                   "ninja": 'for step in 1 200 400 562; do echo "[$step/562] Building CXX object"; /bin/sleep 0.4; done\n'
+                            f'ln -s {PROGRAMS}/driftlab {PROGRAMS}/driftlabd {repository}/build/release/bin/'}
+        for name, script in scripts.items():
+            (tools / name).write_text("#!/bin/sh\n" + script + "\n")
+            (tools / name).chmod(0o755)
+        ran = subprocess.run([str(repository / "deploy/quickstart.sh"), "--once", "--port", str(self.port), "--data", str(self.folder / "data")],
+                             capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"})
+        self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
+        lines = ran.stdout.splitlines()
+        built = lines.index("Characterising the sample: z gyroscope of an iPhone 5S, simulated by driftlab from Radi et al. (2017), Table 4")
+        self.assertIn("Building driftlab (the first time takes some minutes)", lines[:built])
+        shown = [line.strip() for line in lines[:built] if line.startswith("  [")]
+        steps = ["[1/562]", "[200/562]", "[400/562]", "[562/562]"]
+        seen = list(dict.fromkeys(shown))
+        self.assertGreaterEqual(len(seen), 2, "one line is no progress")
+        self.assertEqual(seen, [step for step in steps if step in seen], "in order, and nothing else")
+        self.assertNotIn("\r", ran.stdout)
+        self.assertEqual(ran.stderr, "")
 
     def test_an_own_recording_gives_its_figures(self) -> None:
         ran = self.quickstart("--once", "--recording", str(self.recording()), "--rate-hz", "100", "--columns",

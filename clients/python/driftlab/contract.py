@@ -3766,6 +3766,9 @@ class StoredRecordingQuality(TypedDict):
     measured_rate_hz: float | None
     # Measured over stated rate, where both are there.
     clock_ratio: NotRequired[float | None]
+    # How warm the analysed part was by the recording's own temperature column. Absent: it has none, or none whose unit
+    # is stated.
+    temperature: NotRequired[StoredRecordingQualityTemperature]
     # What is true of each sensor column over the whole file, and which of its samples are analysed.
     channels: NotRequired[list[StoredRecordingQualityChannel]]
     notes: list[str]
@@ -3815,6 +3818,18 @@ class StoredRecordingQualityLongestGap(TypedDict):
     row: int
     # How many.
     missing: int
+
+
+class StoredRecordingQualityTemperature(TypedDict):
+    """How warm the analysed part was by the recording's own temperature column. Absent: it has none, or none whose unit
+    is stated."""
+
+    column: str
+    median_degc: float | None
+    # 5 % quantile.
+    low_degc: float | None
+    # 95 % quantile.
+    high_degc: float | None
 
 
 class StoredStudy(TypedDict):

@@ -115,6 +115,13 @@ Result<double> factor_of(std::string_view unit, Quantity quantity, std::string_v
                     (axis.empty() ? "." : " " + std::string(axis) + "."),
                 {{"unit", std::string(unit)}});
   }
+  if (parsed->offset != 0.0) {
+    return fail(
+        ErrorCode::UnitMismatch,
+        "The unit " + std::string(unit) +
+            " has an offset, which a drive does not take: its biases are what the filter estimates. Leave it out.",
+        {{"unit", std::string(unit)}});
+  }
   return parsed->factor;
 }
 

@@ -23,6 +23,9 @@ namespace driftlab::page {
 /// The members of a list that are text; nothing where there are none.
 [[nodiscard]] std::string list_html(const Json& sentences);
 
+/// Tables that are aligned by blanks, in characters as small as their longest row needs on A4.
+[[nodiscard]] std::string aligned_html(const std::string& text);
+
 /// Every figure of the document under its title.
 [[nodiscard]] std::string figures_html(const Json& document);
 

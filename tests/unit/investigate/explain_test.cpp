@@ -72,22 +72,22 @@ TEST(Explain, NoSentenceOfAPageHasTwoBlanksInARow) {
   }
 }
 
-Finding of(const char* cause, double score, std::vector<ChannelName> channels) {
+Finding of(const char* cause, double score, ChannelName channel) {
   Finding finding;
   finding.evidence.cause = find_cause(cause);
   finding.evidence.score = score;
-  finding.channels = std::move(channels);
+  finding.channels.push_back(std::move(channel));
   return finding;
 }
 
 /// A report began with a line of noise that was strong, and said on its third page that samples were missing.
 TEST(Order, ALaboratoryReadsFirstWhatItWouldActOnFirst) {
   std::vector<Finding> findings{
-      of("output_resolution", 900.0, {{"a", "gx [deg/s]"}}),  of("random_walk", 500.0, {{"a", "gz [deg/s]"}}),
-      of("scale_factor_error", 20.0, {{"a", "gx [deg/s]"}}),  of("temperature_bias", 30.0, {{"a", "gy [deg/s]"}}),
-      of("scale_factor_error", 300.0, {{"a", "gz [deg/s]"}}), of("reference_time_offset", 15.0, {{"a", "gz [deg/s]"}}),
-      of("missing_samples", 40.0, {{"a", "gz [deg/s]"}})};
-  findings.push_back(of("g_sensitivity", 700.0, {{"a", "gx [deg/s]"}}));
+      of("output_resolution", 900.0, {"a", "gx [deg/s]"}),  of("random_walk", 500.0, {"a", "gz [deg/s]"}),
+      of("scale_factor_error", 20.0, {"a", "gx [deg/s]"}),  of("temperature_bias", 30.0, {"a", "gy [deg/s]"}),
+      of("scale_factor_error", 300.0, {"a", "gz [deg/s]"}), of("reference_time_offset", 15.0, {"a", "gz [deg/s]"}),
+      of("missing_samples", 40.0, {"a", "gz [deg/s]"})};
+  findings.push_back(of("g_sensitivity", 700.0, {"a", "gx [deg/s]"}));
   findings.back().evidence.ambiguous = true;
   put_in_order(findings);
   std::vector<std::string> said;
@@ -107,7 +107,7 @@ TEST(Verdict, OneSentenceSaysWhatIsWrongAndWhatStillFails) {
   report.checks.resize(3);
   EXPECT_EQ(verdict_of(report).sentence, "The recordings look like the simulation: none of 3 checks fails.");
   EXPECT_EQ(verdict_of(report).level, VerdictLevel::Fine);
-  report.findings = {of("output_resolution", 900.0, {{"a", "gx [deg/s]"}})};
+  report.findings = {of("output_resolution", 900.0, {"a", "gx [deg/s]"})};
   EXPECT_EQ(verdict_of(report).level, VerdictLevel::Look) << "digits are no error";
   report.findings.insert(report.findings.begin(), of("scale_factor_error", 300.0, {"a/gx", "b/gx"}));
   report.failed_before = 2;

@@ -50,6 +50,24 @@ TEST(RecordingSpec, EveryFaultIsNamed) {
                                                         "/condition", "/trim/stop_s", "/trim", "/colour"}));
 }
 
+TEST(RecordingSpec, AScaleAndAnOffsetStandWithTheUnit) {
+  Faults faults;
+  const RecordingSpec spec = read(R"({"condition": {"kind": "static"}, "columns": {
+      "gz": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s/131"},
+      "temp": {"quantity": "temperature", "unit": "raw/340+36.53 degC"}}})",
+                                  faults);
+  ASSERT_TRUE(faults.none()) << faults.error().message;
+  EXPECT_DOUBLE_EQ(spec.columns.at("temp").unit->to_si(0.0), 36.53 + 273.15);
+  const RecordingSpec again = recording_spec_from_json(to_json(spec), "", faults);
+  EXPECT_EQ(again.columns.at("temp").unit->to_si(340.0), spec.columns.at("temp").unit->to_si(340.0));
+  EXPECT_EQ(again.columns.at("gz").unit->factor, spec.columns.at("gz").unit->factor);
+  (void)read(R"({"condition": {"kind": "static"}, "columns": {
+      "a": {"quantity": "temperature", "unit": "degC", "scale": 0.003, "offset": 36.53},
+      "b": {"quantity": "temperature", "unit": "degC/0+36.53"}}})",
+             faults);
+  EXPECT_EQ(pointers(faults), (std::vector<std::string>{"/columns/a/scale", "/columns/a/offset", "/columns/b/unit"}));
+}
+
 TEST(Condition, IsReadStrictly) {
   const std::pair<const char*, const char*> cases[] = {
       {R"({"kind": "asleep"})", "/kind"},
@@ -96,6 +114,15 @@ TEST(ParseColumns, ReadsNamesQuantitiesAxesAndUnits) {
   EXPECT_EQ(columns->at("gz").axis, "z");
   EXPECT_EQ(columns->at("gz").unit->symbol, "deg/s");
   EXPECT_FALSE(columns->at("3").unit);
+}
+
+TEST(ParseColumns, ScaleAndOffsetOfCountsStandWithTheUnit) {
+  const auto columns =
+      parse_columns("gz=angular_rate:z:deg/s/131,temp=temperature:degC/340+36.53,b=temperature::degC/2 1");
+  ASSERT_TRUE(columns) << columns.error().message;
+  EXPECT_NEAR(columns->at("gz").unit->to_si(131.0 * 180.0), 3.14159265358979, 1e-13);
+  EXPECT_DOUBLE_EQ(columns->at("temp").unit->to_si(-340.0), 273.15 + 35.53);
+  EXPECT_EQ(columns->at("b").unit->symbol, "degC/2+1") << "a + in an address is a blank";
 }
 
 TEST(ParseColumns, WhatHasNoAxisMayHaveItsUnitAtOnce) {

@@ -46,6 +46,7 @@ TEST(Condition, RefusesWhatDoesNotFitItsKind) {
   EXPECT_EQ(code("constant_rate:z:nan:deg/s"), "invalid_argument");
   EXPECT_EQ(code("constant_rate:z:9:deg/s:more"), "invalid_argument");
   EXPECT_EQ(code("constant_rate:z:9:furlong"), "unknown_unit");
+  EXPECT_EQ(code("constant_rate:z:9:deg/s/131+2"), "unit_mismatch") << "what is true of counts is not of a rate";
   EXPECT_EQ(code("constant_rate:z:9:m/s^2"), "unit_mismatch");
   EXPECT_EQ(code("constant_angular_acceleration:z:9:deg/s"), "unknown_unit");
   EXPECT_EQ(code("six_position:x"), "invalid_argument");

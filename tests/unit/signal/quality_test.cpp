@@ -16,6 +16,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 using Table = std::vector<std::vector<double>>;
 
@@ -235,7 +236,32 @@ TEST(Quality, SplitsWhereTheClockIsSetBack) {
   EXPECT_EQ(seen->window.count, 2500U);
   EXPECT_NEAR(seen->window.time.dt_s, 0.01, 1e-12);
   EXPECT_NEAR(seen->window.quality.measured_rate_hz, 100.0, 0.1);
-  EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("steps back once, by 0.99 s")));
+  EXPECT_THAT(
+      seen->window.quality.notes,
+      Contains("The time column steps back once, by 0.99 s, before sample 2501; the recording is split there and "
+               "its longest part analysed, samples 1 to 2500; the other 1500 are left out."));
+  EXPECT_THAT(seen->window.quality.notes, Not(Contains(HasSubstr("Too much is missing")))) << "nothing is";
+}
+
+TEST(Quality, NamesThePartBetweenTwoRestartsOfTheClockAndWhatIsMissingInIt) {
+  std::vector<double> stamps = clock(6000);
+  for (std::size_t i = 1000; i < stamps.size(); ++i) {
+    stamps[i] -= i < 5000 ? 10.0 : 30.0;
+  }
+  const auto seen = view({stamps, noise(6000)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(seen) << seen.error().message;
+  EXPECT_EQ(seen->window.first, 1000U);
+  EXPECT_EQ(seen->window.count, 4000U);
+  EXPECT_THAT(seen->window.quality.notes,
+              Contains(HasSubstr("; the recording is split there and its longest part analysed, samples 1001 to 5000; "
+                                 "the other 2000 are left out.")));
+  // A gap of half an hour in the longest part is more than is bridged: said of the part, not of the file.
+  for (std::size_t i = 4000; i < 5000; ++i) {
+    stamps[i] += 1800.0;
+  }
+  const auto torn = view({stamps, noise(6000)}, {"time (s)", "gz"}, std::nullopt);
+  ASSERT_TRUE(torn) << torn.error().message;
+  EXPECT_THAT(torn->window.quality.notes, Contains(HasSubstr("3000 of 4000 samples are analysed, from sample 1001.")));
 }
 
 TEST(Quality, RefusesAClockThatStepsBackOnceInAThousandRows) {

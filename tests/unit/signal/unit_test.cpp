@@ -59,9 +59,49 @@ TEST(Unit, ReadsProductsPrefixesAndScales) {
   EXPECT_DOUBLE_EQ(scaled->to_si(131.0 * 180.0), std::numbers::pi);
   EXPECT_EQ(parse_unit(scaled->symbol), *scaled);
   EXPECT_DOUBLE_EQ(parse_unit("0.061 mg")->to_si(1.0), 0.061e-3 * 9.80665);
-  for (const char* const symbol : {"deg/s/0", "deg/s/-3", "degC/2", "0.1 furlong", "deg/s/nan", "1 1e400 g"}) {
+  for (const char* const symbol : {"deg/s/0", "deg/s/-3", "0.1 furlong", "deg/s/nan", "1 1e400 g"}) {
     EXPECT_FALSE(parse_unit(symbol)) << symbol;
   }
+}
+
+TEST(Unit, TakesAScaleAndAnOffsetInTheFormsOfDataSheets) {
+  // The thermometer of an MPU-6050, register map 4.2 section 4.18: 340 LSB/degC, 36.53 degC at 0; a count of -3000.
+  const double expected = -3000.0 / 340.0 + 36.53 + 273.15;
+  for (const std::string symbol :
+       {"degC/340+36.53", "degC / 340 + 36.53", "degC/340 36.53", "raw/340+36.53 degC", "raw / 340 + 36.53 degC",
+        "raw/340 36.53 degC", "LSB/340+36.53 degC", "340 LSB/degC+36.53", "340 LSB/degC 36.53", "K/340+309.68"}) {
+    const auto unit = parse_unit(symbol);
+    ASSERT_TRUE(unit) << symbol;
+    EXPECT_EQ(unit->dimension, Dimension::Temperature) << symbol;
+    EXPECT_NEAR(unit->to_si(-3000.0), expected, 1e-10) << symbol;
+    EXPECT_NEAR(unit->from_si(expected), -3000.0, 1e-7) << symbol;
+    const auto again = parse_unit(unit->symbol);
+    ASSERT_TRUE(again) << "a stored unit is read back: " << unit->symbol;
+    EXPECT_EQ(again->to_si(-3000.0), unit->to_si(-3000.0)) << symbol;
+  }
+  EXPECT_EQ(parse_unit("degC/340 36.53")->symbol, "degC/340+36.53");
+  EXPECT_DOUBLE_EQ(parse_unit("degC*0.5-10")->to_si(4.0), 273.15 - 8.0);
+  EXPECT_DOUBLE_EQ(parse_unit("degC/2")->to_si(4.0), 275.15);
+  EXPECT_DOUBLE_EQ(parse_unit("raw*0.5 g")->to_si(4.0), 2.0 * 9.80665);
+  EXPECT_DOUBLE_EQ(parse_unit("131 LSB/(deg/s)")->to_si(131.0 * 180.0), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_unit("0.061 mg/LSB+2")->to_si(1.0), 2.061e-3 * 9.80665);
+  EXPECT_DOUBLE_EQ(parse_unit("m/s^2/2048-0.5")->to_si(2048.0), 0.5);
+  EXPECT_DOUBLE_EQ(parse_unit("rad s^-1*1e-3")->to_si(2.0), 2e-3);
+}
+
+TEST(Unit, SaysWhatIsWrongWithAScaleAndHowToWriteIt) {
+  for (const char* const symbol : {"degC/0+36.53", "deg/s*-2", "raw/nan degC", "deg/s/inf", "0 mg"}) {
+    const auto unit = parse_unit(symbol);
+    ASSERT_FALSE(unit) << symbol;
+    EXPECT_THAT(unit.error().message, HasSubstr("must be a positive number; write")) << symbol;
+  }
+  EXPECT_THAT(parse_unit("raw/340+36.53").error().message, HasSubstr("names no unit in which it is"));
+  EXPECT_THAT(parse_unit("us*10+5").error().message, HasSubstr("a time has none"));
+  for (const char* const symbol : {"degC/340+", "degC/+3", "degC/340+x", "degC/340+1 2", "raw/340+36.53 furlong",
+                                   "deg/s/1e400", "+3", "deg/s 500", "g 16", "raw 2 g"}) {
+    EXPECT_FALSE(parse_unit(symbol)) << symbol;
+  }
+  EXPECT_FALSE(parse_unit("degC/" + std::string(100000, '1'))) << "a name of any length costs little";
 }
 
 TEST(Unit, NamesTheUnknownSymbolAndTheKnownOnes) {

@@ -4,8 +4,9 @@ import type {Nullable} from '../../api/documents';
 import {writeTick} from '../../format/number';
 import {quantityName, writeSentence, writeUnit} from '../../format/words';
 import {Panel, Refusal} from '../../shell/states';
-import {change, type Pending, type Role} from './pending';
+import {change, pending, type Pending, type Role} from './pending';
 import {rolesOf, type PreviewColumn, type PreviewDocument} from './preview';
+import {UnitField} from './UnitField';
 
 const QUANTITIES: readonly (readonly [string, string])[] = [['time', 'time'], ['angular_rate', 'angular rate'], ['specific_force', 'specific force'], ['temperature', 'temperature'], ['reference_angular_rate', 'reference rate'], ['reference_angle', 'reference angle'], ['magnetic_field', 'magnetic field']];
 export const UNITS: Record<string, string[]> = {time: ['s', 'ms', 'us', 'ns'], angular_rate: ['deg/s', 'rad/s', 'deg/h', 'mrad/s'], specific_force: ['m/s^2', 'g', 'mg'], temperature: ['degC', 'K'], reference_angular_rate: ['deg/s', 'rad/s'], reference_angle: ['deg', 'rad'], magnetic_field: ['uT', 'T']};
@@ -32,7 +33,9 @@ function whyOf(column: PreviewColumn): string {
 function ColumnRow({each, column}: {each: Pending; column: PreviewColumn}): JSX.Element {
   const role = each.roles[column.name] ?? EMPTY;
   const set = (changes: Partial<Role>): void => {
-    const roles = {...each.roles, [column.name]: {...role, ...changes}};
+    // As said by now: leaving one field and choosing in another come before the row is drawn again.
+    const said = pending().find(one => one.key === each.key)?.roles ?? each.roles;
+    const roles = {...said, [column.name]: {...(said[column.name] ?? EMPTY), ...changes}};
     if (!roles[column.name]!.quantity) delete roles[column.name];
     change(each.key, {roles});
   };
@@ -43,7 +46,7 @@ function ColumnRow({each, column}: {each: Pending; column: PreviewColumn}): JSX.
     <th scope="row"><code>{column.name}</code></th>
     <td><select aria-label={label('Quantity')} value={role.quantity} onChange={event => { const quantity = event.currentTarget.value; const guessed = column.axis ?? /([xyz])(?:\W|_|$)/i.exec(column.name)?.[1]?.toLowerCase(); set({quantity, unit: quantity === column.quantity && column.unit ? column.unit : UNITS[quantity]?.[0] ?? '', axis: quantity && quantity !== 'time' && quantity !== 'temperature' ? role.axis || guessed || 'z' : ''}); }}><option value="">{role.quantity ? 'as the file says' : read}</option>{QUANTITIES.map(([value, text]) => <option key={value} value={value}>{text}</option>)}</select></td>
     <td>{axes ? <select aria-label={label('Axis')} value={role.axis} onChange={event => set({axis: event.currentTarget.value})}>{AXES.map(axis => <option key={axis}>{axis}</option>)}</select> : column.axis ?? '–'}</td>
-    <td>{role.quantity ? <select aria-label={label('Unit')} value={role.unit} onChange={event => set({unit: event.currentTarget.value})}>{(UNITS[role.quantity] ?? []).map(unit => <option key={unit}>{unit}</option>)}</select> : column.unit ? writeUnit(column.unit) : '–'}</td>
+    <td>{role.quantity ? <UnitField name={column.name} unit={role.unit} known={UNITS[role.quantity] ?? []} set={unit => set({unit})} /> : column.unit ? writeUnit(column.unit) : '–'}</td>
     <td class="n"><code>{column.first[0] ?? '–'}</code></td>
     <td class="desk-only"><Course values={column.course} /></td>
     <td class="sec">{whyOf(column)}</td>
@@ -64,12 +67,17 @@ function Doubts({each, seen}: {each: Pending; seen: PreviewDocument}): JSX.Eleme
   </>;
 }
 
+// What a person said of columns, where it was refused and has to be put right: no file is read then.
+const saidOf = (each: Pending): PreviewColumn[] => Object.entries(each.roles).map(([name, role]) => ({name, quantity: role.quantity, axis: role.axis || null, unit: role.unit || null, from: 'stated', first: [], course: []}));
+
 export function Columns({each}: {each: Pending}): JSX.Element {
   const seen = each.look?.document;
+  const columns = seen?.columns ?? (each.look?.problem ? saidOf(each) : []);
   return <Panel title={`What the columns of ${each.file.name} mean`} sub="change what is wrong; nothing is kept until you say so">
-    {each.look?.problem ? <Refusal problem={each.look.problem} /> : !seen ? <p class="sec">Reading the beginning of the file.</p> : seen.columns.length === 0 ? seen.problems.length === 0 && <p class="sec">The columns of this format are read once all of the file is there.</p> : <div class="scroll"><table>
+    {each.look?.problem ? <Refusal problem={each.look.problem} /> : !seen ? <p class="sec">Reading the beginning of the file.</p> : columns.length === 0 && seen.problems.length === 0 && <p class="sec">The columns of this format are read once all of the file is there.</p>}
+    {columns.length > 0 && <div class="scroll"><table>
       <thead><tr><th scope="col">column</th><th scope="col">quantity</th><th scope="col">axis</th><th scope="col">unit</th><th scope="col" class="n">first value</th><th scope="col" class="desk-only">course</th><th scope="col">why</th></tr></thead>
-      <tbody>{seen.columns.slice(0, MOST_COLUMNS).map(column => <ColumnRow key={column.name} each={each} column={column} />)}</tbody>
+      <tbody>{columns.slice(0, MOST_COLUMNS).map(column => <ColumnRow key={column.name} each={each} column={column} />)}</tbody>
     </table></div>}
     {seen && <Doubts each={each} seen={seen} />}
   </Panel>;
