@@ -18,6 +18,8 @@ constexpr double kFrame = 1.0;   ///< [s]
 constexpr double kWidth = 3.0;   ///< [Hz] of a band
 constexpr double kLowest = 2.0;  ///< [Hz]
 constexpr double kFewest = 30.0;
+/// Share of the frames. The band of recorded sensors is unsteady for a quarter of the time and more, by itself.
+constexpr double kMostOften = 0.25;
 constexpr double kMostCoherent = 0.7;  ///< from one frame to the next
 
 /// Sums of a frame's power up to each ordinate.
@@ -330,7 +332,7 @@ std::optional<Burstiness> strongest_bursts(const FullRate& data, const std::vect
   }
   const Burstiness bursts = describe(data, scope, look(std::move(all), at), at);
   const double fewest = std::max(3.0, static_cast<double>(scope.size()) + 1.0);
-  const bool noise = bursts.coherence < kMostCoherent;
+  const bool noise = bursts.coherence < kMostCoherent && bursts.fraction < kMostOften;
   return bursts.bursts >= fewest && bursts.amplitude > 0.0 && noise ? std::optional(bursts) : std::nullopt;
 }
 

@@ -8,8 +8,8 @@
 /// baseline without one of its processes, which may have been fitted to the telegraph. If the truth is Gaussian and one
 /// of the family, the likelihood ratio of a telegraph to it exceeds c with a chance of at most 1/c at each place of the
 /// search. It is named only if twice its logarithm exceeds kGain, if sides last from eight blocks to an eighth of the
-/// record, if changes have been seen, most of the time with no doubt about the side, and if it gains on each half of
-/// the recordings as the other half shows it.
+/// record, if changes have been seen, most of the time with no doubt about the side, and if both halves of the
+/// recordings together gain by what the other half of each shows.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/causes/units.hpp"

@@ -97,7 +97,7 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
 
 /// z^2 = sum over the frames of 2 (r - 1 - ln r) of the band's ordinates.
 std::vector<double> shown_values(const Stage& stage, Random& random) {
-  constexpr double kShare = 0.15;
+  constexpr double kShare = 0.1;
   const double ordinates = kShare * stage.samples() * stage.dt_s();  // half a hertz of two sides
   const double frequency = 0.25 * stage.rate_hz * (0.8 + 0.6 * random.uniform());
   double low = 1.0;
