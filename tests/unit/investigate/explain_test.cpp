@@ -109,14 +109,15 @@ TEST(Verdict, OneSentenceSaysWhatIsWrongAndWhatStillFails) {
   EXPECT_EQ(verdict_of(report).level, VerdictLevel::Fine);
   report.findings = {of("output_resolution", 900.0, {"a", "gx [deg/s]"})};
   EXPECT_EQ(verdict_of(report).level, VerdictLevel::Look) << "digits are no error";
-  report.findings.insert(report.findings.begin(), of("scale_factor_error", 300.0, {"a/gx", "b/gx"}));
+  report.findings.insert(report.findings.begin(), of("scale_factor_error", 300.0, {"a", "gx [deg/s]"}));
+  report.findings.front().channels.push_back({"b", "gx [deg/s]"});
   report.failed_before = 2;
   report.failed_after = 1;
   report.unexplained.push_back({"gx", "Something is left.", {"a/gx.kurtosis"}});
   const Verdict verdict = verdict_of(report);
   EXPECT_EQ(verdict.level, VerdictLevel::Wrong);
   EXPECT_EQ(verdict.sentence, "The simulation lacks " + std::string(find_cause("scale_factor_error")->title) +
-                                  " (gx); 1 check still fails (gx).");
+                                  " (gx [deg/s]); 1 check still fails (gx).");
   EXPECT_EQ(verdict.details.back(), "Something is left.");
 }
 
