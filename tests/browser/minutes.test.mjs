@@ -103,7 +103,13 @@ test('from an empty lab to a saved figure in two minutes, by clicks', {timeout: 
     const visitor = new Visitor(page);
     await visitor.click('the sample', page.getByRole('button', {name: 'Try the sample'}));
     await page.waitForURL(/\/devices\/iphone5s-simulated/);
-    await page.locator('[role=progressbar]').first().waitFor();  // the real job, live
+    const there = Date.now();
+    const [bar, figure] = [page.locator('[role=progressbar]').first(), page.getByText('The white-noise density N is 1.03').first()];
+    const live = await Promise.race([bar.waitFor().then(() => true, () => false), figure.waitFor().then(() => false)]);  // the real job, live
+    if (!live) {  // unless it had ended before the page was there
+      const [{finished_at: ended}] = (await daemon.json('/v1/jobs?kind=characterise')).items;
+      assert.ok(Date.parse(ended) < there + 1000, `the job ended at ${ended} and was never seen at work`);
+    }
     assertWorthPrinting(await visitor.saves());
     await page.getByText('The white-noise density N is 1.03').first().waitFor();
     const rows = page.locator('table.pt tbody tr', {hasText: /static|9 deg\/s/});

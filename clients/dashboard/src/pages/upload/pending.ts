@@ -98,11 +98,13 @@ function conditionIn(name: string): string {
 
 const deviceIn = (name: string): string => name.replace(/\.(csv|txt|npy|npz|mat|json|zip|gz|xz|zst|log|h5|hdf5|bag|ulg|mcap|db3|cwa)\b/gi, '').replace(/[^\w.-]+/g, '-').slice(0, 60) || 'device';
 
+const sameFile = (one: File, other: File): boolean => one.name === other.name && one.size === other.size && one.lastModified === other.lastModified;
+
 // `said`: what is known of them already; else their names and the file before suggest it.
 export function addFiles(files: readonly File[], said: Partial<Pick<Pending, 'device' | 'condition' | 'rate' | 'roles' | 'name' | 'trim'>> = {}): void {
   const device = list[list.length - 1]?.device;
   for (const file of files) {
-    const again = list.find(one => one.state !== 'sent' && one.file.name === file.name && one.file.size === file.size && one.file.lastModified === file.lastModified);
+    const again = list.find(one => one.state !== 'sent' && sameFile(one.file, file));
     if (again) {  // chosen once more: what was said of it holds
       change(again.key, {file, ...said});
       keepFile(again.key, file);
@@ -117,10 +119,16 @@ export function addFiles(files: readonly File[], said: Partial<Pick<Pending, 'de
   tell();
 }
 
-// What this tab had before it was loaded again.
+// What this tab had before it was loaded again. A file that was chosen once more meanwhile is not doubled: what was said of it
+// holds, unless something has been said since.
 kept().then(rows => {
-  if (rows.length === 0) return;
-  list = [...rows.map((row): Pending => ({...row, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null})), ...list];
-  for (const {key} of rows) void look(key);
+  const others = rows.filter(({key, file, ...said}) => {
+    const each = list.find(one => sameFile(one.file, file));
+    if (each && !each.rate) change(each.key, said);
+    if (each) forget(key);
+    return !each;
+  });
+  list = [...others.map((row): Pending => ({...row, look: null, state: 'ready', share: 0, problem: null, recording: null, job: null})), ...list];
+  for (const {key} of others) void look(key);
   tell();
 }, () => undefined);
