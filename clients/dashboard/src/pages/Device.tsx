@@ -102,10 +102,11 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
   const read = useRead<ParameterTable>(path, everyMs);
   const trends = useRead<Trends>(asked ? asked.replace('/v1/parameter-tables', '/v1/trends') : null, everyMs);
   const pooling = read.data?.pooling.state === 'pending';
-  // Watched from the moment a job is seen until what it made is pooled; then nothing changes under a reader's eyes any more.
+  // Watched while a job works on the device or its recordings are being pooled; then nothing changes under a reader's eyes any more.
   useEffect(() => {
-    if (live) setWatched(true);
-    else if (watched) { read.again(); trends.again(); if (!pooling) setWatched(false); }
+    const on = live || pooling;  // a pool may be seen only by what is read after its last member
+    if (watched ? !live : on) { read.again(); trends.again(); }
+    setWatched(on);
   }, [live, pooling]);
   const compared = (read.data?.rows ?? []).map(row => row.recordings[0]).slice(0, CONDITIONS).join(',');
   const colour = useMemo(() => new Map(read.data ? colours(read.data.rows).map((one, i) => [read.data!.rows[i]!.label, one] as const) : []), [read.data]);
@@ -127,7 +128,7 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
         <div class="tools"><button type="button" class="quiet" onClick={() => void text('text/csv', 'csv')}>CSV</button><button type="button" class="quiet" onClick={() => void text('text/markdown', 'md')}>Markdown</button><button type="button" class="quiet" onClick={() => void text('text/x-latex', 'tex')}>LaTeX</button></div>
         <Tools title="The table" curl={curlOf(path)} how={() => <p>Each row puts the recordings of one condition together, jointly where a job has fitted them so. All rows share one model. <a href="/docs/analysis">The manual</a> tells of intervals, agreement and arrows. The report lists seed, algorithm version and file hash of each recording.</p>} />
       </div>
-      {pooling && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged. <button type="button" class="link" onClick={read.again}>Newer result. Show it</button></p>}
+      {pooling && <p class="note">The recordings of one condition are still being fitted jointly; until then their values are averaged.</p>}
       <Shown read={read}>{table => <><Parameters table={table} />{table.data_sheet && <SheetLine comparison={table.data_sheet} />}</>}</Shown>
     </section>
     {read.data && <div class="grid two">
