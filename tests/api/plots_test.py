@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon import PATIENCE_S
+import samples
 from suite import DaemonTest
 
 PROGRAM = os.environ["DRIFTLAB"]
@@ -66,12 +67,7 @@ class Plots(DaemonTest):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-plots-")))
         for seed, condition in ((1, "static"), (2, "static"), (3, "constant_rate:z:9:deg/s"), (4, "constant_rate:z:18:deg/s"), (6, "static")):
             cls.said("simulate", "--out", f"{seed}.csv", "--seed", str(seed), "--duration-s", "120", "--condition", condition)
-        lines = (cls.folder / "6.csv").read_text().splitlines()
-        clipped = [line if "#" in line or "[" in line else f"{max(-0.2, min(0.2, float(line))):.6f}" for line in lines]
-        (cls.folder / "6.csv").write_text("\n".join(clipped) + "\n")
-        role = {"gz [deg/s]": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}
-        recordings = [{"id": f"static-{seed}", "file": f"{seed}.csv", "condition": {"kind": "static"}, "rate_hz": 100, "columns": role} for seed in (1, 6)]
-        (cls.folder / "study.json").write_text(json.dumps({"device": {"id": "d"}, "recordings": recordings, "baseline": {"kind": "auto"}}))
+        samples.clipped_study(cls.folder)
         cls.server = ("--server", f"http://127.0.0.1:{cls.daemon.port}")
         for name, condition in (("1.csv", "static"), ("3.csv", "constant_rate:z:9:deg/s"), ("4.csv", "constant_rate:z:18:deg/s")):
             cls.said("characterise", name, *cls.server, "--device", "plotted", "--models", "WN,WN+GM", "--condition", condition)

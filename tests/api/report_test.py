@@ -9,6 +9,8 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import samples
+
 PROGRAM = os.environ.get("DRIFTLAB", "")
 
 
@@ -20,12 +22,7 @@ class Pages(unittest.TestCase):
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-report-")))
         for seed in range(1, 7):
             cls.said("simulate", "--out", f"{seed}.csv", "--seed", str(seed), "--duration-s", "120")
-        lines = (cls.folder / "6.csv").read_text().splitlines()
-        clipped = [line if "#" in line or "[" in line else f"{max(-0.2, min(0.2, float(line))):.6f}" for line in lines]
-        (cls.folder / "6.csv").write_text("\n".join(clipped) + "\n")
-        role = {"gz [deg/s]": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}
-        recordings = [{"id": f"static-{seed}", "file": f"{seed}.csv", "condition": {"kind": "static"}, "rate_hz": 100, "columns": role} for seed in (1, 6)]
-        (cls.folder / "study.json").write_text(json.dumps({"device": {"id": "d"}, "recordings": recordings, "baseline": {"kind": "auto"}}))
+        samples.clipped_study(cls.folder)
 
     @classmethod
     def said(cls, *arguments: str) -> str:

@@ -3,12 +3,14 @@ from __future__ import annotations
 
 import array
 import gzip
+import json
 import lzma
 import math
 import random
 import struct
 import subprocess
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 
@@ -97,3 +99,18 @@ def drive_document(imu: str, gnss: str) -> dict[str, Any]:
     return {"id": "north", "vehicle": "road", "imu": {"recording": imu, "columns": columns(DRIVE_IMU), "time": time},
             "gnss": {"recording": gnss, "columns": columns(DRIVE_GNSS), "time": dict(time), "position_sd_m": [1, 1, 2], "velocity_sd_m_s": [0.05, 0.05, 0.05]},
             "model": white, "outages": {"duration_s": [10], "every_s": [40], "phases": 2, "settle_s": 20}}
+
+
+def clip(path: Path) -> None:
+    """Values of a simulated file beyond 0.2 become 0.2: a sensor at full scale."""
+    lines = path.read_text().splitlines()
+    clipped = [line if "#" in line or "[" in line else f"{max(-0.2, min(0.2, float(line))):.6f}" for line in lines]
+    path.write_text("\n".join(clipped) + "\n")
+
+
+def clipped_study(folder: Path) -> None:
+    """`study.json` in `folder` of its simulated 1.csv and 6.csv (gz [deg/s], 100 Hz); the second is clipped first."""
+    clip(folder / "6.csv")
+    role = {"gz [deg/s]": {"quantity": "angular_rate", "axis": "z", "unit": "deg/s"}}
+    recordings = [{"id": f"static-{seed}", "file": f"{seed}.csv", "condition": {"kind": "static"}, "rate_hz": 100, "columns": role} for seed in (1, 6)]
+    (folder / "study.json").write_text(json.dumps({"device": {"id": "d"}, "recordings": recordings, "baseline": {"kind": "auto"}}))
