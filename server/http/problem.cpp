@@ -1,5 +1,6 @@
 #include "server/http/problem.hpp"
 
+#include "server/store/silent_store.hpp"
 #include "server/store/told_error.hpp"
 
 #include <nlohmann/json.hpp>
@@ -76,14 +77,11 @@ std::string_view slug_of(HttpFault fault) {
   return "internal";
 }
 
-/// A field value that is a whole number appears as one.
+/// A field value that is a whole number appears as one; a code with zeros before it ("08001") is none.
 Json field_value(const std::string& text) {
   std::int64_t number = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc{} && stop == text.data() + text.size() && !text.empty()) {
-    return number;
-  }
-  return text;
+  (void)std::from_chars(text.data(), text.data() + text.size(), number);
+  return std::to_string(number) == text ? Json(number) : Json(text);
 }
 
 std::string render(const ProblemType& type, std::string_view code, const std::string& detail,
@@ -287,7 +285,8 @@ Response problem_response(const Error& error) {
   if (is_forbidden(error)) {
     return problem_response(HttpFault::Forbidden, error.message);
   }
-  Response response = respond(problem_type(error.code), problem_document(error));
+  Response response = is_silent_store(error) ? problem_response(HttpFault::NotReady, without_paths(error).message)
+                                             : respond(problem_type(error.code), problem_document(error));
   if (error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull || error.code == ErrorCode::Internal) {
     response.failure = error;
   }

@@ -59,7 +59,7 @@ class Problems(DaemonTest):
     # What a sound daemon on a sound machine cannot be made to say here, and where it is shown instead.
     ELSEWHERE = {
         "decompression-limit": "bad_input_test.py", "disk-full": "bad_input_test.py", "busy": "protocol_test.py",
-        "not-ready": "only while the daemon stops", "pooling-pending": "studies_test.py", "io": "tests/crash/disk_test.py", "too-many-requests": "budgets_test.py", "internal": "a bug", "cancelled": "never leaves a job",
+        "not-ready": "store_test.py", "pooling-pending": "studies_test.py", "io": "tests/crash/disk_test.py", "too-many-requests": "budgets_test.py", "internal": "a bug", "cancelled": "never leaves a job",
         "limit-exceeded": "bad_input_test.py", "checksum-mismatch": "resumable_test.py", "idempotency-in-flight": "tests/unit/api", "unauthorized": "authorisation_test.py", "forbidden": "authorisation_test.py", "parse-error": "tests/unit/json", "inconsistent-sampling": "bad_input_test.py",
     }
 

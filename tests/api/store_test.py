@@ -71,6 +71,10 @@ class OnPostgres(unittest.TestCase):
         fits = daemon.items(f"/v1/fits?job={job['id']}")
         self.cluster.stop()
         self.assertIn("The store does not answer: The database", self.readiness(daemon, 503))
+        for _ in range(10):  # as it finds out and while it rests between two attempts
+            told = daemon.get("/v1/fits")
+            self.assertEqual((told.status, told.json["type"], told.headers["retry-after"]), (503, "/problems/not-ready", "1"), told.describe())
+            self.assertIn("does not answer", told.json["detail"])
         self.cluster.start()
         self.readiness(daemon, 200)
         self.assertEqual(daemon.items(f"/v1/fits?job={job['id']}"), fits)

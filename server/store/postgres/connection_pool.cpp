@@ -1,5 +1,7 @@
 #include "server/store/postgres/connection_pool.hpp"
 
+#include "server/store/silent_store.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -19,7 +21,7 @@ Result<ConnectionPool::Loan> ConnectionPool::take() {
   std::unique_lock<std::mutex> guard(mutex_);
   const bool served = returned_.wait_for(guard, kPatience, [this] { return !idle_.empty() || opened_ < size_; });
   if (!served) {
-    return fail(ErrorCode::Io, "Every connection to the database is in use (" + std::to_string(size_) + ").");
+    return fail(silent_store("Every connection to the database is in use (" + std::to_string(size_) + ")."));
   }
   if (!idle_.empty()) {
     std::unique_ptr<PostgresConnection> connection = std::move(idle_.back());

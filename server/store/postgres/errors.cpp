@@ -1,4 +1,5 @@
 #include "server/store/postgres/connection.hpp"
+#include "server/store/silent_store.hpp"
 
 namespace driftlab::server {
 namespace {
@@ -33,7 +34,7 @@ Error postgres_error(std::string_view sqlstate, const std::string& reason, const
     return error(ErrorCode::Io, "The database " + database + " took too long: " + why + ".");
   }
   if (group == "08" || sqlstate == "57P01" || sqlstate == "57P02" || sqlstate == "57P03" || sqlstate == "53300") {
-    return error(ErrorCode::Io, "The database " + database + " does not answer: " + why + ".");
+    return silent_store("The database " + database + " does not answer: " + why + ".", fields);
   }
   if (group == "22" || group == "23" || group == "42" || sqlstate == "P0001") {
     return error(ErrorCode::Internal, "The database refused a statement: " + why + ".");

@@ -1,6 +1,7 @@
 #include "server/store/postgres/postgres_coordination.hpp"
 
 #include "server/store/postgres/advisory_locks.hpp"
+#include "server/store/silent_store.hpp"
 
 #include <condition_variable>
 
@@ -61,7 +62,7 @@ Status PostgresCoordination::connect() {
   duties_.fill(false);
   const auto now = std::chrono::steady_clock::now();
   if (now < not_before_) {
-    return fail(ErrorCode::Io, "The database does not answer; it is asked again within a second.");
+    return fail(silent_store("The database does not answer; it is asked again within a second."));
   }
   auto opened = open_();
   if (!opened) {

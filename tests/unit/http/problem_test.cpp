@@ -1,5 +1,8 @@
 #include "server/http/problem.hpp"
 
+#include "server/store/silent_store.hpp"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -64,10 +67,26 @@ TEST(ProblemDocument, SeparatesPointersFromPlaces) {
                           {{"pointer", ""}, {"code", "ragged_row"}, {"detail", "All wrong."}}})));
 }
 
+TEST(ProblemDocument, KeepsTheZerosOfACode) {
+  const Json document = Json::parse(problem_document({ErrorCode::Io, "No.", {{"sqlstate", "08001"}, {"row", "17"}}}));
+  EXPECT_EQ(document["where"]["sqlstate"], "08001");
+  EXPECT_EQ(document["where"]["row"], 17);
+}
+
 TEST(ProblemDocument, SurvivesTextThatIsNoUtf8) {
   const std::string text =
       problem_document(Error{ErrorCode::NotANumber, "The field '\xff' is no number.", {{"field", "\xfe"}}});
   EXPECT_TRUE(Json::accept(text)) << text;
+}
+
+TEST(ProblemResponse, OfAStoreThatDoesNotAnswerIsNotReady) {
+  const Response response = problem_response(silent_store("The database on /run/db does not answer."));
+  EXPECT_EQ(response.status, 503);
+  ASSERT_TRUE(response.failure);
+  EXPECT_EQ(response.failure->message, "The database on /run/db does not answer.");
+  EXPECT_THAT(response.headers, testing::Contains(std::pair<std::string, std::string>("Retry-After", "1")));
+  EXPECT_THAT(response.body, testing::HasSubstr("[a file that the log names] does not answer"));
+  EXPECT_EQ(problem_response(Error{ErrorCode::Io, "The disk failed.", {}}).status, 500);
 }
 
 TEST(ProblemResponse, SaysWhenToComeBack) {
