@@ -63,8 +63,8 @@ enum class HttpFault {
 /// parameter, ...) become members of `where`.
 [[nodiscard]] std::string problem_document(const Error& error);
 
-/// The answer: 403 where is_forbidden, 503 `not-ready` where is_silent_store. An error that is the daemon's own goes with it
-/// whole, for the log.
+/// The answer: 403 where is_forbidden, 503 `not-ready` where is_silent_store. An error that is the daemon's own goes
+/// with it whole, for the log.
 [[nodiscard]] Response problem_response(const Error& error);
 [[nodiscard]] Response problem_response(HttpFault fault, const std::string& detail);
 
