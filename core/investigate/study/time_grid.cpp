@@ -48,25 +48,6 @@ std::pair<double, double> line_through(std::span<const double> stamps, const Tim
   return {slope, mean_t - slope * mean_p};
 }
 
-/// Places by rounding each step; false where two rows meet or the scatter makes rounding a guess.
-bool place_rows(std::span<const double> stamps, double dt, std::vector<std::size_t>& place) {
-  place.resize(stamps.size());
-  double offset = stamps[0];  // follows the grid slowly, so that a small error of dt does not add up
-  std::size_t doubtful = 0;
-  place[0] = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    const double exact = (stamps[i] - offset) / dt;
-    const double rounded = std::round(exact);
-    if (rounded <= static_cast<double>(place[i - 1])) {
-      return false;
-    }
-    doubtful += std::fabs(exact - rounded) > 0.4 ? 1 : 0;
-    place[i] = static_cast<std::size_t>(rounded);
-    offset += 0.01 * dt * (exact - rounded);
-  }
-  return static_cast<double>(doubtful) < 0.01 * static_cast<double>(stamps.size());
-}
-
 /// Where each row lies on the grid: behind a gap, farther on by what it lacks. Empty where nothing is missing.
 std::vector<std::size_t> places_of(std::size_t rows, const std::vector<Gap>& gaps) {
   std::vector<std::size_t> place;
@@ -167,8 +148,7 @@ Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<d
   const bool bursts = grid.stamps.bursts.count > 0;
   const Spacing spacing = find_spacing(stamps_s, {}, rate_hz ? 1.0 / *rate_hz : 0.0);
   grid.dt_s = rate_hz ? 1.0 / *rate_hz : spacing.interval_s;
-  if (!bursts && !place_rows(stamps_s, grid.dt_s, grid.place) &&
-      !place_rows(stamps_s, spacing.interval_s, grid.place)) {
+  if (!bursts) {
     grid.place = places_of(rows, spacing.gaps);
   }
   grid.length = grid.place_of(rows - 1) + 1;

@@ -16,8 +16,7 @@ struct TimeGrid {
   [[nodiscard]] std::size_t place_of(std::size_t row) const { return place.empty() ? row : place[row]; }
 };
 
-/// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. Rows are
-/// placed by rounding their steps to whole intervals; where that is a guess, lost samples are found as in every
+/// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. Lost samples are found as in every
 /// recording (core/signal/spacing.hpp), which gives the interval too: a sensor that lost a fifth at random keeps its
 /// rate. The sample interval is 1/`rate_hz` if a rate is stated and the stamps agree with it, else what they show.
 /// Errors: NonFinite; NonMonotonicTime; InconsistentSampling (time never advances); LimitExceeded (a grid of more than
