@@ -85,7 +85,7 @@ std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>&
       const auto& known = recording.window.quality.channels;
       const auto quality = std::find_if(known.begin(), known.end(),
                                         [&](const ChannelQuality& one) { return one.column == channel.column; });
-      add_source(sensors, {recording.spec.id, to_text(recording.spec.condition),
+      add_source(sensors, {recording.spec.id, to_text(without_heading(recording.spec.condition)),
                            reported(channel.column, channel.role, channel.result), "",
                            quality == known.end() ? 0 : quality->frozen});
     }

@@ -137,6 +137,16 @@ Result<Condition> make_condition(const WrittenCondition& written) {
     }
     condition.up = *written.direction == "up";
   }
+  if (written.heading_deg) {
+    if (*kind != ConditionKind::Static) {
+      return misfit(*kind, "takes no heading", "heading_deg");
+    }
+    if (!(*written.heading_deg >= -360.0 && *written.heading_deg <= 360.0)) {
+      return misfit(*kind, "needs a heading from -360 to 360 degrees", "heading_deg");
+    }
+    const double turned = std::fmod(*written.heading_deg + 360.0, 360.0);
+    condition.heading_deg = turned;
+  }
   return condition;
 }
 
@@ -148,9 +158,23 @@ Result<Condition> parse_condition(std::string_view text) {
   if (!kind) {
     return fail(kind.error());
   }
-  const std::size_t most = has_value(*kind) ? 4 : *kind == ConditionKind::SixPosition ? 3 : 1;
+  const std::size_t most = has_value(*kind)                      ? 4
+                           : *kind == ConditionKind::SixPosition ? 3
+                           : *kind == ConditionKind::Static      ? 2
+                                                                 : 1;
   if (parts.size() > most) {
     return misfit(*kind, "has too many parts: '" + std::string(text) + "'", "condition");
+  }
+  if (*kind == ConditionKind::Static) {
+    if (parts.size() > 1) {
+      written.heading_deg = parse_double(parts[1]);
+      if (!written.heading_deg) {
+        return misfit(*kind,
+                      "takes no axis; a number behind it is a heading in degrees, not '" + std::string(parts[1]) + "'",
+                      "condition");
+      }
+    }
+    return make_condition(written);
   }
   if (parts.size() > 1) {
     written.axis = parts[1];
@@ -199,6 +223,9 @@ std::string to_text(const Condition& condition) {
   if (condition.up) {
     text += *condition.up ? ":up" : ":down";
   }
+  if (condition.heading_deg) {
+    text += ":" + to_text(*condition.heading_deg);
+  }
   return text;
 }
 
@@ -209,7 +236,13 @@ std::string label(const Condition& condition) {
   if (condition.up) {
     return condition.axis + (*condition.up ? " up" : " down");
   }
-  return std::string(name_of(condition.kind));
+  const std::string name(name_of(condition.kind));
+  return condition.heading_deg ? name + ", heading " + to_text(*condition.heading_deg) + " deg" : name;
+}
+
+Condition without_heading(Condition condition) {
+  condition.heading_deg.reset();
+  return condition;
 }
 
 }  // namespace driftlab

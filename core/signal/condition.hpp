@@ -26,6 +26,9 @@ struct Condition {
   std::optional<double> value;  ///< SI; only for the two constant kinds
   std::string unit;             ///< deg/s, rad/s, deg/h, deg/s^2, rad/s^2; empty where the kind has no value
   std::optional<bool> up;       ///< six_position only
+  /// Of a recording at rest that states it: where the sensor points, clockwise from any fixed direction [deg], 0 to
+  /// 360.
+  std::optional<double> heading_deg = {};
 
   friend bool operator==(const Condition&, const Condition&) = default;
 };
@@ -43,18 +46,22 @@ struct WrittenCondition {
   std::optional<double> value;
   std::optional<std::string> unit;
   std::optional<std::string> direction;
+  std::optional<double> heading_deg = {};
 };
 [[nodiscard]] Result<Condition> make_condition(const WrittenCondition& written);
 
-/// The compact one-word form used in query strings and on the command line: `static`, `constant_rate:z:9:deg/s`,
-/// `constant_angular_acceleration:z:1:deg/s^2`, `profile`, `six_position:x:up`, `drive`.
+/// The compact one-word form used in query strings and on the command line: `static`, `static:90` (at a heading),
+/// `constant_rate:z:9:deg/s`, `constant_angular_acceleration:z:1:deg/s^2`, `profile`, `six_position:x:up`, `drive`.
 [[nodiscard]] Result<Condition> parse_condition(std::string_view text);
 
 /// The compact form of a condition; parse_condition(text) gives it back.
 [[nodiscard]] std::string to_text(const Condition& condition);
 
-/// A short label for people: "static", "9 deg/s about z", "1 deg/s^2 about z", "x up".
+/// A short label for people: "static", "static, heading 90 deg", "9 deg/s about z", "1 deg/s^2 about z", "x up".
 [[nodiscard]] std::string label(const Condition& condition);
+
+/// The condition of a table's row: recordings at rest at several headings are replicates of one condition.
+[[nodiscard]] Condition without_heading(Condition condition);
 
 /// The value in the unit the user wrote; empty where the kind has none.
 [[nodiscard]] std::optional<double> written_value(const Condition& condition);

@@ -12,7 +12,7 @@ Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
   std::vector<SensorSources> sensors;
   for (const Json& recording : characterisation.at("recordings")) {
     Faults ignored;
-    const std::string condition = to_text(condition_from_json(recording.at("condition"), "", ignored));
+    const std::string condition = to_text(without_heading(condition_from_json(recording.at("condition"), "", ignored)));
     for (const Json& document : recording.at("channels")) {
       auto channel = reported_channel_from_json(document);
       if (!channel) {

@@ -40,7 +40,7 @@ regression::ComparedRecording compared_recording(const Json& document) {
   regression::ComparedRecording recording;
   Faults ignored;
   recording.id = document.at("id").get<std::string>();
-  recording.condition = to_text(condition_from_json(document.at("condition"), "", ignored));
+  recording.condition = to_text(without_heading(condition_from_json(document.at("condition"), "", ignored)));
   recording.duration_s = finite_member(document, "duration_s", 0.0);
   recording.rate_hz = finite_member(document, "rate_hz", 0.0);
   const Json quality = document.value("quality", Json::object());

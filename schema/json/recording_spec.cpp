@@ -69,6 +69,9 @@ Json to_json(const Condition& condition) {
   if (condition.up) {
     document["direction"] = *condition.up ? "up" : "down";
   }
+  if (condition.heading_deg) {
+    document["heading_deg"] = *condition.heading_deg;
+  }
   return document;
 }
 
@@ -85,6 +88,7 @@ Condition condition_from_json(const Json& document, const std::string& pointer, 
   written.value = reader.real("value");
   written.unit = reader.text("unit");
   written.direction = reader.text("direction");
+  written.heading_deg = reader.real("heading_deg");
   reader.reject_unknown();
   if (written.kind.empty()) {
     return {};

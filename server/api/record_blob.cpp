@@ -287,7 +287,7 @@ Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const Uplo
   recording.device_id = device->device.id;
   recording.blob_sha256 = decoded->row.sha256;
   recording.metadata_json = canonical_text(driftlab::to_json(metadata.spec));
-  recording.condition = driftlab::to_text(metadata.spec.condition);
+  recording.condition = driftlab::to_text(without_heading(metadata.spec.condition));
   recording.quality_json = *quality;
   recording.tags_json = canonical_text(driftlab::to_json(metadata.tags));
   recording.file_name = metadata.file_name;

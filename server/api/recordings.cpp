@@ -32,7 +32,7 @@ Result<Response> list_recordings(ApiContext& context, const Request& request) {
     if (!condition) {
       return fail(Error(condition.error()).with("parameter", "condition"));
     }
-    filter.condition = driftlab::to_text(*condition);
+    filter.condition = driftlab::to_text(without_heading(*condition));
   }
   if (const auto text = request.parameter("labels")) {
     auto labels = parse_labels(*text);
@@ -109,7 +109,7 @@ Result<Response> patch_recording(ApiContext& context, const Request& request) {
   }
   Recording changed = *recording;
   changed.metadata_json = canonical_text(driftlab::to_json(spec));
-  changed.condition = driftlab::to_text(spec.condition);
+  changed.condition = driftlab::to_text(without_heading(spec.condition));
   changed.quality_json = *quality;
   changed.tags_json = canonical_text(driftlab::to_json(tags));
   if (changed.metadata_json == recording->metadata_json && changed.tags_json == recording->tags_json) {

@@ -53,6 +53,9 @@ StudyRecording recording_in_motion() {
   auto recording = make_study_recording(spec, names, kSamples,
                                         [&](std::size_t i) { return std::span<const double>(memory[first + i]); });
   EXPECT_TRUE(recording);
+  if (recording) {
+    recording->condition.heading_deg = motion::kHeadingDeg;
+  }
   return recording ? std::move(*recording) : StudyRecording{};
 }
 

@@ -1,5 +1,6 @@
-/// The equations of oscillations that are no line and of noise that jumps, by another hand than their injections: inner
-/// products with the oscillations that they should be made of, and for what is random its moments over many draws.
+/// The equations of oscillations that are no line, of noise that jumps, and of a bias that turns with the sensor, by
+/// another hand than their injections: inner products with the oscillations that they should be made of, and for what
+/// is random its moments over many draws.
 #include "tests/hidden/equations.hpp"
 
 #include <algorithm>
@@ -104,10 +105,53 @@ Figures telegraph(const Injected& injected) {
           {"changes", changes, expected, 5.0 * std::sqrt(expected)}};
 }
 
+/// A damped oscillation that white noise drives: its variance, and its correlation e^-at [cos bt + (a/b) sin bt] over a
+/// quarter and over a whole period, a = pi f/Q.
+Figures resonance(const Injected& injected) {
+  constexpr std::uint64_t kDraws = 10;
+  const double a = 0.5 * kTurn * injected.values[1] / injected.values[2];
+  const double b = std::sqrt(kTurn * injected.values[1] * kTurn * injected.values[1] - a * a);
+  Figures figures;
+  double square = 0.0;
+  std::vector<double> products(2, 0.0);
+  const std::vector<std::size_t> lags{2, 7};
+  double samples = 0.0;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const investigate::Draft draft = injected.again(seed);
+    std::vector<double> x(draft.white.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = draft.white[i] - injected.before.white[i];
+      square += x[i] * x[i];
+      samples += 1.0;
+      for (std::size_t k = 0; k < lags.size(); ++k) {
+        products[k] += i >= lags[k] ? x[i] * x[i - lags[k]] : 0.0;
+      }
+    }
+  }
+  const double sigma = injected.values[0];
+  figures.push_back({"standard deviation", std::sqrt(square / samples), sigma, 0.02 * sigma});
+  for (std::size_t k = 0; k < lags.size(); ++k) {
+    const double t = static_cast<double>(lags[k]) * injected.dt_s();
+    figures.push_back({"correlation over " + std::to_string(t) + " s", products[k] / square,
+                       std::exp(-a * t) * (std::cos(b * t) + a / b * std::sin(b * t)), 0.02});
+  }
+  return figures;
+}
+
+/// A constant, that of the heading.
+Figures of_heading(const Injected& injected) {
+  const std::vector<double> added = injected.added();
+  const auto [low, high] = std::minmax_element(added.begin(), added.end());
+  const double expected = injected.values[0] * std::cos((motion::kHeadingDeg - injected.values[1]) / 360.0 * kTurn);
+  return {{"bias", added.front(), expected, 1e-12}, {"change within the recording", *high - *low, 0.0, 1e-12}};
+}
+
 }  // namespace
 
 std::vector<Equation> oscillation_equations() {
   return {
+      {"resonance", {0.02, 7.0, 5.0}, resonance},
+      {"heading_dependent_bias", {0.02, 40.0}, of_heading},
       {"random_telegraph_noise", {0.02, 10.0}, telegraph},
       {"chirped_disturbance", {0.03, 3.0, 11.0}, chirped},
       {"modulated_disturbance", {0.03, 1.7, 0.03}, modulated},

@@ -38,6 +38,25 @@ std::vector<double> pulse(std::size_t samples, std::size_t at) {
   return values;
 }
 
+/// White noise in the reference; the reading stays.
+Figures reference_noise(const Injected& injected) {
+  double square = 0.0;
+  double product = 0.0;
+  const auto& u = injected.after.reference;
+  for (std::size_t i = 1; i < u.size(); ++i) {
+    square += u[i] * u[i];
+    product += u[i] * u[i - 1];
+  }
+  const auto n = static_cast<double>(u.size());
+  double moved = 0.0;
+  for (const double v : injected.added()) {
+    moved = std::max(moved, std::fabs(v));
+  }
+  return {{"N", std::sqrt(square / n * injected.dt_s()), injected.values[0], 0.03 * injected.values[0]},
+          {"correlation of neighbours", product / square, 0.0, 5.0 / std::sqrt(n)},
+          {"change of the reading", moved, 0.0, 0.0}};
+}
+
 Figures bursty_clock(const Injected& injected) {
   const auto& late = injected.after.stamp_error_s;
   const double dt = injected.dt_s();
@@ -167,6 +186,7 @@ Figures sampling_rate_change(const Injected& injected) {
 
 std::vector<Equation> recording_equations() {
   return {
+      {"reference_noise", {3e-3}, reference_noise},
       {"bursty_clock", {8.0, 50.0}, bursty_clock},
       {"duplicated_blocks", {0.2, 40.0}, duplicated_blocks},
       {"interpolated_samples", {12.5}, interpolated_samples},

@@ -138,6 +138,14 @@ std::vector<Motion> draw_motions(const World& world, Random& random) {
         }
       }
       break;
+    case Scenario::Headings:
+      for (int k = 1; k < 6; ++k) {
+        add("static-" + std::to_string(k + 1), of_kind(ConditionKind::Static));
+      }
+      for (std::size_t k = 0; k < motions.size(); ++k) {
+        motions[k].condition.heading_deg = 60.0 * static_cast<double>(k);
+      }
+      break;
     case Scenario::Axes:
       break;
   }
@@ -193,7 +201,11 @@ StudyRecording write_and_read(const World& world, const Motion& motion, const st
         accelerometer ? "m/s^2" : "deg/s", output[a]);
   }
   if (!motion.rate.empty()) {
-    add("rz", Quantity::ReferenceAngularRate, "z", "deg/s", motion.rate);
+    std::vector<double> told = motion.rate;
+    for (std::size_t i = 0; i < timing.reference.size(); ++i) {
+      told[i] += timing.reference[i];
+    }
+    add("rz", Quantity::ReferenceAngularRate, "z", "deg/s", told);
   }
   if (!motion.temperature.empty()) {
     add("temp", Quantity::Temperature, "", "degC", motion.temperature);
@@ -308,6 +320,7 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
       output.push_back(std::move(out));
       timing.present = draft.present;
       timing.stamp_error_s = draft.stamp_error_s;
+      timing.reference = draft.reference;
     }
     result.study.recordings.push_back(write_and_read(world, motion, axes, output, timing, result.memory));
   }

@@ -465,6 +465,12 @@ class ConditionConstantRate(TypedDict):
     unit: str
 
 
+class ConditionProfileDrive(TypedDict):
+    """a motion with a reference column, or free motion."""
+
+    kind: Literal['profile', 'drive']
+
+
 class ConditionSixPosition(TypedDict):
     """one of the six static positions."""
 
@@ -474,10 +480,13 @@ class ConditionSixPosition(TypedDict):
     direction: Literal['up', 'down']
 
 
-class ConditionStaticProfileDrive(TypedDict):
-    """at rest, a motion with a reference column, or free motion."""
+class ConditionStatic(TypedDict):
+    """at rest."""
 
-    kind: Literal['static', 'profile', 'drive']
+    kind: Literal['static']
+    # Where the sensor points, clockwise from any fixed direction [deg]. Recordings at several headings are replicates
+    # of one condition; an investigation looks for a bias that follows the heading.
+    heading_deg: NotRequired[float]
 
 
 class ContractAnswer(TypedDict):
@@ -4091,7 +4100,7 @@ class WebhookDelivery(TypedDict):
 
 CalibrationEstimates: TypeAlias = "dict[str, Quantity]"
 Condition: TypeAlias = (
-    "ConditionStaticProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
+    "ConditionStatic | ConditionProfileDrive | ConditionConstantRate | ConditionConstantAngularAcceleration | "
     "ConditionSixPosition")
 ConditionAxis: TypeAlias = "Literal['x', 'y', 'z']"
 DriveColumns: TypeAlias = "dict[str, DriveColumn]"

@@ -23,7 +23,8 @@ struct Draft {
   std::vector<double> shared;             ///< unit white noise that all axes of the recording share
   std::vector<std::function<void(std::vector<double>&)>> output;  ///< steps of the output stage, in order
   std::vector<unsigned char> present;                             ///< 0: the sample is absent; empty: all are there
-  std::vector<double> stamp_error_s;                              ///< empty: exact stamps
+  std::vector<double> reference;      ///< added to the column that tells the motion [SI]; empty: it is exact
+  std::vector<double> stamp_error_s;  ///< empty: exact stamps
 };
 
 /// Puts `cause` with parameters `values` (SI, in declared order) into the draft. With fewer values than the cause has

@@ -31,6 +31,9 @@ struct MeanEffect {
   /// Values of the shape to try; one value (ignored) where there is none.
   std::vector<double> (*shapes)(const ChannelGroup& group) = nullptr;
   bool continuous = false;  ///< the shape is refined between the tried values
+  /// The shape is a phase of this period (0: it is none): half a period more is the negative, so that the amplitude can
+  /// be and is positive.
+  double period = 0.0;
   /// Where each shape has a parameter of its own for its amplitude: the shape that belongs to each parameter.
   std::vector<double> shape_of_parameter = {};
   double penalty = 1.0;
@@ -82,6 +85,16 @@ struct DifferencedNoise {
 struct BandLimit {
   std::vector<Evidence> (*examine)(const FullRate& data);
   double (*log_gain)(const FullRate& data, const Evidence& found);  ///< as DifferencedNoise::log_gain
+};
+
+/// One more stationary process whose spectrum has a peak. The spectra of each half are held out in turn. It is sought
+/// once a band limit is known; where it is found its density is expected in the spectra, and an autoregression takes it
+/// out of the innovations.
+struct SpectralPeak {
+  std::vector<Evidence> (*examine)(const FullRate& data);
+  double (*log_gain)(const FullRate& data, const Evidence& found);  ///< as DifferencedNoise::log_gain
+  /// Its density at a frequency [SI^2/Hz, two-sided].
+  double (*density)(const Evidence& found, double f_hz, double dt_s);
 };
 
 /// The distribution of the white noise. The innovations of each half are held out in turn; once it is found they become
@@ -154,7 +167,7 @@ struct RecordingFault {
   std::vector<FaultyRecordings> (*find)(const Study& study);
 };
 
-using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, NoiseTails, SpectralLine,
-                            CommonNoise, SwitchingNoise, FileFact, RecordingFault>;
+using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, SpectralPeak, NoiseTails,
+                            SpectralLine, CommonNoise, SwitchingNoise, FileFact, RecordingFault>;
 
 }  // namespace driftlab::investigate

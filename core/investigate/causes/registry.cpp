@@ -17,12 +17,14 @@
   CAUSE(modulated_disturbance)        \
   CAUSE(vibration_bursts)             \
   CAUSE(band_limited_noise)           \
+  CAUSE(resonance)                    \
   CAUSE(heavy_tailed_noise)           \
   CAUSE(noise_level_change)           \
   CAUSE(common_mode_noise)            \
   CAUSE(outliers)                     \
   CAUSE(bias_step)                    \
   CAUSE(turn_on_bias)                 \
+  CAUSE(heading_dependent_bias)       \
   CAUSE(warm_up_transient)            \
   CAUSE(temperature_bias)             \
   CAUSE(stuck_samples)                \
@@ -48,6 +50,7 @@
   CAUSE(unit_error)                   \
   CAUSE(turned_sign)                  \
   CAUSE(swapped_axes)                 \
+  CAUSE(reference_noise)              \
   CAUSE(clock_jump)                   \
   CAUSE(sampling_rate_change)
 

@@ -32,6 +32,7 @@ enum class Scenario {
   Temperature,  ///< two static recordings while the temperature rises and falls
   Axes,         ///< one static recording of three axes
   TwoAxes,      ///< static, rates about z; gyroscopes x and z
+  Headings,     ///< six static recordings, turned by 60 deg each
   Turning,      ///< static, rates about z; accelerometers x and y
 };
 

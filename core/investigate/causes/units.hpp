@@ -24,6 +24,7 @@ inline LabUnit hertz(const Unit& /*u*/) { return {"Hz", 1.0}; }
 inline LabUnit one(const Unit& /*u*/) { return {"1", 1.0}; }
 inline LabUnit ppm(const Unit& /*u*/) { return {"ppm", 1e6}; }
 inline LabUnit radians(const Unit& /*u*/) { return {"rad", 1.0}; }
+inline LabUnit degrees(const Unit& /*u*/) { return {"deg", 1.0}; }
 inline LabUnit metres(const Unit& /*u*/) { return {"m", 1.0}; }
 inline LabUnit per_hertz_rate(const Unit& /*u*/) { return {"1/s", 1.0}; }
 inline LabUnit per_rate(const Unit& /*u*/) { return {"s/deg", kDegree}; }

@@ -134,10 +134,11 @@ std::vector<std::vector<unsigned char>> samples_in_use(const ChannelGroup& group
     const StudyRecording& recording = *group.members[r].recording;
     const Presence& valid = group.members[r].channel->valid;
     const bool masked = r < mask.size() && !mask[r].empty();
+    const bool coarse = beside_coarse_reference(group.members[r]);
     std::vector<unsigned char>& used = all.emplace_back(recording.count());
     for (std::size_t i = 0; i < used.size(); ++i) {
       const std::size_t place = recording.begin + i;
-      used[i] = valid[place] != 0 && !(masked && mask[r][place] != 0) ? 1 : 0;
+      used[i] = !coarse && valid[place] != 0 && !(masked && mask[r][place] != 0) ? 1 : 0;
     }
   }
   return all;
@@ -185,7 +186,9 @@ Innovations whitened(FullRate& data, const FullRateOptions& options) {
   for (std::size_t r = 0; r < data.members(); ++r) {
     const StudyRecording& recording = *data.group->members[r].recording;
     const Blocks blocks{data.dt_s, 1, recording.time_s(recording.begin), longest_s};
-    innovation.push_back(innovations_of(data.residual[r], data.used[r], block_states(filter, blocks, r), spread));
+    SlowModel own = filter;
+    own.white *= 1.0 + noise_of_reference(data.group->members[r]);
+    innovation.push_back(innovations_of(data.residual[r], data.used[r], block_states(own, blocks, r), spread));
   }
   const double mean = spread.variances / std::max(1.0, spread.samples);
   data.white_share = std::clamp(data.model.white / data.dt_s / mean, 0.05, 1.0);
@@ -240,7 +243,7 @@ void set_spectrum(FullRate& data, std::size_t r) {
   for (std::size_t j = 0; j < s.power.size(); ++j) {
     const double f = s.f_hz[j];
     slow.push_back(slow_density(data.model, r, f, data.dt_s, static_cast<double>(s.samples)) +
-                   data.quantization * quantization_shape(f, data.dt_s));
+                   data.quantization * quantization_shape(f, data.dt_s) + (data.peak ? data.peak(r, f) : 0.0));
     const double base = data.model.white + slow[j];
     s.power[j] *= base / std::max(0.05 * base, base + data.raised[r]);
   }
@@ -261,11 +264,14 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   data.given = options.given;
   data.lattice_step = options.lattice_step;
   data.quantization = options.quantization;
+  data.peak = options.peak;
   data.dt_s = group.members.front().recording->dt_s;
   data.model = model;
   data.residual = std::move(residual);
   data.used = samples_in_use(group, mask);
-  data.raised.assign(data.members(), 0.0);
+  for (const ChannelGroup::Member& member : group.members) {
+    data.raised.push_back(model.white * noise_of_reference(member));
+  }
   data.spectrum.resize(data.members());
   data.slow.resize(data.members());
   constexpr double kMostMissing = 0.005;

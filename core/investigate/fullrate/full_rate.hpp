@@ -14,6 +14,9 @@
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
+#include <algorithm>
+#include <functional>
+#include <limits>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -23,14 +26,14 @@ struct FullRate {
   const ChannelGroup* group = nullptr;
   bool given = false;  ///< the baseline is given: its scale is not free
   double dt_s = 0.0;
-  double white_share = 1.0;                      ///< of the innovations' variance that the white part drives
-  double innovation_sd = 1.0;                    ///< of one innovation [SI]
-  double lattice_step = 0.0;                     ///< step of the file's lattice [SI], 0: none seen
-  double quantization = 0.0;                     ///< Q^2 of a given baseline [SI^2 s^2]
-  std::vector<double> raised;                    ///< per member, white density that findings taken out have added
-  SlowModel model;                               ///< of the samples
-  std::vector<Series> residual;                  ///< per member, over its analysed part
-  std::vector<Series> innovation;                ///< likewise; numbers of their own
+  double white_share = 1.0;        ///< of the innovations' variance that the white part drives
+  double innovation_sd = 1.0;      ///< of one innovation [SI]
+  double lattice_step = 0.0;       ///< step of the file's lattice [SI], 0: none seen
+  double quantization = 0.0;       ///< Q^2 of a given baseline [SI^2 s^2]
+  std::vector<double> raised;      ///< per member, white density that is none of the sensor's, or of findings taken out
+  SlowModel model;                 ///< of the samples
+  std::vector<Series> residual;    ///< per member, over its analysed part
+  std::vector<Series> innovation;  ///< likewise; numbers of their own
   std::vector<std::vector<unsigned char>> used;  ///< innovation is meaningful
   std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
   std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin
@@ -41,8 +44,17 @@ struct FullRate {
   double repeatability = 1.0;
   std::vector<double> further;  ///< coefficients of the autoregression that whitens once more; empty: none
   double corner_hz = 0.0;       ///< of a band limit that has been found; 0: none
+  /// Density [SI^2/Hz] that a peak which has been found adds to the spectrum of member r at f [Hz]; part of `slow`.
+  /// Null: none.
+  std::function<double(std::size_t r, double f_hz)> peak;
+  double peak_hz = 0.0;  ///< the lowest frequency of such a peak; 0: none
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
+  /// Up to where the spectra show the density that is integrated: half the frequency of the lowest peak.
+  [[nodiscard]] double flat_below_hz() const {
+    constexpr double kLeast = 1.0;
+    return peak_hz > 0.0 ? std::max(kLeast, 0.5 * peak_hz) : std::numeric_limits<double>::infinity();
+  }
   /// True if a band limit has been found, which explains the lower density at the top of the band.
   [[nodiscard]] bool band_limited() const { return corner_hz > 0.0; }
 };
@@ -52,6 +64,7 @@ struct FullRateOptions {
   bool whiten_further = true;
   double quantization = 0.0;  ///< Q^2 of a given baseline [SI^2 s^2]; the innovations then need whiten_further
   double lattice_step = 0.0;
+  std::function<double(std::size_t r, double f_hz)> peak = {};  ///< FullRate::peak; needs whiten_further
   bool innovations = true;  ///< false: the spectra alone, and what follows from them
 };
 

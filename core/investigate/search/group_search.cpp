@@ -8,12 +8,11 @@
 #include "core/investigate/search/hold_out.hpp"
 #include "core/investigate/search/joint_refit.hpp"
 #include "core/investigate/search/slow_search.hpp"
+#include "core/investigate/search/take_colour.hpp"
 #include "core/investigate/search/take_out.hpp"
 #include "core/investigate/search/take_switching.hpp"
 #include "core/investigate/search/thresholds.hpp"
 #include "core/investigate/search/usable_group.hpp"
-#include "core/process/gauss_markov.hpp"
-#include "core/process/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +58,7 @@ class GroupSearch {
     }
     if (!given_ && !stopped() && shares_in_noise(outcome_.found)) {
       outcome_.model.beside.noise =
-          base_of(refit_jointly(outcome_.after, mask_, quantization_, outcome_.found, control_.stop));
+          base_of(refit_jointly(outcome_.after, mask_, quantization_, outcome_.found, control_.stop), outcome_.found);
     }
     for (Evidence& evidence : outcome_.found) {
       evidence.group = index_;
@@ -260,15 +259,6 @@ class GroupSearch {
     model.alone.bias = search.null_fit().amplitude[0];
   }
 
-  /// A noise model without the slow processes that are findings, which stand last in it.
-  [[nodiscard]] SlowModel base_of(SlowModel noise) const {
-    const auto extras = static_cast<std::size_t>(
-        std::count_if(outcome_.found.begin(), outcome_.found.end(),
-                      [](const Evidence& evidence) { return evidence.cause->as<SlowNoise>() != nullptr; }));
-    noise.components.resize(noise.components.size() - std::min(extras, noise.components.size()));
-    return noise;
-  }
-
   /// Takes noise that jumps between levels off the error, once; true if there was some.
   [[nodiscard]] bool take_switching_off(const SlowSearch& search) {
     const std::size_t before = outcome_.found.size();
@@ -304,12 +294,8 @@ class GroupSearch {
 
   /// Everything that needs the samples: each found effect is taken out before the next is sought.
   void search_full_rate() {
+    take_colours({given_.has_value(), quantization_, lattice_step_, mask_}, outcome_);
     FullRate& data = outcome_.after;
-    for (const Cause& cause : cause_registry()) {
-      if (cause.as<BandLimit>() != nullptr && !data.band_limited()) {
-        take_band_limit(data, cause);
-      }
-    }
     constexpr int kMost = 2;
     for (int found = 0;; ++found) {
       std::vector<Evidence> candidates = noise_candidates(data);
@@ -365,61 +351,9 @@ class GroupSearch {
     FullRateOptions options;
     options.lattice_step = lattice_step_;
     options.quantization = quantization_ + found.shape;
+    options.peak = data.peak;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
-  }
-
-  /// Means over a block of noise behind a low-pass are correlated with their neighbours, which an automatic baseline
-  /// describes by a Gauss-Markov process about as fast as the blocks. Where the spectra show a band limit without it,
-  /// it goes, and its density is white noise again.
-  void drop_fast_process(FullRate& data, const BandLimit& limit) {
-    constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
-    const auto fast = [](const SlowComponent& c) { return c.kind == &registered<GaussMarkov>() && c.beta > kFast; };
-    SlowModel plain = data.model;
-    for (const SlowComponent& component : plain.components) {
-      plain.white += fast(component) ? 2.0 * component.level / component.beta : 0.0;
-    }
-    if (given_ || std::erase_if(plain.components, fast) == 0) {
-      return;
-    }
-    FullRate without = data;
-    without.model = plain;
-    for (std::size_t r = 0; r < without.members(); ++r) {
-      renew_spectrum(without, r);
-    }
-    const std::vector<Evidence> found = limit.examine(without);
-    if (!found.empty() && found[0].score > kThreshold) {
-      data = std::move(without);
-      outcome_.model.beside.noise = base_of(plain);
-    }
-  }
-
-  void take_band_limit(FullRate& data, const Cause& cause) {
-    const BandLimit& limit = *cause.as<BandLimit>();
-    drop_fast_process(data, limit);
-    std::vector<Evidence> found = limit.examine(data);
-    if (found.empty()) {
-      return;
-    }
-    found[0].cause = &cause;
-    keep_best(outcome_.examined, found);
-    keep_last(outcome_.remaining, found, [&](const Cause& other) { return &other == &cause; });
-    if (found[0].score < kThreshold) {
-      return;
-    }
-    hold_out(data, found[0]);
-    outcome_.found.push_back(found[0]);
-    if (!given_) {
-      outcome_.model.beside.noise.white = white_below(data, found[0].shape);
-    }
-    FullRateOptions options;
-    options.given = false;  // the level behind the filter is the autoregression's
-    options.quantization = given_ ? 0.0 : quantization_;
-    options.lattice_step = lattice_step_;
-    const SlowModel model = data.model;
-    data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
-    data.corner_hz = outcome_.found.back().shape;
-    data.flat = false;
   }
 
   const Study& study_;

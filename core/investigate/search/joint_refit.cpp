@@ -120,7 +120,7 @@ double white_by_spectra(const FullRate& data, const PerSample& factors, const st
     const double differenced = differenced_square(found, r);
     const Spectrum& s = data.spectrum[r];
     for (std::size_t j = 0; j < s.power.size(); ++j) {
-      if (data.band_limited() && s.f_hz[j] > 0.5 * data.corner_hz) {
+      if ((data.band_limited() && s.f_hz[j] > 0.5 * data.corner_hz) || s.f_hz[j] > data.flat_below_hz()) {
         break;
       }
       power.push_back(s.power[j]);
@@ -190,7 +190,8 @@ SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsi
   FullRateOptions options;
   options.lattice_step = data.lattice_step;
   options.quantization = quantization;
-  options.whiten_further = !data.flat || quantization > 0.0;
+  options.whiten_further = !data.flat || quantization > 0.0 || data.peak;
+  options.peak = data.peak;
   SlowModel model = data.model;
   model.white_scale.clear();
   const double corner_hz = data.corner_hz;
@@ -199,6 +200,7 @@ SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsi
   for (int turn = 0; turn < kTurns && !stop.stop_requested(); ++turn) {
     FullRate now = look_at_full_rate(*data.study, *data.group, model, residual, mask, options);
     now.corner_hz = corner_hz;
+    now.peak_hz = data.peak_hz;
     if (turn > 0) {
       renew_levels(now, found);
     }

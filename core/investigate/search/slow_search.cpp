@@ -305,6 +305,13 @@ void SlowSearch::accept(const Evidence& evidence) {
     refine_shape(last, null_.model);
     accepted_.push_back(last);
     fit_null();
+    const double period = evidence.cause->as<MeanEffect>()->period;
+    const auto first = static_cast<Eigen::Index>(regressor_of(evidence).value_or(0));
+    if (period > 0.0) {  // an amplitude that is positive
+      const double opposite = null_.amplitude[first] < 0.0 ? 0.5 * period : 0.0;
+      accepted_.back().shape = std::fmod(last.shape + opposite + period, period);
+      fit_null();
+    }
     return;
   }
   const BlockColumns columns = columns_with(accepted_);

@@ -78,13 +78,13 @@ void take_out(FullRate& data, const Evidence& found) {
   }
 }
 
-double white_at_full_rate(const FullRate& data) {
+double white_at_full_rate(const FullRate& data, double below_hz) {
   double sum = 0.0;
   double weight = 0.0;
   for (std::size_t r = 0; r < data.spectrum.size(); ++r) {
     const Spectrum& s = data.spectrum[r];
     for (std::size_t j = 0; j < s.power.size(); ++j) {
-      if (data.slow[r][j] < 0.3 * data.model.white) {
+      if (data.slow[r][j] < 0.3 * data.model.white && s.f_hz[j] < below_hz) {
         sum += s.weight[j] * (s.power[j] - data.slow[r][j]);
         weight += s.weight[j];
       }

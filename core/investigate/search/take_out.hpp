@@ -6,14 +6,17 @@
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
+#include <limits>
+
 namespace driftlab::investigate {
 
 /// Applies a finding that states a deviation or a distribution (NoiseLevel::deviation, NoiseTails::tail); any other
 /// finding leaves the data unchanged.
 void take_out(FullRate& data, const Evidence& found);
 
-/// N^2 at full rate: the mean of spectrum minus slow part over all recordings.
-[[nodiscard]] double white_at_full_rate(const FullRate& data);
+/// N^2 at full rate: the mean of spectrum minus slow part over all recordings, up to a frequency.
+[[nodiscard]] double white_at_full_rate(const FullRate& data,
+                                        double below_hz = std::numeric_limits<double>::infinity());
 
 /// N^2 below half the corner of a band limit: the density that the filter keeps.
 [[nodiscard]] double white_below(const FullRate& data, double corner_hz);

@@ -36,6 +36,7 @@ BlockSeries average_blocks(const ChannelGroup& group, const std::vector<std::vec
     blocks.first = recording.begin;
     blocks.start_s = recording.time_s(recording.begin);
     const std::size_t count = recording.count() / series.block;
+    const double noise = 1.0 + noise_of_reference(group.members[r]);
     blocks.mean.resize(count, 0.0);
     blocks.filled.resize(count, 0.0);
     for (std::size_t b = 0; b < count; ++b) {
@@ -51,7 +52,7 @@ BlockSeries average_blocks(const ChannelGroup& group, const std::vector<std::vec
       const double filled = static_cast<double>(valid) / static_cast<double>(series.block);
       if (filled >= 0.25) {
         blocks.mean[b] = sum / static_cast<double>(valid);
-        blocks.filled[b] = filled;
+        blocks.filled[b] = filled / noise;
       }
     }
     blocks.pattern = series.recordings.size();

@@ -11,11 +11,13 @@
 namespace driftlab::investigate {
 
 struct BlockRecording {
-  double start_s = 0.0;        ///< time of the first block's first sample, from the first sample of the file
-  std::size_t first = 0;       ///< grid place of that sample
-  std::vector<double> mean;    ///< of the valid samples of each block [SI]
-  std::vector<double> filled;  ///< valid samples / L, 0 to 1; below 0.25 a block counts as empty (0)
-  std::size_t pattern = 0;     ///< recordings of equal pattern (filled, start_s) share their filter gains
+  double start_s = 0.0;      ///< time of the first block's first sample, from the first sample of the file
+  std::size_t first = 0;     ///< grid place of that sample
+  std::vector<double> mean;  ///< of the valid samples of each block [SI]
+  /// Valid samples / L, 0 to 1; below 0.25 a block counts as empty (0). Samples beside a noisy reference count for
+  /// less.
+  std::vector<double> filled;
+  std::size_t pattern = 0;  ///< recordings of equal pattern (filled, start_s) share their filter gains
 };
 
 struct BlockSeries {

@@ -186,6 +186,13 @@ Status set_window(StudyRecording& recording, const Trim& trim) {
   return {};
 }
 
+/// The axis about which a reference tells the channel's rate.
+std::optional<std::size_t> told_axis(const ChannelGroup::Member& member) {
+  const Channel& channel = *member.channel;
+  const bool told = channel.role.quantity == Quantity::AngularRate && !channel.reference.empty();
+  return told ? axis_index(channel.role.axis) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<std::string> texts_of(const std::vector<ChannelName>& names) {
@@ -283,6 +290,16 @@ void settle_channels(Study& study) {
       channel.input_only = channel.input_only && gyro;
     }
   }
+}
+
+double noise_of_reference(const ChannelGroup::Member& member) {
+  const auto axis = told_axis(member);
+  return axis ? member.recording->reference_noise.at(*axis) : 0.0;
+}
+
+bool beside_coarse_reference(const ChannelGroup::Member& member) {
+  const auto axis = told_axis(member);
+  return axis && member.recording->reference_coarse.at(*axis);
 }
 
 std::vector<ChannelGroup> group_channels(const Study& study) {

@@ -66,6 +66,10 @@ struct StudyRecording {
   std::array<Series, 3> force;         ///< measured specific force [m/s^2]
   Series temperature;                  ///< [K]
   Series angle;                        ///< integral of the rate about the rotation axis [rad]
+  /// Density of the noise of the reference rate about x, y, z over that of the white noise of the sensor beside it.
+  std::array<double, 3> reference_noise{};
+  /// The values of that reference are rounded so coarsely that the error of single samples is not the sensor's.
+  std::array<bool, 3> reference_coarse{};
   std::vector<Channel> channels;
   std::vector<std::string> notes;
 
@@ -143,6 +147,12 @@ struct ChannelGroup {
 
   [[nodiscard]] std::size_t axis() const { return axis_index(role.axis).value_or(2); }
 };
+
+/// Density of what the reference's own noise adds to the error of a channel, over that of the sensor's white noise.
+[[nodiscard]] double noise_of_reference(const ChannelGroup::Member& member);
+
+/// The error of single samples is that of a coarse reference.
+[[nodiscard]] bool beside_coarse_reference(const ChannelGroup::Member& member);
 
 /// Every criticised channel once, in the order of first appearance.
 [[nodiscard]] std::vector<ChannelGroup> group_channels(const Study& study);

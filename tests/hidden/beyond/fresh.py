@@ -154,6 +154,10 @@ def effect(rng: random.Random, cause: str) -> World:
     sd = world.N / math.sqrt(world.dt)
     table = cause in ("turned_sign", "swapped_axes", "unit_error")
     clock = cause in ("clock_jump", "sampling_rate_change")
+    if cause in ("heading_dependent_bias", "biases_at_headings"):
+        return at_headings(rng, world, cause)
+    if cause in ("reference_noise", "coarse_reference"):
+        return beside_reference(rng, world, cause)
     if table:
         world.static("static-1")
         world.static("static-2")
@@ -191,6 +195,7 @@ def effect(rng: random.Random, cause: str) -> World:
     samples = 2 * world.n
     f0, f1, fm = rng.uniform(0.1, 0.2) * rate, rng.uniform(0.25, 0.4) * rate, rng.uniform(0.02, 0.05)
     dwell = rng.uniform(15, 45)
+    quality, fr = rng.uniform(3, 15), rng.uniform(0.08, 0.4) * rate
     burst_left, state = 0.0, 0j
     for recording in world.recordings:
         y = recording["columns"]["gz"]
@@ -225,6 +230,27 @@ def effect(rng: random.Random, cause: str) -> World:
             for i in range(world.n):
                 t = i * world.dt
                 y[i] += 0.5 * a * (1 + math.cos(2 * math.pi * fm * t)) * math.sin(2 * math.pi * f0 * t + phase)
+        elif cause == "resonance":
+            # The peak is 0.3 to 1.2 of the white noise's density: 2 Q sigma^2/w = height N^2 (two-sided).
+            height = rng.uniform(0.3, 1.2) if recording is world.recordings[0] else height
+            w = 2 * math.pi * fr
+            sigma = math.sqrt(height * world.N ** 2 * w / (2 * quality))
+            damping = w / (2 * quality)
+            turn = math.sqrt(w * w - damping * damping)
+            e, c, s = math.exp(-damping * world.dt), math.cos(turn * world.dt), math.sin(turn * world.dt)
+            f11, f12, f21, f22 = e * (c + damping / turn * s), e * s / turn, -e * s * w * w / turn, e * (c - damping / turn * s)
+            p11, p22 = sigma ** 2, (sigma * w) ** 2
+            q11 = p11 - (f11 * f11 * p11 + f12 * f12 * p22)
+            q12 = -(f11 * f21 * p11 + f12 * f22 * p22)
+            q22 = p22 - (f21 * f21 * p11 + f22 * f22 * p22)
+            l11 = math.sqrt(max(q11, 0.0))
+            l21 = q12 / l11 if l11 > 0 else 0.0
+            l22 = math.sqrt(max(q22 - l21 * l21, 0.0))
+            x, v = sigma * rng.gauss(0, 1), sigma * w * rng.gauss(0, 1)
+            for i in range(world.n):
+                y[i] += x
+                a1, a2 = rng.gauss(0, 1), rng.gauss(0, 1)
+                x, v = f11 * x + f12 * v + l11 * a1, f21 * x + f22 * v + l21 * a1 + l22 * a2
         elif cause == "vibration_bursts":
             for i in range(world.n):
                 if burst_left <= 0 and rng.random() < world.dt / 70:
@@ -237,8 +263,40 @@ def effect(rng: random.Random, cause: str) -> World:
     return world
 
 
+def at_headings(rng: random.Random, world: World, cause: str) -> World:
+    """Static recordings all round: the bias goes with the heading, or it merely differs from switching on to switching on."""
+    count = rng.choice([4, 6, 8, 12])
+    phase = 360 * rng.random()
+    sd = world.N / math.sqrt(world.n * world.dt)
+    amplitude = sd * rng.uniform(12, 40)
+    for k in range(count):
+        heading = round((360 * k / min(count, 6)) % 360, 1)
+        recording = world.add(f"static-{k + 1}", {"kind": "static", "heading_deg": heading})
+        shift = amplitude * math.cos(math.radians(heading - phase)) if cause == "heading_dependent_bias" else rng.gauss(0, amplitude / math.sqrt(2))
+        recording["columns"]["gz"] = [v + shift for v in recording["columns"]["gz"]]
+    return world
+
+
+def beside_reference(rng: random.Random, world: World, cause: str) -> World:
+    """A profile whose reference column is noisy, or rounded to a coarse step."""
+    world.static("static-1")
+    sd = world.N / math.sqrt(world.dt)
+    level = sd * rng.uniform(0.3, 1.5)
+    for k in range(2):
+        column = world.profile(f"profile-{k + 1}")["columns"]
+        if cause == "reference_noise":
+            column["rz"] = [v + rng.gauss(0, level) for v in column["rz"]]
+        else:
+            step = math.sqrt(12) * level
+            column["rz"] = [step * round(v / step) for v in column["rz"]]
+    return world
+
+
 CAUSES = ["turned_sign", "swapped_axes", "unit_error", "clock_jump", "sampling_rate_change", "duplicated_blocks", "interpolated_samples", "averaged_samples",
-          "bursty_clock", "random_telegraph_noise", "chirped_disturbance", "modulated_disturbance", "vibration_bursts"]
+          "bursty_clock", "random_telegraph_noise", "chirped_disturbance", "modulated_disturbance", "vibration_bursts", "resonance",
+          "heading_dependent_bias", "biases_at_headings", "reference_noise", "coarse_reference"]
+# Kinds of studies that bear another name than what is hidden in them.
+NAMES = {"biases_at_headings": "turn_on_bias", "coarse_reference": "reference_noise"}
 
 
 def main() -> None:
@@ -247,6 +305,7 @@ def main() -> None:
     parser.add_argument("--nulls", type=int, default=120)
     parser.add_argument("--effects", type=int, default=4, help="studies of each cause")
     parser.add_argument("--seed", type=int, default=2026)
+    parser.add_argument("--only", nargs="*", default=CAUSES, choices=CAUSES, help="these effects alone")
     given = parser.parse_args()
     folder = Path(given.folder)
     answers: dict[str, dict] = {}
@@ -256,11 +315,11 @@ def main() -> None:
         world.write(folder / "cases" / f"n{k:04d}", f"n{k:04d}")
         answers[f"n{k:04d}"] = {"group": "null", "kind": kind, "allowed": allowed}
     for c, cause in enumerate(CAUSES):
-        for k in range(given.effects):
+        for k in range(given.effects if cause in given.only else 0):
             rng = random.Random(given.seed * 200003 + 1000 * c + k)
             ident = f"e{c:02d}{k:02d}"
             effect(rng, cause).write(folder / "cases" / ident, ident)
-            answers[ident] = {"group": "listed", "kind": cause, "cause": cause, "allowed": []}
+            answers[ident] = {"group": "listed", "kind": cause, "cause": NAMES.get(cause, cause), "allowed": []}
     (folder / "answers.json").write_text(json.dumps({"cases": answers}, indent=1))
 
 

@@ -22,11 +22,24 @@ TEST(Condition, ReadsTheCompactForm) {
 
 TEST(Condition, GivesBackWhatItRead) {
   for (const char* const text :
-       {"static", "profile", "drive", "constant_rate:z:9:deg/s", "constant_rate:x:-0.1:rad/s",
-        "constant_rate:y:15.041:deg/h", "constant_angular_acceleration:z:1:deg/s^2", "six_position:x:up"}) {
+       {"static", "static:90", "static:0", "static:212.5", "profile", "drive", "constant_rate:z:9:deg/s",
+        "constant_rate:x:-0.1:rad/s", "constant_rate:y:15.041:deg/h", "constant_angular_acceleration:z:1:deg/s^2",
+        "six_position:x:up"}) {
     EXPECT_EQ(to_text(*parse_condition(text)), text);
     EXPECT_EQ(*parse_condition(to_text(*parse_condition(text))), *parse_condition(text));
   }
+}
+
+TEST(Condition, AHeadingTurnsARecordingAtRestAndIsNoConditionOfItsOwn) {
+  EXPECT_EQ(parse_condition("static:-90")->heading_deg, 270.0);
+  EXPECT_EQ(parse_condition("static:360")->heading_deg, 0.0);
+  EXPECT_EQ(without_heading(*parse_condition("static:90")), *parse_condition("static"));
+  EXPECT_EQ(without_heading(*parse_condition("six_position:x:up")), *parse_condition("six_position:x:up"));
+  EXPECT_FALSE(parse_condition("static:361"));
+  EXPECT_FALSE(parse_condition("static:90:deg"));
+  WrittenCondition moving{"profile", {}, {}, {}, {}, {}};
+  moving.heading_deg = 90.0;
+  EXPECT_FALSE(make_condition(moving));
 }
 
 TEST(Condition, RefusesWhatDoesNotFitItsKind) {
@@ -57,6 +70,7 @@ TEST(Condition, HasALabelForPeople) {
   EXPECT_EQ(label(*parse_condition("static")), "static");
   EXPECT_EQ(label(*parse_condition("constant_rate:z:9:deg/s")), "9 deg/s about z");
   EXPECT_EQ(label(*parse_condition("six_position:x:up")), "x up");
+  EXPECT_EQ(label(*parse_condition("static:90")), "static, heading 90 deg");
 }
 
 }  // namespace
