@@ -26,7 +26,7 @@ foreach(program driftlab driftlabd)
 endforeach()
 add_custom_target(manuals ALL DEPENDS ${manual_files})
 
-install(TARGETS driftlab driftlabd RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS driftlab driftlabd driftlab-decode RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES ${manual_folder}/driftlab.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${manual_folder}/driftlabd.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/driftlab RENAME copyright)

@@ -9,6 +9,7 @@
   FORMAT(kNpy)      /* npy.cpp */       \
   FORMAT(kNpz)      /* npz.cpp */       \
   FORMAT(kMat5)     /* mat5.cpp */      \
+  FORMAT(kHdf5)     /* hdf5.cpp */      \
   FORMAT(kPhoneZip) /* phone_export.cpp */ \
   FORMAT(kCxd5602)  /* cxd5602.cpp */   \
   FORMAT(kVmu931)   /* vmu931.cpp */ \

@@ -20,8 +20,7 @@ struct Signature {
 };
 
 constexpr std::array kSignatures{
-    Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 (HDF5) file; save it with -v7, or the samples as CSV or .npy"},
-    Signature{0, "\x89HDF\r\n\x1a\n"sv, "an HDF5 file; write its samples as CSV or .npy (h5py, numpy.save)"},
+    Signature{0, "MATLAB 7.3 MAT-file"sv, "a MATLAB 7.3 file that is cut off; send it again"},
     Signature{0, "\xb5\x62"sv, "a u-blox UBX log, which holds a receiver's messages; send the recording of the IMU"},
     Signature{0, "$GP"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},
     Signature{0, "$GN"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},

@@ -17,7 +17,7 @@ constexpr std::size_t kMostWindows = 16;
 
 /// Density at the Fourier frequencies of windows of one length, averaged over a cell.
 std::vector<double> density_of(std::span<const double> cell, double pivot, double dt_s, std::size_t length) {
-  const std::size_t fitting = (cell.size() - length) / (length / 2) + 1;
+  const std::size_t fitting = (cell.size() - length) / std::max<std::size_t>(1, length / 2) + 1;
   const std::size_t windows = std::min(fitting, kMostWindows);
   WelchPeriodogram mean(length, Taper::Hann, dt_s);
   for (std::size_t w = 0; w < windows; ++w) {

@@ -91,12 +91,13 @@ class Regress final : public JobKind {
     if (!faults.none()) {
       return fail(faults.error());
     }
-    const auto kept = kept_for(written.baseline.label, written.settings, *memory);
-    if (!kept) {
-      return fail(kept.error());
+    const auto read = kept_for(written.baseline.label, written.settings, *memory);
+    if (!read) {
+      return fail(read.error());
     }
-    if (*kept) {
-      written.settings = regression::with_kept(**kept, written.settings, written.stated);
+    const std::optional<regression::Settings>& kept = *read;
+    if (kept) {
+      written.settings = regression::with_kept(*kept, written.settings, written.stated);
     }
     const bool counted = !written.candidate.label.empty();
     const std::size_t look =
@@ -109,7 +110,7 @@ class Regress final : public JobKind {
                 {"inputs", std::move(*canonical)},
                 {"parameters", std::move(settings)},
                 {"look", {{"number", look}, {"counted", counted}}},
-                {"kept", *kept ? kept_settings_json(**kept) : Json(nullptr)},
+                {"kept", kept ? kept_settings_json(*kept) : Json(nullptr)},
                 {"stated", written.stated},
                 {"algorithm_version", kRegressionVersion}};
   }

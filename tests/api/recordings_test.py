@@ -97,6 +97,22 @@ class Recordings(DaemonTest):
         self.daemon.finished(again.json["id"])
         self.expect(200, self.daemon.get(table))
 
+    def test_headings_are_replicates_of_one_condition(self) -> None:
+        ids = []
+        for heading in ("0", "90", "-90"):
+            made = self.expect(201, self.daemon.upload(samples.gyro_csv(2048, seed=70 + int(heading)), device="turned", rate_hz=100, columns=samples.GYRO_Z,
+                                                       condition=f"static:{heading}"))
+            ids.append(made.json["id"])
+        self.assertEqual([self.daemon.get(f"/v1/recordings/{one}").json["metadata"]["condition"] for one in ids],
+                         [{"kind": "static", "heading_deg": 0}, {"kind": "static", "heading_deg": 90}, {"kind": "static", "heading_deg": 270}])
+        for one in ids:
+            self.daemon.finished(self.expect(202, self.daemon.characterise(one, models=["WN"])).json["id"])
+        table = self.expect(200, self.daemon.get("/v1/parameter-tables?device=turned&axis=z", Prefer="wait=60")).json
+        [row] = table["rows"]
+        self.assertEqual((row["condition"], sorted(row["recordings"])), ({"kind": "static"}, sorted(ids)))
+        self.assertEqual(len(self.daemon.items("/v1/recordings?device=turned&condition=static")), 3)
+        self.problem(400, "invalid_argument", self.daemon.upload(samples.gyro_csv(seed=9), device="turned", rate_hz=100, columns=samples.GYRO_Z, condition="profile:90"))
+
     def test_delete_keeps_the_bytes_that_another_recording_holds(self) -> None:
         """Bytes that no recording holds are swept later: an upload of them may be running."""
         content = samples.gyro_csv(seed=5)

@@ -110,7 +110,7 @@ class Package(unittest.TestCase):
 
     def test_everything_has_its_place(self) -> None:
         files = {path.relative_to(self.root).as_posix() for path in self.root.rglob("*") if path.is_file()}
-        wanted = {"usr/bin/driftlab", "usr/bin/driftlabd", "usr/share/man/man1/driftlab.1", "usr/share/man/man8/driftlabd.8",
+        wanted = {"usr/bin/driftlab", "usr/bin/driftlabd", "usr/bin/driftlab-decode", "usr/share/man/man1/driftlab.1", "usr/share/man/man8/driftlabd.8",
                   "usr/share/bash-completion/completions/driftlab", "usr/share/bash-completion/completions/driftlabd",
                   "usr/share/zsh/vendor-completions/_driftlab", "usr/share/fish/vendor_completions.d/driftlab.fish",
                   "usr/lib/systemd/system/driftlabd.service", "usr/share/doc/driftlab/copyright", "usr/share/doc/driftlab/manual/cli.md",

@@ -35,7 +35,7 @@ class Runtime(unittest.TestCase):
     @unittest.skipUnless(shutil.which("dpkg-query"), "SKIPPED: package names are those of Debian, and this is not Debian")
     def test_the_runtime_set_is_what_the_programs_link(self) -> None:
         needed = set()
-        for program in ("driftlab", "driftlabd"):
+        for program in ("driftlab", "driftlabd", "driftlab-decode"):
             named = set(re.findall(r"\(NEEDED\).*\[(.*)\]", output_of("readelf", "-d", str(PROGRAMS / program))))
             for name, library in re.findall(r"(\S+) => (/\S+)", output_of("ldd", str(PROGRAMS / program))):
                 if name in named:

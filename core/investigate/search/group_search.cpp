@@ -141,15 +141,17 @@ class GroupSearch {
       // A line far above anything slow could be is taken before the slower search is made.
       const Evidence* best = strongest(candidates);
       const bool clear_line = best != nullptr && best->score > 60.0 && best->shape > 2.5;
-      if (!clear_line) {
+      std::optional<Evidence> winner = clear_line ? choose(data, candidates) : std::nullopt;
+      const bool looked_for_slow = !winner;  // also where the clear line is none, held out
+      if (looked_for_slow) {
         for (Evidence& evidence : search.examine()) {
           candidates.push_back(std::move(evidence));
         }
+        winner = choose(data, candidates);
       }
-      std::optional<Evidence> winner = choose(data, candidates);
       keep_best(outcome_.examined, candidates);
       keep_last(outcome_.remaining, candidates, [&](const Cause& cause) {
-        return cause.as<SpectralLine>() != nullptr || (cause.is_slow() && !clear_line);
+        return cause.as<SpectralLine>() != nullptr || (cause.is_slow() && looked_for_slow);
       });
       if (!winner) {
         break;

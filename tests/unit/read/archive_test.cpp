@@ -51,6 +51,27 @@ TEST(Npz, SetsTheArraysOfOneLengthSideBySide) {
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'n' is left out")));
 }
 
+TEST(Hdf5, ReadsArraysAndThoseOfMatlabTheOtherWayRound) {
+  const Outcome plain = decode_bytes(testing::unfolded(testing::kHdf5File));
+  ASSERT_FALSE(plain.error) << plain.message;
+  EXPECT_THAT(plain.decoded.names, ElementsAre("gyro_x", "gyro_y", "gyro_z", "t"));
+  EXPECT_EQ(plain.decoded.rows, 4U);
+  EXPECT_EQ(column(plain, 1)[2], 7.0 / 4.0);
+  EXPECT_EQ(column(plain, 3)[3], 3.0 / 8.0);
+  const Outcome matlab = decode_bytes(testing::unfolded(testing::kMatlab73File));
+  ASSERT_FALSE(matlab.error) << matlab.message;
+  EXPECT_THAT(matlab.decoded.names, ElementsAre("gyro_0", "gyro_1"));
+  EXPECT_EQ(matlab.decoded.rows, 5U);
+  EXPECT_EQ(column(matlab, 1)[2], 7.0);
+}
+
+TEST(Hdf5, RefusesWhatIsCutOffInASentence) {
+  const std::string whole = testing::unfolded(testing::kHdf5File);
+  const Outcome cut = decode_bytes(whole.substr(0, whole.size() / 3));
+  EXPECT_EQ(cut.error, ErrorCode::ShapeMismatch);
+  EXPECT_THAT(cut.message, HasSubstr("damaged"));
+}
+
 TEST(Mat5, ReadsMatricesOfEitherDirectionAndTheRate) {
   for (const bool compressed : {false, true}) {
     const Outcome outcome = decode_bytes(

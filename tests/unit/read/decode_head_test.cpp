@@ -53,7 +53,7 @@ TEST(DecodeHead, RefusesWhatNoLaterByteMends) {
   const auto twice = decode_head("gz,gz\n1,2\n3,4\n", HeadExtent::Beginning);
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, ErrorCode::DuplicateColumn);
-  const auto foreign = decode_head("\x89HDF\r\n\x1a\n0123456789", HeadExtent::Beginning);
+  const auto foreign = decode_head("%PDF-1.7\n0123456789", HeadExtent::Beginning);
   ASSERT_FALSE(foreign);
   EXPECT_EQ(foreign.error().code, ErrorCode::UnsupportedFormat);
 }

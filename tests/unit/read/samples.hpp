@@ -3,6 +3,7 @@
 /// own.
 #include "core/read/format.hpp"
 #include "tests/unit/read/archives.hpp"
+#include "tests/unit/read/hdf5_samples.hpp"
 #include "tests/unit/read/inertial_samples.hpp"
 #include "tests/unit/read/ros_samples.hpp"
 
@@ -218,6 +219,7 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"mat5",
        {mat_file({mat_matrix("gyro", 3, 4, ramp(12)), mat_matrix("fs", 1, 1, {100.0})}),
         mat_file({mat_matrix("t", 5, 1, ramp(5)), mat_matrix("w", 5, 3, ramp(15))}, true)}},
+      {"hdf5", {unfolded(kHdf5File), unfolded(kMatlab73File)}},
       {"phone_zip",
        {zip({{"Gyroscope.csv", "\"Time (s)\",\"X (rad/s)\",\"Y (rad/s)\"\n0.00,1E-3,2\n0.01,3,4\n0.02,5,6\n"},
              {"Accelerometer.csv", "\"Time (s)\",\"X (m/s^2)\"\n0.011,9.8\n0.021,9.7\n"},

@@ -1,0 +1,247 @@
+#include "clients/decode/hdf5_variables.hpp"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace driftlab::decode {
+namespace {
+
+constexpr int kDeepest = 16;
+constexpr std::size_t kMostObjects = 4096;
+constexpr int kMostMembers = 256;
+
+/// A handle of the library that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) {
+      close_(id_);
+    }
+  }
+  [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] bool open() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+class Walk {
+ public:
+  Walk(VariableWriter& writer, std::size_t budget_bytes) : writer_(writer), budget_(budget_bytes) {}
+
+  Status group(hid_t id, const std::string& path, int depth);
+
+ private:
+  Status dataset(hid_t id, const std::string& path);
+  Status array(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, bool turned, const std::string& path);
+  void left_out(const std::string& path, const std::string& why) {
+    writer_.note("'" + path.substr(0, 200) + "' is left out: " + why + ".");
+  }
+
+  VariableWriter& writer_;
+  std::size_t budget_;
+  std::size_t objects_ = 0;
+};
+
+tl::unexpected<Error> damaged(const std::string& path) {
+  return fail(ErrorCode::ShapeMismatch, "The HDF5 file is damaged at '" + path.substr(0, 200) + "'.");
+}
+
+/// Name of the link number `index`.
+std::optional<std::string> link_name(hid_t group, hsize_t index) {
+  const ssize_t size = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, nullptr, 0, H5P_DEFAULT);
+  if (size < 0 || size > 1024) {
+    return std::nullopt;
+  }
+  std::string name(static_cast<std::size_t>(size) + 1, '\0');
+  H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index, name.data(), name.size(), H5P_DEFAULT);
+  name.resize(static_cast<std::size_t>(size));
+  return name;
+}
+
+Status Walk::group(hid_t id, const std::string& path, int depth) {
+  H5G_info_t info{};
+  if (H5Gget_info(id, &info) < 0) {
+    return damaged(path);
+  }
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    if (++objects_ > kMostObjects) {
+      writer_.note("The file holds more than " + std::to_string(kMostObjects) + " objects; the rest is left out.");
+      return {};
+    }
+    const std::optional<std::string> name = link_name(id, i);
+    H5L_info_t link{};
+    if (!name || H5Lget_info_by_idx(id, ".", H5_INDEX_NAME, H5_ITER_INC, i, &link, H5P_DEFAULT) < 0) {
+      return damaged(path);
+    }
+    if (name->starts_with("#")) {
+      continue;  // MATLAB's own
+    }
+    const std::string full = path.empty() ? *name : path + "." + *name;
+    if (link.type != H5L_TYPE_HARD) {
+      left_out(full, "it is a link");
+      continue;
+    }
+    const Handle object(H5Oopen(id, name->c_str(), H5P_DEFAULT), H5Oclose);
+    if (!object.open()) {
+      return damaged(full);
+    }
+    const H5I_type_t kind = H5Iget_type(object.get());
+    if (kind == H5I_GROUP && depth >= kDeepest) {
+      left_out(full, "it lies deeper than " + std::to_string(kDeepest) + " groups");
+      continue;
+    }
+    const Status taken = kind == H5I_GROUP     ? group(object.get(), full, depth + 1)
+                         : kind == H5I_DATASET ? dataset(object.get(), full)
+                                               : Status{};
+    if (!taken) {
+      return taken;
+    }
+  }
+  return {};
+}
+
+bool is_number(hid_t type) {
+  const H5T_class_t kind = H5Tget_class(type);
+  // h5py writes a truth value as an enumeration of FALSE and TRUE.
+  return kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM;
+}
+
+Status Walk::dataset(hid_t id, const std::string& path) {
+  const Handle type(H5Dget_type(id), H5Tclose);
+  const Handle space(H5Dget_space(id), H5Sclose);
+  const Handle creation(H5Dget_create_plist(id), H5Pclose);
+  if (!type.open() || !space.open() || !creation.open()) {
+    return damaged(path);
+  }
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 0) {
+    return damaged(path);
+  }
+  if (rank > 2) {
+    left_out(path, "it has " + std::to_string(rank) + " dimensions");
+    return {};
+  }
+  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  if (layout == H5D_VIRTUAL || (layout == H5D_CONTIGUOUS && H5Pget_external_count(creation.get()) > 0)) {
+    left_out(path, "its samples are in another file");
+    return {};
+  }
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  if (rank > 0 && H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr) < 0) {
+    return damaged(path);
+  }
+  const bool matlab = H5Aexists(id, "MATLAB_class") > 0;
+  if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1) {
+    const int members = std::min(H5Tget_nmembers(type.get()), kMostMembers);
+    for (int m = 0; m < members; ++m) {
+      const Handle member(H5Tget_member_type(type.get(), static_cast<unsigned>(m)), H5Tclose);
+      char* const name = H5Tget_member_name(type.get(), static_cast<unsigned>(m));
+      const std::string own = name != nullptr ? name : "";
+      H5free_memory(name);
+      if (!member.open() || !is_number(member.get())) {
+        continue;
+      }
+      const Handle wanted(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
+      if (H5Tinsert(wanted.get(), own.c_str(), 0, H5T_NATIVE_DOUBLE) < 0) {
+        return damaged(path);
+      }
+      if (auto taken = array(id, wanted.get(), shape, false, path + "." + own); !taken) {
+        return taken;
+      }
+    }
+    return {};
+  }
+  if (!is_number(type.get())) {
+    left_out(path, "it holds no real numbers");
+    return {};
+  }
+  return array(id, H5T_NATIVE_DOUBLE, shape, matlab, path);
+}
+
+Status Walk::array(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, bool turned, const std::string& path) {
+  const hsize_t outer = shape.empty() ? 1 : shape[0];
+  const hsize_t inner = shape.size() < 2 ? 1 : shape[1];
+  const hsize_t most = budget_ / sizeof(double);
+  if (outer == 0 || inner == 0) {
+    return {};
+  }
+  if (outer > most / inner) {
+    return fail(ErrorCode::LimitExceeded, "The arrays of the HDF5 file take more memory than one decoding may.");
+  }
+  const auto count = static_cast<std::size_t>(outer * inner);
+  budget_ -= count * sizeof(double);
+  std::vector<double> values(count);
+  // An enumeration is no number to the library until it is read as the integer that it is.
+  const Handle stored(H5Dget_type(dataset), H5Tclose);
+  const bool enumerated = H5Tget_class(stored.get()) == H5T_ENUM;
+  if (enumerated) {
+    const Handle native(H5Tget_native_type(stored.get(), H5T_DIR_ASCEND), H5Tclose);
+    std::vector<signed char> flags(count);
+    if (H5Tget_size(native.get()) != 1 ||
+        H5Dread(dataset, native.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, flags.data()) < 0) {
+      left_out(path, "it holds no real numbers");
+      return {};
+    }
+    values.assign(flags.begin(), flags.end());
+  } else if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    return damaged(path);
+  }
+  // The inner index runs fastest: it counts the columns, in MATLAB's files the rows.
+  const auto rows = static_cast<std::size_t>(turned && shape.size() == 2 ? inner : outer);
+  const std::size_t columns = count / rows;
+  if (columns > 1024 && rows > 1024) {
+    left_out(path, "it is no table");
+    return {};
+  }
+  std::vector<std::vector<double>> table(columns, std::vector<double>(rows));
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      table[c][r] = values[turned && shape.size() == 2 ? c * rows + r : r * columns + c];
+    }
+  }
+  if (columns > 4096) {  // samples across
+    std::vector<std::vector<double>> upright(rows);
+    for (std::size_t r = 0; r < rows; ++r) {
+      upright[r].reserve(columns);
+      for (std::size_t c = 0; c < columns; ++c) {
+        upright[r].push_back(table[c][r]);
+      }
+    }
+    table = std::move(upright);
+  }
+  writer_.variable(path, table);
+  return {};
+}
+
+}  // namespace
+
+Status write_hdf5_variables(std::span<const std::byte> image, std::size_t budget_bytes, VariableWriter& writer) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLset_loading_state(0);  // filters come with the library, never from the file's wishes
+  void* const bytes = const_cast<std::byte*>(image.data());
+  const Handle file(H5LTopen_file_image(bytes, image.size(), H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE),
+                    H5Fclose);
+  if (!file.open()) {
+    return fail(ErrorCode::ShapeMismatch, "The HDF5 file is damaged: it does not open.");
+  }
+  const Handle root(H5Gopen2(file.get(), "/", H5P_DEFAULT), H5Gclose);
+  if (!root.open()) {
+    return damaged("/");
+  }
+  return Walk(writer, budget_bytes).group(root.get(), "", 0);
+}
+
+}  // namespace driftlab::decode

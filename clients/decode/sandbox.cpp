@@ -1,0 +1,103 @@
+#include "clients/decode/sandbox.hpp"
+
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <vector>
+
+namespace driftlab::decode {
+namespace {
+
+constexpr rlim_t kSeconds = 120;
+
+bool limit(__rlimit_resource_t what, rlim_t most) {
+  const rlimit wanted{most, most};
+  return ::setrlimit(what, &wanted) == 0;
+}
+
+/// What is refused with EPERM; everything else a library may do to compute.
+constexpr std::array kRefused{
+    SYS_openat,
+    SYS_execve,
+    SYS_execveat,
+    SYS_socket,
+    SYS_connect,
+    SYS_bind,
+    SYS_clone3,
+    SYS_ptrace,
+    SYS_unlinkat,
+    SYS_renameat2,
+    SYS_linkat,
+    SYS_symlinkat,
+    SYS_mkdirat,
+    SYS_fchmodat,
+    SYS_fchownat,
+    SYS_mknodat,
+    SYS_kill,
+    SYS_tgkill,
+    SYS_tkill,
+    SYS_mount,
+    SYS_bpf,
+    SYS_process_vm_readv,
+    SYS_process_vm_writev,
+    SYS_io_uring_setup,
+    SYS_setsid,
+    SYS_prctl,
+#ifdef SYS_open
+    SYS_open,
+    SYS_creat,
+    SYS_fork,
+    SYS_vfork,
+    SYS_unlink,
+    SYS_rename,
+    SYS_link,
+    SYS_symlink,
+    SYS_mkdir,
+    SYS_rmdir,
+    SYS_chmod,
+    SYS_chown,
+#endif
+};
+
+#if defined(__x86_64__)
+constexpr unsigned kMachine = AUDIT_ARCH_X86_64;
+#elif defined(__aarch64__)
+constexpr unsigned kMachine = AUDIT_ARCH_AARCH64;
+#endif
+
+void refuse_calls() {
+  std::vector<sock_filter> filter;
+  const auto add = [&](sock_filter instruction) { filter.push_back(instruction); };
+  add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch)));
+  add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0));
+  add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS));
+  add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
+  for (const auto call : kRefused) {
+    add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<unsigned>(call), 0, 1));
+    add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM));
+  }
+  add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+  const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
+  (void)::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
+}
+
+}  // namespace
+
+bool enter_sandbox(std::size_t memory_bytes) {
+  const bool limited =
+      limit(RLIMIT_AS, memory_bytes) && limit(RLIMIT_CPU, kSeconds) && limit(RLIMIT_FSIZE, 0) && limit(RLIMIT_CORE, 0);
+  if (!limited || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+    return false;
+  }
+  refuse_calls();
+  return true;
+}
+
+}  // namespace driftlab::decode
