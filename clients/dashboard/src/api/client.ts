@@ -170,6 +170,7 @@ export function useRead<T>(path: string | null, everyMs?: number): Read<T> {
 // What moves of one job.
 export function useJobEvents(job: string | null, onEvent: () => void): void {
   useEvents(event => { if (job && (event.type === 'ready' || event.type === 'reset' || event.data.job === job)) onEvent(); });
+  useEffect(() => { if (job) onEvent(); }, [job]);  // it may have ended while it was read for the first time
 }
 
 whenBroken(() => { ask('/healthz', {cache: 'no-store'}).catch(() => undefined); });
