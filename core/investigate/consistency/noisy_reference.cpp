@@ -110,7 +110,6 @@ std::optional<NoisyReference> judge(const StudyRecording& recording, const Chann
   double cross = 0.0;
   double error = 0.0;
   double square = 0.0;
-  double density = 0.0;
   for (std::size_t b = first; b < kBands; ++b) {
     const Band& band = found.bands[b];
     if (!is_noise_of_reference(band, found.ordinates)) {
@@ -119,7 +118,6 @@ std::optional<NoisyReference> judge(const StudyRecording& recording, const Chann
     square += 2.0 * found.ordinates * band.cross * band.cross / (band.reference * band.error);
     cross -= band.cross / differenced(b);
     error += band.error / differenced(b);
-    density -= band.cross / differenced(b);
   }
   NoisyReference result;
   result.share = cross / error;
@@ -131,7 +129,7 @@ std::optional<NoisyReference> judge(const StudyRecording& recording, const Chann
   const double segments = found.ordinates / (kHannOrdinates * static_cast<double>(kBandBins));
   const double per_density =
       segments * static_cast<double>(noisy * kBandBins) * 0.375 * static_cast<double>(kSegment) / recording.dt_s;
-  const double value = std::sqrt(density / per_density);
+  const double value = std::sqrt(cross / per_density);
   const double relative = 0.5 * std::sqrt((1.0 + 0.5 / result.share) / ordinates);
   result.density = {value, {value * std::max(0.0, 1.0 - kNormal975 * relative), value * (1.0 + kNormal975 * relative)}};
   result.cut_hz = (static_cast<double>(first * kBandBins) + 0.5) / static_cast<double>(kSegment) / recording.dt_s;
