@@ -51,14 +51,18 @@ bool is_left_over(const Evidence& evidence, const std::vector<Evidence>& found) 
   });
 }
 
-/// The strongest evidence that a cause sees, at least the threshold; null where it sees none.
-std::optional<Evidence> seen(const Cause& cause, const FullRate& data) {
+/// What a cause sees in the data.
+std::vector<Evidence> seen(const Cause& cause, const FullRate& data) {
   std::vector<Evidence> found = examine_of(cause)(data);
   for (Evidence& evidence : found) {
     evidence.cause = &cause;
   }
+  return found;
+}
+
+bool is_clear(const std::vector<Evidence>& found) {
   const Evidence* const best = strongest(found);
-  return best != nullptr && best->score >= kThreshold ? std::optional(*best) : std::nullopt;
+  return best != nullptr && best->score >= kThreshold;
 }
 
 struct Colour {
@@ -74,11 +78,11 @@ std::optional<Colour> strongest_colour(const ColourSetting& setting, const FullR
     if (!is_colour(cause, data)) {
       continue;
     }
-    const std::optional<Evidence> plain = without ? seen(cause, *without) : std::nullopt;
+    std::vector<Evidence> found = without ? seen(cause, *without) : std::vector<Evidence>{};
+    const bool plain = is_clear(found);
     const FullRate& under = plain ? *without : data;
-    std::vector<Evidence> found = examine_of(cause)(under);
-    for (Evidence& evidence : found) {
-      evidence.cause = &cause;
+    if (!plain) {
+      found = seen(cause, data);
     }
     std::erase_if(found, [&](const Evidence& evidence) { return is_left_over(evidence, outcome.found); });
     keep_best(outcome.examined, found);
