@@ -3,7 +3,7 @@
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
-#include <array>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
