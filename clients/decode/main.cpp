@@ -24,7 +24,7 @@ int main(int count, char** words) {
   using namespace driftlab;
   const std::string_view format = count == 3 ? words[1] : "";
   const auto budget = count == 3 ? parse_double(words[2]) : std::nullopt;
-  struct stat input {};
+  struct stat input{};
   if (format != "hdf5" || !budget || *budget < 0.0 || ::fstat(kInput, &input) != 0) {
     return kMisuse;
   }
