@@ -13,8 +13,8 @@ Result<OpenRecording> open_recording(const std::filesystem::path& columns, const
   if (use == ViewUse::Survey) {
     passed = [&](std::span<const double> samples) { file->release(samples); };
   }
-  auto view = view_recording(
-      spec, file->names(), file->rows(), [&](std::size_t i) { return file->column(i); }, use, passed);
+  auto view =
+      view_recording(spec, file->names(), file->rows(), [&](std::size_t i) { return file->column(i); }, use, passed);
   if (!view) {
     return fail(std::move(view.error()));
   }

@@ -53,7 +53,7 @@ Result<FileDescriptor> open_to_read(const std::filesystem::path& path) {
 }
 
 Result<std::size_t> regular_file_size(int fd, const std::filesystem::path& path) {
-  struct stat status {};
+  struct stat status{};
   if (::fstat(fd, &status) != 0) {
     return fail(io_error(errno, "inspect", path));
   }

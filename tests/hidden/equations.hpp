@@ -17,7 +17,7 @@ namespace driftlab::hidden {
 
 /// What the test moves a sensor through, in closed form and SI.
 namespace motion {
-inline constexpr double kHeadingDeg = 75.0;  ///< the condition states it too
+inline constexpr double kHeadingDeg = 75.0;   ///< the condition states it too
 [[nodiscard]] double rate(double t);          ///< about z [rad/s]
 [[nodiscard]] double acceleration(double t);  ///< its derivative
 [[nodiscard]] double angle(double t);         ///< its integral from 0
