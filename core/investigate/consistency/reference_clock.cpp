@@ -18,7 +18,7 @@ constexpr std::size_t kOrder = 8;
 constexpr Eigen::Index kCommon = 9;  ///< columns that stand beside every break
 
 /// Means of one channel over blocks: the error, the columns beside the break, w' and t w'.
-struct Blocks {
+struct BlockMeans {
   std::size_t channel = 0;
   double block_s = 0.0;
   Eigen::VectorXd time;  ///< middle of each block, from the first sample of the file [s]
@@ -37,13 +37,13 @@ bool moves(const StudyRecording& recording, const Channel& channel) {
   return kind == ConditionKind::Profile || kind == ConditionKind::Drive;
 }
 
-Blocks blocks_of(const StudyRecording& recording, std::size_t c) {
+BlockMeans blocks_of(const StudyRecording& recording, std::size_t c) {
   const Channel& channel = recording.channels[c];
   const auto length = static_cast<std::size_t>(std::max(1.0, std::round(kBlock / recording.dt_s)));
   const std::size_t count = recording.count() / length;
   const std::vector<double> slopes = slope(channel.reference.values(), recording.dt_s);
   const double limit = clipped_at(channel) * std::fabs(channel.unit.factor);
-  Blocks blocks;
+  BlockMeans blocks;
   blocks.channel = c;
   blocks.block_s = static_cast<double>(length) * recording.dt_s;
   const auto n = static_cast<Eigen::Index>(count);
@@ -91,7 +91,7 @@ Blocks blocks_of(const StudyRecording& recording, std::size_t c) {
 }
 
 /// The column of a break at t0.
-Eigen::VectorXd broken(const Blocks& blocks, ClockBreak kind, double t0_s) {
+Eigen::VectorXd broken(const BlockMeans& blocks, ClockBreak kind, double t0_s) {
   Eigen::VectorXd column = Eigen::VectorXd::Zero(blocks.time.size());
   for (Eigen::Index i = 0; i < column.size(); ++i) {
     if (blocks.time(i) >= t0_s) {
@@ -135,8 +135,8 @@ Eigen::VectorXd whitened(const Eigen::VectorXd& column, const Eigen::VectorXd& a
   return out;
 }
 
-Blocks whitened(const Blocks& blocks, const Eigen::VectorXd& ar) {
-  Blocks white = blocks;
+BlockMeans whitened(const BlockMeans& blocks, const Eigen::VectorXd& ar) {
+  BlockMeans white = blocks;
   white.error = whitened(blocks.error, ar, blocks.used);
   white.slope = whitened(blocks.slope, ar, blocks.used);
   white.slope_time = whitened(blocks.slope_time, ar, blocks.used);
@@ -153,7 +153,7 @@ struct Scan {
   std::vector<double> taken, size, information;
 };
 
-Scan scan(const Blocks& blocks, ClockBreak kind, const std::vector<double>& times) {
+Scan scan(const BlockMeans& blocks, ClockBreak kind, const std::vector<double>& times) {
   Scan result;
   const Eigen::MatrixXd& x = blocks.common;
   const Eigen::MatrixXd inverse =
@@ -202,9 +202,9 @@ constexpr Eigen::Index kOffset = 6;  ///< columns of an offset and of a drift of
 constexpr Eigen::Index kDrift = 7;
 
 /// Twice the log likelihood that an offset and a drift of the whole clock gain beside a break.
-double gain_of_whole_clock(const std::vector<Blocks>& all, ClockBreak kind, double t0_s) {
+double gain_of_whole_clock(const std::vector<BlockMeans>& all, ClockBreak kind, double t0_s) {
   double gain = 0.0;
-  for (const Blocks& blocks : all) {
+  for (const BlockMeans& blocks : all) {
     Eigen::MatrixXd x(blocks.time.size(), kCommon + 1);
     x << blocks.common, broken(blocks, kind, t0_s);
     const auto left = [&] {
@@ -218,8 +218,8 @@ double gain_of_whole_clock(const std::vector<Blocks>& all, ClockBreak kind, doub
   return gain;
 }
 
-void without_whole_clock(std::vector<Blocks>& all) {
-  for (Blocks& blocks : all) {
+void without_whole_clock(std::vector<BlockMeans>& all) {
+  for (BlockMeans& blocks : all) {
     blocks.common.col(kOffset).setZero();
     blocks.common.col(kDrift).setZero();
   }
@@ -233,11 +233,11 @@ struct Best {
   double deviation = 0.0;
 };
 
-Best best_of(const std::vector<Blocks>& all, ClockBreak kind, const std::vector<double>& times) {
+Best best_of(const std::vector<BlockMeans>& all, ClockBreak kind, const std::vector<double>& times) {
   Best best;
   best.statistics.assign(times.size(), 0.0);
   std::vector<Scan> scans;
-  for (const Blocks& blocks : all) {
+  for (const BlockMeans& blocks : all) {
     scans.push_back(scan(blocks, kind, times));
     const Scan& s = scans.back();
     for (std::size_t k = 0; k < times.size(); ++k) {
@@ -288,10 +288,10 @@ Interval times_within(const Best& best, const std::vector<double>& times, double
 
 std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index) {
   const StudyRecording& recording = study.recordings[index];
-  std::vector<Blocks> raw;
+  std::vector<BlockMeans> raw;
   for (std::size_t c = 0; c < recording.channels.size(); ++c) {
     if (!recording.channels[c].input_only && moves(recording, recording.channels[c])) {
-      Blocks blocks = blocks_of(recording, c);
+      BlockMeans blocks = blocks_of(recording, c);
       if (blocks.used.sum() > 200.0 && blocks.slope.squaredNorm() > 0.0) {
         raw.push_back(std::move(blocks));
       }
@@ -305,9 +305,9 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   // What the better break leaves is the noise; by its autoregression everything is whitened.
   std::array<Best, 2> plain{best_of(raw, kKinds[0], times), best_of(raw, kKinds[1], times)};
   const std::size_t first = plain[0].statistic > plain[1].statistic ? 0 : 1;
-  std::vector<Blocks> white;
+  std::vector<BlockMeans> white;
   std::vector<Eigen::VectorXd> filters;
-  for (const Blocks& blocks : raw) {
+  for (const BlockMeans& blocks : raw) {
     Eigen::MatrixXd x(blocks.time.size(), kCommon + 1);
     x << blocks.common, broken(blocks, kKinds.at(first), times[plain.at(first).at]);
     const Eigen::VectorXd left = blocks.error - x * x.colPivHouseholderQr().solve(blocks.error);
@@ -340,7 +340,7 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   for (int round = 0; round < 2; ++round) {  // beyond the first order
     StudyRecording moved = recording;
     move_reference(moved, reading_times(moved, fault.kind, size, t0));
-    std::vector<Blocks> left;
+    std::vector<BlockMeans> left;
     for (std::size_t b = 0; b < raw.size(); ++b) {
       left.push_back(whitened(blocks_of(moved, raw[b].channel), filters[b]));
     }
@@ -351,7 +351,7 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   }
   fault.size = {size, {size - half, size + half}};
   fault.t0_s = {fine[found.at], times_within(found, fine, step)};
-  for (const Blocks& blocks : raw) {
+  for (const BlockMeans& blocks : raw) {
     fault.channels.push_back(blocks.channel);
   }
   return fault;
