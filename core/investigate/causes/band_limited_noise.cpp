@@ -66,7 +66,7 @@ Shape fit_shape(const FullRate& data, const std::function<double(double)>& gain)
 }
 
 std::vector<Evidence> examine(const FullRate& data) {
-  if (data.band_limited() || data.spectrum.empty() || data.spectrum[0].power.empty()) {
+  if (data.colour.band_limited() || data.spectrum.empty() || data.spectrum[0].power.empty()) {
     return {};
   }
   const double nyquist = 0.5 / data.dt_s;

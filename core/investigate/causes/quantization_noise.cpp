@@ -15,7 +15,7 @@ namespace driftlab::investigate {
 namespace {
 
 std::vector<Evidence> examine(const FullRate& data) {
-  if (data.band_limited() && data.flat) {
+  if (data.colour.band_limited() && data.flat) {
     return {};
   }
   std::vector<Evidence> found;

@@ -243,7 +243,8 @@ void set_spectrum(FullRate& data, std::size_t r) {
   for (std::size_t j = 0; j < s.power.size(); ++j) {
     const double f = s.f_hz[j];
     slow.push_back(slow_density(data.model, r, f, data.dt_s, static_cast<double>(s.samples)) +
-                   data.quantization * quantization_shape(f, data.dt_s) + (data.peak ? data.peak(r, f) : 0.0));
+                   data.quantization * quantization_shape(f, data.dt_s) +
+                   (data.colour.peak ? data.colour.peak(r, f) : 0.0));
     const double base = data.model.white + slow[j];
     s.power[j] *= base / std::max(0.05 * base, base + data.raised[r]);
   }
@@ -264,7 +265,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   data.given = options.given;
   data.lattice_step = options.lattice_step;
   data.quantization = options.quantization;
-  data.peak = options.peak;
+  data.colour = options.colour;
   data.dt_s = group.members.front().recording->dt_s;
   data.model = model;
   data.residual = std::move(residual);

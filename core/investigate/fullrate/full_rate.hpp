@@ -10,13 +10,12 @@
 ///
 /// Memory: 9 bytes a sample, while the residuals follow from the file. Copies share the samples, so that a part of the
 /// data, or the data under another model, costs little.
+#include "core/investigate/fullrate/noise_colour.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
-#include <algorithm>
-#include <functional>
-#include <limits>
+#include <cstddef>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -43,20 +42,9 @@ struct FullRate {
   /// 1 elsewhere.
   double repeatability = 1.0;
   std::vector<double> further;  ///< coefficients of the autoregression that whitens once more; empty: none
-  double corner_hz = 0.0;       ///< of a band limit that has been found; 0: none
-  /// Density [SI^2/Hz] that a peak which has been found adds to the spectrum of member r at f [Hz]; part of `slow`.
-  /// Null: none.
-  std::function<double(std::size_t r, double f_hz)> peak;
-  double peak_hz = 0.0;  ///< the lowest frequency of such a peak; 0: none
+  NoiseColour colour;           ///< that has been found; its peaks are part of `slow`
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
-  /// Up to where the spectra show the density that is integrated: half the frequency of the lowest peak.
-  [[nodiscard]] double flat_below_hz() const {
-    constexpr double kLeast = 1.0;
-    return peak_hz > 0.0 ? std::max(kLeast, 0.5 * peak_hz) : std::numeric_limits<double>::infinity();
-  }
-  /// True if a band limit has been found, which explains the lower density at the top of the band.
-  [[nodiscard]] bool band_limited() const { return corner_hz > 0.0; }
 };
 
 struct FullRateOptions {
@@ -64,7 +52,7 @@ struct FullRateOptions {
   bool whiten_further = true;
   double quantization = 0.0;  ///< Q^2 of a given baseline [SI^2 s^2]; the innovations then need whiten_further
   double lattice_step = 0.0;
-  std::function<double(std::size_t r, double f_hz)> peak = {};  ///< FullRate::peak; needs whiten_further
+  NoiseColour colour = {};  ///< needs whiten_further
   bool innovations = true;  ///< false: the spectra alone, and what follows from them
 };
 

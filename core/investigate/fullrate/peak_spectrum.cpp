@@ -59,7 +59,8 @@ StackedSpectra::StackedSpectra(const FullRate& data, const std::vector<std::size
       if (s.f_hz[j] < low_hz || s.f_hz[j] > high_hz) {
         continue;
       }
-      const double gain = data.band_limited() ? butterworth_gain(s.f_hz[j], data.corner_hz, data.dt_s) : 1.0;
+      const double gain =
+          data.colour.band_limited() ? butterworth_gain(s.f_hz[j], data.colour.corner_hz, data.dt_s) : 1.0;
       const double floor = 1e-9 * data.model.white + data.lattice_step * data.lattice_step / 12.0 * data.dt_s;
       f_hz_.push_back(s.f_hz[j]);
       power_.push_back(s.power[j]);
@@ -71,7 +72,7 @@ StackedSpectra::StackedSpectra(const FullRate& data, const std::vector<std::size
   }
   free_white_ = !data.given;
   start_ = data.model.white;
-  floor_ = data.band_limited();
+  floor_ = data.colour.band_limited();
 }
 
 LevelFit StackedSpectra::fit(const Peak* peak) const {

@@ -289,7 +289,7 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
     add("whiteness", "correlation of one-second means", whiteness_statistic(e, data.dt_s));
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
-      const double share = data.band_limited() ? std::min(1.0, data.corner_hz * data.dt_s) : 1.0;
+      const double share = data.colour.band_limited() ? std::min(1.0, data.colour.corner_hz * data.dt_s) : 1.0;
       add("spectrum", "spectrum in sixteen bands", {band_statistic(e, share), 15.0});
     }
     wavelet_checks(member, e, data.used[r], data.dt_s, data.given ? 1.0 : all.mean_square, checks);

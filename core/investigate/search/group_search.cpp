@@ -353,7 +353,7 @@ class GroupSearch {
     FullRateOptions options;
     options.lattice_step = lattice_step_;
     options.quantization = quantization_ + found.shape;
-    options.peak = data.peak;
+    options.colour = data.colour;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }

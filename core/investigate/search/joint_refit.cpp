@@ -120,13 +120,15 @@ double white_by_spectra(const FullRate& data, const PerSample& factors, const st
     const double differenced = differenced_square(found, r);
     const Spectrum& s = data.spectrum[r];
     for (std::size_t j = 0; j < s.power.size(); ++j) {
-      if ((data.band_limited() && s.f_hz[j] > 0.5 * data.corner_hz) || s.f_hz[j] > data.flat_below_hz()) {
+      if ((data.colour.band_limited() && s.f_hz[j] > 0.5 * data.colour.corner_hz) ||
+          s.f_hz[j] > data.colour.flat_below_hz()) {
         break;
       }
       power.push_back(s.power[j]);
       weight.push_back(s.weight[j]);
       fixed.push_back(data.slow[r][j] + differenced * quantization_shape(s.f_hz[j], data.dt_s) + added);
-      shape.push_back(factor * (data.band_limited() ? butterworth_gain(s.f_hz[j], data.corner_hz, data.dt_s) : 1.0));
+      shape.push_back(
+          factor * (data.colour.band_limited() ? butterworth_gain(s.f_hz[j], data.colour.corner_hz, data.dt_s) : 1.0));
     }
   }
   if (power.empty()) {
@@ -190,17 +192,14 @@ SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsi
   FullRateOptions options;
   options.lattice_step = data.lattice_step;
   options.quantization = quantization;
-  options.whiten_further = !data.flat || quantization > 0.0 || data.peak;
-  options.peak = data.peak;
+  options.whiten_further = !data.flat || quantization > 0.0 || data.colour.peak;
+  options.colour = data.colour;
   SlowModel model = data.model;
   model.white_scale.clear();
-  const double corner_hz = data.corner_hz;
   SlowFreedom freedom;
   freedom.stop = stop;
   for (int turn = 0; turn < kTurns && !stop.stop_requested(); ++turn) {
     FullRate now = look_at_full_rate(*data.study, *data.group, model, residual, mask, options);
-    now.corner_hz = corner_hz;
-    now.peak_hz = data.peak_hz;
     if (turn > 0) {
       renew_levels(now, found);
     }

@@ -19,7 +19,7 @@ constexpr int kMostColours = 4;
 constexpr double kApart = 1.5;  ///< what a peak leaves within this factor of its frequency is its own shape
 
 bool is_colour(const Cause& cause, const FullRate& data) {
-  return cause.as<SpectralPeak>() != nullptr || (cause.as<BandLimit>() != nullptr && !data.band_limited());
+  return cause.as<SpectralPeak>() != nullptr || (cause.as<BandLimit>() != nullptr && !data.colour.band_limited());
 }
 
 /// Means over a block of coloured noise are correlated with their neighbours, which an automatic baseline describes by
@@ -65,15 +65,15 @@ bool is_clear(const std::vector<Evidence>& found) {
   return best != nullptr && best->score >= kThreshold;
 }
 
-struct Colour {
+struct SeenColour {
   Evidence evidence;
   FullRate data;  ///< under which it was seen
 };
 
 /// The strongest colour in the data; what every cause of a colour saw is noted.
-std::optional<Colour> strongest_colour(const ColourSetting& setting, const FullRate& data, GroupOutcome& outcome) {
+std::optional<SeenColour> strongest_colour(const ColourSetting& setting, const FullRate& data, GroupOutcome& outcome) {
   const std::optional<FullRate> without = setting.given ? std::nullopt : without_fast_process(data);
-  std::optional<Colour> best;
+  std::optional<SeenColour> best;
   for (const Cause& cause : cause_registry()) {
     if (!is_colour(cause, data)) {
       continue;
@@ -89,52 +89,54 @@ std::optional<Colour> strongest_colour(const ColourSetting& setting, const FullR
     keep_last(outcome.remaining, found, [&](const Cause& other) { return &other == &cause; });
     const Evidence* const top = strongest(found);
     if (top != nullptr && top->score >= kThreshold && (!best || top->score > best->evidence.score)) {
-      best = Colour{*top, under};
+      best = SeenColour{*top, under};
     }
   }
   return best;
 }
 
+/// The colours of the data and one more: a peak beside those that are there, or the band limit.
+NoiseColour one_more(const FullRate& data, const Evidence& found) {
+  NoiseColour colour = data.colour;
+  if (const auto* peak = found.cause->as<SpectralPeak>()) {
+    colour.peak = [before = colour.peak, density = peak->density, found, dt_s = data.dt_s](std::size_t r, double f) {
+      const bool acts = std::find(found.members.begin(), found.members.end(), r) != found.members.end();
+      return (before ? before(r, f) : 0.0) + (acts ? density(found, f, dt_s) : 0.0);
+    };
+    colour.peak_hz = colour.peak_hz > 0.0 ? std::min(colour.peak_hz, found.shape) : found.shape;
+  } else {
+    colour.corner_hz = found.shape;
+  }
+  return colour;
+}
+
+/// The white level that is integrated, of data with these colours.
+double white_beside(const NoiseColour& colour, FullRate data) {
+  data.colour = colour;
+  for (std::size_t r = 0; r < data.members(); ++r) {
+    renew_spectrum(data, r);
+  }
+  return colour.band_limited() ? white_below(data, colour.corner_hz) : white_at_full_rate(data, colour.flat_below_hz());
+}
+
 /// The data with one more colour in the model.
-void take(const ColourSetting& setting, const Colour& colour, GroupOutcome& outcome) {
+void take(const ColourSetting& setting, const SeenColour& top, GroupOutcome& outcome) {
   FullRate& data = outcome.after;
-  const Evidence& found = colour.evidence;
-  const SpectralPeak* const peak = found.cause->as<SpectralPeak>();
   FullRateOptions options;
   options.given = false;  // the level behind the colour is the autoregression's
   options.quantization = setting.given ? 0.0 : setting.quantization;
   options.lattice_step = setting.lattice_step;
-  options.peak = colour.data.peak;
-  const double corner_hz = peak != nullptr ? colour.data.corner_hz : found.shape;
-  SlowModel model = colour.data.model;
-  if (peak != nullptr) {
-    options.peak = [before = options.peak, density = peak->density, found, dt_s = data.dt_s](std::size_t r, double f) {
-      const bool acts = std::find(found.members.begin(), found.members.end(), r) != found.members.end();
-      return (before ? before(r, f) : 0.0) + (acts ? density(found, f, dt_s) : 0.0);
-    };
-  }
-  double peak_hz = colour.data.peak_hz;
-  if (peak != nullptr) {
-    peak_hz = peak_hz > 0.0 ? std::min(peak_hz, found.shape) : found.shape;
-  }
+  options.colour = one_more(top.data, top.evidence);
+  SlowModel model = top.data.model;
   if (!setting.given) {
-    FullRate renewed = colour.data;
-    renewed.peak = options.peak;
-    renewed.peak_hz = peak_hz;
-    for (std::size_t r = 0; r < renewed.members(); ++r) {
-      renew_spectrum(renewed, r);
-    }
     outcome.model.beside.noise = base_of(model, outcome.found);
-    const double white =
-        corner_hz > 0.0 ? white_below(renewed, corner_hz) : white_at_full_rate(renewed, renewed.flat_below_hz());
+    const double white = white_beside(options.colour, top.data);
     outcome.model.beside.noise.white = white;
-    model.white = corner_hz > 0.0 ? model.white : white;
+    model.white = options.colour.band_limited() ? model.white : white;
   }
   data = look_at_full_rate(*data.study, *data.group, model, std::move(data.residual), setting.mask, options);
-  data.corner_hz = corner_hz;
-  data.peak_hz = peak_hz;
-  data.flat = data.flat && corner_hz == 0.0;
-  outcome.found.push_back(found);
+  data.flat = data.flat && !options.colour.band_limited();
+  outcome.found.push_back(top.evidence);
 }
 
 }  // namespace
@@ -148,7 +150,7 @@ SlowModel base_of(SlowModel noise, const std::vector<Evidence>& found) {
 
 void take_colours(const ColourSetting& setting, GroupOutcome& outcome) {
   for (int taken = 0; taken < kMostColours; ++taken) {
-    std::optional<Colour> colour = strongest_colour(setting, outcome.after, outcome);
+    std::optional<SeenColour> colour = strongest_colour(setting, outcome.after, outcome);
     if (!colour) {
       return;
     }
