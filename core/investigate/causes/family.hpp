@@ -5,6 +5,7 @@
 ///
 /// A member without a default is one that every cause of the family must give: the compiler refuses a cause without it.
 #include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/causes/shape_refinement.hpp"
 #include "core/investigate/slow/slow_model.hpp"
 #include "core/investigate/study/study.hpp"
 
@@ -30,10 +31,7 @@ struct MeanEffect {
   bool free_phase = false;  ///< two columns, and their combination differs from recording to recording: one amplitude
   /// Values of the shape to try; one value (ignored) where there is none.
   std::vector<double> (*shapes)(const ChannelGroup& group) = nullptr;
-  bool continuous = false;  ///< the shape is refined between the tried values
-  /// The shape is a phase of this period (0: it is none): half a period more is the negative, so that the amplitude can
-  /// be and is positive.
-  double period = 0.0;
+  ShapeRefinement refinement = {};  ///< of the shape, between the tried values
   /// Where each shape has a parameter of its own for its amplitude: the shape that belongs to each parameter.
   std::vector<double> shape_of_parameter = {};
   double penalty = 1.0;

@@ -53,15 +53,17 @@ double shown_phase(const Stage& /*stage*/, Random& /*random*/) { return 40.0; }
 }  // namespace
 
 Cause heading_dependent_bias() {
-  return {.name = "heading_dependent_bias",
-          .title = "a bias that follows the heading",
-          .family = MeanEffect{.build = build, .shapes = phases, .period = kTurnDeg, .penalty = 6.0},
-          .rivals = {"turn_on_bias"},
-          .needs = "recordings at rest whose conditions state their headings",
-          .separates = "the same headings again, switched off in between: a bias that follows the heading comes back",
-          .parameters = {{"amplitude", units::level}, {"phase_deg", units::degrees}},
-          .lacks = lacks,
-          .showing = {.scenario = Scenario::Headings, .shape = shown_phase}};
+  return {
+      .name = "heading_dependent_bias",
+      .title = "a bias that follows the heading",
+      .family =
+          MeanEffect{.build = build, .shapes = phases, .refinement = ShapeRefinement::phase(kTurnDeg), .penalty = 6.0},
+      .rivals = {"turn_on_bias"},
+      .needs = "recordings at rest whose conditions state their headings",
+      .separates = "the same headings again, switched off in between: a bias that follows the heading comes back",
+      .parameters = {{"amplitude", units::level}, {"phase_deg", units::degrees}},
+      .lacks = lacks,
+      .showing = {.scenario = Scenario::Headings, .shape = shown_phase}};
 }
 
 }  // namespace driftlab::investigate

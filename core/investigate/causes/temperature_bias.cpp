@@ -52,16 +52,19 @@ double shown_lag(const Stage& /*stage*/, Random& random) { return 20.0 + 40.0 * 
 }  // namespace
 
 Cause temperature_bias() {
-  return {
-      .name = "temperature_bias",
-      .title = "a bias that follows the temperature",
-      .family = MeanEffect{.build = build, .shapes = shapes, .continuous = true, .penalty = 4.0, .scope_single = true},
-      .rivals = {"linear_drift", "warm_up_transient", "random_walk", "gauss_markov", "bias_step"},
-      .needs = "a temperature column, and a temperature that changes",
-      .separates = "a recording with another course of the temperature: up and down again, or held",
-      .parameters = {{"coefficient", units::per_kelvin}, {"lag_s", units::seconds}},
-      .lacks = lacks,
-      .showing = {.scenario = Scenario::Temperature, .shape = shown_lag}};
+  return {.name = "temperature_bias",
+          .title = "a bias that follows the temperature",
+          .family = MeanEffect{.build = build,
+                               .shapes = shapes,
+                               .refinement = ShapeRefinement::time(),
+                               .penalty = 4.0,
+                               .scope_single = true},
+          .rivals = {"linear_drift", "warm_up_transient", "random_walk", "gauss_markov", "bias_step"},
+          .needs = "a temperature column, and a temperature that changes",
+          .separates = "a recording with another course of the temperature: up and down again, or held",
+          .parameters = {{"coefficient", units::per_kelvin}, {"lag_s", units::seconds}},
+          .lacks = lacks,
+          .showing = {.scenario = Scenario::Temperature, .shape = shown_lag}};
 }
 
 }  // namespace driftlab::investigate

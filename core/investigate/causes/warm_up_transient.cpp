@@ -36,7 +36,7 @@ Cause warm_up_transient() {
           .title = "a bias that decays exponentially after switching on",
           .family = MeanEffect{.build = build,
                                .shapes = shapes,
-                               .continuous = true,
+                               .refinement = ShapeRefinement::time(),
                                .penalty = 4.0,
                                .scope_moving = true,
                                .scope_single = true},

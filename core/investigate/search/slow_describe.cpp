@@ -53,8 +53,8 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
   evidence.shape = mine->shape;
   BlockColumns columns = columns_with(accepted_);
   // The shape is uncertain too: its derivative is one more regressor while the amplitude's interval is sought.
-  if (effect.continuous || effect.period > 0.0) {
-    const double step = effect.period > 0.0 ? effect.period / 360.0 : std::max(0.02 * mine->shape, 0.05);
+  if (effect.refinement.refined()) {
+    const double step = effect.refinement.difference(mine->shape);
     std::vector<Regressor> moved = accepted_;
     moved[static_cast<std::size_t>(mine - accepted_.begin())].shape += step;
     const BlockColumns there = columns_with(moved);
@@ -104,20 +104,18 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
   evidence.parameters = {{std::string(first.name), {value, interval}, first.unit(unit)}};
   if (effect.change_point) {
     place_step(evidence);
-  } else if (effect.continuous || effect.period > 0.0) {
+  } else if (effect.refinement.refined()) {
     const auto which = static_cast<std::size_t>(mine - accepted_.begin());
     const auto at = [&](double shape) {
       std::vector<Regressor> moved = accepted_;
-      moved[which].shape = effect.period > 0.0 ? shape : std::max(0.0, shape);
+      moved[which].shape = effect.refinement.nearest(shape);
       SlowFreedom quick = freedom();
       quick.iterations = 3;
       return fit_slow(series_, columns_with(moved), fit.model, quick).log_likelihood;
     };
     const double top = at(evidence.shape);
-    const bool turns = effect.period > 0.0;
-    const double sd = turns ? effect.period / 100.0 : std::max(0.5, 0.15 * evidence.shape);
-    const double lowest = turns ? evidence.shape - 0.5 * effect.period : 0.0;
-    const double highest = turns ? evidence.shape + 0.5 * effect.period : 1e5;
+    const double sd = effect.refinement.usual_error(evidence.shape);
+    const auto [lowest, highest] = effect.refinement.bounds(evidence.shape);
     const Interval place{evidence.shape > lowest ? profile_end(evidence.shape, -sd, top, 3.8415, lowest, at) : lowest,
                          profile_end(evidence.shape, sd, top, 3.8415, highest, at)};
     evidence.parameters.push_back(

@@ -118,38 +118,8 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
     return evaluate_slow(series_, columns_with(with), model).log_likelihood;
   };
   const MeanEffect& effect = *regressor.cause->as<MeanEffect>();
-  if (effect.period > 0.0) {
-    double width = effect.period / 72.0;
-    double top = at(regressor.shape);
-    for (int i = 0; i < 12; ++i, width *= 0.6) {
-      for (const double trial : {regressor.shape - width, regressor.shape + width}) {
-        const double l = at(trial);
-        if (l > top) {
-          top = l;
-          regressor.shape = trial;
-          break;
-        }
-      }
-    }
-  } else if (effect.continuous) {
-    const bool from_zero = regressor.shape < 1.0;
-    double width = from_zero ? 2.0 : 0.4;  // seconds near zero, else a share
-    double top = at(regressor.shape);
-    for (int i = 0; i < 7; ++i, width *= 0.55) {
-      for (const double sign : {-1.0, 1.0}) {
-        const double trial = from_zero ? regressor.shape + sign * width : regressor.shape * std::exp(sign * width);
-        if (trial < 0.0) {
-          continue;
-        }
-        const double l = at(trial);
-        if (l > top) {
-          top = l;
-          regressor.shape = trial;
-          break;
-        }
-      }
-    }
-  } else if (effect.change_point) {
+  regressor.shape = effect.refinement.best_near(regressor.shape, at);
+  if (effect.change_point) {
     const StepScan scan(series_, model, columns_with(accepted_));
     const std::size_t r = regressor.members.front();
     const StepScan::Best step = scan.best_in(r);
@@ -202,8 +172,8 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   for (const SlowModel& start : starts) {
     with.back().shape = candidate.shape;
     SlowFit fit = fit_slow(series_, columns_with(with), start, freedom());
-    if (candidate.cause->as<MeanEffect>()->continuous || candidate.cause->as<MeanEffect>()->period > 0.0 ||
-        candidate.cause->as<MeanEffect>()->change_point) {
+    const MeanEffect& effect = *candidate.cause->as<MeanEffect>();
+    if (effect.refinement.refined() || effect.change_point) {
       Regressor refined = with.back();
       refine_shape(refined, fit.model);
       if (refined.shape != with.back().shape) {

@@ -305,11 +305,11 @@ void SlowSearch::accept(const Evidence& evidence) {
     refine_shape(last, null_.model);
     accepted_.push_back(last);
     fit_null();
-    const double period = evidence.cause->as<MeanEffect>()->period;
     const auto first = static_cast<Eigen::Index>(regressor_of(evidence).value_or(0));
-    if (period > 0.0) {  // an amplitude that is positive
-      const double opposite = null_.amplitude[first] < 0.0 ? 0.5 * period : 0.0;
-      accepted_.back().shape = std::fmod(last.shape + opposite + period, period);
+    const double upright =
+        evidence.cause->as<MeanEffect>()->refinement.for_positive(last.shape, null_.amplitude[first]);
+    if (upright != last.shape) {
+      accepted_.back().shape = upright;
       fit_null();
     }
     return;
