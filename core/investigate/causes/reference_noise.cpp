@@ -52,9 +52,8 @@ FaultyRecordings describe(const Study& study, const std::vector<NoisyReference>&
                                : "What follows allows for it: it is none of the sensor's.";
   fault.mend = [noisy](Study& mended, std::deque<std::vector<double>>& /*rows*/) {
     for (const NoisyReference& one : noisy) {
-      StudyRecording& recording = mended.recordings[one.recording];
-      recording.reference_noise.at(one.axis) = one.share / std::max(0.01, 1.0 - one.share);
-      recording.reference_coarse.at(one.axis) = one.step > 0.0;
+      mended.recordings[one.recording].reference_noise.at(one.axis) = {one.share / std::max(0.01, 1.0 - one.share),
+                                                                       one.step > 0.0};
     }
   };
   return fault;

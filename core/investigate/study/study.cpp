@@ -294,12 +294,12 @@ void settle_channels(Study& study) {
 
 double noise_of_reference(const ChannelGroup::Member& member) {
   const auto axis = told_axis(member);
-  return axis ? member.recording->reference_noise.at(*axis) : 0.0;
+  return axis ? member.recording->reference_noise.at(*axis).density_ratio : 0.0;
 }
 
 bool beside_coarse_reference(const ChannelGroup::Member& member) {
   const auto axis = told_axis(member);
-  return axis && member.recording->reference_coarse.at(*axis);
+  return axis && member.recording->reference_noise.at(*axis).coarse;
 }
 
 std::vector<ChannelGroup> group_channels(const Study& study) {

@@ -52,6 +52,12 @@ struct Stamps {
   Bursts bursts;
 };
 
+/// What a reference adds to the error of the channel that is compared with it.
+struct ReferenceNoise {
+  double density_ratio = 0.0;  ///< of its white noise over that of the sensor
+  bool coarse = false;         ///< rounded until the error of single samples is not the sensor's
+};
+
 /// One recording. Series over the grid of the whole file; empty where the quantity is not known.
 struct StudyRecording {
   std::string id;
@@ -61,15 +67,12 @@ struct StudyRecording {
   std::size_t begin = 0;   ///< analysed part [begin, end)
   std::size_t end = 0;
   Stamps stamps;
-  std::array<Series, 3> rate;          ///< reference angular rate about x, y, z [rad/s]
-  std::array<Series, 3> acceleration;  ///< its derivative [rad/s^2]
-  std::array<Series, 3> force;         ///< measured specific force [m/s^2]
-  Series temperature;                  ///< [K]
-  Series angle;                        ///< integral of the rate about the rotation axis [rad]
-  /// Density of the noise of the reference rate about x, y, z over that of the white noise of the sensor beside it.
-  std::array<double, 3> reference_noise{};
-  /// The values of that reference are rounded so coarsely that the error of single samples is not the sensor's.
-  std::array<bool, 3> reference_coarse{};
+  std::array<Series, 3> rate;                     ///< reference angular rate about x, y, z [rad/s]
+  std::array<Series, 3> acceleration;             ///< its derivative [rad/s^2]
+  std::array<Series, 3> force;                    ///< measured specific force [m/s^2]
+  Series temperature;                             ///< [K]
+  Series angle;                                   ///< integral of the rate about the rotation axis [rad]
+  std::array<ReferenceNoise, 3> reference_noise;  ///< of `rate`
   std::vector<Channel> channels;
   std::vector<std::string> notes;
 
