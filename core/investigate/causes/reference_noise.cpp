@@ -8,6 +8,7 @@
 #include "core/process/random.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace driftlab::investigate {
@@ -60,12 +61,12 @@ FaultyRecordings describe(const Study& study, const std::vector<NoisyReference>&
 }
 
 std::vector<FaultyRecordings> find(const Study& study) {
-  std::vector<NoisyReference> noisy = noisy_references(study);
-  const auto coarse =
-      std::stable_partition(noisy.begin(), noisy.end(), [](const NoisyReference& one) { return one.step == 0.0; });
+  std::array<std::vector<NoisyReference>, 2> kinds;  // noisy, coarse
+  for (const NoisyReference& one : noisy_references(study)) {
+    kinds.at(one.step > 0.0 ? 1 : 0).push_back(one);
+  }
   std::vector<FaultyRecordings> faults;
-  for (const std::vector<NoisyReference>& kind :
-       {std::vector(noisy.begin(), coarse), std::vector(coarse, noisy.end())}) {
+  for (const std::vector<NoisyReference>& kind : kinds) {
     if (!kind.empty()) {
       faults.push_back(describe(study, kind));
     }
