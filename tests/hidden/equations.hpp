@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -50,10 +51,16 @@ struct Equation {
   std::vector<investigate::Figure> (*figures)(const Injected& injected);
 };
 
+/// Root mean square of `seen` minus `expected` over that of `expected`: 0 where the equation holds.
+[[nodiscard]] investigate::Figure deviation(std::string what, const std::vector<double>& seen,
+                                            const std::vector<double>& expected, double tolerance);
+
 [[nodiscard]] const std::vector<Equation>& equations();
 
 /// Those of what is wrong with recordings as a whole (recording_equations.cpp); `equations` holds them too.
 [[nodiscard]] std::vector<Equation> recording_equations();
+/// Those of effects on the mean (mean_equations.cpp); likewise.
+[[nodiscard]] std::vector<Equation> mean_equations();
 /// Those of oscillations that are no line (oscillation_equations.cpp); likewise.
 [[nodiscard]] std::vector<Equation> oscillation_equations();
 
