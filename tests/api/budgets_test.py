@@ -9,7 +9,6 @@ import io
 import json
 import lzma
 import os
-import random
 import re
 import resource
 import socket
@@ -23,15 +22,12 @@ import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from daemon import PROGRAM, Answer, Daemon, read_all, read_answer
+from daemon import PROGRAM, Daemon, read_all
+from samples import stamped_csv
 from suite import DaemonTest
 
 SOURCE = Path(__file__).resolve().parents[2]
 FAST_S = 3.0 if not os.environ.get("DRIFTLAB_SANITIZE") else 60.0
-
-
-def csv(rows: int, column: str = "gz [deg/s]") -> bytes:
-    return (f"t [s],{column}\n" + "".join(f"{i / 100:.2f},{(i * 7919) % 101 / 100:.2f}\n" for i in range(rows))).encode()
 
 
 def big_model(number: int, size: int) -> dict[str, object]:
@@ -107,7 +103,7 @@ class OneClientCannotTakeIt(DaemonTest):
         self.assertEqual(self.daemon.traces(), before)
 
     def test_equal_uploads_at_once_are_stored_once(self) -> None:
-        content = csv(20_000)
+        content = stamped_csv(20_000)
         key = {"Idempotency-Key": "the-same"}
         with ThreadPoolExecutor(12) as pool:
             answers = list(pool.map(lambda i: self.daemon.upload(content, key, device=f"twin-{i % 4}"), range(12)))
@@ -214,7 +210,7 @@ class UploadsShare(unittest.TestCase):
             bombs = [pool.submit(daemon.upload, bomb, rate_hz=100, device=f"b{i}") for i in range(3)]
             time.sleep(0.1)
             begun = time.monotonic()
-            answer = daemon.upload(csv(10_000))
+            answer = daemon.upload(stamped_csv(10_000))
             self.assertEqual(answer.status, 201)
             self.assertLess(time.monotonic() - begun, 2 * FAST_S)
             for one in bombs:
@@ -222,19 +218,19 @@ class UploadsShare(unittest.TestCase):
 
     def test_more_uploads_than_places_wait_and_all_are_stored(self) -> None:
         with Daemon(arguments=("--budget", "uploads=2")) as daemon, ThreadPoolExecutor(12) as clients:
-            answers = list(clients.map(lambda k: daemon.upload(csv(2000 + k), device=f"imu-{k}"), range(12)))
+            answers = list(clients.map(lambda k: daemon.upload(stamped_csv(2000 + k), device=f"imu-{k}"), range(12)))
         self.assertEqual([answer.status for answer in answers], [201] * 12)
 
     def test_who_waits_too_long_for_a_place_is_told_which_budget_it_was(self) -> None:
         with Daemon(arguments=("--budget", "uploads=1", "--budget", "upload_wait_seconds=1")) as daemon, daemon.connect() as holding:
             send_head(holding, "/v1/recordings?device=imu-1&condition=static", "Content-Length: 1000\r\nContent-Type: text/csv\r\n", "POST")
             time.sleep(0.2)
-            answer = daemon.upload(csv(100), device="imu-2")
+            answer = daemon.upload(stamped_csv(100), device="imu-2")
             self.assertEqual(answer.status, 503, answer.describe())
             self.assertIn("upload_wait_seconds", answer.json["detail"])
             self.assertIn("retry-after", answer.headers)
             holding.close()
-            self.assertEqual(daemon.upload(csv(100), device="imu-2").status, 201)
+            self.assertEqual(daemon.upload(stamped_csv(100), device="imu-2").status, 201)
 
     def test_a_decoding_has_a_time_limit_that_is_named(self) -> None:
         rows = b"0.123456789,0.23456789,0.3456789,0.456789,0.56789,0.6789\n" * 400_000
@@ -253,16 +249,16 @@ class UploadsShare(unittest.TestCase):
 
     def test_a_device_has_a_quota(self) -> None:
         with Daemon(arguments=("--budget", "recordings_per_device=2", "--budget", "device_bytes=100000")) as daemon:
-            self.assertEqual(daemon.upload(csv(200)).status, 201)
-            self.assertEqual(daemon.upload(csv(300)).status, 201)
-            self.assertEqual(daemon.upload(csv(300)).status, 200, "what is there already costs nothing")
-            full = daemon.upload(csv(400))
+            self.assertEqual(daemon.upload(stamped_csv(200)).status, 201)
+            self.assertEqual(daemon.upload(stamped_csv(300)).status, 201)
+            self.assertEqual(daemon.upload(stamped_csv(300)).status, 200, "what is there already costs nothing")
+            full = daemon.upload(stamped_csv(400))
             self.assertEqual(full.status, 507, full.describe())
             self.assertIn("recordings_per_device = 2", full.json["detail"])
-            heavy = daemon.upload(csv(20_000), device="other")
+            heavy = daemon.upload(stamped_csv(20_000), device="other")
             self.assertEqual(heavy.status, 507, heavy.describe())
             self.assertIn("device_bytes = 100000", heavy.json["detail"])
-            self.assertEqual(daemon.upload(csv(400), device="other").status, 201)
+            self.assertEqual(daemon.upload(stamped_csv(400), device="other").status, 201)
 
 
 class TokensHaveBudgets(unittest.TestCase):
@@ -284,7 +280,7 @@ class TokensHaveBudgets(unittest.TestCase):
         refused = daemon.get("/v1/devices")
         self.assertEqual((refused.status, refused.headers["retry-after"]), (429, "1"), refused.describe())
         self.assertIn("requests_per_token = 2", refused.json["detail"])
-        upload = daemon.upload(csv(200))
+        upload = daemon.upload(stamped_csv(200))
         self.assertEqual(upload.status, 429, "before its body is read")
         daemon.token = other
         self.assertEqual(daemon.get("/v1/devices").status, 200)
@@ -328,18 +324,18 @@ class TokensHaveBudgets(unittest.TestCase):
     def test_what_is_kept(self) -> None:
         daemon, one, other = self.daemon("recordings_per_token=2", "token_bytes=100000")
         daemon.token = one
-        first = daemon.upload(csv(200), device="a")
-        self.assertEqual((first.status, daemon.upload(csv(300), device="b").status), (201, 201))
-        self.assertEqual(daemon.upload(csv(300), device="b").status, 200, "what is there already costs nothing")
-        full = daemon.upload(csv(400), device="c")
+        first = daemon.upload(stamped_csv(200), device="a")
+        self.assertEqual((first.status, daemon.upload(stamped_csv(300), device="b").status), (201, 201))
+        self.assertEqual(daemon.upload(stamped_csv(300), device="b").status, 200, "what is there already costs nothing")
+        full = daemon.upload(stamped_csv(400), device="c")
         self.assertEqual(full.status, 507, full.describe())
         self.assertIn("The token has all that it may have (budget recordings_per_token = 2)", full.json["detail"])
         daemon.token = other
-        self.assertEqual(daemon.upload(csv(400), device="c").status, 201)
-        self.assertIn("token_bytes = 100000", daemon.upload(csv(20_000), device="d").json["detail"])
+        self.assertEqual(daemon.upload(stamped_csv(400), device="c").status, 201)
+        self.assertIn("token_bytes = 100000", daemon.upload(stamped_csv(20_000), device="d").json["detail"])
         daemon.token = one
         self.assertEqual(daemon.request("DELETE", f"/v1/recordings/{first.json['id']}", headers={"If-Match": "*"}).status, 204)
-        self.assertEqual(daemon.upload(csv(500), device="a").status, 201, "what was removed makes room")
+        self.assertEqual(daemon.upload(stamped_csv(500), device="a").status, 201, "what was removed makes room")
 
 
 class WhatIsOldGoes(unittest.TestCase):
@@ -347,7 +343,7 @@ class WhatIsOldGoes(unittest.TestCase):
         """Two days later (the rows are dated back): gone with their files, and what is younger stays."""
         data = Path(self.enterContext(tempfile.TemporaryDirectory())) / "data"
         with Daemon(data) as daemon:
-            old, young = (daemon.upload(csv(200 + 100 * n), device=f"d{n}").json for n in range(2))
+            old, young = (daemon.upload(stamped_csv(200 + 100 * n), device=f"d{n}").json for n in range(2))
             jobs = []
             for seed in range(2):
                 jobs.append(daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000, "seed": seed}).json["id"])
@@ -376,100 +372,6 @@ class WhatIsOldGoes(unittest.TestCase):
             self.assertEqual([daemon.get(f"/v1/jobs/{job}").status for job in jobs], [404, 200])
 
 
-class JobsHaveABudget(unittest.TestCase):
-    def test_a_drive_of_a_day_is_refused_before_it_takes_anything(self) -> None:
-        with Daemon(arguments=("--budget", "job_memory_bytes=1000000000")) as daemon:
-            scenario = json.loads((SOURCE / "tests/api/long_drive.json").read_text())
-            for answer in (daemon.post("/v1/jobs", {"kind": "outage_evaluation", "inputs": {"scenario": scenario}}),
-                           daemon.post("/v1/outage-evaluations", {"scenario": scenario})):
-                self.assertEqual(answer.status, 413, answer.describe())
-                self.assertIn("(budget job_memory_bytes = ", answer.json["detail"])
-            self.assertLess(daemon.memory_kib("VmHWM"), 200 * 1024)
-
-    def test_a_regression_run_is_admitted_by_the_results_that_it_reads(self) -> None:
-        """It stated nothing but the least that every job takes. 32 MiB and 128 KiB for each of six results are 34,340,864."""
-        noise = random.Random(6)
-        with Daemon(arguments=("--budget", "job_memory_bytes=34300000")) as daemon:
-            ids = []
-            for _ in range(6):
-                table = "gz [deg/s]\n" + "".join(f"{noise.gauss(0.0, 0.05):.6f}\n" for _ in range(6000))
-                ids.append(daemon.upload(table.encode(), device="gated", rate_hz=100).json["id"])
-                self.assertEqual(daemon.finished(daemon.characterise(ids[-1], models=["WN"]).json["id"])["state"], "succeeded")
-
-            def ask(of_arm: int) -> Answer:
-                arms = {name: {"labels": {"firmware": name}, "recordings": [{"recording": each} for each in part[:of_arm]]}
-                        for name, part in (("baseline", ids[:3]), ("candidate", ids[3:]))}
-                return daemon.post("/v1/jobs", {"kind": "regress", "inputs": {"device": "gated", **arms}})
-
-            refused = ask(3)
-            self.assertEqual(refused.status, 413, refused.describe())
-            self.assertRegex(refused.json["detail"], r"would take about 32 MiB of memory.*\(budget job_memory_bytes = 34300000\)")
-            admitted = ask(2)
-            self.assertEqual(admitted.status, 202, admitted.describe())
-            self.assertEqual(daemon.finished(admitted.json["id"])["state"], "succeeded")
-
-    @unittest.skipIf(os.environ.get("DRIFTLAB_SANITIZE"), "sanitizers keep memory of their own")
-    def test_an_investigation_takes_no_more_than_it_is_admitted_for(self) -> None:
-        most = 75_000_000  # 32 MiB and 89 bytes for each of 400,000 samples are 69,154,432; it was once 220 a sample
-        noise = random.Random(5)
-        table = "gz [deg/s]\n" + "".join(f"{noise.gauss(0.0, 0.05):.6f}\n" for _ in range(400_000))
-        with Daemon(arguments=("--budget", f"job_memory_bytes={most}", "--workers", "1")) as daemon:
-            recording = daemon.upload(table.encode(), rate_hz=100).json["id"]
-            study = daemon.post("/v1/studies", {"device": {"id": "phone-07"}, "recordings": [{"recording": recording}]}).json["id"]
-            before = daemon.memory_kib("RssAnon")
-            job = daemon.post("/v1/jobs", {"kind": "investigate", "inputs": {"study": study}})
-            self.assertEqual(job.status, 202, job.describe())
-            largest = 0
-            until = time.monotonic() + 120
-            while time.monotonic() < until and not daemon.get(f"/v1/jobs/{job.json['id']}").json["finished_at"]:
-                largest = max(largest, daemon.memory_kib("RssAnon") - before)
-                time.sleep(0.02)
-            self.assertEqual(daemon.finished(job.json["id"])["state"], "succeeded")
-            self.assertLess(largest * 1024, most)
-            self.assertGreater(largest, 0)
-
-    def test_a_job_has_a_deadline_that_is_named(self) -> None:
-        with Daemon(arguments=("--budget", "job_seconds=1", "--workers", "1")) as daemon:
-            recording = daemon.upload(csv(400_000)).json["id"]
-            job = daemon.characterise(recording, bootstrap=2000).json
-            ended = daemon.finished(job["id"])
-            self.assertEqual(ended["state"], "failed")
-            self.assertIn("(budget job_seconds = 1)", ended["problem"]["detail"])
-
-    def test_a_job_that_could_not_end_in_time_is_refused_before_it_begins(self) -> None:
-        with Daemon(arguments=("--budget", "job_seconds=1")) as daemon:
-            recording = daemon.upload(csv(1_500_000)).json["id"]
-            for answer in (daemon.characterise(recording),
-                           daemon.post("/v1/jobs", {"kind": "outage_evaluation", "inputs": {"scenario": "paper"}, "parameters": {"runs": 100_000}})):
-                self.assertEqual(answer.status, 413, answer.describe())
-                self.assertIn("(budget job_seconds = 1)", answer.json["detail"])
-            self.assertEqual(daemon.items("/v1/jobs"), [])
-
-    def test_jobs_that_would_not_fit_together_wait_for_each_other(self) -> None:
-        with Daemon(arguments=("--budget", "job_memory_bytes=60000000", "--workers", "2")) as daemon:
-            recordings = [daemon.upload(csv(400_000 + i)).json["id"] for i in range(2)]
-            jobs = [daemon.characterise(r).json["id"] for r in recordings]
-            stages = set()
-            until = time.monotonic() + 60
-            while time.monotonic() < until:
-                states = [daemon.get(f"/v1/jobs/{job}").json for job in jobs]
-                stages |= {s["stage"] for s in states if s["state"] == "running"}
-                if all(s["finished_at"] for s in states):
-                    break
-                time.sleep(0.02)
-            self.assertTrue(all(s["state"] == "succeeded" for s in states), states)
-            self.assertIn("wait for memory", stages)
-
-    def test_the_queue_has_a_length(self) -> None:
-        with Daemon(arguments=("--budget", "queued_jobs=2", "--workers", "1")) as daemon:
-            recording = daemon.upload(csv(300_000)).json["id"]
-            answers = [daemon.characterise(recording, seed=seed) for seed in range(6)]
-            full = [a for a in answers if a.status == 503]
-            self.assertTrue(full, [a.status for a in answers])
-            self.assertIn("(budget queued_jobs = 2)", full[0].json["detail"])
-            self.assertIn("retry-after", full[0].headers)
-
-
 class BudgetsAreStatedOnce(unittest.TestCase):
     def test_page_file_and_program_agree(self) -> None:
         shown = json.loads(subprocess.run([PROGRAM, "config", "--json"], capture_output=True, check=True, text=True).stdout)
@@ -481,58 +383,6 @@ class BudgetsAreStatedOnce(unittest.TestCase):
             self.assertEqual(meaning, shown["budgets"][name]["meaning"], name)
         stated = (SOURCE / "server/store/budgets.hpp").read_text()
         self.assertEqual(re.findall(r"^  BUDGET\((\w+),", stated, re.MULTILINE), list(shown["budgets"]))
-
-
-class ConfigurationHasOrigins(unittest.TestCase):
-    def setUp(self) -> None:
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-
-    def shown(self, *arguments: str, **environment: str) -> dict[str, dict[str, dict[str, object]]]:
-        settings = {k: v for k, v in os.environ.items() if not k.startswith("DRIFTLAB_")}
-        run = subprocess.run([PROGRAM, "config", "--json", *arguments], capture_output=True, text=True,
-                             env={**settings, **environment}, check=False)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return json.loads(run.stdout)
-
-    def refused(self, *arguments: str, **environment: str) -> str:
-        settings = {k: v for k, v in os.environ.items() if not k.startswith("DRIFTLAB_")}
-        run = subprocess.run([PROGRAM, "config", *arguments], capture_output=True, text=True,
-                             env={**settings, **environment}, check=False)
-        self.assertEqual((run.returncode, run.stdout), (2, ""), run.stderr)
-        return run.stderr
-
-    def test_flag_over_variable_over_file_over_default(self) -> None:
-        file = self.folder / "driftlabd.toml"
-        file.write_text('workers = 3\nio_threads = 4\nthreads = 5\nallow_host = ["a", "b"]\n[budgets]\nuploads = 7\nlabels = 9\n')
-        found = self.shown("--config", str(file), "--workers", "6", "--budget", "labels=10", DRIFTLAB_IO_THREADS="8", DRIFTLAB_BUDGET_UPLOADS="11")
-        told = {name: (entry["value"], entry["origin"]) for part in found.values() for name, entry in part.items()}
-        self.assertEqual(told["workers"], (6, "flag --workers"))
-        self.assertEqual(told["io_threads"], (8, "variable DRIFTLAB_IO_THREADS"))
-        self.assertEqual(told["threads"], (5, f"file {file}"))
-        self.assertEqual(told["allow_host"], (["a", "b"], f"file {file}"))
-        self.assertEqual(told["listen"], ("127.0.0.1:8477", "default"))
-        self.assertEqual(told["uploads"], (11, "variable DRIFTLAB_BUDGET_UPLOADS"))
-        self.assertEqual(told["labels"], (10, "flag --budget"))
-
-    def test_what_it_prints_can_be_read_again(self) -> None:
-        printed = subprocess.run([PROGRAM, "config", "--workers", "2"], capture_output=True, check=True, text=True).stdout
-        file = self.folder / "again.toml"
-        file.write_text(printed)
-        self.assertEqual(self.shown("--config", str(file))["settings"]["workers"]["value"], 2)
-
-    def test_what_is_not_known_or_impossible_is_one_sentence(self) -> None:
-        def write(text: str) -> str:
-            (self.folder / "bad.toml").write_text(text)
-            return str(self.folder / "bad.toml")
-        self.assertIn("no setting 'colour'", self.refused("--config", write("colour = 1\n")))
-        self.assertIn("no setting 'budgets.colour'", self.refused("--config", write("[budgets]\ncolour = 1\n")))
-        self.assertIn("no TOML at line 2", self.refused("--config", write("workers = 1\n= 3\n")))
-        self.assertIn("does not exist", self.refused("--config", str(self.folder / "absent.toml")))
-        self.assertIn("from 0 to 256", self.refused("--workers", "many"))
-        self.assertIn("from 1 to 10000", self.refused("--budget", "uploads=0"))
-        self.assertIn("NAME=VALUE", self.refused("--budget", "uploads"))
-        self.assertIn("no setting 'budgets.colour'", self.refused(DRIFTLAB_BUDGET_COLOUR="1"))
-        self.assertIn("debug, info, warning or error", self.refused("--log-level", "loud"))
 
 
 if __name__ == "__main__":

@@ -27,6 +27,11 @@ def csv(columns: Sequence[Sequence[float]], names: Sequence[str] | None = None) 
     return ("\n".join(lines) + "\n").encode()
 
 
+def stamped_csv(rows: int, column: str = "gz [deg/s]") -> bytes:
+    """A column of time at 100 Hz and one of numbers that repeat after 101 rows: large at little cost."""
+    return (f"t [s],{column}\n" + "".join(f"{i / 100:.2f},{(i * 7919) % 101 / 100:.2f}\n" for i in range(rows))).encode()
+
+
 def npy(columns: Sequence[Sequence[float]], *, shape: str | None = None, kind: str = "<f8", flat: bool = False) -> bytes:
     """Version 1.0 of the format, rows by columns in C order; `shape` lets the header lie."""
     rows = len(columns[0])
