@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kStretches = 200;
 constexpr std::size_t kBins = 240;
-constexpr std::size_t kLongest = std::size_t{1} << 19U;  ///< samples of one stretch of the spectrum
+constexpr std::size_t kLongestStretch = std::size_t{1} << 19U;  ///< samples of one stretch of the spectrum
 
 /// Haar wavelet variance of the model at half length `half`.
 double model_variance(const SlowModel& model, double quantization, double half, double dt_s) {
@@ -87,7 +87,7 @@ WelchPeriodogram mean_periodogram(const FullRate& data, std::size_t length) {
 }
 
 void add_spectrum(const GroupOutcome& outcome, ChannelFigures& figures) {
-  std::size_t shortest = kLongest;
+  std::size_t shortest = kLongestStretch;
   for (const auto& residual : outcome.before.residual) {
     shortest = std::min(shortest, residual.size());
   }
