@@ -2,6 +2,7 @@
 
 #include "core/investigate/fullrate/whittle.hpp"
 #include "core/investigate/slow/profile.hpp"
+#include "core/investigate/study/measured_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -142,8 +143,8 @@ double common_likelihood(const FullRate& data, const std::vector<std::size_t>& s
   return sum;
 }
 
-/// The power of a sensor's noise repeats from recording to recording to about this share (FullRate::repeatability).
-constexpr double kPowerRepeats = 2.0 * 0.006;
+/// The power of a sensor's noise repeats from recording to recording to about this share, twice that of its level.
+constexpr double kPowerRepeats = 2.0 * kLevelRepeats;
 
 /// The top of a likelihood over that factor, log-normal around 1, as a nuisance.
 template <class Likelihood>
