@@ -38,10 +38,11 @@ constexpr double kGraceShare = 0.7;
 constexpr std::int64_t kSharedLeaseMicros = 20'000'000;
 constexpr std::int64_t kMicrosPerDay = 24LL * 3600 * 1'000'000;
 
-/// The threads that jobs share, and the jobs that run at a time: of more than there are threads some would only wait.
+/// The threads that jobs share, one for each core unless told otherwise, and the jobs that run at a time: of more than
+/// there are threads some would only wait.
 void settle_threads(const Settings& settings, WorkerOptions& options) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  options.computing = settings.threads > 0 ? settings.threads : std::max(cores, settings.workers);
+  options.computing = settings.threads > 0 ? settings.threads : cores;
   options.threads = settings.workers > 0 ? std::min(settings.workers, options.computing) : options.computing;
 }
 

@@ -22,7 +22,7 @@ struct Settings {
   std::vector<std::string> proxies;        ///< addresses whose many connections are those of many people
   std::vector<std::string> webhook_allow;  ///< where webhooks may lead beside the Internet (server/webhooks)
   int workers = 0;                         ///< jobs at a time; 0: as many as threads
-  int threads = 0;  ///< that compute for all jobs together; 0: one per core, or per worker if more
+  int threads = 0;                         ///< that compute for all jobs together; 0: one per core
   int io_threads = 2;
   bool require_tokens = false;            ///< refuse requests without a token even before there is one
   std::filesystem::path tls_certificate;  ///< PEM, with its chain; empty: plain HTTP

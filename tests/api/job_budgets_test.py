@@ -84,7 +84,7 @@ class JobsHaveABudget(unittest.TestCase):
             self.assertEqual(daemon.items("/v1/jobs"), [])
 
     def test_jobs_that_would_not_fit_together_wait_for_each_other(self) -> None:
-        with Daemon(arguments=("--budget", "job_memory_bytes=60000000", "--workers", "2")) as daemon:
+        with Daemon(arguments=("--budget", "job_memory_bytes=60000000", "--workers", "2", "--threads", "2")) as daemon:
             recordings = [daemon.upload(stamped_csv(400_000 + i)).json["id"] for i in range(2)]
             jobs = [daemon.characterise(r).json["id"] for r in recordings]
             stages = set()

@@ -93,7 +93,7 @@ class Pooling(unittest.TestCase):
     def live(folder: Path, workers: int, campaign: list[tuple[str, bytes]], kills: list[tuple[int, float]]) -> dict[str, Any]:
         """The tables after a life in which the daemon was killed: after so many uploads, and then so many seconds."""
         life = Life(campaign)
-        arguments = ("--workers", str(workers))
+        arguments = ("--workers", str(workers), "--threads", str(workers))
         for uploads, pause in kills:
             with Daemon(folder / "data", arguments=arguments) as daemon:
                 life.go_on(daemon, uploads)
