@@ -32,11 +32,12 @@ std::string note_of(const AxisPooling& pooling) {
   return "";
 }
 
-/// Marks an answer that changes when the job which pools has ended.
+/// Marks an answer that changes when the job which pools has ended: a CSV has no place of its own for that.
 void say_pending(const AxisPooling& pooling, Response& response) {
   if (pooling.state == PoolingState::Pending && response.pending_job.empty()) {
     response.pending_job = pooling.job;
     response.headers.emplace_back("Retry-After", "1");
+    response.headers.emplace_back("Link", "<" + std::string(kJobs) + pooling.job + ">; rel=\"monitor\"");
   }
 }
 

@@ -136,6 +136,9 @@ class WhilePooling(DaemonTest):
         for target, media in ((TABLE, "text/plain"), (TABLE, "text/markdown"), (TRENDS, "text/plain")):
             text = self.expect(200, self.daemon.get(target + "phone-07", Accept=media)).text
             self.assertIn(f"pooling pending: replicates are averaged until {pooling['job']}", text)
+        for target, media in ((TABLE, "text/csv"), (TRENDS, "text/csv"), (TABLE, "application/json")):
+            waiting = self.expect(200, self.daemon.get(target + "phone-07", Accept=media))
+            self.assertEqual(waiting.headers["link"], f'<{pooling["job"]}>; rel="monitor"', media)
         averages = self.expect(200, self.daemon.get(TABLE.replace("gmwm", "av") + "phone-07")).json
         self.assertEqual(averages["pooling"]["state"], "done", "method av takes nothing from joint fits")
         began = time.monotonic()
@@ -166,6 +169,7 @@ class WhilePooling(DaemonTest):
         evaluation = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": scenario, "runs": 2})).json
         done = self.expect(200, self.daemon.get(TABLE + "phone-07", Prefer="wait=60")).json
         self.assertEqual((done["pooling"]["state"], done["pooling"]["job"]), ("done", "/v1/jobs/" + again["id"]))
+        self.assertNotIn("link", self.daemon.get(TABLE + "phone-07", Accept="text/csv").headers)
         self.assertEqual([row["pooling"] for row in done["rows"]], ["joint", "single"])
         used = self.daemon.get(f"/v1/jobs/{evaluation['id']}").json["request"]["inputs"]["scenario"]["filters"][0]["gyro"]["z"]
         self.assertAlmostEqual(used["by_rate"]["processes"][0][0]["params"]["N"]["value"], done["rows"][0]["values"]["white_noise.N"]["value"], places=9)
