@@ -71,6 +71,8 @@ struct Population {
   double heterogeneity_p = 1.0;         ///< that all devices share one value
   std::optional<double> predicted_low;  ///< 95 % for the value of a further device; nothing with fewer than three
   std::optional<double> predicted_high;
+
+  [[nodiscard]] std::size_t heterogeneity_dof() const { return places.size() - 1; }
 };
 
 /// From here on a device is flagged.

@@ -65,6 +65,8 @@ struct Trend {
   int direction = 0;  ///< +1 or -1 where the monotone test rejects at 5 %, else 0
   FittedRelation relation;
   std::vector<FittedRelation> candidates;  ///< every relation that n points allow
+
+  [[nodiscard]] std::size_t equal_dof() const { return points.size() - 1; }
 };
 
 /// Errors: TooFewSamples (fewer than two points at different `at`), InvalidArgument (an interval that is open or not

@@ -64,13 +64,8 @@ Result<regression::ComparedChannel> compared_channel_from_json(const Json& chann
 }
 
 void tell_quality(const Json& quality, regression::ComparedRecording& recording) {
-  const double measured_hz = finite_member(quality, "measured_rate_hz", 0.0);
-  const double ratio = finite_member(quality, "clock_ratio", 0.0);
-  if (ratio > 0.0 && measured_hz > 0.0) {
-    recording.declared_hz = measured_hz / ratio;
-  } else if (!(measured_hz > 0.0)) {
-    recording.declared_hz = recording.rate_hz;  // without time stamps the rate is what somebody said
-  }
+  recording.declared_hz = regression::stated_rate_hz(finite_member(quality, "measured_rate_hz", 0.0),
+                                                     finite_member(quality, "clock_ratio", 0.0), recording.rate_hz);
   recording.jitter_s = finite_member(quality, "jitter_s", 0.0);
   recording.samples = compared_count(quality, "samples");
   recording.missing = compared_count(quality, "missing");

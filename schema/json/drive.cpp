@@ -53,8 +53,7 @@ Json options_to_json(const drive::FilterOptions& options) {
 namespace {
 
 Json start_json(const drive::Start& start) {
-  const Matrix3 axes = ned_axes(start.state.position_ecef_m);
-  const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * start.state.attitude);
+  const EulerAngles angles = start.attitude();
   constexpr std::array<const char*, 3> kTilt{"stated", "rest", "motion"};
   constexpr std::array<const char*, 2> kHeading{"stated", "course"};
   return Json{{"time_s", number(start.time_s)},
@@ -86,10 +85,8 @@ Json to_json(const DriveCheck& checked) {
 
 Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
   Json outages = Json::array();
-  const Vector3 origin = drive.reference.front().position_ecef_m;
-  const Matrix3 axes = ned_axes(origin);
   for (const drive::DriveOutage& o : d.outages) {
-    const Vector3 place = axes.transpose() * (o.reference_ecef_m - origin);
+    const Vector3 place = drive.on_map(o.reference_ecef_m);
     outages.push_back(Json{{"start_s", number(o.outage.start_s)},
                            {"phase", o.phase},
                            {"motion", name_of(o.outage_class)},

@@ -46,7 +46,7 @@ Json population_row_to_json(const PopulationRow& row) {
                                                                      optional_end(population.predicted_high)})
                                                       : Json(nullptr)},
               {"heterogeneity", described ? Json{{"q", number(population.heterogeneity_q)},
-                                                 {"dof", population.places.size() - 1},
+                                                 {"dof", population.heterogeneity_dof()},
                                                  {"p", number(population.heterogeneity_p)}}
                                           : Json(nullptr)},
               {"reason", text_or_null(row.reason)},

@@ -232,8 +232,7 @@ void regression_settings_from_json(const Json& document, const std::string& poin
       into.stated.insert(name);
     }
   }
-  settings.test.alpha = reader.real("alpha").value_or(settings.test.alpha);
-  settings.test.event_alpha = 0.2 * settings.test.alpha;
+  settings.test.set_level(reader.real("alpha").value_or(settings.test.alpha));
   settings.test.through_s = reader.real("through_s").value_or(settings.test.through_s);
   settings.test.design_power = reader.real("design_power").value_or(settings.test.design_power);
   settings.test.prior_df = reader.real("prior_df").value_or(settings.test.prior_df);

@@ -46,7 +46,7 @@ Json column_json(const ColumnTrend& column) {
       {"points", std::move(points)},
       {"left_out", std::move(left_out)},
       {"equal",
-       {{"statistic", number(trend.equal_statistic)}, {"dof", trend.points.size() - 1}, {"p", number(trend.equal_p)}}},
+       {{"statistic", number(trend.equal_statistic)}, {"dof", trend.equal_dof()}, {"p", number(trend.equal_p)}}},
       {"monotone",
        {{"statistic", number(trend.monotone_statistic)},
         {"p", number(trend.monotone_p)},

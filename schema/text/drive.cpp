@@ -51,8 +51,7 @@ std::string drive_check_to_text(const DriveCheck& checked) {
   text += printed("Rest: %.0f s in %zu stretches\n", still, checked.rests.size());
   if (checked.start) {
     const drive::Start& start = *checked.start;
-    const Matrix3 axes = ned_axes(start.state.position_ecef_m);
-    const EulerAngles angles = to_euler(Quaternion(axes).conjugate() * start.state.attitude);
+    const EulerAngles angles = start.attitude();
     text += printed(
         "Start: at %.2f s, roll %.1f, pitch %.1f, heading %.1f deg; tilt from %s (%.0f deg), heading from %s "
         "(%.0f deg)\n",

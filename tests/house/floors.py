@@ -83,7 +83,8 @@ FORBIDDEN_IN_CORE = {
 COMPUTING_HEADERS = {"cmath", "complex", "numeric", "valarray", "math.h"}
 COMPUTING = re.compile(
     r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|l?l?round|floor|ceil|trunc|fabs|fmod|"
-    r"remainder|fma|lerp|midpoint|accumulate|(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element)\b")
+    r"remainder|fma|lerp|midpoint|accumulate|(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element)\b"
+    r"|\b(ned_axes|to_euler)\b|\.(transpose|conjugate|inverse|squaredNorm|norm|dot|cross)\(")
 WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp"}
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -79,7 +79,8 @@ class Floors(Planted):
 
     def test_a_document_that_computes_is_refused(self) -> None:
         # Figures were interpolated and averaged on JSON values, and nothing said so.
-        for line in ("double y = std::exp(std::log(a) * share);", "auto d = std::sqrt(v);", "auto s = std::accumulate(a, b, 0.0);",
+        for line in ("double y = std::exp(std::log(a) * share);", "auto d = std::sqrt(v);", "auto s = std::accumulate(a, b, 0.0);", "auto m = axes.transpose() * place;",
+                     "auto e = to_euler(attitude);",
                      "auto n = std::lround(100.0 * share);", "auto h = std::hypot(x, y);", "#include <cmath>", "#include <numeric>"):
             with self.subTest(line=line):
                 path = self.plant("schema/json/report/a.cpp", "int before;\n" + line + "\n")

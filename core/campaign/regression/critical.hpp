@@ -32,6 +32,12 @@ struct TestSettings {
   bool two_sided = false;      ///< an improvement beyond the margin fails
   std::size_t draws = 4000;
   std::uint64_t seed = 1;
+
+  /// A run of this level; the checks of events take a fifth of it (spec/regression.md).
+  void set_level(double level) {
+    alpha = level;
+    event_alpha = 0.2 * level;
+  }
 };
 
 struct Critical {

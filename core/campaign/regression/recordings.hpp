@@ -39,6 +39,15 @@ struct FullScales {
   std::optional<double> accelerometer;  ///< [m/s^2]
 };
 
+/// The rate that somebody stated: that of the time stamps over its ratio to it, or without stamps the one that is used.
+/// Nothing where there are stamps alone. Zero: not known.
+[[nodiscard]] inline std::optional<double> stated_rate_hz(double measured_hz, double clock_ratio, double used_hz) {
+  if (!(measured_hz > 0.0)) {
+    return used_hz;
+  }
+  return clock_ratio > 0.0 ? std::optional(measured_hz / clock_ratio) : std::nullopt;
+}
+
 struct ComparedRecording {
   std::string id;
   std::string session;            ///< empty: not stated

@@ -63,6 +63,8 @@ struct Drive {
   FileFacts facts;
 
   [[nodiscard]] double end_s() const { return runs.back().end_s(); }
+  /// A place on the map of the drive: north, east and down of where its reference begins [m].
+  [[nodiscard]] Vector3 on_map(const Vector3& position_ecef_m) const;
 };
 
 /// A reference says where the vehicle is between two points that lie no farther from the moment than this [s].

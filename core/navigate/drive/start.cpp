@@ -1,5 +1,6 @@
 #include "core/navigate/drive/start.hpp"
 
+#include "core/navigate/earth.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
@@ -80,6 +81,10 @@ const Fix* first_heading(const Drive& drive, const UniformRun& run, bool stated)
 }
 
 }  // namespace
+
+EulerAngles Start::attitude() const {
+  return to_euler(Quaternion(ned_axes(state.position_ecef_m)).conjugate() * state.attitude);
+}
 
 std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
   const UniformRun& run = drive.runs[run_index];

@@ -5,6 +5,7 @@
 /// is taken off; without a rest in the minute before, that of the force over one second of even motion. Heading is the
 /// course of the first fix above 3 m/s whose second sees less than 3 deg of turn. A vehicle that does not move along
 /// its nose has no such heading: it is taken from the document, else from the course with 30 deg.
+#include "core/navigate/attitude.hpp"
 #include "core/navigate/drive/drive.hpp"
 
 namespace driftlab::drive {
@@ -20,6 +21,8 @@ struct Start {
   InitialUncertainty uncertainty;
   TiltFrom tilt_from = TiltFrom::Motion;
   HeadingFrom heading_from = HeadingFrom::Course;
+
+  [[nodiscard]] EulerAngles attitude() const;  ///< roll, pitch and heading of the body in the local level frame
 };
 
 /// A stretch in which the unit does not move.
