@@ -13,8 +13,8 @@
 /// The expectation of Theo1 lies between 0.37 (random walk) and 1 (white) of the Allan variance, and how much of either
 /// there is at the longest tau is known no better than the record knows that tau: a relative variance of 1.04 over the
 /// degrees of the total variance there is added (fitted to simulations of white noise, flicker noise, random walk and
-/// white noise with a random walk). It takes what Theo1 promises in degrees of freedom where the noise type is known;
-/// what stays is the reach, three quarters of the record.
+/// white noise with a random walk). Where the noise type is known Theo1 promises more degrees of freedom; here that
+/// gain is lost to the added variance, and what remains of Theo1 is its reach: tau up to three quarters of the record.
 #include "core/process/model.hpp"
 #include "core/signal/estimate.hpp"
 

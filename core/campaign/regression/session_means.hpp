@@ -1,8 +1,9 @@
 #pragma once
 /// Whether a figure that a session has one of (a bias, a scale factor) moved with the change by more than a margin.
 ///
-/// How much such a figure moves from one power-up to the next has no prior, for that differs by orders between sensors:
-/// it is tested only with a margin and three sessions an arm, and is told otherwise. The test is Welch's (1947),
+/// How much such a figure moves from one power-up to the next differs by orders of magnitude between sensors, so there
+/// is no prior for it: it is tested only where a margin and three sessions an arm are given, else reported. The test is
+/// that of Welch (1947),
 /// Biometrika 34, 28: with d the difference of the arms' means of session figures and se^2 = s_1^2/n + s_2^2/m, more
 /// than the margin is shown where P(T > (|d| - margin)/se), T Student's with the degrees of freedom of Welch and
 /// Satterthwaite, times the number of units (Bonferroni; for the smallest p it is Holm) is at most the level.
@@ -35,7 +36,7 @@ struct SessionFigure {
 [[nodiscard]] FiguresByUnit arm_figures(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
                                         const std::function<std::map<std::string, SessionFigure>(const PowerUp&)>& of);
 
-/// What a check of such figures is called, and how it speaks.
+/// The words of a check of such figures: its name, and the parts of its sentence.
 struct ShiftWords {
   std::string check;    ///< `bias`
   std::string figure;   ///< "bias"

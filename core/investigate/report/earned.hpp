@@ -3,7 +3,7 @@
 ///
 /// The best cause of a list is not a right cause: an effect that stands in no list is described best by some cause that
 /// does. A finding is therefore left open to something unnamed (Evidence::doubt) if
-///   - a parameter is at the bound of its search, or a time beyond twenty records;
+///   - a parameter is at the bound of its search, or a time constant longer than twenty recordings;
 ///   - a bias that differs from recording to recording differs in one alone, of four or more: more than 95 % of the sum
 ///     of squares about the median is one recording's;
 ///   - as many checks fail with the extended model as half of those that failed before, and three or more;

@@ -8,7 +8,7 @@
 
 namespace driftlab::investigate {
 
-/// What the look at full rate needs besides the data.
+/// Facts about the baseline and the file that looking at the data at full rate needs.
 struct ColourSetting {
   bool given = false;  ///< the baseline is given
   double quantization = 0.0;

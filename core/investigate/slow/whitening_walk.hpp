@@ -10,8 +10,8 @@ namespace driftlab::investigate {
 
 class WhiteningWalk {
  public:
-  /// Of `width` series alike; `states` must outlive the walk. `uniform`: every block is as full as the first, so that
-  /// gains that no longer change are those of all blocks after.
+  /// Filters `width` series with the same gains; `states` must outlive the walk. `uniform`: every block is as full as
+  /// the first, so that gains which no longer change hold for all blocks that follow.
   WhiteningWalk(const BlockStates& states, bool uniform, std::size_t width);
 
   /// Goes on to the next block, of which the share `filled` holds samples. O(states^2).
