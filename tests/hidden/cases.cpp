@@ -86,7 +86,7 @@ std::vector<double> oracle_values(const Cause& cause, const SimulatedStudy& clea
     return values;
   }
   const MeanEffect& mean = *cause.as<MeanEffect>();
-  std::vector<double> values{(mean.free_phase || mean.period > 0.0 ? 1.0 : sign) * stage.z *
+  std::vector<double> values{(mean.free_phase || mean.refinement.turns() ? 1.0 : sign) * stage.z *
                              oracle_deviation(clean, cause, shape)};
   if (mean.shapes != nullptr || mean.change_point) {
     values.push_back(shape);

@@ -18,6 +18,8 @@ class ShapeRefinement {
   [[nodiscard]] static ShapeRefinement phase(double period) { return ShapeRefinement(Kind::Phase, period); }
 
   [[nodiscard]] bool refined() const { return kind_ != Kind::Tried; }
+  /// The shape is a phase: every effect has an amplitude that is positive.
+  [[nodiscard]] bool turns() const { return kind_ == Kind::Phase; }
 
   /// Step of a difference quotient at `shape`.
   [[nodiscard]] double difference(double shape) const {
@@ -75,7 +77,6 @@ class ShapeRefinement {
  private:
   enum class Kind { Tried, Time, Phase };
   ShapeRefinement(Kind kind, double period) : kind_(kind), period_(period) {}
-  [[nodiscard]] bool turns() const { return kind_ == Kind::Phase; }
 
   Kind kind_ = Kind::Tried;
   double period_ = 0.0;
