@@ -88,11 +88,20 @@ void refuse_calls() {
   (void)::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }
 
+#ifdef DRIFTLAB_SANITIZED
+/// Memory that is used instead of addresses; no look for leaks, which needs calls that the filter refuses.
+constexpr const char* kSanitizerOptions = "detect_leaks=0:hard_rss_limit_mb=1024:allocator_may_return_null=1";
+#endif
+
 }  // namespace
 
 bool enter_sandbox(std::size_t memory_bytes) {
-  const bool limited =
-      limit(RLIMIT_AS, memory_bytes) && limit(RLIMIT_CPU, kSeconds) && limit(RLIMIT_FSIZE, 0) && limit(RLIMIT_CORE, 0);
+#ifdef DRIFTLAB_SANITIZED
+  const bool enough = memory_bytes > 0;  // a sanitizer reserves terabytes of addresses: kSanitizerOptions limits memory
+#else
+  const bool enough = limit(RLIMIT_AS, memory_bytes);
+#endif
+  const bool limited = enough && limit(RLIMIT_CPU, kSeconds) && limit(RLIMIT_FSIZE, 0) && limit(RLIMIT_CORE, 0);
   if (!limited || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
     return false;
   }
@@ -101,3 +110,15 @@ bool enter_sandbox(std::size_t memory_bytes) {
 }
 
 }  // namespace driftlab::decode
+
+#ifdef DRIFTLAB_SANITIZED
+// What the run-time of a sanitizer asks for; the process is started without an environment.
+// NOLINTBEGIN(bugprone-reserved-identifier)
+extern "C" {
+const char* __asan_default_options();
+const char* __tsan_default_options();
+const char* __asan_default_options() { return driftlab::decode::kSanitizerOptions; }
+const char* __tsan_default_options() { return driftlab::decode::kSanitizerOptions; }
+}
+// NOLINTEND(bugprone-reserved-identifier)
+#endif
