@@ -51,10 +51,11 @@ export const choose = (changes: QueryChange): void => go(withQuery(changes));
 export const hover = (changes: QueryChange): void => go(withQuery(changes), {replace: true});
 
 export function usePlace(): Place {
-  const [, again] = useState(0);
+  const [, again] = useState(place);
   useEffect(() => {
-    const listener = (): void => again(n => n + 1);
+    const listener = (): void => again(place);
     listeners.add(listener);
+    listener();  // Back may have come between drawing and this
     return () => { listeners.delete(listener); };
   }, []);
   return place;
