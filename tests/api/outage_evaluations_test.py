@@ -168,16 +168,23 @@ class OutageEvaluations(DaemonTest):
         answer = self.expect(400, self.daemon.post("/v1/models", {"name": "mixed", "processes": [force],
                                                                  "deterministic": {"fx": {"bias": level(0.7, "deg/s")}}}))
         self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/deterministic/fx/bias/unit"], answer.describe())
-        # A truth that is no object, beside a stored model with a bias, was answered with 500: the bias was written into it.
-        for truth in ([{"gyro": scenario["truth"]["gyro"]}], "paper"):
-            nested = {**scenario, "truth": truth, "filters": [{"name": "a", "truth": scenario["truth"]}]}
-            answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": nested}))
-            self.assertIn("/scenario/truth", [e["pointer"] for e in answer.json["errors"]], answer.describe())
-        answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": [{"truth": scenario["truth"]}]}))
-        self.assertIn("/scenario", [e["pointer"] for e in answer.json["errors"]], answer.describe())
         twice = {**scenario["truth"], "gyro_errors": {"bias": 1}}
         answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": {**scenario, "truth": twice}}))
         self.assertEqual([e["pointer"] for e in answer.json["errors"]], ["/scenario/truth/gyro_errors/bias"])
+
+    def test_a_truth_that_is_no_object_is_named_beside_a_stored_model(self) -> None:
+        # It was answered with 500: the bias of the stored model was written into it.
+        level = {"value": 1, "unit": "deg/sqrt(h)"}
+        model = self.expect(201, self.daemon.post("/v1/models", {
+            "name": "biased", "processes": [{"process": "white_noise", "params": {"N": level}}],
+            "deterministic": {"gz": {"bias": {"value": 0.7, "unit": "deg/s"}}}})).json["id"]
+        stored = {**SCENARIO["truth"], "gyro": {"simulation_model": model, "constant_bias_sd_deg_s": 0.05}}
+        for truth in ([{"gyro": stored["gyro"]}], "paper", 5, None):
+            nested = {**SCENARIO, "truth": truth, "filters": [{"name": "a", "truth": stored}]}
+            answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": nested}))
+            self.assertIn("/scenario/truth", [e["pointer"] for e in answer.json["errors"]], answer.describe())
+        answer = self.expect(400, self.daemon.post("/v1/outage-evaluations", {"scenario": [{"truth": stored}]}))
+        self.assertIn("/scenario", [e["pointer"] for e in answer.json["errors"]], answer.describe())
 
     def test_a_running_evaluation_is_cancelled(self) -> None:
         job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 20000})).json["id"]
