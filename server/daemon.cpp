@@ -38,11 +38,14 @@ constexpr double kGraceShare = 0.7;
 constexpr std::int64_t kSharedLeaseMicros = 20'000'000;
 constexpr std::int64_t kMicrosPerDay = 24LL * 3600 * 1'000'000;
 
-/// The threads that jobs share, one for each core unless told otherwise, and the jobs that run at a time: of more than
-/// there are threads some would only wait.
+/// The threads that jobs share: one for each core unless told otherwise.
+int computing_threads(const Settings& settings) {
+  return settings.threads > 0 ? settings.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+/// These, and the jobs that run at a time: of more than there are threads some would only wait.
 void settle_threads(const Settings& settings, WorkerOptions& options) {
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  options.computing = settings.threads > 0 ? settings.threads : cores;
+  options.computing = computing_threads(settings);
   options.threads = settings.workers > 0 ? std::min(settings.workers, options.computing) : options.computing;
 }
 
@@ -68,7 +71,7 @@ struct Daemon::Parts {
                  [this] { return has_duty(Duty::Scrubbing); }),
         deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
         workers({*store, *blobs, *clock, budgets,
-                 [this](const std::string& blob) { return scrubber.verify_columns(blob); }},
+                 [this](const std::string& blob) { return scrubber.verify_columns(blob); }, computing_threads(settings)},
                 maintained(std::move(worker_options)),
                 [this](const std::string& id) {
                   bell.ring(id);
@@ -98,6 +101,7 @@ struct Daemon::Parts {
             [this] { deliverer.wake(); },
             [this] { return states.standing(); }},
         dispatcher(api) {
+    api.computing = computing_threads(settings);
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
     if (others != nullptr) {
       api.keys_in_flight.share(others);

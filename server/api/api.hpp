@@ -48,6 +48,10 @@ struct ApiContext {
   std::function<void()> wake_deliveries = {};                   ///< there is something to deliver
   std::function<std::vector<StandingState>()> bad_states = {};  ///< what is wrong now
   KeysInFlight keys_in_flight = {};
+  int computing = 0;  ///< threads that jobs share; 0: one for each core
+
+  /// For a job that is asked for: what it takes is estimated, and no columns are read yet.
+  [[nodiscard]] JobContext job_context() const { return {store, blobs, clock, budgets, {}, computing}; }
 };
 
 /// Tells who listens to all events how a job stands, and of its result when it has one.

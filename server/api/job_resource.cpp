@@ -92,7 +92,7 @@ Result<Response> create_job_object(ApiContext& context, const Request& request, 
   if (auto full = refuse_full_queue(context.store, context.budgets)) {
     return std::move(*full);
   }
-  JobContext job_context{context.store, context.blobs, context.clock, context.budgets};
+  JobContext job_context = context.job_context();
   auto job = new_job(*find_job_kind(resource.kind), body->inputs, body->parameters, job_context);
   if (!job) {
     return refused_job(located_in_body(job.error()));

@@ -46,7 +46,7 @@ Result<Response> create_job(ApiContext& context, const Request& request) {
   if (auto full = refuse_full_queue(context.store, context.budgets)) {
     return std::move(*full);
   }
-  JobContext job_context{context.store, context.blobs, context.clock, context.budgets};
+  JobContext job_context = context.job_context();
   auto job = new_job(*kind, inputs != nullptr ? *inputs : Json::object(),
                      parameters != nullptr ? *parameters : Json::object(), job_context);
   if (!job) {

@@ -148,7 +148,7 @@ class Live {
   }
 
   Json characterise(const std::string& recording) {
-    JobContext job_context{context_.store, context_.blobs, context_.clock};
+    JobContext job_context = context_.job_context();
     const auto job = new_job(*find_job_kind("characterise"), Json{{"recordings", Json::array({recording})}},
                              Json::object(), job_context);
     const auto queued = job ? context_.store.enqueue(*job) : Result<EnqueuedJob>(fail(job.error()));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <thread>
 
 namespace driftlab::server {
 namespace {
@@ -39,7 +40,9 @@ std::int64_t memory_for_jobs(const Budgets& budgets) {
   return budgets.job_memory_bytes > 0 ? budgets.job_memory_bytes : half;
 }
 
-Status admit_cost(const JobCost& cost, const Budgets& budgets) {
+Status admit_cost(const JobCost& cost, const Budgets& budgets, int computing) {
+  const double threads = computing > 0 ? computing : std::max(1U, std::thread::hardware_concurrency());
+  const double seconds = cost.seconds + cost.shared_seconds / threads;
   const std::int64_t most = memory_for_jobs(budgets);
   constexpr std::int64_t kMebi = std::int64_t{1} << 20;
   if (cost.memory_bytes > most) {
@@ -48,9 +51,9 @@ Status admit_cost(const JobCost& cost, const Budgets& budgets) {
                                               std::to_string(most / kMebi) + " MiB " +
                                               naming_budget("job_memory_bytes", most) + ".");
   }
-  if (cost.seconds > static_cast<double>(budgets.job_seconds)) {
+  if (seconds > static_cast<double>(budgets.job_seconds)) {
     return fail(ErrorCode::LimitExceeded,
-                "The job would take about " + std::to_string(static_cast<std::int64_t>(cost.seconds)) + " s " +
+                "The job would take about " + std::to_string(static_cast<std::int64_t>(seconds)) + " s " +
                     naming_budget("job_seconds", budgets.job_seconds) + "; ask for less of it at once.");
   }
   return {};

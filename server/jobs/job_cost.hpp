@@ -22,7 +22,8 @@ namespace driftlab::server {
 
 struct JobCost {
   std::int64_t memory_bytes = std::int64_t{32} << 20;
-  double seconds = 0.0;  ///< where it has every thread that it can use
+  double seconds = 0.0;         ///< however many threads it has
+  double shared_seconds = 0.0;  ///< of one thread; all on which jobs compute share it among them
 };
 
 /// The size of a stored recording.
@@ -37,8 +38,9 @@ struct RecordingSize {
 /// The budget job_memory_bytes, or half of the memory that this process may use where it is 0.
 [[nodiscard]] std::int64_t memory_for_jobs(const Budgets& budgets);
 
-/// Error: LimitExceeded naming the budget, for a job that could never run or never end in time.
-[[nodiscard]] Status admit_cost(const JobCost& cost, const Budgets& budgets);
+/// Error: LimitExceeded naming the budget, for a job that could never run, or never end in time on `computing` threads
+/// (0: one for each core).
+[[nodiscard]] Status admit_cost(const JobCost& cost, const Budgets& budgets, int computing);
 
 /// Shares memory out among running jobs, in the order in which they came: a large one is not passed by small ones for
 /// ever. Thread safe.

@@ -25,6 +25,7 @@ struct JobContext {
   /// Makes sure that the columns of a blob are what was written, before they are used; may be empty. Errors: Io, for
   /// columns that are damaged and cannot be made anew.
   std::function<Status(const std::string& sha256)> verify_columns = {};
+  int computing = 0;  ///< threads that jobs share; 0: one for each core
 };
 
 class JobKind {

@@ -12,7 +12,6 @@
 #include "server/jobs/stored_models.hpp"
 
 #include <algorithm>
-#include <thread>
 
 namespace driftlab::server {
 namespace {
@@ -85,8 +84,7 @@ class OutageEvaluationKind final : public JobKind {
     const int runs = options.relative_precision > 0.0 ? std::min(options.runs, kFewestRuns) : options.runs;
     JobCost cost;
     cost.memory_bytes += static_cast<std::int64_t>(kBytesPerSample * epochs);
-    const double threads = std::max(1U, std::thread::hardware_concurrency());
-    cost.seconds = epochs * runs * static_cast<double>(scenario.filters.size()) / kEpochsPerSecond / threads;
+    cost.shared_seconds = epochs * runs * static_cast<double>(scenario.filters.size()) / kEpochsPerSecond;
     return cost;
   }
 
