@@ -53,6 +53,13 @@ FLOORS: dict[str, list[str]] = {
     "clients/decode": ["core/signal", "core/read"],  # a process of its own for files that may break it
 }
 
+# Of core/campaign they ask these: what is pooled or compared, and the tables, populations and settings that come of it.
+# Its other headers are the arithmetic between.
+ABOVE_USE_CASES = ("server/jobs", "server/api", "server", "clients/cli")
+CAMPAIGN_DOORS = {"core/campaign/" + name for name in (
+    "glance.hpp", "parameter_table.hpp", "population_report.hpp", "sensor_sources.hpp",
+    "regression/kept_settings.hpp", "regression/recordings.hpp")}
+
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.
 RESERVED = {
     r"sqlite3\.h": ("server/store", "core/read/rosbag2.cpp"),  # a ROS 2 bag is an SQLite database
@@ -121,6 +128,8 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
         target = module_of(included)
         if target is not None and target != module and target not in FLOORS[module]:
             fault(match.start(2), f"{module} may not include {included}: {target} is not below it")
+        if module in ABOVE_USE_CASES and target == "core/campaign" and included not in CAMPAIGN_DOORS:
+            fault(match.start(2), f"{module} may not include {included}: it is arithmetic of core/campaign")
         if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
             fault(match.start(2), f"include {included} by its path from the top of the repository")
         if module == "schema/json" and name not in WRITE_NUMBERS and included in COMPUTING_HEADERS:
