@@ -19,6 +19,8 @@ CHECKS = "core/campaign/regression/"
 LITERAL = re.compile(r'"((?:\\.|[^"\\\n])*)"')
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 RIVALS = re.compile(r"\.rivals\s*=\s*\{[^}]*\}")
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[^\n]*', re.MULTILINE)
+WORD = re.compile(r"\w+")
 LINE = re.compile(r"\bCAUSE\((\w+)\)")
 NAME = re.compile(r'\.name\s*=\s*"(\w+)"')
 PROCESS = re.compile(r'\bkName\s*=\s*"(\w+)"')
@@ -40,6 +42,11 @@ def speaks_of_causes(text: str, start: int, end: int) -> bool:
     before = re.split(r"[;{}]\s*\n", text[:start])[-1]
     after = re.split(r"[;\n]", text[end:], maxsplit=1)[0]
     return re.search(r"cause", before[-160:] + after, re.IGNORECASE) is not None
+
+
+def said_in(literal: str, causes: dict[str, str]) -> set[str]:
+    """The causes a literal is the name of, or holds: "bias_step" in "bias_step.t0_s". Names of one word are words of sentences too."""
+    return {word for word in WORD.findall(literal) if word in causes and ("_" in word or word == literal)}
 
 
 def check(root: Path) -> list[str]:
@@ -68,14 +75,15 @@ def check(root: Path) -> list[str]:
         code = without_comments(text)
         if name.startswith(tuple(f"{folder}/" for folder in FOLDERS)):
             code = blank(RIVALS, code)
+        code = blank(INCLUDE, code)
         for match in LITERAL.finditer(code):
-            said = match.group(1)
-            if said not in causes or causes[said] == name:
-                continue
-            if (said in processes or name.startswith(CHECKS)) and not speaks_of_causes(code, *match.span()):
-                continue
-            line = code.count("\n", 0, match.start()) + 1
-            faults.append(f'{name}:{line}: knows the cause "{said}" by name; let {causes[said]} declare what is special about it')
+            for said in sorted(said_in(match.group(1), causes)):
+                if causes[said] == name:
+                    continue
+                if (said in processes or name.startswith(CHECKS)) and not speaks_of_causes(code, *match.span()):
+                    continue
+                line = code.count("\n", 0, match.start()) + 1
+                faults.append(f'{name}:{line}: knows the cause "{said}" by name; let {causes[said]} declare what is special about it')
     return faults
 
 

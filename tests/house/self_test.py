@@ -128,7 +128,7 @@ class Causes(Planted):
 
     def test_names_in_their_places_are_clean(self) -> None:
         self.plant("tests/hidden/a.cpp", 'make_case("bias_jump");\n')
-        self.plant("core/investigate/search/a.cpp", '// unlike "bias_jump"\nauto s = "a bias_jump";\nadd("slow_walk", {level});\n')
+        self.plant("core/investigate/search/a.cpp", '// unlike "bias_jump"\n#include "core/bias_jump.hpp"\nadd("slow_walk", {level});\n')
         self.plant("schema/docs/analysis.md", 'the cause "bias_jump"\n')
         self.assertEqual(causes.check(self.root), [])
 
@@ -139,6 +139,7 @@ class Causes(Planted):
                             ("schema/json/a.cpp", 'const bool powers = name == "bias_jump";'),
                             ("server/jobs/a.cpp", 'Json effect{{"cause", "slow_walk"}};'),
                             ("clients/dashboard/a.ts", 'if (name === "bias_jump") {'),
+                            ("schema/text/b.cpp", 'auto at = parameters.find("bias_jump.t0_s");'),
                             ("core/navigate/drive/explain.cpp", 'if (finding.cause == "late_fix") {'),
                             ("schema/text/drive.cpp", 'if (f.cause != "late_fix") {'),
                             (f"{self.of_drives}/draft.cpp", 'return knob_of("late_fix");'),
