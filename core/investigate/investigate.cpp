@@ -178,18 +178,20 @@ struct Taken {
 
 /// Takes what is needed of a channel whose search has ended, and lets its samples go but for the innovations, which are
 /// compared with those of other channels.
-void take_from(const ChannelGroup& group, GroupOutcome& outcome, Taken& taken) {
+void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop_token& stop, Taken& taken) {
   taken.checks.push_back(check_channel(group, outcome));
   taken.means.push_back(means_of(outcome.before));
   taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
   outcome.before = {};
   outcome.after.residual.clear();
-  if (outcome.usable) {
+  if (outcome.usable && !stop.stop_requested()) {
     std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
     taken.remains.insert(taken.remains.end(), std::make_move_iterator(remains.begin()),
                          std::make_move_iterator(remains.end()));
   }
 }
+
+tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The investigation was stopped."); }
 
 }  // namespace
 
@@ -198,7 +200,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
     return fail(ErrorCode::TooFewSamples, "The study holds no recording.");
   }
   control.report("recordings", 0.0);
-  const RightedRecordings righted = right_recordings(given);
+  const RightedRecordings righted = right_recordings(given, control.stop);
   const Study& study = righted.study ? *righted.study : given;
   if (const Status known = check_processes(study.baseline); !known) {
     return fail(known.error());
@@ -224,17 +226,17 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "The investigation was stopped.");
+      return cancelled();
     }
     outcomes.push_back(
         search_group(study, groups[g], g, control.reporting([&](std::string_view stage, double fraction) {
           control.report(stage, 0.95 * (static_cast<double>(g) + fraction) / static_cast<double>(groups.size()));
         })));
     if (control.stop.stop_requested()) {
-      return fail(ErrorCode::Cancelled, "The investigation was stopped.");
+      return cancelled();
     }
     GroupOutcome& outcome = outcomes.back();
-    take_from(groups[g], outcome, taken);
+    take_from(groups[g], outcome, control.stop, taken);
     if (!outcome.usable) {
       report.notes.push_back("The channel " + groups[g].column + " cannot be examined: " + outcome.why_not + ".");
       for (const Cause& cause : cause_registry()) {
@@ -255,6 +257,9 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
       }
     }
   }
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   examine_together(outcomes, groups, found, examined);
   join_axes(found);
   const std::vector<Evidence> seen = found;
@@ -263,6 +268,9 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   make_checks(groups, outcomes, taken.checks, examined, report);
   const std::vector<Remainder> remains = what_remains(groups, outcomes, seen, std::move(taken.remains));
   doubt_what_is_not_earned(groups, taken.means, remains, report, found);
+  if (control.stop.stop_requested()) {
+    return cancelled();
+  }
   list_findings(std::move(found), groups, report);
   settle_gains(groups, outcomes, report);
   for (std::size_t g = 0; g < groups.size(); ++g) {

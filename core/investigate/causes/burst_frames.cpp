@@ -315,7 +315,7 @@ std::optional<Burstiness> strongest_bursts(const FullRate& data, const std::vect
   double most = 0.0;
   double at = 0.0;
   tried = 0.0;
-  for (double centre = kLowest + 0.5 * kWidth; centre < nyquist_hz; centre += 0.5 * kWidth) {
+  for (double centre = kLowest + 0.5 * kWidth; centre < nyquist_hz && !data.stopped(); centre += 0.5 * kWidth) {
     const InBand in = ratios_in(all, centre);
     if (static_cast<double>(in.frames) < kFewest) {
       continue;

@@ -213,11 +213,17 @@ Evidence describe(const FullRate& data, const std::vector<std::size_t>& scope, c
 std::vector<Evidence> examine(const FullRate& data) {
   std::vector<Map> maps;
   for (std::size_t r = 0; r < data.members(); ++r) {
+    if (data.stopped()) {
+      return {};
+    }
     maps.push_back(map_of(data, r));
   }
   const auto scopes = scopes_of(data);
   std::vector<Evidence> found;
   for (const auto& scope : scopes) {
+    if (data.stopped()) {
+      break;
+    }
     constexpr std::size_t kFewest = 6;
     std::vector<const Map*> of_scope;
     double longest = 0.0;

@@ -299,6 +299,9 @@ std::vector<Evidence> find_lines(const FullRate& data) {
   }
   std::vector<Evidence> found;
   for (const auto& scope : scopes) {
+    if (data.stopped()) {
+      break;
+    }
     double total = 0.0;
     double longest = 0.0;
     for (const std::size_t r : scope) {

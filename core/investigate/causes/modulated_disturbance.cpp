@@ -167,6 +167,9 @@ std::vector<Evidence> examine(const FullRate& data) {
     for (const std::size_t r : line.members) {
       longest = std::max(longest, length_s(data, r));
     }
+    if (data.stopped()) {
+      break;
+    }
     if (line.shape < kLowest) {
       continue;
     }

@@ -43,6 +43,9 @@ std::vector<Evidence> examine(const FullRate& data) {
   const auto scopes = scopes_of(data);
   std::vector<Evidence> found;
   for (const auto& scope : scopes) {
+    if (data.stopped()) {
+      break;
+    }
     double tried = 0.0;
     const auto bursts = strongest_bursts(data, scope, tried);
     if (!bursts) {

@@ -266,6 +266,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   data.lattice_step = options.lattice_step;
   data.quantization = options.quantization;
   data.colour = options.colour;
+  data.stop = options.stop;
   data.dt_s = group.members.front().recording->dt_s;
   data.model = model;
   data.residual = std::move(residual);

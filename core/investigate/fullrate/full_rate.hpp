@@ -16,6 +16,7 @@
 #include "core/investigate/study/study.hpp"
 
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -43,8 +44,10 @@ struct FullRate {
   double repeatability = 1.0;
   std::vector<double> further;  ///< coefficients of the autoregression that whitens once more; empty: none
   NoiseColour colour;           ///< that has been found; its peaks are part of `slow`
+  std::stop_token stop;         ///< once it is asked, loops end early and what they give counts for nothing
 
   [[nodiscard]] std::size_t members() const { return group->members.size(); }
+  [[nodiscard]] bool stopped() const { return stop.stop_requested(); }
 };
 
 struct FullRateOptions {
@@ -54,6 +57,7 @@ struct FullRateOptions {
   double lattice_step = 0.0;
   NoiseColour colour = {};  ///< needs whiten_further
   bool innovations = true;  ///< false: the spectra alone, and what follows from them
+  std::stop_token stop = {};
 };
 
 /// `residual[r]`: over the analysed part of member r; `mask[r]`: over its grid, removes samples (may be empty).

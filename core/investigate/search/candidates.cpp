@@ -71,7 +71,7 @@ void keep_last(std::vector<Evidence>& remaining, const std::vector<Evidence>& fr
 std::optional<Evidence> choose(const FullRate& data, std::vector<Evidence>& candidates) {
   for (;;) {
     const Evidence* const best = strongest(candidates);
-    if (best == nullptr || best->score < kThreshold) {
+    if (best == nullptr || best->score < kThreshold || data.stopped()) {
       return std::nullopt;
     }
     Evidence winner = *best;

@@ -78,6 +78,7 @@ class GroupSearch {
     options.given = given_.has_value();
     options.whiten_further = whiten_further;
     options.lattice_step = lattice_step_;
+    options.stop = control_.stop;
     SlowModel model = search.null_fit().model;
     model.white_scale.clear();
     if (given_) {
@@ -133,6 +134,9 @@ class GroupSearch {
           data = full_rate(search, error_, false);
         }
       }
+      if (stopped()) {
+        break;
+      }
       if (round == 0 && !given_) {
         quantization_ = quantization_of_base(data);
         data = quantization_ > 0.0 ? full_rate(search, error_, false) : std::move(data);
@@ -167,6 +171,9 @@ class GroupSearch {
           error_[r] = std::move(rest);
         }
         search.set_data(error_, mask_);
+        if (stopped()) {
+          break;
+        }
         search.fit_null();
         outcome_.found.push_back(*std::move(winner));
       } else {
@@ -184,7 +191,7 @@ class GroupSearch {
     }
     control_.report("intervals of " + group_.column, 0.7);
     // Backward check: what gains nothing on samples it was not fitted to goes out again, the last one first.
-    for (std::size_t i = slow_found.size(); i-- > 0;) {
+    for (std::size_t i = slow_found.size(); i-- > 0 && !stopped();) {
       search.hold_out(slow_found[i]);
       if (slow_found[i].heldout_gain <= 0.0) {
         search.reject(slow_found[i]);
@@ -194,6 +201,9 @@ class GroupSearch {
       }
     }
     for (Evidence& evidence : slow_found) {
+      if (stopped()) {
+        return;
+      }
       search.describe(evidence);
       // A drift that all recordings share is part of an automatic baseline.
       const bool shared = evidence.members.size() == group_.members.size() && !evidence.parameters.empty();
@@ -203,6 +213,9 @@ class GroupSearch {
       } else {
         outcome_.found.push_back(std::move(evidence));
       }
+    }
+    if (stopped()) {
+      return;
     }
     ChannelModel& model = outcome_.model;
     model.channel = group_.column;
@@ -215,7 +228,9 @@ class GroupSearch {
     model.beside.noise.white = outcome_.after.model.white;
     model.beside.bias = search.null_fit().amplitude[0];
     model.beside.quantization = given_ ? 0.0 : quantization_;
-    settle_alone(search);
+    if (!stopped()) {
+      settle_alone(search);
+    }
   }
 
   /// What gains nothing on data it was not fitted to has not been seen.
@@ -275,7 +290,7 @@ class GroupSearch {
   [[nodiscard]] static std::vector<Evidence> lines_in(const FullRate& data) {
     std::vector<Evidence> lines;
     for (const Cause& cause : cause_registry()) {
-      if (const SpectralLine* const line = cause.as<SpectralLine>()) {
+      if (const SpectralLine* const line = cause.as<SpectralLine>(); line != nullptr && !data.stopped()) {
         for (Evidence& evidence : line->examine(data)) {
           evidence.cause = &cause;
           lines.push_back(std::move(evidence));
@@ -299,7 +314,7 @@ class GroupSearch {
     take_colours({given_.has_value(), quantization_, lattice_step_, mask_}, outcome_);
     FullRate& data = outcome_.after;
     constexpr int kMost = 2;
-    for (int found = 0;; ++found) {
+    for (int found = 0; !stopped(); ++found) {
       std::vector<Evidence> candidates = noise_candidates(data);
       const std::optional<Evidence> winner = choose(data, candidates);
       if (found == 0) {
@@ -354,6 +369,7 @@ class GroupSearch {
     options.lattice_step = lattice_step_;
     options.quantization = quantization_ + found.shape;
     options.colour = data.colour;
+    options.stop = control_.stop;
     const SlowModel model = data.model;
     data = look_at_full_rate(study_, group_, model, std::move(data.residual), mask_, options);
   }

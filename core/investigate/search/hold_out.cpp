@@ -123,11 +123,11 @@ void hold_out(const FullRate& data, Evidence& found) {
   for (const auto& e : data.residual) {
     samples += static_cast<double>(e.size());
   }
-  for (std::size_t fold = 0; fold < 2; ++fold) {
+  for (std::size_t fold = 0; fold < 2 && !data.stopped(); ++fold) {
     const FullRate train = halves ? half_of(data, fold) : fold_of(data, fold);
     const FullRate test = halves ? half_of(data, 1 - fold) : fold_of(data, 1 - fold);
     const std::optional<Evidence> trained = train_on(train, found);
-    if (!trained) {
+    if (!trained || data.stopped()) {
       continue;  // nothing would have been added, nothing gained
     }
     gain += halves ? log_gain(test, *trained) : gain_of_deviation(test, *trained);

@@ -194,6 +194,7 @@ SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsi
   options.quantization = quantization;
   options.whiten_further = !data.flat || quantization > 0.0 || data.colour.peak;
   options.colour = data.colour;
+  options.stop = stop;
   SlowModel model = data.model;
   model.white_scale.clear();
   SlowFreedom freedom;

@@ -22,12 +22,12 @@ SetAside describe(const StudyRecording& recording, const Channel& channel, const
 
 }  // namespace
 
-RightedRecordings right_recordings(const Study& study) {
+RightedRecordings right_recordings(const Study& study, const std::stop_token& stop) {
   RightedRecordings righted;
   const auto present = [&]() -> const Study& { return righted.study ? *righted.study : study; };
   for (const Cause& cause : cause_registry()) {
     const RecordingFault* const family = cause.as<RecordingFault>();
-    if (family == nullptr) {
+    if (family == nullptr || stop.stop_requested()) {
       continue;
     }
     for (FaultyRecordings& fault : family->find(present())) {
@@ -37,6 +37,9 @@ RightedRecordings right_recordings(const Study& study) {
       fault.mend(*righted.study, righted.rows);
       righted.findings.push_back({&cause, std::move(fault)});
     }
+  }
+  if (stop.stop_requested()) {
+    return righted;
   }
   for (const DoubtfulRecording& doubt : doubtful_recordings(present())) {
     const bool named = doubt.doubt != RecordingDoubt::NoResponse && doubt.doubt != RecordingDoubt::OddGain;

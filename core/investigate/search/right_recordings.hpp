@@ -9,6 +9,7 @@
 
 #include <deque>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct RightedRecordings {
   std::vector<SetAside> aside;
 };
 
-/// The study is copied only if something is wrong with it. O(samples log samples).
-[[nodiscard]] RightedRecordings right_recordings(const Study& study);
+/// The study is copied only if something is wrong with it. Once `stop` asks, what is left is not looked at. O(samples log
+/// samples).
+[[nodiscard]] RightedRecordings right_recordings(const Study& study, const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

@@ -75,7 +75,7 @@ std::optional<SeenColour> strongest_colour(const ColourSetting& setting, const F
   const std::optional<FullRate> without = setting.given ? std::nullopt : without_fast_process(data);
   std::optional<SeenColour> best;
   for (const Cause& cause : cause_registry()) {
-    if (!is_colour(cause, data)) {
+    if (!is_colour(cause, data) || data.stopped()) {
       continue;
     }
     std::vector<Evidence> found = without ? seen(cause, *without) : std::vector<Evidence>{};
@@ -126,6 +126,7 @@ void take(const ColourSetting& setting, const SeenColour& top, GroupOutcome& out
   options.given = false;  // the level behind the colour is the autoregression's
   options.quantization = setting.given ? 0.0 : setting.quantization;
   options.lattice_step = setting.lattice_step;
+  options.stop = data.stop;
   options.colour = one_more(top.data, top.evidence);
   SlowModel model = top.data.model;
   if (!setting.given) {
@@ -149,7 +150,7 @@ SlowModel base_of(SlowModel noise, const std::vector<Evidence>& found) {
 }
 
 void take_colours(const ColourSetting& setting, GroupOutcome& outcome) {
-  for (int taken = 0; taken < kMostColours; ++taken) {
+  for (int taken = 0; taken < kMostColours && !outcome.after.stopped(); ++taken) {
     std::optional<SeenColour> colour = strongest_colour(setting, outcome.after, outcome);
     if (!colour) {
       return;
