@@ -157,15 +157,16 @@ int AccessCommands::run(const Settings& settings) const {
   if (verify_->parsed() && !file_.empty()) {
     return verify_file(file_, head_);
   }
-  const SystemClock clock;
-  auto opened = open_existing_store(settings, clock);
+  const SystemClock machine;
+  auto opened = open_existing_store(settings, machine);
   if (!opened && create_->parsed() && opened.error().code == ErrorCode::NotFound) {
-    opened = open_store(settings, clock);  // a token may be made before the daemon first starts
+    opened = open_store(settings, machine);  // a token may be made before the daemon first starts
   }
   if (!opened) {
     return complain(opened.error());
   }
   AccessStore& access = opened->store->access();
+  const Clock& clock = *opened->clock;
   if (verify_->parsed()) {
     const auto verdict = access.verify_audit();
     return verdict ? print_verdict(*verdict, head_) : complain(verdict.error());

@@ -53,34 +53,36 @@ void settle_threads(const Settings& settings, WorkerOptions& options) {
 
 /// Members in the order of construction; destruction is the reverse.
 struct Daemon::Parts {
-  Parts(std::unique_ptr<BlobStore> blobs_in, OpenedStore store_in, std::unique_ptr<SystemClock> clock_in,
+  Parts(std::unique_ptr<BlobStore> blobs_in, OpenedStore store_in, std::unique_ptr<SystemClock> machine,
         std::unique_ptr<Gate> gate_in, WorkerOptions worker_options, const DestinationGuard& webhook_guard,
         const Settings& settings)
       : budgets(settings.budgets),
         reserve(settings.data / "reserve", settings.budgets.reserve_bytes),
-        clock(std::move(clock_in)),
+        machine_clock(std::move(machine)),
+        clock(*store_in.clock),
         blobs(std::move(blobs_in)),
         directory_lock(std::move(store_in.lock)),
         store(std::move(store_in.store)),
         others(store_in.others),
         visible(make_visible_store(*store)),
-        states(*clock, note_state, [this](const auto&... words) { return store->access().note_state(words...); }),
+        states(clock, note_state, [this](const auto&... words) { return store->access().note_state(words...); }),
         readiness(*store, *blobs, states),
         gate(std::move(gate_in)),
         scrubber(*store, *blobs, states, decode_limits(budgets), budgets.scrub_bytes_per_second,
                  [this] { return has_duty(Duty::Scrubbing); }),
-        deliverer(store->webhooks(), *clock, delivery_options(webhook_guard)),
-        workers({*store, *blobs, *clock, budgets,
-                 [this](const std::string& blob) { return scrubber.verify_columns(blob); }, computing_threads(settings)},
-                maintained(std::move(worker_options)),
-                [this](const std::string& id) {
-                  bell.ring(id);
-                  announce_job(api, id);
-                  deliverer.wake();
-                }),
+        deliverer(store->webhooks(), clock, delivery_options(webhook_guard)),
+        workers(
+            {*store, *blobs, clock, budgets, [this](const std::string& blob) { return scrubber.verify_columns(blob); },
+             computing_threads(settings)},
+            maintained(std::move(worker_options)),
+            [this](const std::string& id) {
+              bell.ring(id);
+              announce_job(api, id);
+              deliverer.wake();
+            }),
         api{*visible,
             *blobs,
-            *clock,
+            clock,
             bell,
             events,
             [this] { workers.wake(); },
@@ -155,7 +157,7 @@ struct Daemon::Parts {
       states.look_after();
     };
     options.maintenance.each_tidy = [this] {
-      (void)store->webhooks().forget_deliveries(clock->now() - budgets.keep_deliveries_days * kMicrosPerDay);
+      (void)store->webhooks().forget_deliveries(clock.now() - budgets.keep_deliveries_days * kMicrosPerDay);
     };
     return options;
   }
@@ -193,7 +195,7 @@ struct Daemon::Parts {
       found.requests_in_flight = static_cast<double>(load.in_flight);
       found.turned_away = static_cast<double>(load.turned_away);
     }
-    add_store_gauges(found, *store, *clock);
+    add_store_gauges(found, *store, clock);
     add_disk_gauges(found, *blobs);
     add_state_gauges(found, states);
     const Scrubber::Findings stored = scrubber.findings();
@@ -228,7 +230,8 @@ struct Daemon::Parts {
   Metrics metrics;
   UtcMicros started_at = SystemClock().now();
   DiskReserve reserve;
-  std::unique_ptr<SystemClock> clock;
+  std::unique_ptr<SystemClock> machine_clock;
+  const Clock& clock;  ///< by which the store dates its rows
   std::unique_ptr<BlobStore> blobs;
   FileHandle directory_lock;
   std::unique_ptr<SqlStore> store;
@@ -239,7 +242,7 @@ struct Daemon::Parts {
   std::unique_ptr<Gate> gate;
   Scrubber scrubber;
   Bell bell;
-  EventLog events{bell, make_id("run", clock->now()).substr(14)};
+  EventLog events{bell, make_id("run", clock.now()).substr(14)};
   Deliverer deliverer;
   WorkerPool workers;
   ApiContext api;
@@ -278,8 +281,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     }
     tls = std::move(*loaded);
   }
-  auto clock = std::make_unique<SystemClock>();
-  auto opened = open_store(settings, *clock, [](const AuditRow& row) { log_info("audit", to_json(row)); });
+  auto machine = std::make_unique<SystemClock>();
+  auto opened = open_store(settings, *machine, [](const AuditRow& row) { log_info("audit", to_json(row)); });
   if (!opened) {
     return fail(opened.error());
   }
@@ -292,7 +295,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   if (auto taken = take_over(store, opened->others, settings); !taken) {
     return fail(taken.error());
   }
-  auto gate = std::make_unique<Gate>(store.access(), *clock, GateOptions{settings.require_tokens, tls != nullptr});
+  auto gate =
+      std::make_unique<Gate>(store.access(), *opened->clock, GateOptions{settings.require_tokens, tls != nullptr});
   if (auto guarded = open_gate(*gate, settings); !guarded) {
     return fail(guarded.error());
   }
@@ -307,7 +311,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   }
   worker_options.grace_micros =
       static_cast<std::int64_t>(kGraceShare * 1e6 * static_cast<double>(settings.budgets.stop_seconds));
-  auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*opened), std::move(clock), std::move(gate),
+  auto parts = std::make_unique<Parts>(std::move(*blobs), std::move(*opened), std::move(machine), std::move(gate),
                                        std::move(worker_options), std::move(*webhook_guard), settings);
 
   HttpOptions options;
@@ -339,7 +343,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     hooks.page = [shared](const Request& request) { return shared->pages.answer(request); };
   }
   hooks.complete = complete_problem;
-  hooks.make_request_id = [shared] { return make_id("req", shared->clock->now()); };
+  hooks.make_request_id = [shared] { return make_id("req", shared->clock.now()); };
   hooks.log = [shared](const AccessRecord& record) { note_request(shared->metrics, shared->states, record); };
   parts->http = std::make_unique<HttpServer>(std::move(options), parts->router, parts->bell, std::move(hooks));
   if (parts->others != nullptr) {

@@ -60,7 +60,7 @@ Result<OpenedStore> open_sqlite(const Settings& settings, const Clock& clock, Au
             {"schema", facts.schema},
             {"wal_reset_bug", facts.wal_reset_bug_possible ? "present, harmless: one writer" : "absent"}};
   Database* const database = &(*store)->database();
-  return OpenedStore{FileHandle(), std::move(*store), std::move(told), database, nullptr};
+  return OpenedStore{FileHandle(), std::move(*store), std::move(told), database, nullptr, &clock};
 }
 
 #ifdef DRIFTLAB_POSTGRES
@@ -132,7 +132,8 @@ Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audite
             {"schema", facts.schema}};
   Coordination* const others = (*store)->coordination();
   Database* const database = &(*store)->database();
-  return OpenedStore{std::move(*lock), std::move(*store), std::move(told), database, others};
+  const Clock* const clock = &(*store)->clock();
+  return OpenedStore{std::move(*lock), std::move(*store), std::move(told), database, others, clock};
 }
 #else
 Result<OpenedStore> open_postgres(const Settings& /*settings*/, const AuditListener& /*audited*/) {

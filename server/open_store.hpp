@@ -21,6 +21,8 @@ struct OpenedStore {
   Database* database = nullptr;
   /// Where several daemons have the store together; else nullptr. Belongs to the store.
   Coordination* others = nullptr;
+  /// By which its rows are dated: that of a database that daemons share, else the one it was opened with.
+  const Clock* clock = nullptr;
 };
 
 /// Locks the directory and opens the store. Rows and recordings belong together: a directory whose recordings belong to

@@ -151,8 +151,7 @@ Result<Response> delete_recording(ApiContext& context, const Request& request) {
     return fail(unused.error());
   }
   if (*unused && context.is_nearly_full && context.is_nearly_full()) {
-    constexpr UtcMicros kMinute = 60'000'000;
-    const auto gone = context.blobs.remove_if_older(recording->blob_sha256, context.clock.now() - kMinute);
+    const auto gone = context.blobs.remove_if_older(recording->blob_sha256, std::chrono::minutes(1));
     if (!gone) {
       return fail(gone.error());
     }

@@ -336,7 +336,8 @@ Result<Response> record(ApiContext& context, ResumableUploads& uploads, const Re
 }  // namespace
 
 void add_upload_routes(Router& router, ApiContext& context) {
-  const auto uploads = std::make_shared<ResumableUploads>(context.data / "uploads", context.clock);
+  static const SystemClock machine;  // dates the files of its directory
+  const auto uploads = std::make_shared<ResumableUploads>(context.data / "uploads", machine);
   router.add({"POST", "/v1/uploads", "createUpload", {}, Handler([&context, uploads](const Request& request) {
                 return create(context, *uploads, request);
               })});

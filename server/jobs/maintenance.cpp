@@ -9,9 +9,7 @@
 namespace driftlab::server {
 namespace {
 
-constexpr std::int64_t kMinuteMicros = 60'000'000;
-constexpr std::int64_t kHourMicros = 60 * kMinuteMicros;
-constexpr std::int64_t kDayMicros = 24 * kHourMicros;
+constexpr std::int64_t kDayMicros = 24LL * 3600 * 1'000'000;
 
 }  // namespace
 
@@ -50,9 +48,8 @@ Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now) {
   return removed;
 }
 
-Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int64_t age_micros) {
-  const UtcMicros before = now - age_micros;
-  const Result<std::vector<std::string>> files = blobs.hashes_older_than(before);
+Result<int> sweep_blobs(Store& store, BlobStore& blobs, std::chrono::microseconds age) {
+  const Result<std::vector<std::string>> files = blobs.hashes_older_than(age);
   if (!files) {
     return fail(files.error());
   }
@@ -67,7 +64,7 @@ Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int6
     if (std::binary_search(known.begin(), known.end(), file)) {
       continue;
     }
-    const Result<bool> gone = blobs.remove_if_older(file, before);
+    const Result<bool> gone = blobs.remove_if_older(file, age);
     if (!gone) {
       return fail(gone.error());
     }
@@ -109,13 +106,13 @@ void Maintenance::run() {
     const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
     if (full) {
       (void)forget_old(store_, options_.budgets, clock_.now());
-      (void)sweep_blobs(store_, blobs_, clock_.now(), kMinuteMicros);
+      (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
     }
     if (mine && std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {
       tidied_at = std::chrono::steady_clock::now();
       (void)store_.forget_old_replies();
       (void)forget_old(store_, options_.budgets, clock_.now());
-      (void)sweep_blobs(store_, blobs_, clock_.now(), options_.budgets.orphan_hours * kHourMicros);
+      (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
       if (options_.each_tidy) {
         options_.each_tidy();
       }

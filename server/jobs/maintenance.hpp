@@ -28,9 +28,9 @@ struct MaintenanceOptions {
 /// recording that a job is using stays until the next time. How many. Errors: those of the store.
 [[nodiscard]] Result<int> forget_old(Store& store, const Budgets& budgets, UtcMicros now);
 
-/// Blob files older than `age_micros` that no row names, removed. How many. An upload of the same bytes at the same
+/// Blob files older than `age` that no row names, removed. How many. An upload of the same bytes at the same
 /// moment keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.
-[[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, UtcMicros now, std::int64_t age_micros);
+[[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, std::chrono::microseconds age);
 
 /// One thread. A task that fails is tried again at its next turn; the store's state says what is left to do.
 class Maintenance {

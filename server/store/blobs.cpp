@@ -77,8 +77,8 @@ class BlobDirectory final : public BlobStore {
     return root_ / "columns" / sha256.substr(0, 2) / (std::string(sha256) + std::string(kColumnsSuffix));
   }
   [[nodiscard]] Status remove(std::string_view sha256) override;
-  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) override;
-  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(UtcMicros before) override;
+  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) override;
+  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) override;
   [[nodiscard]] Result<Space> space() const override;
 
   /// Gives the files of an upload their final names. Excludes the sweeper.
@@ -86,6 +86,8 @@ class BlobDirectory final : public BlobStore {
 
  private:
   [[nodiscard]] Status remove_both(std::string_view sha256);
+  /// What the file system would date a file now that long ago.
+  [[nodiscard]] UtcMicros dated_before(std::chrono::microseconds age) const;
 
   /// Held while final names appear or disappear.
   struct NamesGuard {
@@ -271,11 +273,17 @@ Status BlobDirectory::remove(std::string_view sha256) {
   return remove_both(sha256);
 }
 
-Result<bool> BlobDirectory::remove_if_older(std::string_view sha256, UtcMicros before) {
+UtcMicros BlobDirectory::dated_before(std::chrono::microseconds age) const {
+  (void)::utimensat(AT_FDCWD, incoming_.c_str(), nullptr, 0);
+  return modified_at(incoming_).value_or(SystemClock().now()) - age.count();
+}
+
+Result<bool> BlobDirectory::remove_if_older(std::string_view sha256, std::chrono::microseconds age) {
   const auto guard = guard_names();
   if (!guard) {
     return fail(guard.error());
   }
+  const UtcMicros before = dated_before(age);
   for (const fs::path& path : {bytes_path(sha256), columns_path(sha256)}) {
     if (modified_at(path).value_or(before - 1) >= before) {
       return false;
@@ -284,7 +292,8 @@ Result<bool> BlobDirectory::remove_if_older(std::string_view sha256, UtcMicros b
   return remove_both(sha256).map([] { return true; });
 }
 
-Result<std::vector<std::string>> BlobDirectory::hashes_older_than(UtcMicros before) {
+Result<std::vector<std::string>> BlobDirectory::hashes_older_than(std::chrono::microseconds age) {
+  const UtcMicros before = dated_before(age);
   std::set<std::string> hashes;
   for (const char* folder : {"blobs", "columns"}) {
     std::error_code error;

@@ -13,6 +13,7 @@
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -61,11 +62,12 @@ class BlobStore {
   [[nodiscard]] virtual std::filesystem::path columns_path(std::string_view sha256) const = 0;
   /// Removes the files of a blob. Absent: success.
   [[nodiscard]] virtual Status remove(std::string_view sha256) = 0;
-  /// Removes both files if both are still older than `before`; true if removed. For the sweeper: a blob that is kept
-  /// again meanwhile stays.
-  [[nodiscard]] virtual Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) = 0;
-  /// Hashes of all blob files older than `before`. For the sweeper.
-  [[nodiscard]] virtual Result<std::vector<std::string>> hashes_older_than(UtcMicros before) = 0;
+  /// Removes both files if both are still older than `age`; true if removed. For the sweeper: a blob that is kept again
+  /// meanwhile stays. Ages go by the clock that dates the files: that of another machine, where it keeps them, may be
+  /// wrong by hours, and an upload under way would count as forgotten.
+  [[nodiscard]] virtual Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) = 0;
+  /// Hashes of all blob files older than `age`. For the sweeper.
+  [[nodiscard]] virtual Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) = 0;
   /// Free bytes on the file system, and the fraction that is free. For admission and /readyz.
   struct Space {
     std::uintmax_t free_bytes = 0;

@@ -32,7 +32,7 @@ struct ResumableUpload {
 
 class ResumableUploads {
  public:
-  /// `directory` is made when the first upload is. References must outlive this object.
+  /// `directory` is made when the first upload is. `clock`: that which dates its files; it must outlive this object.
   ResumableUploads(std::filesystem::path directory, const Clock& clock)
       : directory_(std::move(directory)), clock_(clock) {}
 

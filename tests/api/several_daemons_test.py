@@ -1,7 +1,9 @@
 """Several daemons and workers on one PostgreSQL database: what one does the others know, and what dies is taken over."""
 from __future__ import annotations
 
+import datetime
 import json
+import os
 import tempfile
 import threading
 import time
@@ -24,6 +26,7 @@ if postgres.programs() is None or "built without PostgreSQL" in start(Path("/non
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 SMALL = ("--budget", "reserve_bytes=0")
+CLOCK_SHIM = os.environ.get("DRIFTLAB_CLOCK_SHIM", "")
 
 
 class Several(unittest.TestCase):
@@ -37,9 +40,9 @@ class Several(unittest.TestCase):
         self.store = self.cluster.store_of(self.folder)
         self.blobs = "database" if self.in_database else str(self.folder / "shared")
 
-    def start(self, name: str, *arguments: str) -> Daemon:
+    def start(self, name: str, *arguments: str, environment: dict[str, str] | None = None) -> Daemon:
         together = ("--store", self.store, "--blobs", self.blobs, *SMALL, *arguments)
-        return self.enterContext(Daemon(self.folder / name, arguments=together))
+        return self.enterContext(Daemon(self.folder / name, arguments=together, environment=environment))
 
     def upload(self, daemon: Daemon, seed: int = 1) -> str:
         answer = daemon.upload(samples.gyro_csv(4096, seed=seed), rate_hz=100, columns=samples.GYRO_Z)
@@ -117,6 +120,25 @@ class Several(unittest.TestCase):
         self.eventually("b knows the token", lambda: b.get("/v1/devices", **bearer).status == 200, 10)
         self.assertEqual(a.post(f"/v1/tokens/{reader['id']}/revoke", None, admin).status, 200)
         self.eventually("b refuses it", lambda: b.get("/v1/devices", **bearer).status == 401, 10)
+
+    @unittest.skipUnless(CLOCK_SHIM, "sanitizers put their own calls before those of the shim")
+    def test_a_machine_whose_clock_is_wrong_goes_by_that_of_the_database(self) -> None:
+        # Tokens that others had issued were refused by it as expired, and its own lived three hours longer elsewhere.
+        right = self.start("right", "--workers", "0")
+        wrong = self.start("wrong", environment={"LD_PRELOAD": CLOCK_SHIM, "DRIFTLAB_CLOCK_AHEAD": str(3 * 3600)})
+        recording = self.upload(wrong)
+        job = self.job(wrong, recording)
+        self.assertEqual(wrong.finished(job)["state"], "succeeded")
+        shown = [right.get(f"/v1/recordings/{recording}").json["created_at"], *(right.get(f"/v1/jobs/{job}").json[at] for at in ("created_at", "finished_at"))]
+        for said in shown:
+            age = datetime.datetime.now(datetime.timezone.utc) - datetime.datetime.fromisoformat(said.replace("Z", "+00:00"))
+            self.assertLess(abs(age.total_seconds()), 120, shown)
+        right.token = right.post("/v1/tokens", {"name": "first", "scope": "admin"}).json["secret"]
+        hour = right.post("/v1/tokens", {"name": "an hour", "scope": "read", "expires_in_s": 3600})
+        self.assertEqual(hour.status, 201, hour.describe())
+        bearer = {"Authorization": f"Bearer {hour.json['secret']}"}
+        self.eventually("it asks for tokens", lambda: wrong.get("/v1/devices").status == 401, 10)
+        self.eventually("the token is known", lambda: wrong.get("/v1/devices", **bearer).status == 200, 10)
 
     def test_what_a_killed_daemon_had_is_done_by_another(self) -> None:
         a = self.start("a")

@@ -356,9 +356,9 @@ Status DatabaseBlobs::remove(std::string_view sha256) {
   return removed ? local_->remove(sha256) : fail(removed.error());
 }
 
-Result<bool> DatabaseBlobs::remove_if_older(std::string_view sha256, UtcMicros before) {
+Result<bool> DatabaseBlobs::remove_if_older(std::string_view sha256, std::chrono::microseconds age) {
   auto removed = database_.write(WriteKind::Serial, [&](Connection& connection) -> Result<bool> {
-    const Status gone = connection.prepare(kRemoveOld).bind(sha256, before).run();
+    const Status gone = connection.prepare(kRemoveOld).bind(sha256, database_.now(connection) - age.count()).run();
     return gone ? Result<bool>(connection.changes() > 0) : fail(gone.error());
   });
   if (!removed || !*removed) {
@@ -367,8 +367,9 @@ Result<bool> DatabaseBlobs::remove_if_older(std::string_view sha256, UtcMicros b
   return local_->remove(sha256).map([] { return true; });
 }
 
-Result<std::vector<std::string>> DatabaseBlobs::hashes_older_than(UtcMicros before) {
+Result<std::vector<std::string>> DatabaseBlobs::hashes_older_than(std::chrono::microseconds age) {
   return database_.write(WriteKind::Serial, [&](Connection& connection) -> Result<std::vector<std::string>> {
+    const UtcMicros before = database_.now(connection) - age.count();
     if (Status gone = connection.prepare(kRemoveUnfinished).bind(before).run(); !gone) {
       return fail(gone.error());
     }

@@ -25,8 +25,8 @@ class DatabaseBlobs final : public BlobStore {
   [[nodiscard]] std::filesystem::path bytes_path(std::string_view sha256) const override;
   [[nodiscard]] std::filesystem::path columns_path(std::string_view sha256) const override;
   [[nodiscard]] Status remove(std::string_view sha256) override;
-  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) override;
-  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(UtcMicros before) override;
+  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) override;
+  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) override;
   [[nodiscard]] Result<Space> space() const override { return local_->space(); }
 
   /// Writes the local files of a blob into the database, those that it does not hold as they are. Errors: Io, DiskFull.

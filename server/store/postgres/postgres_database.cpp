@@ -54,8 +54,12 @@ bool is_passing(std::string_view sqlstate, int attempt) {
 }
 
 Attempt run_once(PostgresConnection& connection, std::string_view begin, const std::function<Status(Connection&)>& work,
-                 int attempt) {
+                 int attempt, DatabaseClock& told) {
+  const auto asked = std::chrono::steady_clock::now();
   Status status = connection.begin(begin);
+  if (status) {
+    told.note(asked, connection.begun_at(), std::chrono::steady_clock::now());
+  }
   if (status) {
     status = guarded(work, connection);
   }
@@ -101,7 +105,7 @@ Status PostgresDatabase::repeat(std::string_view begin, const std::function<Stat
       if (!loan) {
         return fail(loan.error());
       }
-      run = run_once(**loan, begin, work, attempt);
+      run = run_once(**loan, begin, work, attempt, told_);
       lost = (*loan)->is_broken();
     }
     if (!run.again || (lost && lost_before) || std::chrono::steady_clock::now() >= deadline) {

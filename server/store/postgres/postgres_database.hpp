@@ -8,6 +8,7 @@
 /// before its COMMIT was sent is run again on another one; after that it may have been stored, and the caller is told
 /// so.
 #include "server/store/postgres/connection_pool.hpp"
+#include "server/store/postgres/database_clock.hpp"
 #include "server/store/sql/database.hpp"
 
 #include <atomic>
@@ -24,6 +25,8 @@ class PostgresDatabase final : public Database {
       : clock_(clock), jitter_(jitter_seed), pool_(std::move(open), connections, jitter_seed) {}
 
   [[nodiscard]] UtcMicros now(const Connection& connection) const override;
+  /// The clock by which `now` goes, for what is no transaction.
+  [[nodiscard]] const Clock& clock() const { return clock_ != nullptr ? *clock_ : told_; }
   /// Another number each time: what other daemons changed is not known here, so that no answer may be kept.
   [[nodiscard]] std::uint64_t changes() const override { return changes_.fetch_add(1, std::memory_order_relaxed); }
 
@@ -34,6 +37,7 @@ class PostgresDatabase final : public Database {
   void pause(int attempt);
 
   const Clock* clock_;
+  DatabaseClock told_;  ///< by the begin of every transaction
   mutable std::atomic<std::uint64_t> changes_{1};
   std::mutex jitter_mutex_;
   std::mt19937_64 jitter_;

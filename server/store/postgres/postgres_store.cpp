@@ -35,10 +35,12 @@ Result<std::unique_ptr<PostgresConnection>> open_marked(const std::string& uri, 
 
 }  // namespace
 
-PostgresStore::PostgresStore(std::unique_ptr<Database> database, PostgresFacts facts, std::vector<Migration> migrations,
-                             std::unique_ptr<DaemonLock> lock, std::unique_ptr<Coordination> coordination,
-                             std::uint64_t jitter_seed, AuditListener audited)
-    : SqlStore(std::move(database), jitter_seed, std::move(audited)),
+PostgresStore::PostgresStore(std::unique_ptr<PostgresDatabase> postgres, PostgresFacts facts,
+                             std::vector<Migration> migrations, std::unique_ptr<DaemonLock> lock,
+                             std::unique_ptr<Coordination> coordination, std::uint64_t jitter_seed,
+                             AuditListener audited)
+    : SqlStore(std::move(postgres), jitter_seed, std::move(audited)),
+      clock_(static_cast<const PostgresDatabase&>(database()).clock()),
       facts_(std::move(facts)),
       migrations_(std::move(migrations)),
       lock_(std::move(lock)),

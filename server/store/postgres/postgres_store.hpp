@@ -8,6 +8,7 @@
 #include "server/store/clock.hpp"
 #include "server/store/coordination.hpp"
 #include "server/store/postgres/daemon_lock.hpp"
+#include "server/store/postgres/postgres_database.hpp"
 #include "server/store/sql/migration.hpp"
 #include "server/store/sql/sql_store.hpp"
 
@@ -46,11 +47,13 @@ struct PostgresFacts {
 
 class PostgresStore final : public SqlStore {
  public:
-  PostgresStore(std::unique_ptr<Database> database, PostgresFacts facts, std::vector<Migration> migrations,
+  PostgresStore(std::unique_ptr<PostgresDatabase> postgres, PostgresFacts facts, std::vector<Migration> migrations,
                 std::unique_ptr<DaemonLock> lock, std::unique_ptr<Coordination> coordination, std::uint64_t jitter_seed,
                 AuditListener audited);
   using SqlStore::database;  // for what lies in the database beside the rows of the store
   [[nodiscard]] const PostgresFacts& facts() const { return facts_; }
+  /// The clock by which its rows are dated, that of the database. Lives as long as the store.
+  [[nodiscard]] const Clock& clock() const { return clock_; }
   /// What daemons on one database owe each other; nullptr unless the lock is held together. Lives as long as the store.
   [[nodiscard]] Coordination* coordination() { return coordination_.get(); }
   /// Also that the database has not been brought to another schema since, nor taken over by another daemon. Errors:
@@ -58,6 +61,7 @@ class PostgresStore final : public SqlStore {
   [[nodiscard]] Status ping() override;
 
  private:
+  const Clock& clock_;
   PostgresFacts facts_;
   std::vector<Migration> migrations_;
   std::unique_ptr<DaemonLock> lock_;  ///< nullptr: nobody is kept out

@@ -23,20 +23,30 @@ std::string keep_blob(BlobStore& blobs, const std::string& text) {
   return (*incoming)->sha256();
 }
 
+/// The files of a blob as if they had been written so long ago.
+void date_back(const BlobStore& blobs, const std::string& hash, std::chrono::hours age) {
+  for (const std::filesystem::path& path : {blobs.bytes_path(hash), blobs.columns_path(hash)}) {
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - age);
+  }
+}
+
 TEST(SweepBlobs, RemovesFilesWithoutRowsAfterADay) {
   ToyWorld world(nothing);
   const std::string orphan = keep_blob(*world.blobs, "orphan");
   const std::string named = keep_blob(*world.blobs, "named");
   ASSERT_EQ(add_recording(*world.store, add_device(*world.store), "named").blob_sha256, named);
 
-  const UtcMicros now = SystemClock().now();  // files carry the machine's time
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 23 * kHour, 24 * kHour), 0);
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour, 24 * kHour), 1);
+  constexpr std::chrono::hours kADay{24};
+  date_back(*world.blobs, orphan, std::chrono::hours(23));
+  date_back(*world.blobs, named, std::chrono::hours(25));
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, kADay), 0);
+  date_back(*world.blobs, orphan, std::chrono::hours(25));
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, kADay), 1);
   EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(orphan)));
   EXPECT_FALSE(std::filesystem::exists(world.blobs->columns_path(orphan)));
   EXPECT_TRUE(std::filesystem::exists(world.blobs->bytes_path(named)));
   EXPECT_TRUE(std::filesystem::exists(world.blobs->columns_path(named)));
-  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, now + 25 * kHour, 24 * kHour), 0);
+  EXPECT_EQ(*sweep_blobs(*world.store, *world.blobs, kADay), 0);
 }
 
 TEST(Maintenance, RescuesForgetsAndSweepsByItself) {
@@ -47,9 +57,7 @@ TEST(Maintenance, RescuesForgetsAndSweepsByItself) {
   reply.key = "key";
   ASSERT_TRUE(world.store->remember_reply(reply));
   const std::string orphan = keep_blob(*world.blobs, "orphan");
-  const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 3650);
-  std::filesystem::last_write_time(world.blobs->bytes_path(orphan), long_ago);
-  std::filesystem::last_write_time(world.blobs->columns_path(orphan), long_ago);
+  date_back(*world.blobs, orphan, std::chrono::hours(24 * 3650));
   world.clock.advance(24 * kHour);
 
   Gate rescued;

@@ -15,7 +15,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr UtcMicros kFarFuture = 4'000'000'000'000'000;
+constexpr std::chrono::hours kEveryAge{-1};  // also what is dated now
+constexpr std::chrono::hours kACentury{24 * 36525};
 
 std::string read_all(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -82,26 +83,26 @@ TEST_P(BlobSuite, WhatIsNotKeptIsNotThere) {
     ASSERT_TRUE((*incoming)->seal());
   }
   EXPECT_FALSE(std::filesystem::exists(blobs().bytes_path(sha256_hex("abc"))));
-  EXPECT_THAT(*blobs().hashes_older_than(kFarFuture), IsEmpty());
+  EXPECT_THAT(*blobs().hashes_older_than(kEveryAge), IsEmpty());
 }
 
 TEST_P(BlobSuite, TheSameBytesAgainAreOneBlobWithTheNewColumns) {
   const std::string hash = keep(blobs(), "abc", "old");
   EXPECT_EQ(keep(blobs(), "abc", "new"), hash);
-  EXPECT_THAT(*blobs().hashes_older_than(kFarFuture), ElementsAre(hash));
+  EXPECT_THAT(*blobs().hashes_older_than(kEveryAge), ElementsAre(hash));
   reopen();
   EXPECT_EQ(read_all(blobs().columns_path(hash)), "new");
 }
 
 TEST_P(BlobSuite, TheSweeperRemovesWhatIsOldAndLeavesWhatIsKeptAgain) {
   const std::string hash = keep(blobs(), "abc");
-  EXPECT_THAT(*blobs().hashes_older_than(1), IsEmpty());
-  EXPECT_FALSE(*blobs().remove_if_older(hash, 1));
+  EXPECT_THAT(*blobs().hashes_older_than(kACentury), IsEmpty());
+  EXPECT_FALSE(*blobs().remove_if_older(hash, kACentury));
   EXPECT_TRUE(std::filesystem::exists(blobs().bytes_path(hash)));
-  EXPECT_TRUE(*blobs().remove_if_older(hash, kFarFuture));
+  EXPECT_TRUE(*blobs().remove_if_older(hash, kEveryAge));
   EXPECT_FALSE(std::filesystem::exists(blobs().bytes_path(hash)));
   EXPECT_FALSE(std::filesystem::exists(blobs().columns_path(hash)));
-  EXPECT_THAT(*blobs().hashes_older_than(kFarFuture), IsEmpty());
+  EXPECT_THAT(*blobs().hashes_older_than(kEveryAge), IsEmpty());
   keep(blobs(), "abc");
   EXPECT_TRUE(blobs().remove(hash));
   EXPECT_TRUE(blobs().remove(hash)) << "absent: success";
@@ -149,7 +150,7 @@ TEST_P(BlobSuite, ProcessesThatKeepTheSameAtOnceKeepItOnce) {
     beside.join();
     EXPECT_EQ(read_all(blobs().bytes_path(hash)), text);
   }
-  EXPECT_EQ(blobs().hashes_older_than(kFarFuture)->size(), 10U);
+  EXPECT_EQ(blobs().hashes_older_than(kEveryAge)->size(), 10U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, BlobSuite, testing::ValuesIn(all_blob_stores()),

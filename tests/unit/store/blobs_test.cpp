@@ -17,7 +17,8 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr UtcMicros kFarFuture = 4'000'000'000'000'000;
+constexpr std::chrono::hours kEveryAge{-1};  // also what is dated now
+constexpr std::chrono::hours kACentury{24 * 36525};
 
 std::unique_ptr<BlobStore> open_blobs(const TemporaryDirectory& directory) {
   auto opened = open_blob_directory(directory.path());
@@ -146,19 +147,19 @@ TEST(BlobDirectory, ListsWhatIsOlderAndSparesWhatWasKeptAgain) {
   const TemporaryDirectory directory;
   const auto blobs = open_blobs(directory);
   const std::string hash = keep_text(*blobs, "abc");
-  EXPECT_THAT(*blobs->hashes_older_than(0), IsEmpty());
-  EXPECT_THAT(*blobs->hashes_older_than(kFarFuture), ElementsAre(hash));
-  EXPECT_FALSE(*blobs->remove_if_older(hash, 0));
+  EXPECT_THAT(*blobs->hashes_older_than(kACentury), IsEmpty());
+  EXPECT_THAT(*blobs->hashes_older_than(kEveryAge), ElementsAre(hash));
+  EXPECT_FALSE(*blobs->remove_if_older(hash, kACentury));
 
   // Both files a year old, then the same bytes are uploaded again: they are young.
   const auto year_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24 * 365);
   std::filesystem::last_write_time(blobs->bytes_path(hash), year_ago);
   std::filesystem::last_write_time(blobs->columns_path(hash), year_ago);
-  const UtcMicros yesterday = SystemClock().now() - 24 * kHour;
-  EXPECT_THAT(*blobs->hashes_older_than(yesterday), ElementsAre(hash));
+  constexpr std::chrono::hours kADay{24};
+  EXPECT_THAT(*blobs->hashes_older_than(kADay), ElementsAre(hash));
   keep_text(*blobs, "abc");
-  EXPECT_FALSE(*blobs->remove_if_older(hash, yesterday));
-  EXPECT_TRUE(*blobs->remove_if_older(hash, kFarFuture));
+  EXPECT_FALSE(*blobs->remove_if_older(hash, kADay));
+  EXPECT_TRUE(*blobs->remove_if_older(hash, kEveryAge));
   EXPECT_THAT(files_below(directory.path()), IsEmpty());
 }
 
@@ -176,7 +177,7 @@ TEST(BlobDirectory, UploadsAtOnceDoNotDisturbEachOther) {
   for (std::thread& thread : threads) {
     thread.join();
   }
-  EXPECT_THAT(*blobs->hashes_older_than(kFarFuture), SizeIs(9));
+  EXPECT_THAT(*blobs->hashes_older_than(kEveryAge), SizeIs(9));
   EXPECT_THAT(files_below(directory.path() / "incoming"), IsEmpty());
 }
 

@@ -23,11 +23,11 @@ class OwnedBlobs final : public BlobStore {
     return blobs_.columns_path(sha256);
   }
   [[nodiscard]] Status remove(std::string_view sha256) override { return blobs_.remove(sha256); }
-  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, UtcMicros before) override {
-    return blobs_.remove_if_older(sha256, before);
+  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) override {
+    return blobs_.remove_if_older(sha256, age);
   }
-  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(UtcMicros before) override {
-    return blobs_.hashes_older_than(before);
+  [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) override {
+    return blobs_.hashes_older_than(age);
   }
   [[nodiscard]] Result<Space> space() const override { return blobs_.space(); }
 
