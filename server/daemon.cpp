@@ -14,7 +14,9 @@
 #include "server/process.hpp"
 #include "server/readiness.hpp"
 #include "server/scrubber.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/disk_reserve.hpp"
+#include "server/store/sqlite/backup.hpp"
 #include "server/store_gauges.hpp"
 #include "server/take_over.hpp"
 #include "server/webhooks/deliverer.hpp"
@@ -102,8 +104,10 @@ struct Daemon::Parts {
             webhook_guard,
             [this] { deliverer.wake(); },
             [this] { return states.standing(); }},
+        backups(clock, backup_options(settings)),
         dispatcher(api) {
     api.computing = computing_threads(settings);
+    api.backups = &backups;
     settings.serves_api ? add_all_routes(router, api) : add_health_routes(router, api);
     if (others != nullptr) {
       api.keys_in_flight.share(others);
@@ -162,6 +166,30 @@ struct Daemon::Parts {
     return options;
   }
 
+  BackupOptions backup_options(const Settings& settings) {
+    BackupOptions options;
+    options.directory = settings.backups;
+    options.every_micros = settings.backup_hours * kMicrosPerDay / 24;
+    options.keep = static_cast<std::size_t>(settings.keep_backups);
+    options.make = [data = settings.data](const auto& target, const std::string& now, const std::stop_token& stop) {
+      return back_up(data, target, now, stop);
+    };
+    options.describe = manifest_of;
+    options.ended = [this](const Backup& backup) {
+      const Json facts{
+          {"backup", backup.name}, {"recordings", backup.blobs}, {"bytes", backup.bytes}, {"faults", backup.faults}};
+      const std::string state(name_of(backup.state));
+      if (backup.state == BackupState::Complete) {
+        log_info("backup complete", facts);
+      } else {
+        log_error("backup " + state, facts);
+      }
+      (void)store->access().note_state("backup." + state, backup.name,
+                                       backup.faults.empty() ? "" : backup.faults.front());
+    };
+    return options;
+  }
+
   DelivererOptions delivery_options(const DestinationGuard& guard) {
     DelivererOptions options;
     options.budgets = budgets;
@@ -198,6 +226,9 @@ struct Daemon::Parts {
     add_store_gauges(found, *store, clock);
     add_disk_gauges(found, *blobs);
     add_state_gauges(found, states);
+    if (const auto newest = backups.newest()) {
+      found.backup_age_seconds = static_cast<double>(clock.now() - *newest) / 1e6;
+    }
     const Scrubber::Findings stored = scrubber.findings();
     found.blobs_damaged = static_cast<double>(stored.damaged);
     found.blobs_healed = static_cast<double>(stored.healed);
@@ -246,6 +277,7 @@ struct Daemon::Parts {
   Deliverer deliverer;
   WorkerPool workers;
   ApiContext api;
+  Backups backups;
   Dispatcher dispatcher;
   Router router;
   Pages pages{dashboard_files()};
@@ -261,6 +293,11 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   const auto address = listen_address(settings);
   if (!address) {
     return fail(address.error());
+  }
+  if (!settings.backups.empty() && !settings.store.empty()) {
+    return fail(ErrorCode::InvalidArgument,
+                "--backups is for an SQLite store; back up a PostgreSQL database by pg_dump, and --data as it is.",
+                {{"parameter", "backups"}});
   }
   // Before anything is made: whether there are tokens is known only from the store, which may not exist yet.
   std::error_code absent;
@@ -352,6 +389,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
   parts->workers.start();
   parts->scrubber.start();
   if (settings.serves_api) {
+    parts->backups.start();
     parts->deliverer.start();
   }
   if (auto started = parts->http->start(); !started) {
@@ -399,6 +437,7 @@ void Daemon::stop() {
   std::thread jobs([this] {
     parts_->workers.stop();
     parts_->scrubber.stop();
+    parts_->backups.stop();
     parts_->deliverer.stop();
   });
   const std::chrono::milliseconds grace(

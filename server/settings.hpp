@@ -29,7 +29,10 @@ struct Settings {
   std::filesystem::path tls_key;
   bool insecure = false;  ///< listen on other addresses than loopback without TLS or tokens
   std::string log_level = "info";
-  std::string log_file;  ///< empty: standard error
+  std::string log_file;           ///< empty: standard error
+  std::filesystem::path backups;  ///< directory of the backups that the daemon makes by itself; empty: none
+  int backup_hours = 24;          ///< between two of them; 0: only when asked
+  int keep_backups = 7;           ///< complete ones; 0: all
   Budgets budgets;
   bool is_moving = false;  ///< opens a store that `driftlabd migrate` has under way
   bool serves_api = true;  ///< false: a worker, which answers /healthz, /readyz and /metrics alone

@@ -7,6 +7,7 @@
 #include "server/http/bell.hpp"
 #include "server/http/router.hpp"
 #include "server/jobs/job_kind.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/bad_states.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
@@ -48,6 +49,7 @@ struct ApiContext {
   std::function<void()> wake_deliveries = {};                   ///< there is something to deliver
   std::function<std::vector<StandingState>()> bad_states = {};  ///< what is wrong now
   KeysInFlight keys_in_flight = {};
+  Backups* backups = nullptr;
   int computing = 0;  ///< threads that jobs share; 0: one for each core
 
   /// For a job that is asked for: what it takes is estimated, and no columns are read yet.

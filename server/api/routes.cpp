@@ -39,7 +39,8 @@
   RESOURCE(add_session_routes)          \
   RESOURCE(add_token_routes)            \
   RESOURCE(add_webhook_routes)          \
-  RESOURCE(add_audit_routes)
+  RESOURCE(add_audit_routes)            \
+  RESOURCE(add_backup_routes)
 // clang-format on
 
 namespace driftlab::server {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -49,6 +50,7 @@ struct Gauges {
     double count = 0.0;
   };
   std::vector<State> bad_states;
+  std::optional<double> backup_age_seconds;  ///< of the newest complete one; nothing: there is none, or none are made
   double blobs_damaged = 0.0;
   double blobs_healed = 0.0;       ///< a counter kept elsewhere
   double scrubbed_bytes = 0.0;     ///< a counter kept elsewhere

@@ -17,6 +17,7 @@ import unittest
 import urllib.parse
 import urllib.request
 from pathlib import Path
+from typing import Any
 
 from daemon import PATIENCE_S, PROGRAM, STORE, Daemon
 from suite import DaemonTest
@@ -88,7 +89,7 @@ class WithPrometheus(unittest.TestCase):
         queries += [target["expr"] for panel in board["panels"] for target in panel["targets"]]
         self.assertGreater(len(queries), 30)
         deaf = ("--webhook-allow", "127.0.0.1", "--budget", "webhook_pause_milliseconds=1", "--budget", "webhook_attempts=7")
-        with Daemon(arguments=deaf) as daemon, tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, Daemon(arguments=(*deaf, "--backups", f"{folder}/backups")) as daemon:
             recording = daemon.upload(csv(2000)).json["id"]
             daemon.finished(daemon.characterise(recording).json["id"])
             port = free_port()
@@ -424,6 +425,39 @@ class Kept(unittest.TestCase):
         self.assertIn(f"The columns of {uploads[1]} are missing.", checked.stderr)
         self.assertIn("2 faults", checked.stdout)
         self.assertEqual(tool(PROGRAM, "check", "--data", str(self.folder / "nothing")).returncode, 1)
+
+    def test_the_daemon_backs_itself_up_when_asked_and_by_its_timer(self) -> None:
+        kept = self.folder / "backups"
+        def ended(daemon: Daemon, count: int) -> list[dict[str, Any]]:
+            until = time.monotonic() + PATIENCE_S
+            while time.monotonic() < until:
+                found = [each for each in daemon.items("/v1/backups?sort=-created_at") if each["state"] != "running"]
+                if len(found) >= count:
+                    return found
+                time.sleep(0.05)
+            raise AssertionError(daemon.get("/v1/backups").describe())
+        with Daemon(self.folder / "data", arguments=("--backups", str(kept), "--keep-backups", "2")) as daemon:
+            recording = daemon.upload(csv(500, 1)).json["id"]
+            [first] = ended(daemon, 1)  # there was none: the timer made one at once, before or after the upload
+            asked = daemon.post("/v1/backups")
+            self.assertEqual(asked.status, 202, asked.describe())
+            made = next(each for each in ended(daemon, 2) if each["name"] == asked.json["name"])
+            self.assertEqual((made["state"], made["recordings"], made["faults"]), ("complete", 1, []))
+            self.assertRegex(daemon.get("/metrics").text, r"(?m)^driftlab_backup_age_seconds \d")
+            self.assertIn(made["name"], [row["object"] for row in daemon.items("/v1/audit") if row["action"] == "backup.complete"])
+            page = daemon.get("/v1/backups?limit=1").json
+            self.assertEqual([each["name"] for each in page["items"]], [first["name"]])
+            self.assertEqual([each["name"] for each in daemon.get(f"/v1/backups?limit=1&cursor={page['next_cursor']}").json["items"]], [made["name"]])
+            daemon.post("/v1/backups")
+            ended(daemon, 3)
+        self.assertEqual(len(list(kept.iterdir())), 2, "the newest two")
+        back = tool(PROGRAM, "restore", "--from", str(kept / made["name"]), "--data", str(self.folder / "again"))
+        self.assertEqual(back.returncode, 0, back.stderr)
+        with Daemon(self.folder / "again") as daemon:
+            self.assertEqual([each["id"] for each in daemon.items("/v1/recordings")], [recording])
+            refused = daemon.post("/v1/backups")
+            self.assertEqual((refused.status, refused.json["code"]), (409, "conflict"), refused.describe())
+            self.assertIn("--backups", refused.json["detail"])
 
     def test_a_backup_made_while_uploads_run_is_whole_and_comes_back(self) -> None:
         acknowledged: list[str] = []

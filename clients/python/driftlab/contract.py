@@ -61,6 +61,23 @@ class AuditRow(TypedDict):
     digest: str
 
 
+class Backup(TypedDict):
+    # The folder in the directory of backups.
+    name: str
+    # Complete: all of it was read back. Damaged: complete, of a store in which something is damaged. Failed: there is
+    # none.
+    state: Literal['running', 'complete', 'damaged', 'failed']
+    begun_at: str
+    # Null while it is made, and of one that an earlier process made.
+    finished_at: str | None
+    # Different files of recordings; null while it is made.
+    recordings: int | None
+    # Of recordings and their columns.
+    bytes: int | None
+    # Sentences: what is damaged, or why there is none.
+    faults: list[str]
+
+
 class Calibration(TypedDict):
     """Calibration. Bias, scale factor and misalignment of a device's sensors, what they were made from, and what
     corrects readings."""
@@ -4371,4 +4388,8 @@ OPERATIONS: dict[str, Operation] = {
         'GET', '/v1/audit', ('limit', 'cursor', 'sort'), (), ('application/json',)),
     'verifyAudit': Operation(
         'GET', '/v1/audit-verification', (), (), ('application/json',)),
+    'listBackups': Operation(
+        'GET', '/v1/backups', ('limit', 'cursor', 'sort'), (), ('application/json',)),
+    'createBackup': Operation(
+        'POST', '/v1/backups', (), ('Idempotency-Key',), ('application/json',)),
 }

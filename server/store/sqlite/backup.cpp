@@ -7,8 +7,10 @@
 #include "server/store/sqlite/connection.hpp"
 #include "server/store/sqlite/migrations.hpp"
 
+#include <charconv>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -84,12 +86,16 @@ std::string fault_of(const std::string& what, const std::string& sha256, FileSta
 }
 
 /// Reads the files of every blob below `root` back.
-Status check_files(const fs::path& root, const std::vector<std::string>& hashes, StoreReport& report) {
+Status check_files(const fs::path& root, const std::vector<std::string>& hashes, const std::stop_token& stop,
+                   StoreReport& report) {
   const ReadingPace count = [&](std::size_t bytes) {
     report.bytes += static_cast<std::int64_t>(bytes);
-    return true;
+    return !stop.stop_requested();
   };
   for (const std::string& sha256 : hashes) {
+    if (stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "Reading back what is stored was stopped.");
+    }
     const auto bytes = check_bytes(bytes_below(root, sha256), sha256, count);
     const auto columns = check_columns(columns_below(root, sha256), count);
     if (!bytes || !columns) {
@@ -119,8 +125,11 @@ Status copy_one(const fs::path& from, const fs::path& to) {
 
 /// Copies the files of every blob; one that is not there is told.
 Status copy_files(const fs::path& from, const fs::path& to, const std::vector<std::string>& hashes,
-                  StoreReport& report) {
+                  const std::stop_token& stop, StoreReport& report) {
   for (const std::string& sha256 : hashes) {
+    if (stop.stop_requested()) {
+      return fail(ErrorCode::Cancelled, "The backup was stopped.");
+    }
     const fs::path columns = columns_below(from, sha256);
     for (const auto& [source, target] :
          {std::pair{bytes_below(from, sha256), bytes_below(to, sha256)}, std::pair{columns, columns_below(to, sha256)},
@@ -134,7 +143,7 @@ Status copy_files(const fs::path& from, const fs::path& to, const std::vector<st
       }
     }
   }
-  return check_files(to, hashes, report);
+  return check_files(to, hashes, stop, report);
 }
 
 Status write_manifest(const fs::path& directory, const StoreReport& report, const std::string& now) {
@@ -144,12 +153,22 @@ Status write_manifest(const fs::path& directory, const StoreReport& report, cons
   }
   std::ofstream stream(directory / kManifest);
   stream << "{\"driftlab\":\"" << DRIFTLAB_VERSION << "\",\"made_at\":\"" << now << "\",\"database_sha256\":\""
-         << *database << "\",\"blobs\":" << report.blobs << ",\"bytes\":" << report.bytes << "}\n";
+         << *database << "\",\"blobs\":" << report.blobs << ",\"bytes\":" << report.bytes
+         << ",\"faults\":" << report.faults.size() << "}\n";
   stream.close();
   if (!stream) {
     return fail(ErrorCode::DiskFull, "The manifest of the backup could not be written.");
   }
   return sync_path(directory / kManifest);
+}
+
+std::int64_t number_after(std::string_view name, const std::string& manifest) {
+  const std::size_t at = manifest.find(name);
+  std::int64_t number = 0;
+  if (at != std::string::npos) {
+    (void)std::from_chars(manifest.data() + at + name.size(), manifest.data() + manifest.size(), number);
+  }
+  return number;
 }
 
 Status require_absent(const fs::path& target, bool may_be_empty) {
@@ -189,7 +208,8 @@ class Construction {
 };
 
 /// Checks the database that was copied to `part` and copies every blob that it names from the folder `from`.
-Status copy_what_is_named(const fs::path& from, const fs::path& part, StoreReport& report) {
+Status copy_what_is_named(const fs::path& from, const fs::path& part, const std::stop_token& stop,
+                          StoreReport& report) {
   auto copy = SqliteConnection::open(part / kDatabase, Access::ReadOnly);
   if (!copy) {
     return fail(copy.error());
@@ -201,7 +221,7 @@ Status copy_what_is_named(const fs::path& from, const fs::path& part, StoreRepor
   if (!hashes) {
     return fail(hashes.error());
   }
-  return copy_files(from, part, *hashes, report);
+  return copy_files(from, part, *hashes, stop, report);
 }
 
 }  // namespace
@@ -217,13 +237,14 @@ Result<StoreReport> check_data(const fs::path& data) {
   if (!hashes) {
     return fail(hashes.error());
   }
-  if (checked = check_files(data, *hashes, report); !checked) {
+  if (checked = check_files(data, *hashes, {}, report); !checked) {
     return fail(checked.error());
   }
   return report;
 }
 
-Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const std::string& now) {
+Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const std::string& now,
+                            const std::stop_token& stop) {
   if (Status absent = require_absent(target, false); !absent) {
     return fail(absent.error());
   }
@@ -241,7 +262,7 @@ Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const 
   }
   crash_point("backup.copied");
   StoreReport report;
-  if (done = copy_what_is_named(data, construction.part(), report); !done) {
+  if (done = copy_what_is_named(data, construction.part(), stop, report); !done) {
     return fail(done.error());
   }
   crash_point("backup.files");
@@ -255,6 +276,18 @@ Result<StoreReport> back_up(const fs::path& data, const fs::path& target, const 
   }
   crash_point("backup.named");
   return report;
+}
+
+StoreReport manifest_of(const fs::path& backup) {
+  std::ifstream stream(backup / kManifest);
+  const std::string manifest{std::istreambuf_iterator<char>(stream), {}};
+  StoreReport told;
+  told.blobs = number_after("\"blobs\":", manifest);
+  told.bytes = number_after("\"bytes\":", manifest);
+  if (const std::int64_t faults = number_after("\"faults\":", manifest); faults > 0) {
+    told.faults.push_back("Its store had " + std::to_string(faults) + (faults == 1 ? " fault." : " faults."));
+  }
+  return told;
 }
 
 Result<StoreReport> restore(const fs::path& backup, const fs::path& data) {
@@ -281,7 +314,7 @@ Result<StoreReport> restore(const fs::path& backup, const fs::path& data) {
     return fail(done.error());
   }
   StoreReport report;
-  if (done = copy_what_is_named(backup, construction.part(), report); !done) {
+  if (done = copy_what_is_named(backup, construction.part(), {}, report); !done) {
     return fail(done.error());
   }
   if (done = construction.finish(); !done) {

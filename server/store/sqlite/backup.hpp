@@ -7,32 +7,29 @@
 ///   <target>/driftlab.db      the copy, checked
 ///   <target>/blobs/...        uploaded bytes, each compared with its name
 ///   <target>/columns/...      decoded columns with their checksums
-///   <target>/manifest.json    {"driftlab", "made_at", "database_sha256", "blobs", "bytes"}: written last
+///   <target>/manifest.json    {"driftlab", "made_at", "database_sha256", "blobs", "bytes", "faults"}: written last
 ///
 /// and appears under its name complete or not at all.
 #include "core/signal/result.hpp"
+#include "server/store/store_report.hpp"
 
-#include <cstdint>
 #include <filesystem>
+#include <stop_token>
 #include <string>
-#include <vector>
 
 namespace driftlab::server {
-
-/// What was found or copied. `faults` are sentences; empty: all is well.
-struct StoreReport {
-  std::int64_t blobs = 0;
-  std::int64_t bytes = 0;
-  std::vector<std::string> faults;
-};
 
 /// Reads everything: the database (integrity and foreign keys), the bytes of each blob against its name, its columns
 /// against their checksum, and whether anything is missing. Changes nothing. Errors: NotFound (no data directory), Io.
 [[nodiscard]] Result<StoreReport> check_data(const std::filesystem::path& data);
 
-/// Errors: Conflict (the target exists), NotFound, Io, DiskFull. A blob that is damaged is copied and told in `faults`.
+/// Errors: Conflict (the target exists), NotFound, Io, DiskFull; Cancelled, once `stop` asks: nothing stays of it. A
+/// blob that is damaged is copied and told in `faults`.
 [[nodiscard]] Result<StoreReport> back_up(const std::filesystem::path& data, const std::filesystem::path& target,
-                                          const std::string& now);
+                                          const std::string& now, const std::stop_token& stop = {});
+
+/// What the manifest of a backup says; of faults, how many.
+[[nodiscard]] StoreReport manifest_of(const std::filesystem::path& backup);
 
 /// Makes `data`, which must not exist or be empty, from a backup, after comparing all of it with its checksums.
 /// Errors: Conflict, NotFound, Io (the backup is damaged), DiskFull.

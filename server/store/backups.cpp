@@ -1,0 +1,218 @@
+#include "server/store/backups.hpp"
+
+#include "server/store/files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+namespace driftlab::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of this process, that are told of.
+constexpr std::size_t kOwn = 32;
+/// After one that failed the timer waits so long, or its own time if that is less.
+constexpr std::int64_t kPauseMicros = 3'600'000'000;
+
+/// `20261125T081500Z`.
+std::string name_at(UtcMicros time) {
+  std::string name = rfc3339(time).substr(0, 19) + "Z";
+  std::erase_if(name, [](char letter) { return letter == '-' || letter == ':'; });
+  return name;
+}
+
+/// The moment that a name says; nothing: it is no backup's.
+std::optional<UtcMicros> time_of(const std::string& name) {
+  int year = 0;
+  unsigned month = 0;
+  unsigned day = 0;
+  int hour = 0;
+  int minute = 0;
+  int second = 0;
+  if (std::sscanf(name.c_str(), "%4d%2u%2uT%2d%2d%2dZ", &year, &month, &day, &hour, &minute, &second) != 6) {
+    return std::nullopt;
+  }
+  const std::chrono::sys_days date = std::chrono::year{year} / std::chrono::month{month} / std::chrono::day{day};
+  const auto moment = date + std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
+  const UtcMicros time = std::chrono::duration_cast<std::chrono::microseconds>(moment.time_since_epoch()).count();
+  return name_at(time) == name ? std::optional(time) : std::nullopt;
+}
+
+}  // namespace
+
+std::string_view name_of(BackupState state) {
+  switch (state) {
+    case BackupState::Running:
+      return "running";
+    case BackupState::Complete:
+      return "complete";
+    case BackupState::Damaged:
+      return "damaged";
+    case BackupState::Failed:
+      break;
+  }
+  return "failed";
+}
+
+bool is_backup_name(std::string_view text) { return time_of(std::string(text)).has_value(); }
+
+Backups::Backups(const Clock& clock, BackupOptions options) : clock_(clock), options_(std::move(options)) {}
+
+void Backups::start() {
+  if (!options_.directory.empty()) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+}
+
+void Backups::stop() {
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    stopped_ = true;
+  }
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+/// Those of the directory, oldest first. A directory that is not there has none.
+Result<std::vector<Backup>> Backups::complete() const {
+  std::vector<Backup> found;
+  std::error_code error;
+  fs::directory_iterator entry(options_.directory, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (const std::optional<UtcMicros> time = time_of(name)) {
+      StoreReport told = options_.describe ? options_.describe(entry->path()) : StoreReport{};
+      const BackupState state = told.faults.empty() ? BackupState::Complete : BackupState::Damaged;
+      found.push_back({name, state, *time, std::nullopt, told.blobs, told.bytes, std::move(told.faults)});
+    }
+  }
+  if (error && error != std::errc::no_such_file_or_directory && !options_.directory.empty()) {
+    return fail(file_error(error.value(), "list", options_.directory));
+  }
+  std::sort(found.begin(), found.end(), [](const Backup& a, const Backup& b) { return a.name < b.name; });
+  return found;
+}
+
+Result<Backup> Backups::begin() {
+  if (options_.directory.empty()) {
+    return fail(ErrorCode::Conflict, "This daemon has no directory for backups; start it with --backups DIRECTORY.",
+                {{"parameter", "backups"}});
+  }
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (stopped_) {
+    return fail(ErrorCode::Cancelled, "The daemon is stopping.");
+  }
+  if (!own_.empty() && own_.back().state == BackupState::Running) {
+    return own_.back();
+  }
+  UtcMicros begun = clock_.now();
+  if (!own_.empty() && name_at(begun) <= own_.back().name) {
+    begun = time_of(own_.back().name).value_or(begun) + 1'000'000;  // a name is of one second
+  }
+  own_.push_back({name_at(begun), BackupState::Running, begun, std::nullopt, 0, 0, {}});
+  if (own_.size() > kOwn) {
+    own_.erase(own_.begin());
+  }
+  wanted_ = true;
+  asked_.notify_all();
+  return own_.back();
+}
+
+Result<std::vector<Backup>> Backups::list() const {
+  auto all = complete();
+  if (!all) {
+    return all;
+  }
+  const std::lock_guard<std::mutex> guard(mutex_);
+  for (const Backup& own : own_) {
+    std::erase_if(*all, [&](const Backup& found) { return found.name == own.name; });
+    all->push_back(own);
+  }
+  std::sort(all->begin(), all->end(), [](const Backup& a, const Backup& b) { return a.name > b.name; });
+  return all;
+}
+
+std::optional<UtcMicros> Backups::newest() const {
+  std::optional<UtcMicros> time;
+  for (const Backup& each : complete().value_or(std::vector<Backup>{})) {
+    time = each.state == BackupState::Complete ? each.begun_at : time;
+  }
+  return time;
+}
+
+bool Backups::is_due() const {
+  if (options_.every_micros <= 0) {
+    return false;
+  }
+  const UtcMicros now = clock_.now();
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const std::int64_t pause = std::min(options_.every_micros, kPauseMicros);
+    if (!own_.empty() && own_.back().state == BackupState::Failed && now - own_.back().begun_at < pause) {
+      return false;
+    }
+  }
+  return now - newest().value_or(now - options_.every_micros) >= options_.every_micros;
+}
+
+void Backups::run(const std::stop_token& stop) {
+  constexpr std::chrono::seconds kLook{5};
+  while (!stop.stop_requested()) {
+    if (is_due()) {
+      (void)begin();
+    }
+    std::string name;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      (void)asked_.wait_for(lock, stop, kLook, [this] { return wanted_; });
+      if (!std::exchange(wanted_, false)) {
+        continue;
+      }
+      name = own_.back().name;
+    }
+    make(name, stop);
+  }
+}
+
+void Backups::make(const std::string& name, const std::stop_token& stop) {
+  Status ready = make_directories(options_.directory);
+  const Result<StoreReport> report =
+      ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
+  Backup ended;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    Backup& own = *std::find_if(own_.begin(), own_.end(), [&](const Backup& each) { return each.name == name; });
+    own.finished_at = clock_.now();
+    own.state = !report ? BackupState::Failed : report->faults.empty() ? BackupState::Complete : BackupState::Damaged;
+    own.faults = report ? report->faults : std::vector<std::string>{report.error().message};
+    own.blobs = report ? report->blobs : 0;
+    own.bytes = report ? report->bytes : 0;
+    ended = own;
+  }
+  if (ended.state == BackupState::Complete) {
+    forget_old();  // after a damaged one the older ones may be the only sound ones
+  }
+  if (options_.ended) {
+    options_.ended(ended);
+  }
+}
+
+void Backups::forget_old() {
+  const std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
+  for (std::size_t i = 0; options_.keep > 0 && i + options_.keep < found.size(); ++i) {
+    std::error_code ignored;
+    // First a name that is no backup's: what a crash leaves half removed must not look complete.
+    const fs::path leaving = options_.directory / (found[i].name + ".gone");
+    fs::rename(options_.directory / found[i].name, leaving, ignored);
+    fs::remove_all(leaving, ignored);
+  }
+}
+
+}  // namespace driftlab::server

@@ -1,0 +1,100 @@
+#pragma once
+/// Backups that the daemon makes of its own data directory: by a timer, and when somebody asks. One at a time, in a
+/// thread of its own, so that nothing waits for it.
+///
+/// Each is a folder `<directory>/<name>` as `driftlabd backup` makes it (server/store/sqlite/backup.hpp), named by the
+/// moment that it holds. What a folder is missing was not finished and is none. Of complete ones the newest are kept.
+#include "core/signal/result.hpp"
+#include "server/store/clock.hpp"
+#include "server/store/store_report.hpp"
+
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace driftlab::server {
+
+enum class BackupState {
+  Running,
+  Complete,  ///< and sound: all of it was read back
+  Damaged,   ///< complete, but of a store in which something is damaged
+  Failed,    ///< there is none
+};
+
+[[nodiscard]] std::string_view name_of(BackupState state);
+
+/// A moment as names of backups say it.
+[[nodiscard]] bool is_backup_name(std::string_view text);
+
+struct Backup {
+  std::string name;  ///< `20261125T081500Z`
+  BackupState state = BackupState::Running;
+  UtcMicros begun_at = 0;
+  std::optional<UtcMicros> finished_at;
+  std::int64_t blobs = 0;
+  std::int64_t bytes = 0;           ///< of recordings and their columns
+  std::vector<std::string> faults;  ///< sentences: what is damaged, or why there is none
+};
+
+struct BackupOptions {
+  std::filesystem::path directory;  ///< of the backups; empty: none are made
+  /// Makes one in a folder that is not there yet. Error: Cancelled where it was asked to stop, and nothing stays.
+  std::function<Result<StoreReport>(const std::filesystem::path& target, const std::string& now,
+                                    const std::stop_token& stop)>
+      make = {};
+  std::function<StoreReport(const std::filesystem::path& backup)> describe = {};  ///< a complete one; may be empty
+  std::int64_t every_micros = 0;                                                  ///< 0: only when asked
+  std::size_t keep = 0;                                                           ///< of complete ones; 0: all
+  std::function<void(const Backup&)> ended = {};  ///< told of each, on the thread that made it
+};
+
+/// Thread safe.
+class Backups {
+ public:
+  /// `clock` must outlive this object.
+  Backups(const Clock& clock, BackupOptions options);
+  Backups(const Backups&) = delete;
+  Backups& operator=(const Backups&) = delete;
+  ~Backups() { stop(); }
+
+  /// Starts the timer: the first backup is due when the newest of the directory is old enough.
+  void start();
+  /// Gives up the one that is being made, of which nothing stays. Blocks until it has.
+  void stop();
+
+  /// Begins one, or names the one that is being made. Errors: Conflict (there is no directory for them); Cancelled (the
+  /// daemon is stopping).
+  [[nodiscard]] Result<Backup> begin();
+
+  /// Newest first: those of this process, and complete ones of the directory. Error: Io.
+  [[nodiscard]] Result<std::vector<Backup>> list() const;
+
+  /// When the newest complete one was begun; nothing: there is none, or none are made here.
+  [[nodiscard]] std::optional<UtcMicros> newest() const;
+
+ private:
+  [[nodiscard]] Result<std::vector<Backup>> complete() const;
+  void run(const std::stop_token& stop);
+  void make(const std::string& name, const std::stop_token& stop);
+  void forget_old();
+  [[nodiscard]] bool is_due() const;
+
+  const Clock& clock_;
+  const BackupOptions options_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any asked_;
+  std::vector<Backup> own_;  ///< of this process, oldest first; at most kOwn
+  bool wanted_ = false;
+  bool stopped_ = false;
+  std::jthread thread_;
+};
+
+}  // namespace driftlab::server

@@ -1,0 +1,175 @@
+/// Backups by a timer and on request: one at a time, the newest kept, none half.
+#include "server/store/backups.hpp"
+
+#include "tests/unit/store/world.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <latch>
+#include <thread>
+
+namespace driftlab::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// A daemon whose backups are empty folders.
+class MadeBackups : public testing::Test {
+ protected:
+  BackupOptions options(std::int64_t every_micros = 0, std::size_t keep = 0) {
+    BackupOptions options;
+    options.directory = folder_.path() / "backups";
+    options.every_micros = every_micros;
+    options.keep = keep;
+    options.make = [this](const std::filesystem::path& target, const std::string&, const std::stop_token&) {
+      if (report_) {
+        std::filesystem::create_directory(target);
+      }
+      return report_;
+    };
+    options.ended = [this](const Backup& backup) {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      ended_.push_back(backup);
+      changed_.notify_all();
+    };
+    return options;
+  }
+
+  /// The backups that have ended, once there are so many.
+  std::vector<Backup> ended(std::size_t count) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60), [&] { return ended_.size() >= count; }));
+    return ended_;
+  }
+  [[nodiscard]] std::vector<std::string> folders() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "backups")) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  TemporaryDirectory folder_;
+  FakeClock clock_;
+  Result<StoreReport> report_ = StoreReport{3, 4096, {}};
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Backup> ended_;
+};
+
+TEST_F(MadeBackups, OneThatIsAskedForIsMadeAndListed) {
+  Backups backups(clock_, options());
+  backups.start();
+  const auto begun = backups.begin();
+  ASSERT_TRUE(begun);
+  EXPECT_EQ(begun->state, BackupState::Running);
+  EXPECT_TRUE(is_backup_name(begun->name)) << begun->name;
+  const Backup made = ended(1).front();
+  EXPECT_EQ(made.state, BackupState::Complete);
+  EXPECT_EQ(made.blobs, 3);
+  EXPECT_THAT(folders(), ElementsAre(begun->name));
+  ASSERT_THAT(*backups.list(), SizeIs(1));
+  EXPECT_EQ(backups.newest(), made.begun_at / 1'000'000 * 1'000'000);
+  EXPECT_GT(backups.begin()->name, begun->name) << "of the same second: no two of one name";
+}
+
+TEST_F(MadeBackups, WhileOneIsMadeARequestNamesIt) {
+  std::latch made(1);
+  BackupOptions slow = options();
+  slow.make = [&made](const std::filesystem::path&, const std::string&, const std::stop_token&) {
+    made.wait();
+    return StoreReport{};
+  };
+  Backups backups(clock_, slow);
+  backups.start();
+  const std::string name = backups.begin()->name;
+  clock_.advance(kMinute);
+  EXPECT_EQ(backups.begin()->name, name);
+  made.count_down();
+  EXPECT_THAT(ended(1), SizeIs(1));
+}
+
+TEST_F(MadeBackups, TheTimerBeginsWhenTheNewestIsOldEnough) {
+  std::filesystem::create_directories(folder_.path() / "backups/20261117T000000Z");
+  std::filesystem::create_directories(folder_.path() / "backups/20261117T000001Z.part");
+  Backups backups(clock_, options(kHour));  // it is the 18th
+  backups.start();
+  EXPECT_EQ(ended(1).front().state, BackupState::Complete);
+  EXPECT_THAT(*backups.list(), SizeIs(2)) << "what is not finished is none";
+}
+
+TEST_F(MadeBackups, TheNewestCompleteOnesStay) {
+  Backups backups(clock_, options(0, 2));
+  backups.start();
+  for (std::size_t i = 1; i <= 4; ++i) {
+    clock_.advance(kHour);
+    ASSERT_TRUE(backups.begin());
+    (void)ended(i);
+  }
+  EXPECT_THAT(folders(), SizeIs(2));
+  EXPECT_EQ(folders().back(), ended(4).back().name);
+}
+
+TEST_F(MadeBackups, ADamagedStoreCostsNoOlderBackup) {
+  // Older ones may be the only sound ones: a disk that goes bad must not push them out one a day.
+  Backups backups(clock_, options(0, 1));
+  backups.start();
+  ASSERT_TRUE(backups.begin());
+  (void)ended(1);
+  report_ = StoreReport{3, 4096, {"The bytes of f00d are damaged."}};
+  clock_.advance(kHour);
+  ASSERT_TRUE(backups.begin());
+  EXPECT_EQ(ended(2).back().state, BackupState::Damaged);
+  EXPECT_THAT(folders(), SizeIs(2));
+}
+
+TEST_F(MadeBackups, OneThatFailsSaysWhyAndTheTimerWaits) {
+  report_ = fail(ErrorCode::DiskFull, "The disk is full.");
+  Backups backups(clock_, options(kHour));
+  backups.start();
+  const Backup failed = ended(1).front();
+  EXPECT_EQ(failed.state, BackupState::Failed);
+  EXPECT_THAT(failed.faults, ElementsAre("The disk is full."));
+  EXPECT_EQ(backups.newest(), std::nullopt);
+  EXPECT_THAT(folders(), IsEmpty());
+}
+
+TEST_F(MadeBackups, StoppingGivesUpTheOneThatIsMade) {
+  std::latch begun(1);
+  BackupOptions slow = options();
+  slow.make = [&begun](const std::filesystem::path&, const std::string&, const std::stop_token& stop) {
+    begun.count_down();
+    while (!stop.stop_requested()) {
+      std::this_thread::yield();
+    }
+    return Result<StoreReport>(fail(ErrorCode::Cancelled, "The backup was stopped."));
+  };
+  Backups backups(clock_, slow);
+  backups.start();
+  ASSERT_TRUE(backups.begin());
+  begun.wait();
+  backups.stop();
+  EXPECT_EQ(ended(1).front().state, BackupState::Failed);
+  EXPECT_FALSE(backups.begin());
+}
+
+TEST_F(MadeBackups, WithoutADirectoryThereAreNone) {
+  Backups backups(clock_, {});
+  backups.start();
+  const auto begun = backups.begin();
+  ASSERT_FALSE(begun);
+  EXPECT_EQ(begun.error().code, ErrorCode::Conflict);
+  EXPECT_THAT(begun.error().message, HasSubstr("--backups"));
+  EXPECT_THAT(*backups.list(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace driftlab::server
