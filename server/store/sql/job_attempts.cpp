@@ -14,23 +14,26 @@ namespace {
 /// failures has nothing to wait for, and nobody has to wait longer than the longest pause: a run_at beyond it was
 /// written before the clock went back. Where several claim at a time each passes over what another one is about to
 /// take.
-#define DRIFTLAB_BUSY_TOKENS                                                                            \
-  "(SELECT token_id FROM owners JOIN jobs AS busy ON busy.id = object_id WHERE busy.state = 'running' " \
-  "GROUP BY token_id HAVING count(*) >= ?5)"
-#define DRIFTLAB_HAS_ITS_TURN                                                                             \
-  "AND (NOT EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id IN " DRIFTLAB_BUSY_TOKENS \
-  ") "                                                                                                    \
-  "OR EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id NOT IN " DRIFTLAB_BUSY_TOKENS ")) "
-constexpr EngineTexts kClaim{
-    "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', "
-    "progress = 0 WHERE id = (SELECT id FROM jobs WHERE state = 'queued' "
-    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " DRIFTLAB_HAS_ITS_TURN
-    "ORDER BY priority - max(0, ?1 - run_at) / ?4, run_at, id LIMIT 1) RETURNING " DRIFTLAB_JOB_COLUMNS,
-    "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', "
-    "progress = 0 WHERE id = (SELECT id FROM jobs WHERE state = 'queued' "
-    "AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " DRIFTLAB_HAS_ITS_TURN
-    "ORDER BY priority - greatest(0, ?1 - run_at) / ?4, run_at, id LIMIT 1 FOR UPDATE SKIP LOCKED) "
-    "RETURNING " DRIFTLAB_JOB_COLUMNS};
+///
+/// `beside`: how many jobs run of the token that asked for it; of several, of the one with the fewest; 0 where nobody
+/// is known. Each puts the token's other jobs one priority back, so that a thousand of one do not stand before the
+/// first of another.
+#define DRIFTLAB_RUNNING_OF_TOKENS                                                                             \
+  "running AS (SELECT token_id, count(*) AS jobs FROM owners JOIN jobs AS busy ON busy.id = owners.object_id " \
+  "WHERE busy.state = 'running' GROUP BY token_id)"
+#define DRIFTLAB_BESIDE                                                                                \
+  "coalesce((SELECT min(coalesce(running.jobs, 0)) FROM owners LEFT JOIN running ON running.token_id " \
+  "= owners.token_id WHERE owners.object_id = jobs.id), 0)"
+#define DRIFTLAB_NEXT_JOB(LARGER)                                                                       \
+  "WITH " DRIFTLAB_RUNNING_OF_TOKENS                                                                    \
+  " SELECT id FROM jobs WHERE state = 'queued' AND (run_at <= ?1 OR failures = 0 OR run_at > ?1 + ?3) " \
+  "AND " DRIFTLAB_BESIDE " < ?5 ORDER BY priority + " DRIFTLAB_BESIDE " - " LARGER                      \
+  "(0, ?1 - run_at) / ?4, run_at, id LIMIT 1"
+#define DRIFTLAB_CLAIM(NEXT)                                                                                       \
+  "UPDATE jobs SET state = 'running', attempt = attempt + 1, started_at = ?1, lease_expires_at = ?2, stage = '', " \
+  "progress = 0 WHERE id = (" NEXT ") RETURNING " DRIFTLAB_JOB_COLUMNS
+constexpr EngineTexts kClaim{DRIFTLAB_CLAIM(DRIFTLAB_NEXT_JOB("max")),
+                             DRIFTLAB_CLAIM(DRIFTLAB_NEXT_JOB("greatest") " FOR UPDATE OF jobs SKIP LOCKED")};
 constexpr std::string_view kRenew =
     "UPDATE jobs SET lease_expires_at = ?3 WHERE id = ?1 AND attempt = ?2 AND state = 'running' "
     "RETURNING cancel_requested";

@@ -1,4 +1,6 @@
+#include "server/store/principal.hpp"
 #include "server/store/retry_policy.hpp"
+#include "server/store/sql/sql_store.hpp"
 #include "tests/unit/store/store_suite.hpp"
 
 namespace driftlab::server {
@@ -20,6 +22,52 @@ Job claim_after_pause(Store& store, FakeClock& clock) {
 bool nothing_due(Store& store) {
   const auto claimed = store.claim(kLease);
   return claimed && !claimed->has_value();
+}
+
+/// A token of its own, and the caller who holds it.
+Caller somebody(Store& store, const std::string& id) {
+  Token token;
+  token.id = id;
+  token.name = id;
+  token.scope = Scope::Run;
+  token.secret_sha256 = std::string(64 - id.size(), '0') + id;
+  EXPECT_TRUE(dynamic_cast<SqlStore&>(store).access().add_token(token));
+  return {Principal{id, id, Scope::Run, {}, false}, "req", "127.0.0.1"};
+}
+
+Job add_job_of(Store& store, const Caller& caller, const std::string& key, int priority = 5) {
+  const ActingFor acting(caller);
+  return store.enqueue({"characterise", key, "{}", priority})->job;
+}
+
+TEST_P(JobStore, ManyJobsOfOneTokenDoNotStandBeforeTheFirstOfAnother) {
+  // A CI pipeline queued a thousand recordings; the one of a person came after them all.
+  const Caller pipeline = somebody(store(), "aaaaaaaa");
+  const Caller person = somebody(store(), "bbbbbbbb");
+  std::vector<Job> many;
+  for (int i = 0; i < 4; ++i) {
+    many.push_back(add_job_of(store(), pipeline, "many " + std::to_string(i)));
+    clock_.advance(kSecond);
+  }
+  const Job one = add_job_of(store(), person, "one");
+  EXPECT_EQ(claim_one(store()).id, many[0].id) << "nothing runs: the oldest";
+  EXPECT_EQ(claim_one(store()).id, one.id);
+  EXPECT_EQ(claim_one(store()).id, many[1].id);
+  const Job urgent = add_job_of(store(), pipeline, "urgent", 0);
+  EXPECT_EQ(claim_one(store()).id, urgent.id) << "two of its token run, and it is five priorities before";
+}
+
+TEST_P(JobStore, AJobThatSeveralAskedForIsThatOfTheOneWithTheFewest) {
+  const Caller busy = somebody(store(), "aaaaaaaa");
+  const Caller idle = somebody(store(), "bbbbbbbb");
+  add_job_of(store(), busy, "running");
+  (void)claim_one(store());
+  const Job alone = add_job_of(store(), busy, "alone");
+  const Job shared = add_job_of(store(), busy, "shared");
+  EXPECT_EQ(add_job_of(store(), idle, "shared").id, shared.id);
+  EXPECT_EQ(claim_one(store()).id, shared.id);
+  EXPECT_FALSE(store().claim(kLease, 2)->has_value()) << "two of that token run, as many as may";
+  EXPECT_EQ(claim_one(store()).id, alone.id);
 }
 
 TEST_P(JobStore, AQueuedJobHoldsWhatWasAskedFor) {
