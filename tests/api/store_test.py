@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import tempfile
 import time
@@ -94,6 +95,49 @@ class OnPostgres(unittest.TestCase):
         finally:
             self.cluster.sql("ALTER DATABASE postgres RESET default_transaction_read_only")
             self.cluster.sql("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'")
+        self.readiness(daemon, 200)
+
+    def test_rights_that_are_missing_are_said(self) -> None:
+        schema = self.cluster.schema_of(self.data)
+        self.cluster.sql("CREATE ROLE lab LOGIN; CREATE ROLE guest LOGIN")
+        guest = self.store.replace("user=driftlab", "user=guest")
+        self.refused(guest, "no schema that its user may use")  # it said that another daemon works with the database
+        self.cluster.sql(f"GRANT USAGE ON SCHEMA {schema} TO guest")
+        self.refused(guest, "permission denied")
+        self.cluster.sql(f"GRANT USAGE, CREATE ON SCHEMA {schema} TO lab")
+        daemon = self.enterContext(Daemon(self.data, arguments=("--store", self.store.replace("user=driftlab", "user=lab"))))
+        self.assertEqual(upload(daemon).status, 201)
+        self.cluster.sql(f"REVOKE INSERT, UPDATE ON ALL TABLES IN SCHEMA {schema} FROM lab")
+        self.assertIn("permission denied", self.readiness(daemon, 503))
+        self.assertEqual(len(daemon.items("/v1/recordings")), 1, "what is there can be read")
+        self.cluster.sql(f"GRANT INSERT, UPDATE ON ALL TABLES IN SCHEMA {schema} TO lab")
+        self.readiness(daemon, 200)
+
+    @unittest.skipUnless(os.geteuid() == 0, "SKIPPED: mounting a small disk needs root")
+    def test_a_full_database_is_said_and_loses_nothing(self) -> None:
+        disk = self.cluster.folder / "small"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=3m", "tmpfs", str(disk)], check=False, capture_output=True).returncode != 0:
+            self.skipTest("SKIPPED: no tmpfs can be mounted")
+        self.addCleanup(subprocess.run, ["umount", "--lazy", str(disk)], check=False)
+        shutil.chown(disk, "postgres", "postgres")
+        self.cluster.sql(f"CREATE TABLESPACE small LOCATION '{disk}'")
+        self.cluster.sql("ALTER ROLE driftlab SET default_tablespace = small")
+        self.addCleanup(self.cluster.sql, "ALTER ROLE driftlab RESET default_tablespace")
+        daemon = self.daemon("--workers", "0")
+        acknowledged, refused = [], None
+        for seed in range(5000):
+            answer = daemon.upload(samples.gyro_csv(8, seed=seed), rate_hz=100, columns=samples.GYRO_Z, labels=",".join(f"l{i}=" + os.urandom(125).hex() for i in range(16)))
+            if answer.status != 201:
+                refused = answer
+                break
+            acknowledged.append(answer.json["id"])
+        assert refused is not None
+        self.assertEqual((refused.status, refused.json["code"]), (507, "disk_full"), refused.describe()[-600:])
+        self.assertIn("full", refused.json["detail"])
+        self.assertEqual([each["id"] for each in daemon.items("/v1/recordings?limit=500")], acknowledged)
+        self.assertEqual(subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=False).returncode, 0)
+        self.assertEqual(daemon.upload(samples.gyro_csv(8, seed=9999), rate_hz=100, columns=samples.GYRO_Z).status, 201)
         self.readiness(daemon, 200)
 
     def test_another_schema_is_said(self) -> None:

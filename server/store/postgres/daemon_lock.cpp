@@ -11,6 +11,7 @@ namespace {
 using namespace advisory_locks;
 
 constexpr std::string_view kStillThere = "SELECT 1";
+constexpr std::string_view kHasSchema = "SELECT (current_schema() IS NOT NULL)::INT";
 constexpr std::chrono::seconds kPatience{3};
 constexpr std::chrono::seconds kPatienceTogether{20};
 
@@ -71,6 +72,18 @@ Status DaemonLock::take() {
   auto connection = open_();
   if (!connection) {
     return fail(connection.error());
+  }
+  // Without a schema the locks have no name, and none is granted.
+  const auto has_schema = is_granted(**connection, kHasSchema);
+  if (!has_schema) {
+    return fail(has_schema.error());
+  }
+  if (!*has_schema) {
+    return fail(ErrorCode::Io,
+                "In the database " + (*connection)->name() +
+                    " there is no schema that its user may use; GRANT USAGE, CREATE ON SCHEMA to the user, or name "
+                    "another by options=-csearch_path=NAME.",
+                {{"database", (*connection)->name()}});
   }
   const auto taken = try_lock(**connection);
   if (!taken) {
