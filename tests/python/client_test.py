@@ -357,7 +357,7 @@ class Everything(ClientTest):
 
     def access(self) -> set[str]:
         """Everything about tokens, on a daemon of its own: the first one switches authentication on for good."""
-        with Daemon() as daemon:
+        with tempfile.TemporaryDirectory() as folder, Daemon(arguments=("--backups", folder)) as daemon:
             client = Client(f"http://127.0.0.1:{daemon.port}")
             first = client.create_token("lab", "admin")
             client = Client(f"http://127.0.0.1:{daemon.port}", first["secret"])
@@ -382,6 +382,8 @@ class Everything(ClientTest):
             client.delete_webhook(hook["id"])
             self.assertTrue(list(client.audit()))
             self.assertTrue(client.verify_audit()["sound"])
+            made = client.create_backup()
+            self.assertIn(made["name"], [each["name"] for each in client.backups()])
             return recorder.seen
 
     def pieces(self, client: Client) -> None:

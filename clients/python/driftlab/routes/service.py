@@ -4,7 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Literal, cast
 
-from ..contract import Attention, ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
+from ..contract import Attention, Backup, ContractAnswer, GetCountsAnswer, HealthAnswer, ListDocumentationAnswer, ReadinessAnswer
 from .base import PAGE, Routes, Sort, operation
 
 
@@ -40,6 +40,16 @@ class ServiceRoutes(Routes):
                   page_size: int = PAGE) -> Iterator[Attention]:
         """Results whose verdict is not fine, newest first unless sorted otherwise."""
         return self._list("listAttention", {"device": device, "since": since, "sort": sort}, page_size)
+
+    @operation("listBackups")
+    def backups(self, *, sort: Sort | None = None, page_size: int = PAGE) -> Iterator[Backup]:
+        """Those that the daemon has made since it started, and complete ones of its directory."""
+        return self._list("listBackups", {"sort": sort}, page_size)
+
+    @operation("createBackup")
+    def create_backup(self, *, idempotency_key: str | None = None) -> Backup:
+        """Begins a backup, or names the one that is being made; `backups` says how it ended."""
+        return cast(Backup, self._post("createBackup", None, idempotency_key))
 
     @operation("contract")
     def contract(self) -> ContractAnswer:
