@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import struct
+import tempfile
+import time
 import unittest
 from typing import Any
 
@@ -134,6 +136,11 @@ class Requests(DaemonTest):
 
 
 class Operations(DaemonTest):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.arguments = ("--backups", cls.enterClassContext(tempfile.TemporaryDirectory()))
+        super().setUpClass()
+
     def test_every_operation_gives_every_success_it_lists(self) -> None:
         daemon = self.daemon
         device = daemon.post("/v1/devices", {"name": "phone-07"})
@@ -225,6 +232,9 @@ class Operations(DaemonTest):
         while running := [one["id"] for one in daemon.items("/v1/jobs") if one["finished_at"] is None]:  # or answers change between two reads
             for one in running:
                 daemon.finished(one)
+        self.expect(202, daemon.post("/v1/backups"))
+        while any(each["state"] == "running" for each in daemon.items("/v1/backups")):
+            time.sleep(0.05)
         for path, operations in self.contract.paths.items():
             if "get" in operations:
                 target = path.replace(path[path.find("{"):path.find("}") + 1], values.get(path, job.json["id"])) if "{" in path else path
