@@ -19,6 +19,10 @@ constexpr std::size_t kOwn = 32;
 /// After one that failed the timer waits so long, or its own time if that is less.
 constexpr std::int64_t kPauseMicros = 3'600'000'000;
 
+/// Behind the name of one that is being made (server/store/sqlite/backup.cpp), and of one that is being removed.
+constexpr const char* kUnderConstruction = ".part";
+constexpr const char* kLeaving = ".gone";
+
 /// `20261125T081500Z`.
 std::string name_at(UtcMicros time) {
   std::string name = rfc3339(time).substr(0, 19) + "Z";
@@ -164,6 +168,7 @@ bool Backups::is_due() const {
 
 void Backups::run(const std::stop_token& stop) {
   constexpr std::chrono::seconds kLook{5};
+  forget_unfinished();
   while (!stop.stop_requested()) {
     if (is_due()) {
       (void)begin();
@@ -204,12 +209,27 @@ void Backups::make(const std::string& name, const std::stop_token& stop) {
   }
 }
 
+void Backups::forget_unfinished() {
+  std::vector<fs::path> unfinished;
+  std::error_code ignored;
+  fs::directory_iterator entry(options_.directory, ignored);
+  for (; !ignored && entry != fs::directory_iterator(); entry.increment(ignored)) {
+    const fs::path& path = entry->path();
+    if ((path.extension() == kUnderConstruction || path.extension() == kLeaving) && time_of(path.stem().string())) {
+      unfinished.push_back(path);
+    }
+  }
+  for (const fs::path& path : unfinished) {
+    fs::remove_all(path, ignored);
+  }
+}
+
 void Backups::forget_old() {
   const std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
   for (std::size_t i = 0; options_.keep > 0 && i + options_.keep < found.size(); ++i) {
     std::error_code ignored;
     // First a name that is no backup's: what a crash leaves half removed must not look complete.
-    const fs::path leaving = options_.directory / (found[i].name + ".gone");
+    const fs::path leaving = options_.directory / (found[i].name + kLeaving);
     fs::rename(options_.directory / found[i].name, leaving, ignored);
     fs::remove_all(leaving, ignored);
   }

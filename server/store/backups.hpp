@@ -45,7 +45,7 @@ struct Backup {
 };
 
 struct BackupOptions {
-  std::filesystem::path directory;  ///< of the backups; empty: none are made
+  std::filesystem::path directory;  ///< of the backups of this daemon alone; empty: none are made
   /// Makes one in a folder that is not there yet. Error: Cancelled where it was asked to stop, and nothing stays.
   std::function<Result<StoreReport>(const std::filesystem::path& target, const std::string& now,
                                     const std::stop_token& stop)>
@@ -65,7 +65,8 @@ class Backups {
   Backups& operator=(const Backups&) = delete;
   ~Backups() { stop(); }
 
-  /// Starts the timer: the first backup is due when the newest of the directory is old enough.
+  /// Removes what a process that was killed left unfinished, and starts the timer: the first backup is due when the
+  /// newest of the directory is old enough.
   void start();
   /// Gives up the one that is being made, of which nothing stays. Blocks until it has.
   void stop();
@@ -85,6 +86,7 @@ class Backups {
   void run(const std::stop_token& stop);
   void make(const std::string& name, const std::stop_token& stop);
   void forget_old();
+  void forget_unfinished();
   [[nodiscard]] bool is_due() const;
 
   const Clock& clock_;

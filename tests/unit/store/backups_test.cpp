@@ -99,11 +99,14 @@ TEST_F(MadeBackups, WhileOneIsMadeARequestNamesIt) {
 
 TEST_F(MadeBackups, TheTimerBeginsWhenTheNewestIsOldEnough) {
   std::filesystem::create_directories(folder_.path() / "backups/20261117T000000Z");
-  std::filesystem::create_directories(folder_.path() / "backups/20261117T000001Z.part");
+  for (const char* const name : {"20261117T000001Z.part", "20261116T000000Z.gone", "mine.part"}) {
+    std::filesystem::create_directories(folder_.path() / "backups" / name);
+  }
   Backups backups(clock_, options(kHour));  // it is the 18th
   backups.start();
   EXPECT_EQ(ended(1).front().state, BackupState::Complete);
   EXPECT_THAT(*backups.list(), SizeIs(2)) << "what is not finished is none";
+  EXPECT_THAT(folders(), SizeIs(3)) << "and is removed; what is somebody else's stays";
 }
 
 TEST_F(MadeBackups, TheNewestCompleteOnesStay) {
