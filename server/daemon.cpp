@@ -227,7 +227,7 @@ struct Daemon::Parts {
     add_disk_gauges(found, *blobs);
     add_state_gauges(found, states);
     if (const auto newest = backups.newest()) {
-      found.backup_age_seconds = static_cast<double>(clock.now() - *newest) / 1e6;
+      found.backup_age_seconds = static_cast<double>(std::max<UtcMicros>(0, clock.now() - *newest)) / 1e6;
     }
     const Scrubber::Findings stored = scrubber.findings();
     found.blobs_damaged = static_cast<double>(stored.damaged);
