@@ -78,7 +78,12 @@ Result<Response> create_study(ApiContext& context, const Request& request) {
   if (!named) {
     return fail(ErrorCode::InvalidArgument, "Name the device of the study: device.id.", {{"pointer", "/device/id"}});
   }
-  const auto device_name = (*device_member)["id"].get<std::string>();
+  ObjectReader device_reader(*device_member, "/device", faults);
+  const std::string device_name = device_reader.required_text("id");
+  for (const char* const told : {"model", "imu", "serial"}) {
+    (void)device_reader.text(told);  // for people; the device has its own
+  }
+  device_reader.reject_unknown();
   if (std::string fault = fault_of_device_name(device_name); !fault.empty()) {
     return fail(ErrorCode::InvalidArgument, std::move(fault), {{"pointer", "/device/id"}});
   }

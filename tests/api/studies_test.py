@@ -108,6 +108,10 @@ class Studies(DaemonTest):
         self.expect(400, post([]))
         self.problem(409, "conflict", post([{"recording": mine, "condition": {"kind": "drive"}}]))
         self.expect(201, post([{"recording": mine, "condition": {"kind": "static"}}]))
+        # What nobody reads was stored, and the answer had more than the contract says.
+        for beside, pointer in (({"name": "x"}, "/device/name"), ({"model": 7}, "/device/model")):
+            answer = self.expect(400, self.daemon.post("/v1/studies", {"device": {"id": "faulty", **beside}, "recordings": [{"recording": mine}]}))
+            self.assertEqual([each["pointer"] for each in answer.json["errors"]], [pointer], answer.describe())
         self.problem(404, "not_found", self.daemon.get("/v1/studies/stu_" + "0" * 26))
         self.problem(404, "not_found", self.daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"study": "stu_" + "0" * 26}}))
         self.expect(400, self.daemon.post("/v1/jobs", {"kind": "characterise", "inputs": {"study": "stu_" + "0" * 26, "recordings": [mine]}}))
