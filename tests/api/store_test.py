@@ -123,6 +123,9 @@ class OnPostgres(unittest.TestCase):
         shutil.chown(disk, "postgres", "postgres")
         self.cluster.sql(f"CREATE TABLESPACE small LOCATION '{disk}'")
         self.cluster.sql("ALTER ROLE driftlab SET default_tablespace = small")
+        # Before the disk goes: a server that misses a tablespace does not recover from a crash.
+        self.addCleanup(self.cluster.sql, "DROP TABLESPACE small")
+        self.addCleanup(self.cluster.sql, f"DROP SCHEMA {self.cluster.schema_of(self.data)} CASCADE")
         self.addCleanup(self.cluster.sql, "ALTER ROLE driftlab RESET default_tablespace")
         daemon = self.daemon("--workers", "0")
         acknowledged, refused = [], None
