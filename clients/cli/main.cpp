@@ -4,6 +4,7 @@
 #include "core/signal/text.hpp"
 
 #include <CLI/CLI.hpp>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -90,8 +91,23 @@ Result<std::string> read_token(const std::string& path) {
 
 }  // namespace driftlab::cli
 
+namespace {
+
+/// Whole columns are made and dropped all the time, and the process ends soon: memory that was given back would be
+/// asked for again, page by page.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kMebi = 1 << 20;
+  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMebi);
+  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMebi);
+#endif
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using driftlab::cli::Exit;
+  keep_freed_memory();
   CLI::App app{"driftlab characterises the stochastic errors of inertial sensors."};
   app.set_version_flag("--version", std::string("driftlab " DRIFTLAB_VERSION));
   app.require_subcommand(1);
