@@ -36,8 +36,8 @@ struct RightedRecordings {
   std::vector<SetAside> aside;
 };
 
-/// The study is copied only if something is wrong with it. Once `stop` asks, what is left is not looked at. O(samples log
-/// samples).
+/// The study is copied only if something is wrong with it. Once `stop` asks, what is left is not looked at. O(samples
+/// log samples).
 [[nodiscard]] RightedRecordings right_recordings(const Study& study, const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

@@ -10,8 +10,8 @@ namespace {
 using testing::HasSubstr;
 
 TEST(JobCost, TimeIsThatOfTheThreadsThatJobsComputeOn) {
-  // An outage evaluation took the machine's cores to estimate its time whatever --threads said: on fewer it was admitted,
-  // ran, and was ended by its deadline.
+  // An outage evaluation took the machine's cores to estimate its time whatever --threads said: on fewer it was
+  // admitted, ran, and was ended by its deadline.
   Budgets budgets;
   budgets.job_seconds = 100;
   JobCost cost;
