@@ -50,7 +50,7 @@ double oracle_level(const SimulatedStudy& clean, const ProcessKind& kind, double
   base.white = clean.base.n * clean.base.n;
   base.components = clean.base.slow;
   SlowModel unit;
-  unit.components.push_back({&kind, 1.0, beta, {}});
+  unit.components.push_back(slow_component(kind, 1.0, beta));
   const auto n = static_cast<double>(recording.count());
   std::vector<double> ratio;  // of the added density at level 1 to the base
   for (double k = 1.0; k < 0.5 * n; k += 1.0) {

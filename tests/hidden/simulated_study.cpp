@@ -230,21 +230,17 @@ BaseModel draw_base(Random& random, bool accelerometer) {
   const auto kinds = random.below(5);
   base.name = "WN";
   if (kinds >= 1) {
-    base.slow.push_back({&registered<GaussMarkov>(),
-                         std::pow((0.02 + 0.02 * random.uniform()) * unit, 2.0),
-                         0.02 * std::pow(80.0, random.uniform()),
-                         {}});
+    const double sigma = (0.02 + 0.02 * random.uniform()) * unit;
+    base.slow.push_back({{&registered<GaussMarkov>(), {sigma, 0.02 * std::pow(80.0, random.uniform())}}, {}});
     base.name += "+GM";
   }
   if (kinds >= 3) {
-    base.slow.push_back({&registered<GaussMarkov>(),
-                         std::pow((0.02 + 0.02 * random.uniform()) * unit, 2.0),
-                         0.01 + 0.02 * random.uniform(),
-                         {}});
+    const double sigma = (0.02 + 0.02 * random.uniform()) * unit;
+    base.slow.push_back({{&registered<GaussMarkov>(), {sigma, 0.01 + 0.02 * random.uniform()}}, {}});
     base.name = "WN+2GM";
   }
   if (kinds == 2 || kinds == 4) {
-    base.slow.push_back({&registered<RandomWalk>(), std::pow((2e-4 + 6e-4 * random.uniform()) * unit, 2.0), 0.0, {}});
+    base.slow.push_back({{&registered<RandomWalk>(), {(2e-4 + 6e-4 * random.uniform()) * unit}}, {}});
     base.name += "+RW";
   }
   return base;
@@ -290,7 +286,7 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
         v = result.base.n / std::sqrt(dt) * random.normal();
       }
       for (const SlowComponent& component : result.base.slow) {
-        component.process().add_path(random, dt, draft.slow);
+        component.process.add_path(random, dt, draft.slow);
       }
       for (const Hidden& effect : effects) {
         const bool here = effect.recordings.empty() ||
@@ -331,7 +327,7 @@ SimulatedStudy simulate_study(const World& world, const std::vector<Hidden>& eff
     auto& processes = result.study.baseline.processes;
     processes.push_back(*make_process("white_noise", {result.base.n}));
     for (const SlowComponent& component : result.base.slow) {
-      processes.push_back(component.process());
+      processes.push_back(component.process);
     }
   }
   investigate::settle_channels(result.study);

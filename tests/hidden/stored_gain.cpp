@@ -18,7 +18,7 @@ Baseline true_model(const SimulatedStudy& data, const Hidden& effect) {
   model.automatic = false;
   model.processes.push_back(*make_process("white_noise", {data.base.n}));
   for (const SlowComponent& component : data.base.slow) {
-    model.processes.push_back(component.process());
+    model.processes.push_back(component.process);
   }
   GivenEffect given{effect.cause, {}, {}, effect.values};
   const Cause& cause = *find_cause(effect.cause);

@@ -122,13 +122,12 @@ double blocks_variance(const BlockSeries& series) {
 double gaussian_log_likelihood(const BlockSeries& series, const SlowModel& base) {
   const BlockColumns columns = columns_of(series);
   const double variance = std::max(blocks_variance(series), 1e-300);
+  const ProcessKind& markov = registered<GaussMarkov>();
   const ProcessKind& walk = registered<RandomWalk>();
   const std::vector<SlowComponent> further{
-      {&registered<GaussMarkov>(), 0.3 * variance, 0.02, {}},
-      {&registered<GaussMarkov>(), 0.3 * variance, 0.1, {}},
-      {&registered<GaussMarkov>(), 0.3 * variance, 0.5, {}},
-      {&registered<FlickerNoise>(), 0.1 * variance, 0.0, {}},
-      {&walk, at_record_length(walk, 0.1 * variance, series.longest_s()), 0.0, {}}};
+      slow_component(markov, 0.3 * variance, 0.02), slow_component(markov, 0.3 * variance, 0.1),
+      slow_component(markov, 0.3 * variance, 0.5), slow_component(registered<FlickerNoise>(), 0.1 * variance),
+      slow_component(walk, at_record_length(walk, 0.1 * variance, series.longest_s()))};
   SlowFit best = fit_slow(series, columns, base);
   constexpr int kMore = 2;
   for (int more = 0; more < kMore; ++more) {

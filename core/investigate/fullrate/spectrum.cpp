@@ -65,8 +65,9 @@ Spectrum estimate_spectrum(const Series& error, double dt_s, double f_low_hz) {
 double slow_density(const SlowModel& model, std::size_t r, double f_hz, double dt_s, double samples) {
   double sum = 0.0;
   for (const SlowComponent& component : model.components) {
-    if (component.acts_in(r) && component.kind->expected_periodogram != nullptr) {
-      sum += component.kind->expected_periodogram(component.level, component.beta, f_hz, dt_s, samples);
+    if (component.acts_in(r) && component.kind().expected_periodogram != nullptr) {
+      sum += component.kind().expected_periodogram(component.process.square(), component.process.only_shape(), f_hz,
+                                                   dt_s, samples);
     }
   }
   return sum;

@@ -22,7 +22,7 @@ double model_variance(const SlowModel& model, double quantization, double half, 
   double sum = WhiteNoise{std::sqrt(model.white)}.haar_variance(half, dt_s) +
                QuantizationNoise{std::sqrt(quantization)}.haar_variance(half, dt_s);
   for (const SlowComponent& component : model.components) {
-    sum += component.process().haar_variance(half, dt_s);
+    sum += component.process.haar_variance(half, dt_s);
   }
   return sum;
 }

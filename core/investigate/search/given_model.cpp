@@ -27,7 +27,7 @@ void add_process(const Process& process, SlowModel& model) {
   if (kind.white_square != nullptr) {
     model.white += kind.white_square(process.parameters);
   } else if (kind.is_slow()) {
-    model.components.push_back({&kind, process.square(), process.only_shape(), {}});
+    model.components.push_back({process, {}});
   }
 }
 
@@ -46,8 +46,7 @@ bool agree(const std::vector<double>& values, const Evidence& evidence) {
 }
 
 void add_slow_effect(const GivenEffect& effect, const ProcessKind& kind, const ChannelGroup& group, SlowModel& model) {
-  SlowComponent component{&kind, effect.values[0] * effect.values[0], 0.0, {}};
-  component.beta = effect.values.size() > 1 ? effect.values[1] : 0.0;
+  SlowComponent component{{&kind, effect.values}, {}};
   if (!everywhere(effect, group)) {
     for (const auto& member : group.members) {
       component.in.push_back(holds(effect.recordings, member.recording->id) ? 1 : 0);
@@ -207,8 +206,8 @@ Model noise_processes(const ChannelModel& model, const ChannelBase& base) {
     list.push_back({&registered<QuantizationNoise>(), {std::sqrt(base.quantization)}});
   }
   for (const SlowComponent& component : base.noise.components) {
-    if (component.kind != &constant_offset()) {
-      list.push_back(component.process());
+    if (component.process.kind != &constant_offset()) {
+      list.push_back(component.process);
     }
   }
   return list;

@@ -32,10 +32,10 @@ SlowModel SlowSearch::widest_base(const BlockColumns& columns) const {
   const double level = model.white / series_.block_s();
   const ProcessKind& walk = registered<RandomWalk>();
   if (model.count(walk) == 0) {
-    model.components.push_back({&walk, 0.0, 0.0, {}});
+    model.components.push_back(slow_component(walk, 0.0));
   }
   for (SlowComponent& component : model.components) {
-    component.level = std::max(component.level, at_record_length(*component.kind, 0.003 * level, series_.longest_s()));
+    raise_square(component, at_record_length(component.kind(), 0.003 * level, series_.longest_s()));
   }
   return fit_slow(series_, columns, model, freedom()).model;
 }
@@ -196,12 +196,13 @@ void SlowSearch::describe_slow(Evidence& evidence) const {
   const Interval level = profile_parameter(series_, columns, null_, {component, false}, freedom());
   const Cause& cause = *evidence.cause;
   evidence.parameters = {{std::string(cause.parameters[0].name),
-                          {std::sqrt(extra.level), {std::sqrt(level.low), std::sqrt(level.high)}},
+                          {extra.process.parameters[0], {std::sqrt(level.low), std::sqrt(level.high)}},
                           cause.parameters[0].unit(group_.unit)}};
-  if (extra.kind->has_shape()) {
+  if (extra.kind().has_shape()) {
     const Interval beta = profile_parameter(series_, columns, null_, {component, true}, freedom());
-    evidence.parameters.push_back(
-        {std::string(cause.parameters[1].name), {extra.beta, beta}, cause.parameters[1].unit(group_.unit)});
+    evidence.parameters.push_back({std::string(cause.parameters[1].name),
+                                   {extra.process.only_shape(), beta},
+                                   cause.parameters[1].unit(group_.unit)});
   }
 }
 

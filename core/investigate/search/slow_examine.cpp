@@ -43,7 +43,7 @@ SlowFit SlowSearch::fit_extra(const ProcessKind& kind, const std::vector<std::si
   for (const double beta : betas) {
     for (const double share : {0.003, 0.03, 0.3}) {
       SlowModel trial = base;
-      trial.components.push_back({&kind, first_level(kind, share, 0.3, level), beta, in});
+      trial.components.push_back(slow_component(kind, first_level(kind, share, 0.3, level), beta, in));
       const double l = evaluate_slow(series_, columns, trial).log_likelihood;
       if (l > top) {
         top = l;
@@ -140,7 +140,7 @@ std::vector<Evidence> SlowSearch::examine_slow() const {
       evidence.gain += std::max(0.0, null_score_ - exact_score_);
     }
     evidence.score = evidence.gain - cost_of(kind) - choice_penalty(static_cast<double>(job.scopes));
-    evidence.shape = extra.beta;
+    evidence.shape = extra.process.only_shape();
   });
   std::vector<Evidence> found;
   for (Evidence& evidence : results) {

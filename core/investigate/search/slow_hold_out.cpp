@@ -90,9 +90,9 @@ SlowModel SlowSearch::noise_without(const BlockColumns& columns) const {
   if (extra_.empty()) {
     SlowModel walking = null_.model;
     walking.components.push_back(
-        {&registered<RandomWalk>(), first_level(registered<RandomWalk>(), 0.3, 0.3, level), 0.0, {}});
+        slow_component(registered<RandomWalk>(), first_level(registered<RandomWalk>(), 0.3, 0.3, level)));
     SlowModel wandering = null_.model;
-    wandering.components.push_back({&registered<GaussMarkov>(), 0.3 * level, 2.5 / series_.longest_s(), {}});
+    wandering.components.push_back(slow_component(registered<GaussMarkov>(), 0.3 * level, 2.5 / series_.longest_s()));
     starts.push_back(std::move(walking));
     starts.push_back(std::move(wandering));
   }

@@ -88,7 +88,7 @@ double SlowSearch::cost(const SlowModel& model) const {
   }
   double sum = 0.0;
   for (std::size_t i = 0; i + extra_.size() < model.components.size(); ++i) {
-    sum += cost_of(*model.components[i].kind);
+    sum += cost_of(model.components[i].kind());
   }
   return sum;
 }
@@ -224,7 +224,7 @@ std::vector<SlowModel> SlowSearch::starting_orders(const BlockColumns& columns) 
     for (const double beta : betas) {
       for (const double share : {0.01, 0.1, 1.0}) {
         SlowModel trial = base;
-        trial.components.push_back({&kind, first_level(kind, share, 0.1, level), beta, {}});
+        trial.components.push_back(slow_component(kind, first_level(kind, share, 0.1, level), beta));
         const double l = evaluate_slow(series_, columns, trial).log_likelihood;
         if (l > top) {
           top = l;
@@ -267,7 +267,7 @@ const SlowFit& SlowSearch::fit_null() {
     if (orders_.back().log_likelihood - orders_[1].log_likelihood > 0.5 * cost_of(registered<GaussMarkov>())) {
       SlowModel more = orders_.back().model;
       more.components.push_back(
-          {&registered<RandomWalk>(), 0.02 * more.white / series_.block_s() / series_.longest_s(), 0.0, {}});
+          slow_component(registered<RandomWalk>(), 0.02 * more.white / series_.block_s() / series_.longest_s()));
       orders_.push_back(fit_slow(series_, columns, more, freedom()));
     }
   }

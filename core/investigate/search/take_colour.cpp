@@ -27,10 +27,12 @@ bool is_colour(const Cause& cause, const FullRate& data) {
 /// again; nothing where the model has none.
 std::optional<FullRate> without_fast_process(const FullRate& data) {
   constexpr double kFast = 2.0;  // [1/s], of blocks of about 1/5 s
-  const auto fast = [](const SlowComponent& c) { return c.kind == &registered<GaussMarkov>() && c.beta > kFast; };
+  const auto fast = [](const SlowComponent& c) {
+    return c.process.kind == &registered<GaussMarkov>() && c.process.only_shape() > kFast;
+  };
   SlowModel plain = data.model;
   for (const SlowComponent& component : plain.components) {
-    plain.white += fast(component) ? 2.0 * component.level / component.beta : 0.0;
+    plain.white += fast(component) ? 2.0 * component.process.square() / component.process.only_shape() : 0.0;
   }
   if (std::erase_if(plain.components, fast) == 0) {
     return std::nullopt;

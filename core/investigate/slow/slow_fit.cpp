@@ -9,12 +9,22 @@
 namespace driftlab::investigate {
 namespace {
 
-double& value_of(SlowModel& model, const SlowParameter& parameter) {
+/// What the fit walks: the square of a level, or a shape.
+double value_of(const SlowModel& model, const SlowParameter& parameter) {
   if (parameter.component == SlowParameter::kWhite) {
     return model.white;
   }
-  SlowComponent& component = model.components[parameter.component];
-  return parameter.beta ? component.beta : component.level;
+  const Process& process = model.components[parameter.component].process;
+  return parameter.beta ? process.parameters[1] : process.square();
+}
+
+void set_value(SlowModel& model, const SlowParameter& parameter, double value) {
+  if (parameter.component == SlowParameter::kWhite) {
+    model.white = value;
+    return;
+  }
+  std::vector<double>& values = model.components[parameter.component].process.parameters;
+  values[parameter.beta ? 1 : 0] = parameter.beta ? value : std::sqrt(value);
 }
 
 std::vector<SlowParameter> free_parameters(const SlowModel& model, const SlowFreedom& freedom) {
@@ -24,7 +34,7 @@ std::vector<SlowParameter> free_parameters(const SlowModel& model, const SlowFre
   }
   for (std::size_t i = freedom.first_free; i < model.components.size(); ++i) {
     parameters.push_back({i, false});
-    if (model.components[i].kind->has_shape()) {
+    if (model.components[i].kind().has_shape()) {
       parameters.push_back({i, true});
     }
   }
@@ -41,7 +51,7 @@ Interval bounds_of(const BlockSeries& series, const SlowModel& model, const Slow
   if (parameter.beta) {
     return {1.5 / long_s, 1.5 / series.block_s()};
   }
-  return {1e-7 * white * at_record_length(*model.components[parameter.component].kind, 1.0, long_s), 1e9 * white};
+  return {1e-7 * white * at_record_length(model.components[parameter.component].kind(), 1.0, long_s), 1e9 * white};
 }
 
 /// The likelihood of residuals e = y - X a under a model, and its whitened form.
@@ -101,7 +111,8 @@ Derivatives differentiate(const BlockSeries& series, const BlockColumns& residua
   }
   for (Eigen::Index j = 0; j < p; ++j) {
     SlowModel moved = model;
-    value_of(moved, parameters[static_cast<std::size_t>(j)]) *= std::exp(kStep);
+    const SlowParameter& parameter = parameters[static_cast<std::size_t>(j)];
+    set_value(moved, parameter, value_of(model, parameter) * std::exp(kStep));
     const Whitened there = whiten(series, moved, residuals);
     row = 0;
     for (const auto& rows : there.columns.rows) {
@@ -198,9 +209,9 @@ SlowFit fit_slow(const BlockSeries& series, const BlockColumns& columns, const S
       SlowModel trial = fit.model;
       for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
         const Interval bounds = bounds_of(series, fit.model, fit.parameters[j]);
-        double& value = value_of(trial, fit.parameters[j]);
-        value *= std::exp(std::clamp(step[static_cast<Eigen::Index>(j)], -2.0, 2.0));
-        value = std::clamp(value, bounds.low, bounds.high);
+        const double value = value_of(fit.model, fit.parameters[j]) *
+                             std::exp(std::clamp(step[static_cast<Eigen::Index>(j)], -2.0, 2.0));
+        set_value(trial, fit.parameters[j], std::clamp(value, bounds.low, bounds.high));
       }
       SlowFit next = evaluate_slow(series, columns, trial);
       if (next.log_likelihood > fit.log_likelihood) {
@@ -237,7 +248,7 @@ Interval profile_amplitude(const BlockSeries& series, const BlockColumns& column
   const double level = 0.003 * warm.white / series.block_s();
   for (std::size_t i = freedom.first_free; i < warm.components.size(); ++i) {
     SlowComponent& component = warm.components[i];
-    component.level = std::max(component.level, at_record_length(*component.kind, level, series.longest_s()));
+    raise_square(component, at_record_length(component.kind(), level, series.longest_s()));
   }
   const auto at = [&](double amplitude) {
     BlockColumns reduced;
@@ -268,22 +279,20 @@ Interval profile_parameter(const BlockSeries& series, const BlockColumns& column
   // fixed one comes before `first_free`, or its beta is held by a narrow search over the rest.
   const auto found = std::find(fit.parameters.begin(), fit.parameters.end(), parameter);
   if (found == fit.parameters.end() || fit.information.size() == 0) {
-    SlowModel copy = fit.model;
-    const double value = value_of(copy, parameter);
+    const double value = value_of(fit.model, parameter);
     return {value, value};
   }
   const auto index = static_cast<Eigen::Index>(found - fit.parameters.begin());
   const Eigen::MatrixXd covariance =
       inverse(fit.information + 1e-9 * Eigen::MatrixXd::Identity(fit.information.rows(), fit.information.cols()));
   const double sd = std::sqrt(std::clamp(covariance(index, index), 1e-8, 4.0));
-  SlowModel start = fit.model;
-  const double centre = std::log(value_of(start, parameter));
+  const double centre = std::log(value_of(fit.model, parameter));
   const Interval bounds = bounds_of(series, fit.model, parameter);
   std::vector<SlowParameter> rest = fit.parameters;
   rest.erase(rest.begin() + index);
   const auto at = [&](double log_value) {
     SlowModel model = fit.model;
-    value_of(model, parameter) = std::exp(log_value);
+    set_value(model, parameter, std::exp(log_value));
     SlowFit there = evaluate_slow(series, columns, model);
     for (int iteration = 0; iteration < 4 && !rest.empty(); ++iteration) {
       const BlockColumns residuals = residuals_of(columns, there.amplitude);
@@ -296,9 +305,9 @@ Interval profile_parameter(const BlockSeries& series, const BlockColumns& column
       SlowModel trial = there.model;
       for (std::size_t j = 0; j < rest.size(); ++j) {
         const Interval limits = bounds_of(series, fit.model, rest[j]);
-        double& value = value_of(trial, rest[j]);
-        value = std::clamp(value * std::exp(std::clamp(step[static_cast<Eigen::Index>(j)], -1.0, 1.0)), limits.low,
-                           limits.high);
+        const double value =
+            value_of(there.model, rest[j]) * std::exp(std::clamp(step[static_cast<Eigen::Index>(j)], -1.0, 1.0));
+        set_value(trial, rest[j], std::clamp(value, limits.low, limits.high));
       }
       SlowFit next = evaluate_slow(series, columns, trial);
       if (next.log_likelihood < there.log_likelihood + 1e-3) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -37,12 +38,17 @@ Gains compute_gains(const BlockStates& states, const BlockRecording& blocks) {
 
 }  // namespace
 
-Process SlowComponent::process() const {
-  Process process{kind, {std::sqrt(level)}};
-  if (kind->has_shape()) {
-    process.parameters.push_back(beta);
+SlowComponent slow_component(const ProcessKind& kind, double square, double shape, std::vector<unsigned char> in) {
+  Process process{&kind, {std::sqrt(square)}};
+  if (kind.has_shape()) {
+    process.parameters.push_back(shape);
   }
-  return process;
+  return {std::move(process), std::move(in)};
+}
+
+void raise_square(SlowComponent& component, double square) {
+  double& level = component.process.parameters[0];
+  level = std::max(level, std::sqrt(square));
 }
 
 double at_record_length(const ProcessKind& kind, double variance, double longest_s) {
@@ -54,8 +60,8 @@ double at_record_length(const ProcessKind& kind, double variance, double longest
 }
 
 std::size_t SlowModel::count(const ProcessKind& kind) const {
-  return static_cast<std::size_t>(
-      std::count_if(components.begin(), components.end(), [&](const SlowComponent& c) { return c.kind == &kind; }));
+  return static_cast<std::size_t>(std::count_if(components.begin(), components.end(),
+                                                [&](const SlowComponent& c) { return c.process.kind == &kind; }));
 }
 
 BlockColumns BlockColumns::zeros(const BlockSeries& series, std::size_t width) {
@@ -79,8 +85,8 @@ BlockStates block_states(const SlowModel& model, const Blocks& blocks, std::size
   BlockStates states;
   states.white = model.white * (model.white_scale.empty() ? 1.0 : model.white_scale[r]) / blocks.block_s();
   for (const SlowComponent& component : model.components) {
-    if (component.acts_in(r) && component.level > 0.0) {
-      component.kind->add_block_states(component.level, component.beta, blocks, states);
+    if (component.acts_in(r) && component.process.square() > 0.0) {
+      component.kind().add_block_states(component.process.square(), component.process.only_shape(), blocks, states);
     }
   }
   return states;

@@ -15,16 +15,22 @@
 
 namespace driftlab::investigate {
 
-/// A slow process of a model that is being fitted, by the square of its level, which is what the fit walks.
+/// A slow process of a model, and the recordings in which it acts.
 struct SlowComponent {
-  const ProcessKind* kind = nullptr;  ///< with `add_block_states`
-  double level = 0.0;                 ///< square of the process's level: sigma^2, K^2, B^2
-  double beta = 0.0;                  ///< its shape [1/s]; 0 for kinds without one
-  std::vector<unsigned char> in;      ///< recordings it acts in; empty: all
+  Process process;                ///< of a kind with `add_block_states`
+  std::vector<unsigned char> in;  ///< recordings it acts in; empty: all
 
+  [[nodiscard]] const ProcessKind& kind() const { return *process.kind; }
   [[nodiscard]] bool acts_in(std::size_t r) const { return in.empty() || in[r] != 0; }
-  [[nodiscard]] Process process() const;
 };
+
+/// By the square of its level (sigma^2, K^2, B^2), which is what a fit walks, and its shape, ignored by kinds without
+/// one.
+[[nodiscard]] SlowComponent slow_component(const ProcessKind& kind, double square, double shape = 0.0,
+                                           std::vector<unsigned char> in = {});
+
+/// Raises a level to the root of `square` where it is below.
+void raise_square(SlowComponent& component, double square);
 
 /// The square of a kind's level at which the process has about the variance `variance` by the end of a record: the
 /// variance itself for what is stationary, variance / longest_s for a random walk, whose level is per root second.

@@ -33,7 +33,8 @@ TEST(FullRate, InnovationsAreThoseOfBlocksOfOneSample) {
   mask[2][1234] = 1;
   SlowModel model;
   model.white = 0.02;
-  model.components = {{&registered<GaussMarkov>(), 0.3, 2.0, {}}, {&registered<RandomWalk>(), 1e-3, 0.0, {1, 1, 0}}};
+  model.components = {slow_component(registered<GaussMarkov>(), 0.3, 2.0),
+                      slow_component(registered<RandomWalk>(), 1e-3, 0.0, {1, 1, 0})};
   FullRateOptions options;
   options.given = true;
   options.whiten_further = false;

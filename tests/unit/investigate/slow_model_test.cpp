@@ -34,10 +34,10 @@ Eigen::MatrixXd block_covariance(const SlowModel& model, std::size_t blocks, std
       const double lag = dt_s * std::fabs(static_cast<double>(i) - static_cast<double>(j));
       double c = i == j ? model.white / dt_s : 0.0;
       for (const SlowComponent& component : model.components) {
-        if (component.kind == &registered<GaussMarkov>()) {
-          c += component.level * std::exp(-component.beta * lag);
-        } else if (component.kind == &registered<RandomWalk>()) {
-          c += component.level * dt_s * static_cast<double>(std::min(i, j) + 1);
+        if (component.process.kind == &registered<GaussMarkov>()) {
+          c += component.process.square() * std::exp(-component.process.only_shape() * lag);
+        } else if (component.process.kind == &registered<RandomWalk>()) {
+          c += component.process.square() * dt_s * static_cast<double>(std::min(i, j) + 1);
         }
       }
       fine(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = c;
@@ -59,7 +59,8 @@ double dense_log_likelihood(const Eigen::MatrixXd& covariance, const Eigen::Vect
 TEST(SlowModel, WhiteningOfBlockMeansIsExactForGaussMarkovProcesses) {
   SlowModel model;
   model.white = 0.02;
-  model.components = {{&registered<GaussMarkov>(), 1.0, 0.7, {}}, {&registered<GaussMarkov>(), 0.5, 0.05, {}}};
+  model.components = {slow_component(registered<GaussMarkov>(), 1.0, 0.7),
+                      slow_component(registered<GaussMarkov>(), 0.5, 0.05)};
   for (const std::size_t block : {std::size_t{1}, std::size_t{4}}) {
     BlockSeries series = series_of(1, 60, block, 0.05);
     BlockColumns columns = BlockColumns::zeros(series, 1);
@@ -77,7 +78,7 @@ TEST(SlowModel, WhiteningOfBlockMeansIsExactForGaussMarkovProcesses) {
 TEST(SlowModel, WhiteningOfARandomWalkIsExactAtSingleSamplesAndCloseInBlocks) {
   SlowModel model;
   model.white = 0.05;
-  model.components = {{&registered<RandomWalk>(), 0.3, 0.0, {}}};
+  model.components = {slow_component(registered<RandomWalk>(), 0.3)};
   for (const std::size_t block : {std::size_t{1}, std::size_t{4}}) {
     BlockSeries series = series_of(1, 60, block, 0.05);
     BlockColumns columns = BlockColumns::zeros(series, 1);
@@ -95,7 +96,8 @@ TEST(SlowModel, WhiteningOfARandomWalkIsExactAtSingleSamplesAndCloseInBlocks) {
 TEST(SlowModel, TransposedFilterIsTheAdjoint) {
   SlowModel model;
   model.white = 0.02;
-  model.components = {{&registered<GaussMarkov>(), 1.0, 0.3, {}}, {&registered<RandomWalk>(), 0.01, 0.0, {}}};
+  model.components = {slow_component(registered<GaussMarkov>(), 1.0, 0.3),
+                      slow_component(registered<RandomWalk>(), 0.01)};
   BlockSeries series = series_of(1, 200, 2, 0.1);
   series.recordings[0].filled[50] = 0.0;
   BlockColumns columns = BlockColumns::zeros(series, 1);
@@ -132,7 +134,7 @@ TEST(SlowFit, RecoversAGaussMarkovProcessAndADriftWithinTheirIntervals) {
   }
   SlowModel start;
   start.white = 0.01;
-  start.components = {{&registered<GaussMarkov>(), 0.003, 0.5, {}}};
+  start.components = {slow_component(registered<GaussMarkov>(), 0.003, 0.5)};
   const SlowFit fit = fit_slow(series, columns, start);
   EXPECT_TRUE(fit.converged);
   EXPECT_NEAR(fit.model.white / 0.2, 0.09, 4.0 * 0.09 * std::sqrt(2.0 / 9000.0));
@@ -146,8 +148,8 @@ TEST(SlowModel, AsManyProcessesAsABaselineNamesAreWhitened) {
   SlowModel many;
   SlowModel one;
   many.white = one.white = 0.02;
-  one.components = {{&registered<GaussMarkov>(), 2.0, 0.3, {}}};
-  many.components.assign(20, {&registered<GaussMarkov>(), 0.1, 0.3, {}});
+  one.components = {slow_component(registered<GaussMarkov>(), 2.0, 0.3)};
+  many.components.assign(20, slow_component(registered<GaussMarkov>(), 0.1, 0.3));
   BlockSeries series = series_of(1, 200, 4, 0.05);
   BlockColumns columns = BlockColumns::zeros(series, 1);
   Random random(3);

@@ -126,8 +126,8 @@ double expected_periodogram(std::size_t n, double f_hz, double dt_s, const Covar
 TEST(Spectrum, SlowProcessesShowTheExpectedPeriodogramOfTheirFiniteRecord) {
   constexpr std::size_t kCount = 96;
   constexpr double kDt = 0.1;
-  const SlowComponent markov{&registered<GaussMarkov>(), 2.0, 0.4, {}};
-  const SlowComponent walk{&registered<RandomWalk>(), 0.3, 0.0, {}};
+  const SlowComponent markov = slow_component(registered<GaussMarkov>(), 2.0, 0.4);
+  const SlowComponent walk = slow_component(registered<RandomWalk>(), 0.3);
   for (const std::size_t k : {1U, 2U, 7U, 31U, 47U}) {
     const double f = static_cast<double>(k) / (static_cast<double>(kCount) * kDt);
     const auto found = [&](const SlowComponent& component) {
@@ -149,7 +149,8 @@ TEST(Spectrum, SlowProcessesShowTheExpectedPeriodogramOfTheirFiniteRecord) {
 
 TEST(Spectrum, AComponentOfOneRecordingIsInTheDensityOfThatOneOnly) {
   SlowModel model;
-  model.components = {{&registered<GaussMarkov>(), 1.0, 0.5, {0, 1}}, {&registered<FlickerNoise>(), 3.0, 0.0, {}}};
+  model.components = {slow_component(registered<GaussMarkov>(), 1.0, 0.5, {0, 1}),
+                      slow_component(registered<FlickerNoise>(), 3.0)};
   const double flicker = 3.0 / (2.0 * kPi * 0.7);
   EXPECT_DOUBLE_EQ(slow_density(model, 0, 0.7, 0.02, 1000.0), flicker);
   EXPECT_GT(slow_density(model, 1, 0.7, 0.02, 1000.0), 1.01 * flicker);

@@ -29,18 +29,19 @@ void draw(const SlowModel& model, double dt_s, Random& random, std::vector<doubl
   std::vector<double> state(model.components.size());
   for (std::size_t c = 0; c < state.size(); ++c) {
     const SlowComponent& component = model.components[c];
-    state[c] = component.kind == &registered<GaussMarkov>() ? std::sqrt(component.level) * random.normal() : 0.0;
+    state[c] =
+        component.process.kind == &registered<GaussMarkov>() ? component.process.parameters[0] * random.normal() : 0.0;
   }
   for (double& v : mean) {
     v = std::sqrt(model.white / dt_s) * random.normal();
     for (std::size_t c = 0; c < state.size(); ++c) {
       const SlowComponent& component = model.components[c];
       v += state[c];
-      if (component.kind == &registered<GaussMarkov>()) {
-        const double phi = std::exp(-component.beta * dt_s);
-        state[c] = phi * state[c] + std::sqrt(component.level * (1.0 - phi * phi)) * random.normal();
+      if (component.process.kind == &registered<GaussMarkov>()) {
+        const double phi = std::exp(-component.process.only_shape() * dt_s);
+        state[c] = phi * state[c] + std::sqrt(component.process.square() * (1.0 - phi * phi)) * random.normal();
       } else {
-        state[c] += std::sqrt(component.level * dt_s) * random.normal();
+        state[c] += component.process.parameters[0] * std::sqrt(dt_s) * random.normal();
       }
     }
   }
@@ -56,9 +57,9 @@ std::vector<Noise> noises() {
   for (Noise& noise : all) {
     noise.model.white = 1.0;
   }
-  all[1].model.components = {{&registered<GaussMarkov>(), 2.0, 0.03, {}}};
-  all[2].model.components = {{&registered<GaussMarkov>(), 3.0, 1.0, {}}};
-  all[3].model.components = {{&registered<RandomWalk>(), 0.01, 0.0, {}}};
+  all[1].model.components = {slow_component(registered<GaussMarkov>(), 2.0, 0.03)};
+  all[2].model.components = {slow_component(registered<GaussMarkov>(), 3.0, 1.0)};
+  all[3].model.components = {slow_component(registered<RandomWalk>(), 0.01)};
   return all;
 }
 

@@ -70,7 +70,7 @@ double telegraph_over_gauss_markov(const BlockSeries& series) {
     }
   }
   SlowModel slow = white();
-  slow.components.push_back({&registered<GaussMarkov>(), 1.0, 0.1, {}});
+  slow.components.push_back(slow_component(registered<GaussMarkov>(), 1.0, 0.1));
   return 2.0 * (fit_telegraph(series, white()).log_likelihood - fit_slow(series, columns, slow).log_likelihood);
 }
 
@@ -92,7 +92,7 @@ TEST(Telegraph, OfNoAmplitudeIsTheModel) {
   series.recordings[1].filled[7] = 0.0;
   series.recordings[1].filled[8] = 0.5;
   SlowModel slow = white();
-  slow.components.push_back({&registered<GaussMarkov>(), kAmplitude * kAmplitude, 2.0 / kDwell, {}});
+  slow.components.push_back(slow_component(registered<GaussMarkov>(), kAmplitude * kAmplitude, 2.0 / kDwell));
   BlockColumns columns = BlockColumns::zeros(series, 1);
   for (std::size_t r = 0; r < series.recordings.size(); ++r) {
     series.recordings[r].pattern = r;
