@@ -111,6 +111,9 @@ Status InertialStreams::choose() {
   }
   ColumnLayout layout{{"time (s)"}, true};
   layout.names.insert(layout.names.end(), chosen.columns.begin(), chosen.columns.end());
+  const ColumnNames beside = beside_.settle();
+  layout.names.insert(layout.names.end(), beside.begin(), beside.end());
+  alone_ = beside.empty();
   if (auto status = sink_.begin(layout); !status) {
     return status;
   }
@@ -122,6 +125,12 @@ Status InertialStreams::flush(Stream& stream) {
   const std::size_t width = stream.columns.size() + 1;
   const std::size_t step = kBatch / width * width;
   std::span<const double> rest(stream.waiting);
+  if (!alone_) {
+    if (auto status = flush_columns(stream); !status) {
+      return status;
+    }
+    rest = {};
+  }
   while (!rest.empty()) {
     const std::size_t count = std::min(step, rest.size());
     if (auto status = sink_.rows(rest.first(count)); !status) {
@@ -136,11 +145,38 @@ Status InertialStreams::flush(Stream& stream) {
   return {};
 }
 
+/// The columns of the chosen stream, whose rows are not whole rows of the table.
+Status InertialStreams::flush_columns(const Stream& stream) {
+  const std::size_t width = stream.columns.size() + 1;
+  std::vector<double> column(stream.waiting.size() / width);
+  for (std::size_t i = 0; i < width && !column.empty(); ++i) {
+    for (std::size_t row = 0; row < column.size(); ++row) {
+      column[row] = stream.waiting[row * width + i];
+    }
+    if (auto status = sink_.column(i, column); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
+/// A table of what would stand beside an inertial stream.
+Status InertialStreams::finish_alone() {
+  if (auto status = sink_.begin({beside_.settle(), true}); !status) {
+    return status;
+  }
+  return beside_.deliver(sink_, 0, beside_.longest(), beside_.first_stamp(), ticks_per_s_);
+}
+
 Status InertialStreams::finish(const std::string& nothing) {
   if (samples_ == 0) {
-    return fail(ErrorCode::NoSamples, nothing);
+    return beside_.empty() ? Status(fail(ErrorCode::NoSamples, nothing)) : finish_alone();
   }
   auto status = chosen_ == kNone ? choose() : flush(streams_[chosen_]);
+  if (status) {
+    const Stream& chosen = streams_[chosen_];
+    status = beside_.deliver(sink_, chosen.columns.size() + 1, chosen.samples, chosen.first, ticks_per_s_);
+  }
   NameList others;
   for (const Stream& stream : streams_) {
     if (&stream != &streams_[chosen_] && stream.samples > 0) {

@@ -5,16 +5,20 @@
 /// rule, the same for every such format: of the streams with gyroscope and accelerometer the one with the most samples,
 /// that is of the highest rate, for all are counted over the same stretch of the file; where there is none, the same
 /// among those with a gyroscope alone, then an accelerometer alone; of equals the one that comes first in the file.
-/// What else there is stands in a note.
+/// What other inertial streams there are stands in a note; what is no inertial stream but belongs to the same journey,
+/// fixes and odometers, stands beside the chosen one (core/read/beside_streams.hpp). A file with nothing but such is a
+/// table of them.
 ///
 /// The rule is applied at the end of the file or when 16 MiB of samples are waiting, whichever is first: from there on
 /// the chosen stream passes through and the others are counted. Memory: those 16 MiB.
+#include "core/read/beside_streams.hpp"
 #include "core/read/format.hpp"
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace driftlab {
@@ -53,8 +57,17 @@ class InertialStreams {
   /// missing sample. Errors: those of the sink.
   [[nodiscard]] Status take(std::size_t stream, std::uint64_t stamp, std::span<const double> values);
 
+  /// A stream of another kind, and its next row (core/read/beside_streams.hpp). One whose first row comes when the
+  /// choice is made is left out, with a note.
+  [[nodiscard]] std::size_t add_beside(std::string name, std::string kind, ColumnNames columns) {
+    return beside_.add(std::move(name), std::move(kind), std::move(columns));
+  }
+  void take_beside(std::size_t stream, std::uint64_t stamp, std::span<const double> values) {
+    beside_.take(stream, stamp, values);
+  }
+
   /// No sample so far.
-  [[nodiscard]] bool empty() const { return samples_ == 0; }
+  [[nodiscard]] bool empty() const { return samples_ == 0 && beside_.empty(); }
 
   /// Delivers what is left and notes what was left out. Error: NoSamples, with `nothing` as its sentence.
   [[nodiscard]] Status finish(const std::string& nothing);
@@ -70,10 +83,14 @@ class InertialStreams {
   };
   [[nodiscard]] Status choose();
   [[nodiscard]] Status flush(Stream& stream);
+  [[nodiscard]] Status flush_columns(const Stream& stream);
+  [[nodiscard]] Status finish_alone();
 
   ColumnSink& sink_;
   double ticks_per_s_;
   std::vector<Stream> streams_;
+  BesideStreams beside_;
+  bool alone_ = true;  ///< the table holds nothing beside the chosen stream
   std::size_t chosen_ = static_cast<std::size_t>(-1);
   std::size_t waiting_bytes_ = 0;
   std::uint64_t samples_ = 0;

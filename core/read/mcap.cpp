@@ -1,11 +1,10 @@
 /// MCAP: a magic number, then records of a letter, a length and a body, some of them in chunks. Channels name a topic,
-/// a schema its type; messages of type sensor_msgs/Imu in the encodings of ROS 1 and ROS 2 are read
-/// (core/read/ros_imu.hpp). Chunks are plain, zstd or LZ4; their checksums are verified. Source: "MCAP Format
-/// Specification", mcap.dev.
+/// a schema its type; messages of ROS 1 and ROS 2 about a journey are read (core/read/ros_topics.hpp). Chunks are
+/// plain, zstd or LZ4; their checksums are verified. Source: "MCAP Format Specification", mcap.dev.
 #include "core/read/formats.hpp"
 #include "core/read/little_endian.hpp"
 #include "core/read/packed_chunk.hpp"
-#include "core/read/ros_imu.hpp"
+#include "core/read/ros_topics.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -241,7 +240,7 @@ Status McapDecoder::run() {
   if (!closed_) {
     const std::string at = std::to_string(source_.offset());
     if (topics_.empty()) {
-      return fail(ErrorCode::Truncated, "The MCAP file ends at byte " + at + ", before any inertial message.");
+      return fail(ErrorCode::Truncated, "The MCAP file ends at byte " + at + ", before any message that is read.");
     }
     sink_.note("The file was not closed: it ends at byte " + at + (*whole ? "" : ", within a record") +
                "; what is before that is read.");
@@ -257,6 +256,6 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
 
 }  // namespace
 
-const Format kMcap{"mcap", "MCAP file of ROS 1 or ROS 2 Imu messages", sniff, decode};
+const Format kMcap{"mcap", "MCAP file of ROS 1 or ROS 2 messages", sniff, decode};
 
 }  // namespace driftlab::formats

@@ -1,10 +1,10 @@
 /// ROS 1 bag, version 2.0: a line of text, then records of a header (named fields) and data, most of them in chunks.
-/// Connections name a topic and its type; messages of type sensor_msgs/Imu are read (core/read/ros_imu.hpp). Chunks are
+/// Connections name a topic and its type; messages about a journey are read (core/read/ros_topics.hpp). Chunks are
 /// plain, bzip2 or LZ4. Source: ROS wiki, "Bags/Format/2.0".
 #include "core/read/formats.hpp"
 #include "core/read/little_endian.hpp"
 #include "core/read/packed_chunk.hpp"
-#include "core/read/ros_imu.hpp"
+#include "core/read/ros_topics.hpp"
 
 #include <algorithm>
 #include <map>
@@ -224,7 +224,7 @@ Status BagDecoder::run() {
   }
   if (!*whole && topics_.empty()) {
     return fail(ErrorCode::Truncated, "The ROS bag ends within a record at byte " + std::to_string(source_.offset()) +
-                                          ", before any inertial message.");
+                                          ", before any message that is read.");
   }
   if (!*whole || !closed_) {
     sink_.note("The bag was not closed: it ends at byte " + std::to_string(source_.offset()) +
@@ -241,6 +241,6 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
 
 }  // namespace
 
-const Format kRosbag{"rosbag", "ROS 1 bag of Imu messages", sniff, decode};
+const Format kRosbag{"rosbag", "ROS 1 bag", sniff, decode};
 
 }  // namespace driftlab::formats

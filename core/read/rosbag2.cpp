@@ -1,5 +1,5 @@
-/// ROS 2 bag in an SQLite database (.db3): the tables `topics` and `messages`; messages of type sensor_msgs/msg/Imu in
-/// CDR are read (core/read/ros_imu.hpp). Source: ros2/rosbag2, "rosbag2_storage_sqlite3", README.
+/// ROS 2 bag in an SQLite database (.db3): the tables `topics` and `messages`; messages about a journey in CDR are read
+/// (core/read/ros_topics.hpp). Source: ros2/rosbag2, "rosbag2_storage_sqlite3", README.
 ///
 /// A file from a stranger: the database is opened read-only and immutable (no journal, no log beside it is looked at),
 /// its schema is not trusted, triggers and views are off, nothing but reading tables is authorised, and the work is
@@ -7,7 +7,7 @@
 /// "Defense Against The Dark Arts". A bag that comes compressed or from memory is held there whole, within
 /// `max_tables_bytes`.
 #include "core/read/formats.hpp"
-#include "core/read/ros_imu.hpp"
+#include "core/read/ros_topics.hpp"
 
 #include <sqlite3.h>
 
@@ -26,7 +26,8 @@ constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd"sv;
 constexpr const char* kTopicsSql = "SELECT id, name, type, serialization_format FROM topics";
 constexpr const char* kMessagesSql =
     "SELECT topic_id, timestamp, data FROM messages"
-    " WHERE topic_id IN (SELECT id FROM topics WHERE type = 'sensor_msgs/msg/Imu')";
+    " WHERE topic_id IN (SELECT id FROM topics WHERE type IN"
+    " ('sensor_msgs/msg/Imu', 'sensor_msgs/msg/NavSatFix', 'nav_msgs/msg/Odometry'))";
 constexpr int kTurnOperations = 1000;  ///< of the virtual machine, between two looks at the budget
 
 using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
@@ -264,6 +265,6 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
 
 }  // namespace
 
-const Format kRosbag2{"rosbag2", "ROS 2 bag of Imu messages in an SQLite database (.db3)", sniff, decode};
+const Format kRosbag2{"rosbag2", "ROS 2 bag in an SQLite database (.db3)", sniff, decode};
 
 }  // namespace driftlab::formats

@@ -7,18 +7,22 @@
 ///   vehicle_imu      delta_angle [rad] and delta_velocity [m/s] over their own intervals [us], read as mean rates
 ///   sensor_gyro      x y z [rad/s], temperature [degC]
 ///   sensor_accel     x y z [m/s^2], temperature [degC]
+/// and the fixes of the receiver beside them (core/read/ulog_fixes.hpp).
 /// Time is the topic's timestamp_sample, else its timestamp, in microseconds since boot. The raw bursts of
 /// sensor_gyro_fifo and sensor_accel_fifo are not read.
 #include "core/read/formats.hpp"
 #include "core/read/inertial_streams.hpp"
 #include "core/read/little_endian.hpp"
+#include "core/read/ulog_fixes.hpp"
 #include "core/read/ulog_format.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace driftlab::formats {
 namespace {
@@ -76,7 +80,9 @@ class UlogDecoder {
   Status take_flags(std::string_view body);
   Status take_definition(std::string_view body);
   Status subscribe(std::string_view body);
+  void subscribe_fixes(std::size_t id, std::string_view name, const std::string& label);
   Status take_data(std::string_view body);
+  void take_fix(std::size_t stream, const ulog::FixLayout& layout, std::string_view data);
   Result<bool> resynchronise();
   [[nodiscard]] std::optional<Subscription> layout_of(const InertialTopic& topic) const;
   [[nodiscard]] std::optional<Triad> find_triad(const InertialTopic& topic, std::string_view field,
@@ -89,8 +95,9 @@ class UlogDecoder {
   InertialStreams streams_;
   ulog::Definitions definitions_;
   std::size_t definition_bytes_ = 0;
-  std::vector<std::optional<Subscription>> subscriptions_;  ///< by message id
-  std::array<std::uint64_t, 3> appended_{};                 ///< offsets where data were appended, 0 for none
+  std::vector<std::optional<Subscription>> subscriptions_;                ///< by message id
+  std::map<std::size_t, std::pair<std::size_t, ulog::FixLayout>> fixes_;  ///< stream and layout, by message id
+  std::array<std::uint64_t, 3> appended_{};  ///< offsets where data were appended, 0 for none
   std::uint64_t dropouts_ = 0;
   std::uint64_t dropout_ms_ = 0;
   std::uint64_t damaged_bytes_ = 0;
@@ -287,7 +294,9 @@ Status UlogDecoder::subscribe(std::string_view body) {
   const std::string_view name = body.substr(3);
   const auto topic =
       std::find_if(kTopics.begin(), kTopics.end(), [name](const InertialTopic& known) { return known.name == name; });
+  const std::string label = std::string(name) + " " + std::to_string(static_cast<unsigned char>(body[0]));
   if (topic == kTopics.end()) {
+    subscribe_fixes(id, name, label);
     return {};
   }
   auto layout = layout_of(*topic);
@@ -302,8 +311,7 @@ Status UlogDecoder::subscribe(std::string_view body) {
   if (layout->temperature) {
     columns.emplace_back("temperature (degC)");
   }
-  const auto instance = static_cast<unsigned char>(body[0]);
-  auto stream = streams_.add(std::string(name) + " " + std::to_string(instance), holds, std::move(columns));
+  auto stream = streams_.add(label, holds, std::move(columns));
   if (!stream) {
     return fail(stream.error());
   }
@@ -315,8 +323,36 @@ Status UlogDecoder::subscribe(std::string_view body) {
   return {};
 }
 
+void UlogDecoder::take_fix(std::size_t stream, const ulog::FixLayout& layout, std::string_view data) {
+  if (data.size() < layout.bytes) {
+    ++short_messages_;
+    return;
+  }
+  std::vector<double> row;
+  for (const ulog::FixLayout::Value& value : layout.values) {
+    row.push_back(value.unit * ulog::number_at(data, value.place));
+  }
+  streams_.take_beside(stream, load_at<std::uint64_t>(data, layout.stamp), row);
+}
+
+void UlogDecoder::subscribe_fixes(std::size_t id, std::string_view name, const std::string& label) {
+  constexpr std::size_t kMostReceivers = 16;
+  auto layout = ulog::fix_layout(definitions_, name);
+  if (layout && !fixes_.contains(id) && fixes_.size() < kMostReceivers) {
+    const std::size_t stream = streams_.add_beside(label, "gnss", layout->columns);
+    fixes_.emplace(id, std::pair(stream, std::move(*layout)));
+  }
+}
+
 Status UlogDecoder::take_data(std::string_view body) {
-  const std::size_t id = body.size() < 2 ? subscriptions_.size() : load_at<std::uint16_t>(body, 0);
+  if (body.size() < 2) {
+    return {};
+  }
+  const std::size_t id = load_at<std::uint16_t>(body, 0);
+  if (const auto found = fixes_.find(id); found != fixes_.end()) {
+    take_fix(found->second.first, found->second.second, body.substr(2));
+    return {};
+  }
   if (id >= subscriptions_.size()) {
     return {};
   }

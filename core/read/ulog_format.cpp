@@ -1,5 +1,7 @@
 #include "core/read/ulog_format.hpp"
 
+#include "core/read/little_endian.hpp"
+
 #include <array>
 #include <charconv>
 
@@ -12,12 +14,20 @@ constexpr int kDeepest = 8;
 struct Basic {
   std::string_view name;
   std::size_t bytes;
+  double (*load)(std::string_view data, std::size_t at);
 };
 
+template <class Number>
+constexpr Basic basic(std::string_view name) {
+  return {name, sizeof(Number),
+          [](std::string_view data, std::size_t at) { return static_cast<double>(load_at<Number>(data, at)); }};
+}
+
 constexpr std::array kBasics{
-    Basic{"int8_t", 1},  Basic{"uint8_t", 1},  Basic{"bool", 1},     Basic{"char", 1},
-    Basic{"int16_t", 2}, Basic{"uint16_t", 2}, Basic{"int32_t", 4},  Basic{"uint32_t", 4},
-    Basic{"float", 4},   Basic{"int64_t", 8},  Basic{"uint64_t", 8}, Basic{"double", 8},
+    basic<std::int8_t>("int8_t"),   basic<std::uint8_t>("uint8_t"),   basic<std::uint8_t>("bool"),
+    basic<std::int8_t>("char"),     basic<std::int16_t>("int16_t"),   basic<std::uint16_t>("uint16_t"),
+    basic<std::int32_t>("int32_t"), basic<std::uint32_t>("uint32_t"), basic<float>("float"),
+    basic<std::int64_t>("int64_t"), basic<std::uint64_t>("uint64_t"), basic<double>("double"),
 };
 
 std::size_t basic_bytes(std::string_view type) {
@@ -112,6 +122,17 @@ std::optional<Place> find_field(const Definitions& definitions, std::string_view
     place.offset += one * field->count;
   }
   return std::nullopt;
+}
+
+std::size_t bytes_of(const Place& place) { return basic_bytes(place.type); }
+
+double number_at(std::string_view data, const Place& place) {
+  for (const Basic& basic : kBasics) {
+    if (basic.name == place.type) {
+      return basic.load(data, place.offset);
+    }
+  }
+  return 0.0;
 }
 
 }  // namespace driftlab::ulog

@@ -24,4 +24,10 @@ struct Place {
 [[nodiscard]] std::optional<Place> find_field(const Definitions& definitions, std::string_view message,
                                               std::string_view field);
 
+/// Bytes of one number at a place that find_field gave.
+[[nodiscard]] std::size_t bytes_of(const Place& place);
+
+/// The number there in the data of a message, which reach behind it. A whole number beyond 2^53 is rounded.
+[[nodiscard]] double number_at(std::string_view data, const Place& place);
+
 }  // namespace driftlab::ulog

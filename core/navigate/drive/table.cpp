@@ -1,6 +1,7 @@
 #include "core/navigate/drive/table.hpp"
 
 #include "core/signal/find_column.hpp"
+#include "core/signal/missing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -66,8 +67,15 @@ Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
     if (!column) {
       return fail(column.error());
     }
-    std::transform(table.columns[*column].begin(), table.columns[*column].end(), stamps.begin(),
+    // A stream that stands beside a longer one has ended before the table does.
+    const std::vector<double>& values = table.columns[*column];
+    const auto ended = [](double value) { return std::isnan(value) && why_missing(value).why == Missing::Ended; };
+    while (!stamps.empty() && ended(values[stamps.size() - 1])) {
+      stamps.pop_back();
+    }
+    std::transform(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(stamps.size()), stamps.begin(),
                    [&](double value) { return value * meaning.unit_s; });
+    stamped.facts.rows = stamps.size();
   }
   double rolled = 0.0;
   double before = -std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
 // Bad input of drives: each is refused with its sentence, or survived with one among the notes (spec/drives.md, 8).
+#include "core/signal/missing.hpp"
 #include "tests/unit/navigate/drive_fixture.hpp"
 
 #include <gtest/gtest.h>
@@ -108,6 +109,44 @@ void own_reference(Files& files, double beside_rad) {
                                               {"lon", {Quantity::ReferencePosition, "lon", 1.0}},
                                               {"h", {Quantity::ReferencePosition, "height", 1.0}}};
   files.tables.reference = std::move(reference);
+}
+
+/// The fixes in columns beside the unit's rows, as a flight log or a bag gives them.
+void in_one_file(Files& files) {
+  Source& source = files.document.gnss.source;
+  const std::size_t rows = files.tables.imu.rows();
+  std::map<std::string, ColumnMeaning> columns;
+  for (const auto& [name, meaning] : source.columns) {
+    columns["gnss_" + name] = meaning;
+  }
+  source.file = files.document.imu.source.file;
+  source.columns = std::move(columns);
+  source.time.column = "gnss_t";
+  for (std::size_t c = 0; c < files.tables.gnss.columns.size(); ++c) {
+    std::vector<double> column = files.tables.gnss.columns[c];
+    for (std::size_t row = column.size(); row < rows; ++row) {
+      column.push_back(missing_sample(Missing::Ended, row + 1));
+    }
+    files.tables.imu.names.push_back("gnss_" + files.tables.gnss.names[c]);
+    files.tables.imu.columns.push_back(std::move(column));
+  }
+  files.tables.gnss = files.tables.imu;
+}
+
+TEST(DriveInput, OneFileOfSeveralStreamsIsTheDriveOfAFileForEach) {
+  Files apart = town();
+  Files together = town();
+  in_one_file(together);
+  const auto a = load_drive(apart.document, apart.tables);
+  const auto b = load_drive(together.document, together.tables);
+  ASSERT_TRUE(a && b);
+  ASSERT_EQ(a->fixes.size(), b->fixes.size());
+  for (std::size_t i = 0; i < a->fixes.size(); ++i) {
+    EXPECT_EQ(a->fixes[i].time_s, b->fixes[i].time_s);
+    EXPECT_EQ(a->fixes[i].position_ecef_m, b->fixes[i].position_ecef_m);
+  }
+  EXPECT_EQ(a->runs.front().readings, b->runs.front().readings);
+  EXPECT_EQ(a->notes, b->notes) << "the rows behind the last fix are no rows without a stamp";
 }
 
 struct Case {

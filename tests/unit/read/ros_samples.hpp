@@ -39,6 +39,66 @@ inline std::string cdr_imu(const InertialRow& row, const std::string& frame = "i
   return std::string("\0\1\0\0", 4) + body + imu_numbers(row);
 }
 
+/// A satellite fix and a moment of an odometer. Standard deviations are powers of two, so that their squares are exact.
+struct FixRow {
+  std::uint64_t time_us = 0;
+  double latitude_deg = 50.5;
+  double longitude_deg = 13.25;
+  double height_m = 250.0;
+};
+struct OdometryRow {
+  std::uint64_t time_us = 0;
+  double speed_m_s = 4.0;
+};
+
+inline std::string numbers_of(const std::vector<double>& values) {
+  std::string bytes;
+  for (const double value : values) {
+    bytes += bytes_of(value);
+  }
+  return bytes;
+}
+
+/// sensor_msgs/NavSatFix behind its header: east 0.5, north 0.25, up 2 m, of covariance type `type`.
+inline std::string fix_numbers(const FixRow& row, unsigned type) {
+  return numbers_of({row.latitude_deg, row.longitude_deg, row.height_m, 0.25, 0, 0, 0, 0.0625, 0, 0, 0, 4.0}) +
+         word(type, 1);
+}
+
+inline std::string ros1_fix(const FixRow& row, unsigned type = 2) {
+  return word(9, 4) + ros_stamp(row.time_us) + word(3, 4) + "gps" + word(1, 1) + word(1, 2) + fix_numbers(row, type);
+}
+
+inline std::string cdr_padded(std::string body, std::size_t alignment) {
+  body.resize((body.size() + alignment - 1) / alignment * alignment);
+  return body;
+}
+
+inline std::string cdr_fix(const FixRow& row, unsigned type = 2) {
+  std::string body = ros_stamp(row.time_us) + word(4, 4) + "gps" + '\0' + word(1, 1);
+  body = cdr_padded(cdr_padded(std::move(body), 2) + word(1, 2), 8);
+  return std::string("\0\1\0\0", 4) + body + fix_numbers(row, type);
+}
+
+/// nav_msgs/Odometry behind its frames.
+inline std::string odometry_numbers(const OdometryRow& row) {
+  std::vector<double> values(3 + 4 + 36 + 6 + 36);
+  values[0] = 2.0 * row.speed_m_s;
+  values[3 + 4 + 36] = row.speed_m_s;
+  values[3 + 4 + 36 + 5] = -0.125;
+  return numbers_of(values);
+}
+
+inline std::string ros1_odometry(const OdometryRow& row) {
+  return word(9, 4) + ros_stamp(row.time_us) + word(4, 4) + "odom" + word(9, 4) + "base_link" + odometry_numbers(row);
+}
+
+inline std::string cdr_odometry(const OdometryRow& row) {
+  std::string body =
+      cdr_padded(ros_stamp(row.time_us) + word(5, 4) + "odom" + '\0', 4) + word(10, 4) + "base_link" + '\0';
+  return std::string("\0\1\0\0", 4) + cdr_padded(std::move(body), 8) + odometry_numbers(row);
+}
+
 /// `plain` as libarchive packs it: bzip2, an LZ4 frame or zstd.
 inline std::string packed(std::string_view plain, int filter) {
   std::string bytes(2 * plain.size() + 4096, '\0');

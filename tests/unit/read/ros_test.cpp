@@ -94,15 +94,15 @@ TEST(RosImu, TakesTheTimeOfRecordingWhereMessagesHaveNoStamp) {
 
 TEST(RosImu, NamesTheTopicsItLeavesOutAndThoseOfAFileWithoutAny) {
   const InertialRow row = inertial_rows()[0];
-  const std::string other = bag_connection(4, "/fix\n", "sensor_msgs/NavSatFix") + bag_message(4, 1, "12345678");
+  const std::string other = bag_connection(4, "/pose\n", "geometry_msgs/PoseStamped") + bag_message(4, 1, "12345678");
   const Outcome with = decode_bytes(bag_front() + other + bag_connection(0, "/imu", "sensor_msgs/Imu") +
                                     bag_message(0, 1, ros1_imu(row)) + bag_message(0, 1, "torn message"));
   ASSERT_FALSE(with.error) << with.message;
-  EXPECT_THAT(with.decoded.notes, ElementsAre(HasSubstr("1 inertial message cannot be read"),
-                                              HasSubstr("'/fix?' ('sensor_msgs/NavSatFix')")));
+  EXPECT_THAT(with.decoded.notes,
+              ElementsAre(HasSubstr("1 message cannot be read"), HasSubstr("'/pose?' ('geometry_msgs/PoseStamped')")));
   const Outcome without = decode_bytes(bag_front() + other);
   EXPECT_EQ(without.error, ErrorCode::NoSamples);
-  EXPECT_THAT(without.message, HasSubstr("its topics are '/fix?' ('sensor_msgs/NavSatFix')"));
+  EXPECT_THAT(without.message, HasSubstr("its topics are '/pose?' ('geometry_msgs/PoseStamped')"));
 }
 
 TEST(Rosbag, ReadsWhatIsBeforeATornTailAndSaysSo) {
