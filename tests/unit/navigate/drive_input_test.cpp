@@ -146,7 +146,8 @@ TEST(DriveInput, OneFileOfSeveralStreamsIsTheDriveOfAFileForEach) {
     EXPECT_EQ(a->fixes[i].position_ecef_m, b->fixes[i].position_ecef_m);
   }
   EXPECT_EQ(a->runs.front().readings, b->runs.front().readings);
-  EXPECT_EQ(a->notes, b->notes) << "the rows behind the last fix are no rows without a stamp";
+  EXPECT_EQ(b->facts.gnss_stamps.rows, a->facts.gnss_stamps.rows);
+  EXPECT_EQ(b->facts.gnss_stamps.without_stamp, 0U) << "rows behind the last fix are no rows without a stamp";
 }
 
 struct Case {
