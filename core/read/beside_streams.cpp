@@ -13,6 +13,7 @@ namespace driftlab {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostStreams = 16;
 constexpr std::size_t kBatch = 8192;
 
 /// `value(row)` for the rows that there are, then places without a sample up to `rows`.
@@ -60,12 +61,15 @@ bool BesideStreams::empty() const {
 
 ColumnNames BesideStreams::settle() {
   settled_ = true;
+  std::size_t count = 0;
   ColumnNames names;
   for (auto stream = streams_.begin(); stream != streams_.end(); ++stream) {
-    stream->in_table = !stream->stamps.empty();
+    stream->in_table = !stream->stamps.empty() && count < kMostStreams;
     if (!stream->in_table) {
+      stream->left_out += stream->stamps.size();
       continue;
     }
+    ++count;
     const auto before = std::count_if(
         streams_.begin(), stream, [&](const Stream& other) { return other.in_table && other.kind == stream->kind; });
     stream->heading = stream->kind + (before == 0 ? "" : std::to_string(before + 1)) + "_";

@@ -6,7 +6,8 @@
 /// Its rows begin with the table's and say nothing of the rows beside them; behind its last one the columns have ended
 /// (core/signal/missing.hpp). Times count from the zero of the inertial stream's, and so may be below zero.
 ///
-/// Rows wait until the end of the file, in 64 MiB (a million fixes); what is more is left out, with a note.
+/// Rows wait until the end of the file, in 64 MiB (a million fixes). What is more is left out, with a note, and so are
+/// streams beyond the sixteenth.
 #include "core/read/format.hpp"
 
 #include <cstdint>

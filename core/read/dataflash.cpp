@@ -3,7 +3,9 @@
 ///
 /// Read as inertial streams (core/read/inertial_streams.hpp): IMU, IMU2, ..., and the unfiltered ACC and GYR with what
 /// follows their name; each instance (label I) is its own. GyrX GyrY GyrZ [rad/s], AccX AccY AccZ [m/s^2], T or Temp
-/// [degC]; time is SampleUS, else TimeUS, else TimeMS, since boot. Batches of raw samples (ISBH, ISBD) are not read.
+/// [degC]; time is SampleUS, else TimeUS, else TimeMS, since boot. Beside them stand the receivers' fixes: GPS, each
+/// instance, and GPS2, ... of older logs. Batches of raw samples (ISBH, ISBD) are not read.
+#include "core/read/dataflash_format.hpp"
 #include "core/read/formats.hpp"
 #include "core/read/inertial_streams.hpp"
 #include "core/read/little_endian.hpp"
@@ -18,60 +20,11 @@ namespace driftlab::formats {
 namespace {
 
 using namespace std::string_view_literals;
+using dataflash::kHead;
 
 constexpr std::string_view kMark = "\xA3\x95"sv;
-constexpr std::size_t kHead = 3;  ///< mark and number
 constexpr unsigned char kFormatNumber = 0x80;
 constexpr std::size_t kFormatBytes = 89;
-
-/// Bytes of a field by its letter; 0 for a letter that is not known.
-std::size_t bytes_of(char letter) {
-  switch (letter) {
-    case 'b':
-    case 'B':
-    case 'M':
-      return 1;
-    case 'h':
-    case 'H':
-    case 'c':
-    case 'C':
-    case 'g':
-      return 2;
-    case 'i':
-    case 'I':
-    case 'f':
-    case 'n':
-    case 'e':
-    case 'E':
-    case 'L':
-      return 4;
-    case 'd':
-    case 'q':
-    case 'Q':
-      return 8;
-    case 'N':
-      return 16;
-    case 'a':
-    case 'Z':
-      return 64;
-    default:
-      return 0;
-  }
-}
-
-/// A message as it was declared.
-struct Declared {
-  std::size_t bytes = 0;  ///< with its head; 0: not declared
-  std::string name;
-  std::map<std::string, std::pair<char, std::size_t>, std::less<>> fields;  ///< letter and place by label
-
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view label, std::string_view letters) const {
-    const auto found = fields.find(label);
-    return found != fields.end() && letters.find(found->second.first) != std::string_view::npos
-               ? std::optional(found->second.second)
-               : std::nullopt;
-  }
-};
 
 /// How an inertial message becomes a row.
 struct Layout {
@@ -84,31 +37,7 @@ struct Layout {
   std::map<unsigned char, std::size_t> streams;  ///< by instance
 };
 
-/// `bytes` up to its first zero.
-std::string_view padded_text(std::string_view bytes) {
-  return bytes.substr(0, std::min(bytes.find('\0'), bytes.size()));
-}
-
-/// Nothing where a letter is not known or the fields do not fill the message.
-std::optional<Declared> declared_by(std::string_view body) {
-  Declared message;
-  message.bytes = static_cast<unsigned char>(body[1]);
-  message.name = padded_text(body.substr(2, 4));
-  std::string_view labels = padded_text(body.substr(22, 64));
-  std::size_t place = kHead;
-  for (const char letter : padded_text(body.substr(6, 16))) {
-    const std::size_t comma = std::min(labels.find(','), labels.size());
-    message.fields.emplace(labels.substr(0, comma), std::pair(letter, place));
-    labels.remove_prefix(std::min(comma + 1, labels.size()));
-    if (bytes_of(letter) == 0) {
-      return std::nullopt;
-    }
-    place += bytes_of(letter);
-  }
-  return place == message.bytes ? std::optional(std::move(message)) : std::nullopt;
-}
-
-bool add_triad(const Declared& message, std::string_view stem, std::vector<std::size_t>& floats) {
+bool add_triad(const dataflash::Declared& message, std::string_view stem, std::vector<std::size_t>& floats) {
   std::vector<std::size_t> places;
   for (const char axis : "XYZ"sv) {
     if (const auto place = message.find(std::string(stem) + axis, "f")) {
@@ -122,8 +51,46 @@ bool add_triad(const Declared& message, std::string_view stem, std::vector<std::
   return true;
 }
 
+/// How a receiver's message becomes a row.
+struct FixLayout {
+  std::size_t stamp = 0;
+  ColumnNames columns;
+  std::vector<dataflash::Field> fields;  ///< of the columns
+  std::optional<std::size_t> instance;
+  std::map<unsigned char, std::size_t> streams;  ///< by instance
+};
+
+/// Nothing where the message holds no fixes.
+std::optional<FixLayout> fix_layout_of(const dataflash::Declared& message) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kColumns{{{"Lat", "latitude (deg)"},
+                                                                                    {"Lng", "longitude (deg)"},
+                                                                                    {"Alt", "altitude (m)"},
+                                                                                    {"Spd", "speed (m/s)"},
+                                                                                    {"GCrs", "course (deg)"},
+                                                                                    {"VZ", "velocity_down (m/s)"},
+                                                                                    {"Status", "fix_type"},
+                                                                                    {"NSats", "satellites"},
+                                                                                    {"GWk", "week"},
+                                                                                    {"GMS", "time_of_week (ms)"}}};
+  const auto stamp = message.find("TimeUS", "Q");
+  if (!message.name.starts_with("GPS") || !stamp || !message.find("Lat", "L") || !message.find("Lng", "L")) {
+    return std::nullopt;
+  }
+  FixLayout layout;
+  layout.stamp = *stamp;
+  for (const auto& [label, column] : kColumns) {
+    if (const auto field = message.fields.find(label);
+        field != message.fields.end() && dataflash::is_number(field->second)) {
+      layout.columns.emplace_back(column);
+      layout.fields.push_back(field->second);
+    }
+  }
+  layout.instance = message.find("I", "B");
+  return layout;
+}
+
 /// Nothing where the message is not inertial.
-std::optional<Layout> layout_of(const Declared& message) {
+std::optional<Layout> layout_of(const dataflash::Declared& message) {
   if (!message.name.starts_with("IMU") && !message.name.starts_with("ACC") && !message.name.starts_with("GYR")) {
     return std::nullopt;
   }
@@ -166,6 +133,7 @@ class DataflashDecoder {
   }
   void declare(std::string_view body);
   Status take(unsigned char number, std::string_view message);
+  void take_fix(unsigned char number, std::string_view message);
 
   ByteSource& source_;
   ColumnSink& sink_;
@@ -174,6 +142,7 @@ class DataflashDecoder {
   std::array<std::size_t, 256> bytes_{};  ///< of a message, by number; 0: not declared
   std::array<std::string, 256> names_;
   std::array<std::optional<Layout>, 256> layouts_;
+  std::array<std::optional<FixLayout>, 256> fix_layouts_;
   std::uint64_t damaged_bytes_ = 0;
   std::optional<std::uint64_t> torn_at_;
 };
@@ -207,6 +176,8 @@ Result<bool> DataflashDecoder::next_message() {
     if (auto status = take(number, view->substr(0, size)); !status) {
       return fail(status.error());
     }
+  } else if (fix_layouts_[number]) {
+    take_fix(number, view->substr(0, size));
   }
   source_.consume(size);
   return true;
@@ -243,9 +214,10 @@ void DataflashDecoder::declare(std::string_view body) {
     return;
   }
   bytes_[number] = size;
-  if (const auto message = declared_by(body)) {
+  if (const auto message = dataflash::declared_by(body)) {
     names_[number] = message->name;
     layouts_[number] = layout_of(*message);
+    fix_layouts_[number] = fix_layout_of(*message);
   }
 }
 
@@ -276,6 +248,21 @@ Status DataflashDecoder::take(unsigned char number, std::string_view message) {
   const std::uint64_t stamp = layout.milliseconds ? std::uint64_t{load_at<std::uint32_t>(message, layout.stamp)} * 1000
                                                   : load_at<std::uint64_t>(message, layout.stamp);
   return streams_.take(stream->second, stamp, std::span(row).first(layout.floats.size()));
+}
+
+void DataflashDecoder::take_fix(unsigned char number, std::string_view message) {
+  FixLayout& layout = *fix_layouts_[number];
+  const unsigned char instance = layout.instance ? static_cast<unsigned char>(message[*layout.instance]) : 0;
+  auto stream = layout.streams.find(instance);
+  if (stream == layout.streams.end()) {
+    const std::string name = names_[number] + (layout.instance ? " " + std::to_string(instance) : "");
+    stream = layout.streams.emplace(instance, streams_.add_beside(name, "gnss", layout.columns)).first;
+  }
+  std::vector<double> row;
+  for (const dataflash::Field& field : layout.fields) {
+    row.push_back(dataflash::number_at(message, field));
+  }
+  streams_.take_beside(stream->second, load_at<std::uint64_t>(message, layout.stamp), row);
 }
 
 Status DataflashDecoder::run() {

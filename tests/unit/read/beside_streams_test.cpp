@@ -220,6 +220,43 @@ TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 data message is shorter than its format")));
 }
 
+TEST(BesideStreams, AnArduPilotLogsReceiversStandBesideItsImu) {
+  std::string file =
+      dataflash_front() + dataflash_format(9, 8 + 1 + 1 + 4 + 2 + 1 + 2 + 4 + 4 + 4 + 4 + 4 + 4, "GPS", "QBBIHBcLLefff",
+                                           "TimeUS,I,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd,GCrs,VZ");
+  const std::vector<InertialRow> rows = inertial_rows(4);
+  for (const InertialRow& row : rows) {
+    file += dataflash_sample(row);
+    for (const unsigned receiver : {0U, 1U}) {
+      file += dataflash_message(9, word(row.time_us + 250, 8) + word(receiver, 1) + word(3, 1) + word(345'600'200, 4) +
+                                       word(2270, 2) + word(12, 1) + word(85, 2) +
+                                       bytes_of(std::int32_t{-353'632'621}) + bytes_of(std::int32_t{1'491'652'300}) +
+                                       bytes_of(std::int32_t{58'412}) + floats({12.5F, 271.25F, -0.5F}));
+    }
+  }
+  const Outcome outcome = decode_bytes(file);
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  const std::vector<std::pair<std::string, double>> expected{{"time (s)", 0.00025},
+                                                             {"latitude (deg)", -35.3632621},
+                                                             {"longitude (deg)", 149.16523},
+                                                             {"altitude (m)", 584.12},
+                                                             {"speed (m/s)", 12.5},
+                                                             {"course (deg)", 271.25},
+                                                             {"velocity_down (m/s)", -0.5},
+                                                             {"fix_type", 3.0},
+                                                             {"satellites", 12.0},
+                                                             {"week", 2270.0},
+                                                             {"time_of_week (ms)", 345'600'200.0}};
+  for (const auto& [column, value] : expected) {
+    for (const std::string receiver : {"gnss_", "gnss2_"}) {
+      const std::vector<double> found = named(outcome, receiver + column);
+      ASSERT_EQ(found.size(), 4U) << receiver << column;
+      EXPECT_NEAR(found[0], value, 1e-14 * std::abs(value)) << receiver << column;
+    }
+  }
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'GPS 0' (gnss_, 4 rows), 'GPS 1' (gnss2_, 4 rows)")));
+}
+
 TEST(BesideStreams, AReceiverThatComesWhenTheTableHasBegunIsLeftOutAndSaid) {
   const std::string fix_tail = floats({0.25F, 0.5F, 0.75F, 1.5F, -2.5F, 0.125F}) + word(3, 1) + word(11, 1);
   std::string file = ulog_front() + ulog_topic(kSensorCombined) + ulog_topic(kOldFix, 8);
