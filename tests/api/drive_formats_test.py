@@ -76,7 +76,84 @@ class MadeUpDrive(Folder):
         return self.document("imu.csv", "gnss.csv")
 
 
+def single(value: float) -> float:
+    """As a log of PX4 keeps it."""
+    return float(struct.unpack("<f", struct.pack("<f", value))[0])
+
+
+def ulog(readings: list[list[float]], fixes: list[list[float]]) -> bytes:
+    """A PX4 log of both, in the order of time."""
+    def message(letter: bytes, body: bytes) -> bytes:
+        return struct.pack("<H", len(body)) + letter + body
+    topics = ((0, "sensor_combined", "uint64_t timestamp;float[3] gyro_rad;float[3] accelerometer_m_s2;"),
+              (1, "sensor_gps", "uint64_t timestamp;double latitude_deg;double longitude_deg;double altitude_ellipsoid_m;"
+                                "float vel_n_m_s;float vel_e_m_s;float vel_d_m_s;"))
+    front = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0) + message(b"B", bytes(40))
+    front += b"".join(message(b"F", f"{name}:{fields}".encode()) for _, name, fields in topics)
+    front += b"".join(message(b"A", struct.pack("<BH", 0, number) + name.encode()) for number, name, _ in topics)
+    data = [(row[0], struct.pack("<HQ6f", 0, round(1e6 * row[0]), *row[1:])) for row in readings]
+    data += [(row[0], struct.pack("<HQ3d3f", 1, round(1e6 * row[0]), *row[1:])) for row in fixes]
+    return front + b"".join(message(b"D", body) for _, body in sorted(data, key=lambda each: each[0]))
+
+
+def bag(readings: list[list[float]], fixes: list[list[float]]) -> bytes:
+    """A ROS 1 bag of sensor_msgs/Imu and sensor_msgs/NavSatFix, in the order of time."""
+    def record(fields: list[bytes], data: bytes) -> bytes:
+        header = b"".join(struct.pack("<I", len(field)) + field for field in fields)
+        return struct.pack("<I", len(header)) + header + struct.pack("<I", len(data)) + data
+
+    def header(seconds: float) -> bytes:
+        nanoseconds = round(1e9 * seconds)
+        return struct.pack("<IIII", 0, 1_700_000_000 + nanoseconds // 10**9, nanoseconds % 10**9, 0)
+    nothing = bytes(9 * 8)
+    messages = [(row[0], 0, header(row[0]) + bytes(4 * 8) + nothing + struct.pack("<3d", *row[1:4]) + nothing
+                 + struct.pack("<3d", *row[4:7]) + nothing) for row in readings]
+    messages += [(row[0], 1, header(row[0]) + struct.pack("<bH3d", 0, 1, *row[1:4]) + nothing + b"\0") for row in fixes]
+    topics = [record([b"op=\x07", b"conn=" + struct.pack("<I", number), b"topic=" + name], struct.pack("<I", len(kind)) + kind)
+              for number, name, kind in ((0, b"/imu", b"type=sensor_msgs/Imu"), (1, b"/fix", b"type=sensor_msgs/NavSatFix"))]
+    said = [record([b"op=\x02", b"conn=" + struct.pack("<I", number), b"time=" + bytes(8)], data)
+            for _, number, data in sorted(messages, key=lambda each: each[0])]
+    return b"#ROSBAG V2.0\n" + record([b"op=\x03", b"index_pos=" + struct.pack("<Q", 1)], b"") + b"".join(topics + said)
+
+
 class SameDrive(MadeUpDrive):
+    def of_one_log(self, file: str, velocity: bool) -> dict[str, Any]:
+        """The document of a log that holds readings and fixes."""
+        document = self.document(file, file)
+        imu, gnss = document["imu"], document["gnss"]
+        imu["columns"] = columns_as(imu["columns"], {**{f"g{a}": f"gyro_{a} (rad/s)" for a in "xyz"},
+                                                     **{f"a{a}": f"acc_{a} (m/s^2)" for a in "xyz"}})
+        renamed = {"lat": "gnss_latitude (deg)", "lon": "gnss_longitude (deg)", "height": "gnss_height (m)"}
+        if velocity:
+            renamed |= {f"v{way[0]}": f"gnss_velocity_{way} (m/s)" for way in ("north", "east", "down")}
+        gnss["columns"] = {renamed[name]: role for name, role in gnss["columns"].items() if name in renamed}
+        imu["time"]["column"], gnss["time"]["column"] = "time (s)", "gnss_time (s)"
+        return document
+
+    def test_one_log_of_px4_here_and_on_a_server(self) -> None:
+        self.readings = [[row[0], *map(single, row[1:])] for row in self.readings]
+        self.fixes = [[*row[:4], *map(single, row[4:])] for row in self.fixes]
+        (self.folder / "flight.ulg").write_bytes(ulog(self.readings, self.fixes))
+        document = self.of_one_log("flight.ulg", velocity=True)
+        found = self.found(document)
+        self.assertEqual(found, self.found(self.as_csv()))
+        facts = json.loads(self.drive(0, "check", document, "--json"))["facts"]
+        self.assertEqual((facts["imu"]["rows"], facts["gnss"]["rows"]), (len(self.readings), len(self.fixes)))
+        stored = self.expect(201, self.daemon.upload((self.folder / "flight.ulg").read_bytes(), device="px4", condition="drive"))
+        for source in ("imu", "gnss"):
+            del document[source]["file"]
+            document[source]["recording"] = stored.json["id"]
+        kept = self.expect(201, self.daemon.post("/v1/drives", document)).json["id"]
+        asked = self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": kept, "question": "run"}))
+        self.assertEqual(self.daemon.finished(asked.json["id"])["state"], "succeeded")
+        self.assertEqual(self.expect(200, self.daemon.get(asked.headers["location"])).json["evaluation"]["durations"], found)
+
+    def test_one_ros_bag(self) -> None:
+        (self.folder / "drive.bag").write_bytes(bag(self.readings, self.fixes))
+        apart = self.as_csv()
+        apart["gnss"]["columns"] = {name: role for name, role in apart["gnss"]["columns"].items() if not name.startswith("v")}
+        self.assertEqual(self.found(self.of_one_log("drive.bag", velocity=False)), self.found(apart))
+
     def test_structs_of_navego(self) -> None:
         t, lat, lon, height, *velocity = [list(column) for column in zip(*self.fixes)]
         (self.folder / "gnss.mat").write_bytes(mat_struct("gnss", {"t": [t], "lat": [lat], "lon": [lon], "h": [height], "vel": velocity,
