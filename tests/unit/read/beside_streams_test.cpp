@@ -1,7 +1,6 @@
 /// Satellite fixes and odometers of the logs of robots and flight controllers, beside the inertial stream of the same
 /// file.
 #include "core/signal/missing.hpp"
-#include "tests/unit/read/ros_samples.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -28,66 +27,6 @@ std::vector<double> named(const Outcome& outcome, const std::string& name) {
     }
   }
   return values;
-}
-
-constexpr std::uint64_t kStart = 1'700'000'000'000'000U;
-
-/// Forty rows of 5 ms; fixes from 20 ms before them on, each 100 ms; an odometer each 50 ms.
-const std::vector<FixRow>& fixes() {
-  static const std::vector<FixRow> rows{{kStart - 20'000}, {kStart + 80'000, 50.75, 13.5, 251.0}};
-  return rows;
-}
-const std::vector<OdometryRow>& odometry() {
-  static const std::vector<OdometryRow> rows{{kStart, 1.0}, {kStart + 50'000, 2.0}, {kStart + 100'000, 3.0}};
-  return rows;
-}
-
-std::string journey_bag() {
-  std::string records = bag_connection(0, "/imu", "sensor_msgs/Imu") +
-                        bag_connection(1, "/fix", "sensor_msgs/NavSatFix") +
-                        bag_connection(2, "/odom", "nav_msgs/Odometry");
-  for (const FixRow& row : fixes()) {
-    records += bag_message(1, row.time_us, ros1_fix(row));
-  }
-  for (const InertialRow& row : inertial_rows(40)) {
-    records += bag_message(0, row.time_us, ros1_imu(row));
-  }
-  for (const OdometryRow& row : odometry()) {
-    records += bag_message(2, row.time_us, ros1_odometry(row));
-  }
-  return bag_front() + bag_chunk("lz4", records);
-}
-
-std::string journey_mcap() {
-  std::string records = mcap_channel(0, "/imu", "sensor_msgs/msg/Imu", "cdr") +
-                        mcap_channel(2, "/fix", "sensor_msgs/msg/NavSatFix", "cdr") +
-                        mcap_channel(4, "/odom", "nav_msgs/msg/Odometry", "cdr");
-  for (const FixRow& row : fixes()) {
-    records += mcap_message(2, row.time_us, cdr_fix(row));
-  }
-  for (const InertialRow& row : inertial_rows(40)) {
-    records += mcap_message(0, row.time_us, cdr_imu(row));
-  }
-  for (const OdometryRow& row : odometry()) {
-    records += mcap_message(4, row.time_us, cdr_odometry(row));
-  }
-  return mcap_file("zstd", records);
-}
-
-std::string journey_bag2() {
-  std::string sql = kBag2Tables +
-                    "INSERT INTO topics VALUES(3,'/fix','sensor_msgs/msg/NavSatFix','cdr'),"
-                    "(4,'/odom','nav_msgs/msg/Odometry','cdr');";
-  for (const FixRow& row : fixes()) {
-    sql += bag2_message(3, row.time_us, cdr_fix(row));
-  }
-  for (const InertialRow& row : inertial_rows(40)) {
-    sql += bag2_message(2, row.time_us, cdr_imu(row));
-  }
-  for (const OdometryRow& row : odometry()) {
-    sql += bag2_message(4, row.time_us, cdr_odometry(row));
-  }
-  return database(sql);
 }
 
 TEST(BesideStreams, FixesAndOdometryStandInColumnsOfTheirOwnOnTheSameClock) {
@@ -171,23 +110,6 @@ TEST(BesideStreams, ATornFixIsLeftOutAndCounted) {
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("messages cannot be read and are left out.")));
 }
 
-const std::string kOldFix =
-    "vehicle_gps_position:uint64_t timestamp;uint64_t time_utc_usec;int32_t lat;int32_t lon;int32_t alt;"
-    "int32_t alt_ellipsoid;float s_variance_m_s;float eph;float epv;float vel_n_m_s;float vel_e_m_s;float vel_d_m_s;"
-    "uint8_t fix_type;uint8_t satellites_used;";
-const std::string kNewFix =
-    "sensor_gps:uint64_t timestamp;uint64_t timestamp_sample;double latitude_deg;double longitude_deg;"
-    "double altitude_msl_m;double altitude_ellipsoid_m;uint64_t time_utc_usec;float s_variance_m_s;float eph;float epv;"
-    "float vel_n_m_s;float vel_e_m_s;float vel_d_m_s;uint8_t fix_type;uint8_t satellites_used;";
-
-std::string floats(const std::vector<float>& values) {
-  std::string bytes;
-  for (const float value : values) {
-    bytes += bytes_of(value);
-  }
-  return bytes;
-}
-
 TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
   const std::string tail = floats({0.25F, 0.5F, 0.75F, 1.5F, -2.5F, 0.125F}) + word(3, 1) + word(11, 1);
   const auto whole = [](std::int32_t value) { return bytes_of(value); };
@@ -221,18 +143,9 @@ TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
 }
 
 TEST(BesideStreams, AnArduPilotLogsReceiversStandBesideItsImu) {
-  std::string file =
-      dataflash_front() + dataflash_format(9, 8 + 1 + 1 + 4 + 2 + 1 + 2 + 4 + 4 + 4 + 4 + 4 + 4, "GPS", "QBBIHBcLLefff",
-                                           "TimeUS,I,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd,GCrs,VZ");
-  const std::vector<InertialRow> rows = inertial_rows(4);
-  for (const InertialRow& row : rows) {
-    file += dataflash_sample(row);
-    for (const unsigned receiver : {0U, 1U}) {
-      file += dataflash_message(9, word(row.time_us + 250, 8) + word(receiver, 1) + word(3, 1) + word(345'600'200, 4) +
-                                       word(2270, 2) + word(12, 1) + word(85, 2) +
-                                       bytes_of(std::int32_t{-353'632'621}) + bytes_of(std::int32_t{1'491'652'300}) +
-                                       bytes_of(std::int32_t{58'412}) + floats({12.5F, 271.25F, -0.5F}));
-    }
+  std::string file = dataflash_front() + dataflash_gps();
+  for (const InertialRow& row : inertial_rows(4)) {
+    file += dataflash_sample(row) + dataflash_fix(row.time_us + 250, 0) + dataflash_fix(row.time_us + 250, 1);
   }
   const Outcome outcome = decode_bytes(file);
   ASSERT_FALSE(outcome.error) << outcome.message;

@@ -5,7 +5,7 @@
 #include "tests/unit/read/archives.hpp"
 #include "tests/unit/read/hdf5_samples.hpp"
 #include "tests/unit/read/inertial_samples.hpp"
-#include "tests/unit/read/ros_samples.hpp"
+#include "tests/unit/read/journey_samples.hpp"
 
 #include <gtest/gtest.h>
 #include <lzma.h>
@@ -228,8 +228,8 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"cxd5602",
        {"9b981977,41d84d00,b9685f6a,39738705,b8c2bdea,3e823bd9,bc5bae10,411c758a\r\n"
         "9b9e7c5a,41d81f00,38b19c82,3a490aa1,b8eed188,3e81f398,bc33c37e,411c991c\r\n"}},
-      {"ulog", {ulog(inertial_rows())}},
-      {"dataflash", {dataflash(inertial_rows())}},
+      {"ulog", {ulog(inertial_rows()), ulog_with_fixes()}},
+      {"dataflash", {dataflash(inertial_rows()), dataflash_with_fixes()}},
       {"cwa", {cwa()}},
       {"euroc", {euroc(inertial_rows(3))}},
       {"rostopic", {rostopic(inertial_rows(3))}},
@@ -239,9 +239,12 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"ubx", {ubx_pvt(3)}},
       {"kitti", {zip(kitti_files(3))}},
       {"geneactiv", {geneactiv()}},
-      {"rosbag2", {rosbag2(inertial_rows(2))}},
-      {"mcap", {mcap(inertial_rows(2)), mcap(inertial_rows(2), "zstd", "ros1"), mcap(inertial_rows(2), "lz4")}},
-      {"rosbag", {rosbag(inertial_rows(2)), rosbag(inertial_rows(2), "bz2"), rosbag(inertial_rows(2), "lz4")}},
+      {"rosbag2", {rosbag2(inertial_rows(2)), journey_bag2(2)}},
+      {"mcap",
+       {mcap(inertial_rows(2)), mcap(inertial_rows(2), "zstd", "ros1"), mcap(inertial_rows(2), "lz4"),
+        journey_mcap(2)}},
+      {"rosbag",
+       {rosbag(inertial_rows(2)), rosbag(inertial_rows(2), "bz2"), rosbag(inertial_rows(2), "lz4"), journey_bag(2)}},
   };
 }
 
