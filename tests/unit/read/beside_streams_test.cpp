@@ -99,15 +99,14 @@ TEST(BesideStreams, WhatIsLongerThanTheInertialStreamIsCutAndSaid) {
 
 TEST(BesideStreams, ATornFixIsLeftOutAndCounted) {
   const std::string fix = ros1_fix({kStart});
-  const std::string cdr = cdr_fix({kStart});
-  const std::string bag =
-      bag_front() + bag_connection(0, "/imu", "sensor_msgs/Imu") + bag_connection(1, "/fix", "sensor_msgs/NavSatFix") +
-      bag_message(0, 1, ros1_imu(inertial_rows()[0])) + bag_message(1, 1, fix) +
-      bag_message(1, 1, fix.substr(0, fix.size() - 1)) + bag_message(1, 1, "\xff\xff\xff\xff" + fix);
+  const std::string bag = bag_front() + bag_connection(0, "/imu", "sensor_msgs/Imu") +
+                          bag_connection(1, "/fix", "sensor_msgs/NavSatFix") +
+                          bag_message(0, 1, ros1_imu(inertial_rows()[0])) + bag_message(1, 1, fix) +
+                          bag_message(1, 1, fix.substr(0, fix.size() - 1));
   const Outcome outcome = decode_bytes(bag);
   ASSERT_FALSE(outcome.error) << outcome.message;
   EXPECT_EQ(named(outcome, "gnss_time (s)").size(), 1U);
-  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("messages cannot be read and are left out.")));
+  EXPECT_THAT(outcome.decoded.notes, Contains("1 message cannot be read and is left out."));
 }
 
 TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
