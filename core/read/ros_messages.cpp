@@ -3,9 +3,10 @@
 #include "core/read/little_endian.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <span>
 
 namespace driftlab {
 namespace {
@@ -46,11 +47,15 @@ class Fields {
   template <std::size_t Count>
   std::array<double, Count> numbers() {
     std::array<double, Count> values{};
+    if (const std::size_t from = at_of_numbers(Count); whole_) {
+      std::memcpy(values.data(), bytes_.data() + from, sizeof values);
+    }
     for (double& value : values) {
-      value = take<double>();
+      value = swap_ ? std::bit_cast<double>(__builtin_bswap64(std::bit_cast<std::uint64_t>(value))) : value;
     }
     return values;
   }
+  void skip_numbers(std::size_t count) { static_cast<void>(at_of_numbers(count)); }
   void skip_text() {
     const std::uint64_t size = take<std::uint32_t>();
     whole_ = whole_ && size <= bytes_.size() - at_;
@@ -65,6 +70,14 @@ class Fields {
   }
 
  private:
+  /// Where that many doubles begin, and on behind them.
+  std::size_t at_of_numbers(std::size_t count) {
+    const std::size_t from = aligned_ ? (at_ + sizeof(double) - 1) / sizeof(double) * sizeof(double) : at_;
+    at_ = from + count * sizeof(double);
+    whole_ = whole_ && at_ <= bytes_.size();
+    return from;
+  }
+
   std::string_view bytes_;
   std::size_t at_ = 0;
   bool aligned_ = false;
@@ -78,11 +91,13 @@ std::optional<RosImu> read_ros_imu(std::string_view message, RosEncoding encodin
   Fields fields(message, encoding);
   RosImu imu;
   imu.stamp_ns = fields.stamp_ns();
-  static_cast<void>(fields.numbers<4 + 9>());  // the orientation
+  fields.skip_numbers(4 + 9);  // the orientation
   imu.gyro_rad_s = fields.numbers<3>();
-  imu.measures_gyro = fields.numbers<9>().front() != -1.0;
+  imu.measures_gyro = fields.take<double>() != -1.0;
+  fields.skip_numbers(8);
   imu.accel_m_s2 = fields.numbers<3>();
-  imu.measures_accel = fields.numbers<9>().front() != -1.0;
+  imu.measures_accel = fields.take<double>() != -1.0;
+  fields.skip_numbers(8);
   return fields.whole() ? std::optional(imu) : std::nullopt;
 }
 
@@ -110,10 +125,10 @@ std::optional<RosOdometry> read_ros_odometry(std::string_view message, RosEncodi
   odometry.stamp_ns = fields.stamp_ns();
   fields.skip_text();  // the frame of the robot
   odometry.position_m = fields.numbers<3>();
-  static_cast<void>(fields.numbers<4 + 36>());  // orientation and the covariance of the pose
+  fields.skip_numbers(4 + 36);  // orientation and the covariance of the pose
   odometry.velocity_m_s = fields.numbers<3>();
   odometry.rate_rad_s = fields.numbers<3>();
-  static_cast<void>(fields.numbers<36>());
+  fields.skip_numbers(36);
   return fields.whole() ? std::optional(odometry) : std::nullopt;
 }
 
