@@ -82,6 +82,7 @@ class UlogDecoder {
   Status subscribe(std::string_view body);
   void subscribe_fixes(std::size_t id, std::string_view name, const std::string& label);
   Status take_data(std::string_view body);
+  Status take_sample(const Subscription& layout, std::string_view data);
   void take_fix(std::size_t stream, const ulog::FixLayout& layout, std::string_view data);
   Result<bool> resynchronise();
   [[nodiscard]] std::optional<Subscription> layout_of(const InertialTopic& topic) const;
@@ -349,19 +350,18 @@ Status UlogDecoder::take_data(std::string_view body) {
     return {};
   }
   const std::size_t id = load_at<std::uint16_t>(body, 0);
+  if (id < subscriptions_.size()) {
+    if (const std::optional<Subscription>& subscribed = subscriptions_[id]) {
+      return take_sample(*subscribed, body.substr(2));
+    }
+  }
   if (const auto found = fixes_.find(id); found != fixes_.end()) {
     take_fix(found->second.first, found->second.second, body.substr(2));
-    return {};
   }
-  if (id >= subscriptions_.size()) {
-    return {};
-  }
-  const std::optional<Subscription>& subscribed = subscriptions_[id];
-  if (!subscribed) {
-    return {};
-  }
-  const Subscription& layout = *subscribed;
-  const std::string_view data = body.substr(2);
+  return {};
+}
+
+Status UlogDecoder::take_sample(const Subscription& layout, std::string_view data) {
   if (data.size() < layout.bytes) {
     ++short_messages_;
     return {};
