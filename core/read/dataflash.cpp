@@ -133,7 +133,7 @@ class DataflashDecoder {
   }
   void declare(std::string_view body);
   Status take(unsigned char number, std::string_view message);
-  void take_fix(unsigned char number, std::string_view message);
+  void take_fix(FixLayout& layout, const std::string& topic, std::string_view message);
 
   ByteSource& source_;
   ColumnSink& sink_;
@@ -176,8 +176,8 @@ Result<bool> DataflashDecoder::next_message() {
     if (auto status = take(number, view->substr(0, size)); !status) {
       return fail(status.error());
     }
-  } else if (fix_layouts_[number]) {
-    take_fix(number, view->substr(0, size));
+  } else if (std::optional<FixLayout>& layout = fix_layouts_[number]) {
+    take_fix(*layout, names_[number], view->substr(0, size));
   }
   source_.consume(size);
   return true;
@@ -250,12 +250,11 @@ Status DataflashDecoder::take(unsigned char number, std::string_view message) {
   return streams_.take(stream->second, stamp, std::span(row).first(layout.floats.size()));
 }
 
-void DataflashDecoder::take_fix(unsigned char number, std::string_view message) {
-  FixLayout& layout = *fix_layouts_[number];
+void DataflashDecoder::take_fix(FixLayout& layout, const std::string& topic, std::string_view message) {
   const unsigned char instance = layout.instance ? static_cast<unsigned char>(message[*layout.instance]) : 0;
   auto stream = layout.streams.find(instance);
   if (stream == layout.streams.end()) {
-    const std::string name = names_[number] + (layout.instance ? " " + std::to_string(instance) : "");
+    const std::string name = topic + (layout.instance ? " " + std::to_string(instance) : "");
     stream = layout.streams.emplace(instance, streams_.add_beside(name, "gnss", layout.columns)).first;
   }
   std::vector<double> row;

@@ -105,7 +105,8 @@ std::optional<RosFix> read_ros_fix(std::string_view message, RosEncoding encodin
   Fields fields(message, encoding);
   RosFix fix;
   fix.stamp_ns = fields.stamp_ns();
-  fix.status = fields.take<std::int8_t>();
+  const int status = fields.take<std::uint8_t>();
+  fix.status = status < 128 ? status : status - 256;
   static_cast<void>(fields.take<std::uint16_t>());  // the satellite systems
   fix.latitude_deg = fields.take<double>();
   fix.longitude_deg = fields.take<double>();

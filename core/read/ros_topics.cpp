@@ -47,8 +47,9 @@ Result<std::size_t> RosTopics::add(std::string_view name, std::string_view type,
 }
 
 /// False where the message cannot be read.
-bool RosTopics::take_imu(Topic& topic, std::string_view message, std::uint64_t log_ns, Status& status) {
-  const auto imu = read_ros_imu(message, *topic.encoding);
+bool RosTopics::take_imu(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns,
+                         Status& status) {
+  const auto imu = read_ros_imu(message, encoding);
   if (!imu || (!imu->measures_gyro && !imu->measures_accel)) {
     return false;
   }
@@ -76,8 +77,8 @@ bool RosTopics::take_imu(Topic& topic, std::string_view message, std::uint64_t l
   return true;
 }
 
-bool RosTopics::take_fix(Topic& topic, std::string_view message, std::uint64_t log_ns) {
-  const auto fix = read_ros_fix(message, *topic.encoding);
+bool RosTopics::take_fix(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns) {
+  const auto fix = read_ros_fix(message, encoding);
   if (!fix) {
     return false;
   }
@@ -98,8 +99,8 @@ bool RosTopics::take_fix(Topic& topic, std::string_view message, std::uint64_t l
   return true;
 }
 
-bool RosTopics::take_odometry(Topic& topic, std::string_view message, std::uint64_t log_ns) {
-  const auto odometry = read_ros_odometry(message, *topic.encoding);
+bool RosTopics::take_odometry(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns) {
+  const auto odometry = read_ros_odometry(message, encoding);
   if (!odometry) {
     return false;
   }
@@ -125,10 +126,11 @@ Status RosTopics::take(std::size_t index, std::string_view message, std::uint64_
   if (!topic.encoding) {
     return {};
   }
+  const RosEncoding encoding = *topic.encoding;
   Status status;
-  const bool read = topic.content == Content::Imu   ? take_imu(topic, message, log_ns, status)
-                    : topic.content == Content::Fix ? take_fix(topic, message, log_ns)
-                                                    : take_odometry(topic, message, log_ns);
+  const bool read = topic.content == Content::Imu   ? take_imu(topic, encoding, message, log_ns, status)
+                    : topic.content == Content::Fix ? take_fix(topic, encoding, message, log_ns)
+                                                    : take_odometry(topic, encoding, message, log_ns);
   unreadable_ += read ? 0 : 1;
   return status;
 }

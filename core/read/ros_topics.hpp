@@ -50,9 +50,10 @@ class RosTopics {
     bool log_time = false;
   };
 
-  [[nodiscard]] bool take_imu(Topic& topic, std::string_view message, std::uint64_t log_ns, Status& status);
-  [[nodiscard]] bool take_fix(Topic& topic, std::string_view message, std::uint64_t log_ns);
-  [[nodiscard]] bool take_odometry(Topic& topic, std::string_view message, std::uint64_t log_ns);
+  [[nodiscard]] bool take_imu(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns,
+                              Status& status);
+  [[nodiscard]] bool take_fix(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns);
+  [[nodiscard]] bool take_odometry(Topic& topic, RosEncoding encoding, std::string_view message, std::uint64_t log_ns);
 
   ColumnSink& sink_;
   InertialStreams streams_;

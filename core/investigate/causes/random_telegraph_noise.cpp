@@ -166,7 +166,7 @@ std::optional<Best> best_beside(const BlockSeries& series, const SlowModel& base
     if (coarse_telegraph(series, model).log_likelihood < least) {
       continue;
     }
-    TelegraphFit fit = fit_telegraph(series, model);
+    const TelegraphFit fit = fit_telegraph(series, model);
     if (!best || fit.log_likelihood > best->fit.log_likelihood) {
       best = Best{fit, std::move(model)};
     }

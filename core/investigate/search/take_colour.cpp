@@ -81,9 +81,9 @@ std::optional<SeenColour> strongest_colour(const ColourSetting& setting, const F
       continue;
     }
     std::vector<Evidence> found = without ? seen(cause, *without) : std::vector<Evidence>{};
-    const bool plain = is_clear(found);
-    const FullRate& under = plain ? *without : data;
-    if (!plain) {
+    const FullRate* const plain = without && is_clear(found) ? &*without : nullptr;
+    const FullRate& under = plain != nullptr ? *plain : data;
+    if (plain == nullptr) {
       found = seen(cause, data);
     }
     std::erase_if(found, [&](const Evidence& evidence) { return is_left_over(evidence, outcome.found); });
