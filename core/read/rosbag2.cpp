@@ -24,10 +24,7 @@ using namespace std::string_view_literals;
 constexpr std::string_view kMagic = "SQLite format 3\0"sv;
 constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd"sv;
 constexpr const char* kTopicsSql = "SELECT id, name, type, serialization_format FROM topics";
-constexpr const char* kMessagesSql =
-    "SELECT topic_id, timestamp, data FROM messages"
-    " WHERE topic_id IN (SELECT id FROM topics WHERE type IN"
-    " ('sensor_msgs/msg/Imu', 'sensor_msgs/msg/NavSatFix', 'nav_msgs/msg/Odometry'))";
+constexpr const char* kMessagesSql = "SELECT topic_id, timestamp, data FROM messages";
 constexpr int kTurnOperations = 1000;  ///< of the virtual machine, between two looks at the budget
 
 using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
@@ -226,11 +223,11 @@ Status Bag2Decoder::take_messages() {
   }
   int code = SQLITE_ROW;
   while ((code = ::sqlite3_step(rows->get())) == SQLITE_ROW) {
-    ++messages_;
     const auto topic = numbers_.find(::sqlite3_column_int64(rows->get(), 0));
     if (topic == numbers_.end() || !topics_.wants(topic->second)) {
       continue;
     }
+    ++messages_;
     const auto log_ns = static_cast<std::uint64_t>(::sqlite3_column_int64(rows->get(), 1));
     const std::string_view message = bytes_at(rows->get(), 2);
     if (messages_ == 1 && message.starts_with(kZstdMagic)) {
