@@ -120,17 +120,20 @@ Status InertialStreams::choose() {
   return flush(chosen);
 }
 
-/// Whole rows, some thousand numbers at a time.
 Status InertialStreams::flush(Stream& stream) {
+  auto status = alone_ ? flush_rows(stream) : flush_columns(stream);
+  if (stream.waiting.capacity() > 2 * kBatch) {
+    std::vector<double>().swap(stream.waiting);
+  }
+  stream.waiting.clear();
+  return status;
+}
+
+/// Whole rows, some thousand numbers at a time.
+Status InertialStreams::flush_rows(const Stream& stream) {
   const std::size_t width = stream.columns.size() + 1;
   const std::size_t step = kBatch / width * width;
   std::span<const double> rest(stream.waiting);
-  if (!alone_) {
-    if (auto status = flush_columns(stream); !status) {
-      return status;
-    }
-    rest = {};
-  }
   while (!rest.empty()) {
     const std::size_t count = std::min(step, rest.size());
     if (auto status = sink_.rows(rest.first(count)); !status) {
@@ -138,10 +141,6 @@ Status InertialStreams::flush(Stream& stream) {
     }
     rest = rest.subspan(count);
   }
-  if (stream.waiting.capacity() > 2 * kBatch) {
-    std::vector<double>().swap(stream.waiting);
-  }
-  stream.waiting.clear();
   return {};
 }
 

@@ -83,6 +83,7 @@ class InertialStreams {
   };
   [[nodiscard]] Status choose();
   [[nodiscard]] Status flush(Stream& stream);
+  [[nodiscard]] Status flush_rows(const Stream& stream);
   [[nodiscard]] Status flush_columns(const Stream& stream);
   [[nodiscard]] Status finish_alone();
 
