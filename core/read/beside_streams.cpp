@@ -42,7 +42,7 @@ std::size_t BesideStreams::add(std::string name, std::string kind, ColumnNames c
 void BesideStreams::take(std::size_t index, std::uint64_t stamp, std::span<const double> values) {
   Stream& stream = streams_[index];
   const std::size_t bytes = (values.size() + 1) * sizeof(double);
-  if ((settled_ && !stream.in_table) || bytes_ + bytes > kMostBytes) {
+  if ((settled_ && !stream.in_table()) || bytes_ + bytes > kMostBytes) {
     ++stream.left_out;
     return;
   }
@@ -64,14 +64,13 @@ ColumnNames BesideStreams::settle() {
   std::size_t count = 0;
   ColumnNames names;
   for (auto stream = streams_.begin(); stream != streams_.end(); ++stream) {
-    stream->in_table = !stream->stamps.empty() && count < kMostStreams;
-    if (!stream->in_table) {
+    if (stream->stamps.empty() || count == kMostStreams) {
       stream->left_out += stream->stamps.size();
       continue;
     }
     ++count;
     const auto before = std::count_if(
-        streams_.begin(), stream, [&](const Stream& other) { return other.in_table && other.kind == stream->kind; });
+        streams_.begin(), stream, [&](const Stream& other) { return other.in_table() && other.kind == stream->kind; });
     stream->heading = stream->kind + (before == 0 ? "" : std::to_string(before + 1)) + "_";
     names.push_back(stream->heading + "time (s)");
     for (const std::string& column : stream->columns) {
@@ -84,7 +83,7 @@ ColumnNames BesideStreams::settle() {
 std::uint64_t BesideStreams::first_stamp() const {
   std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
   for (const Stream& stream : streams_) {
-    first = stream.in_table ? std::min(first, stream.stamps.front()) : first;
+    first = stream.in_table() ? std::min(first, stream.stamps.front()) : first;
   }
   return first;
 }
@@ -92,7 +91,7 @@ std::uint64_t BesideStreams::first_stamp() const {
 std::size_t BesideStreams::longest() const {
   std::size_t rows = 0;
   for (const Stream& stream : streams_) {
-    rows = stream.in_table ? std::max(rows, stream.stamps.size()) : rows;
+    rows = stream.in_table() ? std::max(rows, stream.stamps.size()) : rows;
   }
   return rows;
 }
@@ -116,7 +115,7 @@ Status BesideStreams::deliver(ColumnSink& sink, std::size_t column, std::size_t 
                               double ticks_per_s) const {
   NameList named;
   for (const Stream& stream : streams_) {
-    if (stream.in_table) {
+    if (stream.in_table()) {
       named.add(quoted_name(stream.name) + " (" + stream.heading + ", " + with_count(stream.stamps.size(), "row") +
                 ")");
     }
@@ -125,13 +124,13 @@ Status BesideStreams::deliver(ColumnSink& sink, std::size_t column, std::size_t 
     sink.note("In columns of their own, on clocks of their own, stand " + named.text() + ".");
   }
   for (const Stream& stream : streams_) {
-    const std::uint64_t cut = stream.in_table && stream.stamps.size() > rows ? stream.stamps.size() - rows : 0;
+    const std::uint64_t cut = stream.in_table() && stream.stamps.size() > rows ? stream.stamps.size() - rows : 0;
     if (cut + stream.left_out > 0) {
       sink.note("Of " + quoted_name(stream.name) + " the last " +
                 with_count(cut + stream.left_out, "row is left out.", "rows are left out.") +
                 (cut > 0 ? " It is longer than the inertial stream that it stands beside." : ""));
     }
-    if (!stream.in_table) {
+    if (!stream.in_table()) {
       continue;
     }
     if (auto status = deliver_one(sink, stream, column, rows, origin, ticks_per_s); !status) {

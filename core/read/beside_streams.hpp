@@ -45,11 +45,12 @@ class BesideStreams {
     std::string name;
     std::string kind;
     ColumnNames columns;
-    std::string heading;  ///< of its columns in the table
+    std::string heading;  ///< of its columns in the table; empty where it is not in it
     std::vector<std::uint64_t> stamps;
     std::vector<double> values;  ///< row-major
     std::uint64_t left_out = 0;
-    bool in_table = false;
+
+    [[nodiscard]] bool in_table() const { return !heading.empty(); }
   };
   [[nodiscard]] Status deliver_one(ColumnSink& sink, const Stream& stream, std::size_t column, std::size_t rows,
                                    std::uint64_t origin, double ticks_per_s) const;
