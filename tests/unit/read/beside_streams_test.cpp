@@ -109,6 +109,18 @@ TEST(BesideStreams, ATornFixIsLeftOutAndCounted) {
   EXPECT_THAT(outcome.decoded.notes, Contains("1 message cannot be read and is left out."));
 }
 
+/// Both receivers of a log say these values in their first row, of so many.
+void expect_of_both_receivers(const Outcome& outcome, const std::vector<std::pair<std::string, double>>& expected,
+                              std::size_t rows) {
+  for (const auto& [column, value] : expected) {
+    for (const std::string receiver : {"gnss_", "gnss2_"}) {
+      const std::vector<double> found = named(outcome, receiver + column);
+      ASSERT_EQ(found.size(), rows) << receiver << column;
+      EXPECT_NEAR(found[0], value, 1e-14 * std::abs(value)) << receiver << column;
+    }
+  }
+}
+
 TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
   const std::string tail = floats({0.25F, 0.5F, 0.75F, 1.5F, -2.5F, 0.125F}) + word(3, 1) + word(11, 1);
   const auto whole = [](std::int32_t value) { return bytes_of(value); };
@@ -131,13 +143,7 @@ TEST(BesideStreams, AULogsReceiverReadsTheSameInBothLayoutsOfPx4) {
       {"velocity_east (m/s)", -2.5}, {"velocity_down (m/s)", 0.125}, {"sd_horizontal (m)", 0.5},
       {"sd_vertical (m)", 0.75},     {"sd_speed (m/s)", 0.25},       {"fix_type", 3.0},
       {"satellites", 11.0},          {"utc (s)", 1'600'000'000.5}};
-  for (const auto& [column, value] : expected) {
-    for (const std::string receiver : {"gnss_", "gnss2_"}) {
-      const std::vector<double> found = named(outcome, receiver + column);
-      ASSERT_EQ(found.size(), 1U) << receiver << column;
-      EXPECT_NEAR(found[0], value, 1e-14 * std::abs(value)) << receiver << column;
-    }
-  }
+  expect_of_both_receivers(outcome, expected, 1);
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("1 data message is shorter than its format")));
 }
 
@@ -159,13 +165,7 @@ TEST(BesideStreams, AnArduPilotLogsReceiversStandBesideItsImu) {
                                                              {"satellites", 12.0},
                                                              {"week", 2270.0},
                                                              {"time_of_week (ms)", 345'600'200.0}};
-  for (const auto& [column, value] : expected) {
-    for (const std::string receiver : {"gnss_", "gnss2_"}) {
-      const std::vector<double> found = named(outcome, receiver + column);
-      ASSERT_EQ(found.size(), 4U) << receiver << column;
-      EXPECT_NEAR(found[0], value, 1e-14 * std::abs(value)) << receiver << column;
-    }
-  }
+  expect_of_both_receivers(outcome, expected, 4);
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'GPS 0' (gnss_, 4 rows), 'GPS 1' (gnss2_, 4 rows)")));
 }
 
