@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <optional>
+#include <string>
 
 namespace driftlab {
 namespace {
@@ -35,22 +35,19 @@ class Taker {
     return true;
   }
 
-  Result<std::optional<std::string>> text(std::size_t most) {
+  /// False at the end of the stream.
+  Result<bool> text(std::string& into, std::size_t most) {
     std::uint32_t size = 0;
     auto there = take(&size, sizeof size);
     if (!there || !*there) {
-      return there ? Result<std::optional<std::string>>(std::nullopt) : fail(there.error());
+      return there;
     }
     if (size > most) {
       return fail(ErrorCode::LimitExceeded, "A name in the file has more than " + std::to_string(most) + " bytes.",
                   {{"limit", std::to_string(most)}});
     }
-    std::string text(size, '\0');
-    there = take(text.data(), size);
-    if (!there) {
-      return fail(there.error());
-    }
-    return *there ? std::optional(std::move(text)) : std::nullopt;
+    into.assign(size, '\0');
+    return take(into.data(), size);
   }
 
  private:
@@ -59,12 +56,13 @@ class Taker {
 
 /// One V record behind its letter; false where the stream breaks off.
 Result<bool> take_variable(Taker& taker, std::size_t most_text, std::size_t& budget_bytes, VariableStream& stream) {
-  auto name = taker.text(most_text);
-  if (!name || !*name) {
-    return name ? Result<bool>(false) : fail(name.error());
+  Variable variable;
+  auto there = taker.text(variable.name, most_text);
+  if (!there || !*there) {
+    return there;
   }
   std::uint64_t shape[2] = {0, 0};
-  auto there = taker.take(shape, sizeof shape);
+  there = taker.take(shape, sizeof shape);
   if (!there || !*there) {
     return there;
   }
@@ -75,7 +73,6 @@ Result<bool> take_variable(Taker& taker, std::size_t most_text, std::size_t& bud
     return fail(ErrorCode::LimitExceeded, "The arrays of the file take more memory than one decoding may.");
   }
   budget_bytes -= rows * columns * sizeof(double);
-  Variable variable{std::move(**name), {}};
   for (std::uint64_t c = 0; c < columns; ++c) {
     std::vector<double>& column = variable.columns.emplace_back(rows);
     there = taker.take(column.data(), rows * sizeof(double));
@@ -93,12 +90,13 @@ Result<bool> take_error(Taker& taker, std::size_t most_text) {
   if (!there || !*there) {
     return there;
   }
-  auto sentence = taker.text(most_text);
-  if (!sentence || !*sentence) {
-    return sentence ? Result<bool>(false) : fail(sentence.error());
+  std::string sentence;
+  there = taker.text(sentence, most_text);
+  if (!there || !*there) {
+    return there;
   }
   const auto& codes = all_error_codes();
-  return fail(code < codes.size() ? codes[code] : ErrorCode::ShapeMismatch, std::move(**sentence));
+  return fail(code < codes.size() ? codes[code] : ErrorCode::ShapeMismatch, std::move(sentence));
 }
 
 }  // namespace
@@ -158,13 +156,10 @@ Result<VariableStream> read_variables(const std::function<Result<std::size_t>(st
     } else if (there && *there && kind == 'E') {
       there = take_error(taker, most_text);
     } else if (there && *there && kind == 'N') {
-      auto note = taker.text(4 * most_text);
-      if (!note) {
-        return fail(note.error());
-      }
-      there = note->has_value();
-      if (note->has_value() && stream.notes.size() < kMostNotes) {
-        stream.notes.push_back(std::move(**note));
+      std::string note;
+      there = taker.text(note, 4 * most_text);
+      if (there && *there && stream.notes.size() < kMostNotes) {
+        stream.notes.push_back(std::move(note));
       }
     } else {
       stream.whole = there && *there && kind == 'Z';

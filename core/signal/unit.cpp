@@ -154,7 +154,9 @@ Result<Unit> parse_unit(std::string_view symbol) {
   }
   const auto plain = [](std::string_view written) { return plain_unit(as_quotient(written)); };
   if (const auto written = read_scale(symbol, [&](std::string_view base) { return plain(base).has_value(); })) {
-    return scaled(std::string(symbol), *written, *plain(written->unit));
+    if (const auto base = plain(written->unit)) {
+      return scaled(std::string(symbol), *written, *base);
+    }
   }
   std::string known;
   for (const Unit& unit : all_units()) {

@@ -115,7 +115,7 @@ double log_gain(const FullRate& data, const Evidence& found) {
 }
 
 double density(const Evidence& found, double f_hz, double dt_s) {
-  return *process_of(found).spectral_density(f_hz, dt_s);
+  return process_of(found).spectral_density(f_hz, dt_s).value();
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {

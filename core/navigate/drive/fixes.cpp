@@ -79,19 +79,17 @@ bool says_nothing(const Column& column) {
   return column->size() > 10 && std::all_of(column->begin(), column->end(), [&](double v) { return v == first; });
 }
 
-bool is_accuracy(const Column& column, std::size_t row) {
-  return std::isfinite((*column)[row]) && (*column)[row] > 0.0;
-}
+bool is_accuracy(double stated) { return std::isfinite(stated) && stated > 0.0; }
 
 double sd_at(const Column& column, std::size_t row, double otherwise) {
-  return column && is_accuracy(column, row) ? (*column)[row] : otherwise;
+  return column && is_accuracy((*column)[row]) ? (*column)[row] : otherwise;
 }
 
 /// A stated accuracy that is no number above 0: the document's stands in its place.
 bool lacks_accuracy(const FixColumns& c, std::size_t row) {
-  const Column* const stated[] = {&c.sd_north, &c.sd_east, &c.sd_down, &c.sd_horizontal, &c.sd_vertical, &c.sd_speed};
-  return std::any_of(std::begin(stated), std::end(stated),
-                     [&](const Column* column) { return *column && !is_accuracy(*column, row); });
+  const auto lacks = [&](const Column& stated) { return stated && !is_accuracy((*stated)[row]); };
+  return lacks(c.sd_north) || lacks(c.sd_east) || lacks(c.sd_down) || lacks(c.sd_horizontal) || lacks(c.sd_vertical) ||
+         lacks(c.sd_speed);
 }
 
 void set_velocity(const FixColumns& c, std::size_t i, const GnssSource& source, bool believe, Fix& fix) {
@@ -141,7 +139,7 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
   facts.accuracy_constant = says_nothing(c.sd_horizontal) || says_nothing(c.sd_north);
   facts.speed_accuracy_constant = says_nothing(c.sd_speed);
   facts.vertical_accuracy_constant = says_nothing(c.sd_vertical);
-  facts.height_zero = says_nothing(c.height) && c.height->front() == 0.0;
+  facts.height_zero = c.height && says_nothing(c.height) && c.height->front() == 0.0;
   facts.course_constant = says_nothing(c.course);
   if (facts.course_constant) {
     columns->course.reset();
