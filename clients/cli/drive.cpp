@@ -3,6 +3,7 @@
 #include "clients/cli/cli.hpp"
 #include "clients/cli/drive_files.hpp"
 #include "clients/cli/drive_remote.hpp"
+#include "clients/cli/plot_file.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/table_file.hpp"
 #include "schema/json/drive_request.hpp"
@@ -25,6 +26,7 @@ struct DriveFlags {
   int threads = 0;
   bool json = false;
   std::string out;
+  std::string plot;
   DriveServer server;
 };
 
@@ -46,6 +48,15 @@ Exit check_files(const DriveFlags& flags) {
   return Exit::Success;
 }
 
+/// The figures of an answer, where they are wanted.
+Exit draw(const DriveFlags& flags, const Json& document) {
+  if (flags.plot.empty()) {
+    return Exit::Success;
+  }
+  const Status drawn = write_plots(document, flags.plot);
+  return drawn ? Exit::Success : complain(drawn.error());
+}
+
 /// The same question as a job of a daemon.
 Exit ask_there(const DriveFlags& flags) {
   const auto document = ask_drive_there(flags.server, flags.document, flags.model, flags.request);
@@ -53,7 +64,7 @@ Exit ask_there(const DriveFlags& flags) {
     return complain(document.error().error, document.error().exit);
   }
   print(document->dump(2) + "\n");
-  return Exit::Success;
+  return draw(flags, *document);
 }
 
 Exit ask(const DriveFlags& flags) {
@@ -82,7 +93,7 @@ Exit ask(const DriveFlags& flags) {
     return complain_of_work(answer.error());
   }
   print(flags.json ? to_json(*answer).dump(2) + "\n" : drive_answer_to_text(*answer));
-  return Exit::Success;
+  return flags.plot.empty() ? Exit::Success : draw(flags, to_json(*answer));
 }
 
 Exit compare(DriveFlags& flags) {
@@ -133,6 +144,7 @@ void add_work(CLI::App& command, DriveFlags& flags) {
   command.add_option("--threads", flags.threads, "Threads; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  add_plot_flag(command, flags.plot);
   command.add_option("--server", flags.server.address,
                      "Address of a daemon that does the work; prints the result document");
   command.add_option("--device", flags.server.device,

@@ -158,7 +158,18 @@ Scale make_scale(const Axis& axis, const Range& domain, double from, double to) 
   return scale;
 }
 
-/// Height of a plot whose decades are equal; its y domain is widened or narrowed to the heights allowed.
+/// Height of a plot whose metres are equal; its y domain is widened or narrowed to the heights allowed.
+double equal_height_of_linear(const Range& x, double width, Range& y) {
+  const double per_unit = width / (x.second - x.first);
+  const double height = per_unit * (y.second - y.first);
+  const double wanted = std::clamp(height, kLeastEqual, kMostEqual);
+  const double more = (wanted - height) / per_unit / 2.0;
+  y.first -= more;
+  y.second += more;
+  return wanted;
+}
+
+/// The same of decades.
 double equal_height(const Range& x, double width, Range& y) {
   const double per_decade = width / std::log10(x.second / x.first);
   const double height = per_decade * std::log10(y.second / y.first);
@@ -201,7 +212,10 @@ Layout layout(const std::vector<Plot>& plots, double width) {
   double top = 0.0;
   for (const Plot& plot : plots) {
     Range y = domain_y(plot, x);
-    const double height = plot.equal_decades ? equal_height(x, right - kLeft, y) : plot.height;
+    const bool linear = plot.x.scale == ScaleKind::Linear;
+    const double height = !plot.equal_units ? plot.height
+                          : linear          ? equal_height_of_linear(x, right - kLeft, y)
+                                            : equal_height(x, right - kLeft, y);
     Area area;
     area.plot = &plot;
     area.left = kLeft;

@@ -72,8 +72,10 @@ struct Plot {
   std::vector<Series> series = {};  ///< the first lies on top
   std::vector<Note> notes = {};
   std::vector<Guide> guides = {};
-  bool equal_decades = false;  ///< one length for a decade of both axes, so that a slope of -1/2 looks like one
-  double height = 220.0;       ///< of the drawing area [px]; not for equal decades
+  /// One length for a decade of both logarithmic axes, so that a slope of -1/2 looks like one; for a unit of linear
+  /// ones.
+  bool equal_units = false;
+  double height = 220.0;  ///< of the drawing area [px]; not for equal units
   std::vector<double> rules = {};
   bool hide_x = false;  ///< shares the axis of the plot below
 };

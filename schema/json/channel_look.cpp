@@ -5,14 +5,6 @@
 namespace driftlab {
 namespace {
 
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) {
-    list.push_back(number(value));
-  }
-  return list;
-}
-
 Json head_of(const ChannelLook& look) {
   return Json{{"unit", look.unit().symbol},
               {"dt_s", number(look.dt_s())},

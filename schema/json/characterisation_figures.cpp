@@ -227,7 +227,7 @@ Figure allan_figure(const Json& channel, const std::string& recording) {
   Plot main{.x = {ScaleKind::Log, told.model ? "" : "averaging time τ, s"},
             .y = {ScaleKind::Log, "Allan deviation, " + printed_unit(told.unit.symbol)},
             .series = {classical}};
-  main.equal_decades = true;
+  main.equal_units = true;
   main.guides = {{-1.0, "−1"}, {-0.5, "−½"}, {0.5, "+½"}};
   main.notes = notes_of(channel, fit, told, components);
   if (robust) {

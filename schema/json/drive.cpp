@@ -52,6 +52,27 @@ Json options_to_json(const drive::FilterOptions& options) {
 
 namespace {
 
+Json growth_json(const drive::ErrorGrowth& growth) {
+  return Json{{"time_s", numbers(growth.time_s)},     {"n", growth.count},
+              {"rms_m", numbers(growth.rms_m)},       {"p05_m", numbers(growth.p05_m)},
+              {"median_m", numbers(growth.median_m)}, {"p95_m", numbers(growth.p95_m)}};
+}
+
+/// The way of the drive for a map: every so many points of the reference, its last one among them.
+Json path_json(const drive::Drive& drive) {
+  constexpr std::size_t kMost = 500;
+  const std::size_t step = drive.reference.size() / kMost + 1;
+  Json north = Json::array();
+  Json east = Json::array();
+  for (std::size_t i = 0; i < drive.reference.size(); i += step) {
+    const bool last = i + step >= drive.reference.size();
+    const Vector3 place = drive.on_map((last ? drive.reference.back() : drive.reference[i]).position_ecef_m);
+    north.push_back(number(place.x()));
+    east.push_back(number(place.y()));
+  }
+  return Json{{"north_m", std::move(north)}, {"east_m", std::move(east)}};
+}
+
 Json start_json(const drive::Start& start) {
   const EulerAngles angles = start.attitude();
   constexpr std::array<const char*, 3> kTilt{"stated", "rest", "motion"};
@@ -123,6 +144,7 @@ Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
               {"straight_line_rms_m", number(d.straight_line_rms_m)},
               {"promised_rms_m", number(d.promised_rms_m)},
               {"by_motion", std::move(classes)},
+              {"growth", growth_json(d.growth)},
               {"outages", std::move(outages)}};
 }
 
@@ -158,6 +180,7 @@ Json to_json(const DriveReport& report) {
                 {"algorithm_version", drive::kDriveAlgorithmVersion},
                 {"options", options_to_json(report.options)},
                 {"facts", facts_to_json(report.drive)},
+                {"path", path_json(report.drive)},
                 {"starts", std::move(starts)},
                 {"durations", std::move(durations)},
                 {"innovations", std::move(innovations)},
@@ -184,7 +207,8 @@ Json simulated_json(const std::vector<drive::SimulatedDuration>& simulated) {
                         {"nees_ci95", interval(s.nees.ci95)},
                         {"coverage50_ci95", interval(s.coverage50.ci95)},
                         {"coverage95_ci95", interval(s.coverage95.ci95)},
-                        {"measured_over_simulated", estimate_to_json(s.ratio)}});
+                        {"measured_over_simulated", estimate_to_json(s.ratio)},
+                        {"growth", growth_json(s.growth)}});
   }
   return list;
 }
@@ -253,6 +277,7 @@ Json to_json(const DriveExplanationReport& report) {
       {"summary", sentence_of(report)},
       {"algorithm_version", drive::kDriveAlgorithmVersion},
       {"facts", facts_to_json(report.drive)},
+      {"path", path_json(report.drive)},
       {"findings", std::move(findings)},
       {"rungs", std::move(rungs)},
       {"white_noise_factors", {{"gyroscope", number(e.gyro_noise)}, {"accelerometer", number(e.force_noise)}}},

@@ -1,6 +1,7 @@
 #include "schema/json/figures.hpp"
 
 #include "schema/json/characterisation_figures.hpp"
+#include "schema/json/drive_figures.hpp"
 #include "schema/json/investigation_figures.hpp"
 #include "schema/json/outage_figures.hpp"
 #include "schema/json/regression_figures.hpp"
@@ -15,6 +16,8 @@ Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::str
       figures = figures_of_characterisation(document, channel);
     } else if (document.contains("units") && document.contains("verdict")) {
       figures = figures_of_regression(document, channel);
+    } else if (is_drive_evaluation(document)) {
+      figures = figures_of_drive(document);
     } else if (document.contains("findings")) {
       figures = figures_of_investigation(document, channel);
     } else if (document.contains("filters") && document.contains("runs")) {
@@ -22,10 +25,10 @@ Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::str
     } else if (document.contains("columns") && document.contains("rows")) {
       figures = figures_of_table(document, channel);
     } else {
-      return fail(ErrorCode::InvalidArgument,
-                  "This is no document with a figure: a characterisation, an investigation, an outage evaluation, a "
-                  "regression run or a parameter "
-                  "table, as --json writes them.");
+      return fail(
+          ErrorCode::InvalidArgument,
+          "This is no document with a figure: a characterisation, an investigation, an outage evaluation, what a "
+          "recorded drive answers, a regression run or a parameter table, as --json writes them.");
     }
     if (figures.empty()) {
       return fail(ErrorCode::InvalidArgument, channel.empty()

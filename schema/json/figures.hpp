@@ -15,9 +15,10 @@ struct NamedFigure {
 };
 
 /// Of a characterisation (one a channel), an investigation (spectrum and wavelet deviation of each channel with a
-/// series), a regression run (one a unit; `channel` is its axis), an outage evaluation (errors by outage) or a
-/// parameter table (one a parameter). `channel`: of these alone; empty: all. Errors: InvalidArgument (a document of
-/// another kind; nothing of that name); Internal (not as driftlab writes it).
+/// series), a regression run (one a unit; `channel` is its axis), an outage evaluation (errors by outage), what was
+/// asked of a recorded drive (errors and a map for each duration) or a parameter table (one a parameter). `channel`: of
+/// these alone; empty: all. Errors: InvalidArgument (a document of another kind; nothing of that name); Internal (not
+/// as driftlab writes it).
 [[nodiscard]] Result<std::vector<NamedFigure>> figures_of(const Json& document, const std::string& channel);
 
 }  // namespace driftlab

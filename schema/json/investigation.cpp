@@ -48,14 +48,6 @@ Json check_json(const Check& check) {
       {"end", end == nullptr ? Json(nullptr) : Json(end)}};
 }
 
-Json numbers(const std::vector<double>& values, double factor = 1.0) {
-  Json list = Json::array();
-  for (const double value : values) {
-    list.push_back(number(value * factor));
-  }
-  return list;
-}
-
 Json band_json(const investigate::Band& band, double factor) {
   return Json{{"q025", numbers(band.low, factor)},
               {"median", numbers(band.median, factor)},

@@ -172,6 +172,14 @@ std::string to_text(const Json& document) { return document.dump(-1, ' ', false,
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json numbers(std::span<const double> values, double factor) {
+  Json list = Json::array();
+  for (const double value : values) {
+    list.push_back(number(value * factor));
+  }
+  return list;
+}
+
 Json interval(const Interval& interval, double factor) {
   return Json::array({number(interval.low * factor), number(interval.high * factor)});
 }

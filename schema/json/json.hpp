@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,9 @@ inline constexpr std::size_t kMaxReportedFaults = 100;  ///< of one document; th
 
 /// A finite number, or null.
 [[nodiscard]] Json number(double value);
+
+/// A list of numbers times `factor`, each as `number` gives it.
+[[nodiscard]] Json numbers(std::span<const double> values, double factor = 1.0);
 
 /// {"value", "unit", "ci95"} with everything multiplied by `per_si`; an open end of the interval is null.
 [[nodiscard]] Json quantity(const Estimate& estimate, double per_si, std::string_view unit);

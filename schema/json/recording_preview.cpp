@@ -6,19 +6,11 @@
 namespace driftlab {
 namespace {
 
-Json list_of(std::span<const double> values) {
-  Json list = Json::array();
-  for (const double value : values) {
-    list.push_back(number(value));
-  }
-  return list;
-}
-
 Json column_json(const PreviewColumn& column) {
   Json document = role_json(column.name, column.role);
   document["from"] = name_of(column.from);
-  document["first"] = list_of(column.first);
-  document["course"] = list_of(column.course);
+  document["first"] = numbers(column.first);
+  document["course"] = numbers(column.course);
   return document;
 }
 

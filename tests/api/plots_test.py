@@ -191,6 +191,30 @@ class Plots(DaemonTest):
         measured = [value for value in document["figures"][0]["allan"]["measured"] if value]
         self.judge_heights(self.drawn("look-gz-deg-s-allan.svg"), measured)
 
+    def test_of_a_drive(self) -> None:
+        """How errors grow over the simulated band, and a map on which every outage, its error and its ellipse stand."""
+        for name, table in zip(("imu.csv", "gnss.csv"), samples.drive_csvs(seconds=400)):
+            (self.folder / name).write_bytes(table)
+        document = samples.drive_document("imu.csv", "gnss.csv")
+        for source in ("imu", "gnss"):
+            document[source]["file"] = document[source].pop("recording")
+        (self.folder / "drive.json").write_text(json.dumps(document))
+        command = ("drive", "simulate", "drive.json", "--runs", "2")
+        found: dict[str, Any] = json.loads(self.said(*command, "--json"))
+        lengths = [f"{each['duration_s']:g}s" for each in found["durations"]]
+        svg = self.every_form(command, "way", f"-error-{lengths[0]}", terminal=("horizontal error, m", "time without fixes, s", "simulated, rms"))
+        for label in ("measured, rms", "measured, median", "simulated, rms", "band: the middle 90 %"):
+            self.assertIn(label, svg.texts)
+        self.assertEqual(svg.count("band"), 1)
+        self.judge_heights(svg, [value for value in found["durations"][0]["growth"]["rms_m"] if value])
+        for duration, length in zip(found["durations"], lengths):
+            drawn = self.drawn(f"way-map-{length}.svg")
+            self.assertEqual(len(drawn.marks()), duration["n"])
+            self.assertEqual(drawn.count("curve"), 2 * duration["n"] + 1, "an error and an ellipse each, and the drive")
+        (self.folder / "compared.json").write_text(self.said("drive", "compare", "drive.json", "--model", "document", "--model", "document-white", "--json"))
+        self.said("plot", "compared.json", "--output", "compared.svg")
+        self.assertIn("document-white", self.drawn(f"compared-error-{lengths[0]}.svg" if len(lengths) > 1 else "compared.svg").texts)
+
     def test_of_a_regression_run(self) -> None:
         """Drawn by `plot`, as every document is: `regress` has its figure in its Markdown."""
         (self.folder / "r.json").write_text(self.said("regress", "--baseline", "1.csv", "2.csv", "--candidate", "6.csv", "--json"))

@@ -152,6 +152,13 @@ test('a drive is asked on its page, and the answer says what is wrong and what m
   await page.getByRole('button', {name: '20 s'}).click();
   await page.waitForURL(/duration=20/);
   await page.getByRole('heading', {name: 'Every outage of 20 s'}).waitFor();
+  await page.getByRole('heading', {name: 'Error in outages of 20 s'}).waitFor();
+  await visible(page, 'simulated, as it was');
+  const map = page.locator('svg.where');
+  const {evaluation: {after, path}} = await daemon.json(`/v1/drive-evaluations/${drive.explain}`);
+  const shown = after.durations.find(each => each.duration_s === 20);
+  assert.equal(await map.locator('ellipse').count(), shown.n, 'an ellipse for each outage');
+  assert.equal((await map.locator('polyline').getAttribute('points')).split(' ').length, path.east_m.length);
   await page.keyboard.press(']');
   await page.getByRole('heading', {name: 'Every outage of 30 s'}).waitFor();
   await page.goBack();

@@ -66,23 +66,40 @@ void classify(const Drive& drive, double end_s, const Matrix3& axes, DriveOutage
                                                 : OutageClass::Turning;
 }
 
+/// From the unit to the point that the reference describes, in body axes.
+Vector3 arm_of(const Drive& drive, const OutageMoment& at) {
+  return drive.withheld_fixes ? at.lever_arm_m : drive.document.reference.lever_arm_m;
+}
+
 }  // namespace
+
+std::optional<Vector3> antenna_error(const Drive& drive, const FilterOptions& options, const OutageMoment& at) {
+  const auto truth = reference_at(drive.reference, at.time_s + options.imu_offset_s);
+  if (!truth) {
+    return std::nullopt;
+  }
+  const Vector3 turned = at.attitude * arm_of(drive, at);
+  return Vector3(ned_axes(*truth).transpose() * (at.state.position_ecef_m + turned - *truth));
+}
 
 std::optional<DriveOutage> score_outage(const Drive& drive, const FilterOptions& options, const Outage& outage,
                                         const OutageStart& start, const OutageEnd& end) {
-  const double end_s = end.time_s + options.imu_offset_s;
+  const double end_s = end.at.time_s + options.imu_offset_s;
   const auto truth = reference_at(drive.reference, end_s);
   const auto at_start = reference_at(drive.reference, start.time_s + options.imu_offset_s);
-  if (!truth || !at_start) {
+  const auto error = antenna_error(drive, options, end.at);
+  if (!truth || !at_start || !error) {
     return std::nullopt;
   }
   DriveOutage scored;
   scored.outage = outage;
   scored.reference_ecef_m = *truth;
   const Matrix3 axes = ned_axes(*truth);
-  const Vector3 arm = drive.withheld_fixes ? end.lever_arm_m : drive.document.reference.lever_arm_m;
-  const Vector3 turned = end.attitude * arm;
-  scored.error_ned_m = axes.transpose() * (end.state.position_ecef_m + turned - *truth);
+  const Vector3 arm = arm_of(drive, end.at);
+  const Vector3 turned = end.at.attitude * arm;
+  scored.error_ned_m = *error;
+  scored.growth_m = start.growth_m;
+  scored.growth_m.push_back(scored.error_m());
   Eigen::Matrix<double, 3, 9> h = Eigen::Matrix<double, 3, 9>::Zero();
   h.block<3, 3>(0, 0).setIdentity();
   h.block<3, 3>(0, 6) = -cross_matrix(turned);
@@ -94,7 +111,7 @@ std::optional<DriveOutage> score_outage(const Drive& drive, const FilterOptions&
   const Vector3 before = axes.transpose() * (start.state.position_ecef_m + start_arm - *at_start);
   scored.start_error_m = before.head<2>().norm();
   const Vector3 straight = axes.transpose() * (start.state.position_ecef_m + start_arm +
-                                               (end.time_s - start.time_s) * start.state.velocity_ecef_m_s - *truth);
+                                               (end.at.time_s - start.time_s) * start.state.velocity_ecef_m_s - *truth);
   scored.straight_line_error_m = straight.head<2>().norm();
   classify(drive, end_s, axes, scored);
   return scored;

@@ -1,6 +1,6 @@
 #pragma once
 /// An outage of a recorded drive and what a filter made of it: the error of the antenna's estimate at its end, along
-/// and across the way, its covariance, and what the vehicle did meanwhile.
+/// and across the way, its covariance, how the error grew, and what the vehicle did meanwhile.
 #include "core/navigate/drive/drive.hpp"
 #include "core/navigate/drive/filter_options.hpp"
 #include "core/navigate/error_covariance.hpp"
@@ -16,6 +16,9 @@ namespace driftlab::drive {
 /// Below this speed a vehicle rests [m/s].
 inline constexpr double kRestSpeed = 0.5;
 
+/// The error is noted this many times in an outage, evenly, the last time at its end.
+inline constexpr std::size_t kGrowthPoints = 20;
+
 enum class OutageClass { Rest, Straight, Turning };
 [[nodiscard]] std::string_view name_of(OutageClass outage_class);
 
@@ -30,26 +33,38 @@ struct DriveOutage {
   double heading_sd_rad = 0.0;  ///< at the end
   OutageClass outage_class = OutageClass::Straight;
   Vector3 reference_ecef_m = Vector3::Zero();
+  /// The horizontal error after each kGrowthPoints-th of the outage [m]; NaN where the reference says nothing.
+  std::vector<double> growth_m;
 
   [[nodiscard]] double error_m() const { return error_ned_m.head<2>().norm(); }
   [[nodiscard]] double nees() const;  ///< two dimensions
 };
 
-/// What a filter knows when an outage begins.
+/// What a filter knows when an outage begins, and how its error has grown since.
 struct OutageStart {
   double time_s = 0.0;  ///< on the unit's clock
   NavigationState state;
+  std::vector<double> growth_m = {};  ///< as of DriveOutage, without the end
+};
+
+/// Where a filter believes to be at a moment of an outage.
+struct OutageMoment {
+  double time_s = 0.0;  ///< on the unit's clock
+  NavigationState state;
+  Matrix3 attitude = Matrix3::Identity();  ///< body to ECEF
+  Vector3 lever_arm_m = Vector3::Zero();   ///< as the filter has it
 };
 
 /// What it knows when the outage ends.
 struct OutageEnd {
-  double time_s = 0.0;  ///< on the unit's clock
-  NavigationState state;
-  Matrix3 attitude = Matrix3::Identity();                                        ///< body to ECEF
-  Vector3 lever_arm_m = Vector3::Zero();                                         ///< as the filter has it
+  OutageMoment at;
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();  ///< of position, velocity and attitude
   double heading_sd_rad = 0.0;
 };
+
+/// The antenna's estimate minus the reference, north, east, down [m]; nothing where there is no reference.
+[[nodiscard]] std::optional<Vector3> antenna_error(const Drive& drive, const FilterOptions& options,
+                                                   const OutageMoment& at);
 
 /// The outage scored against the drive's reference; nothing where there is none at its start or end.
 [[nodiscard]] std::optional<DriveOutage> score_outage(const Drive& drive, const FilterOptions& options,

@@ -11,22 +11,8 @@ namespace {
 
 constexpr double kNaturalIntervals = 3.0;
 
-double root_mean_square(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) {
-    sum += value * value;
-  }
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 double mean_over(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double middle_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 std::vector<NaturalOutage> natural_outages(const Drive& drive) {
@@ -259,10 +245,7 @@ Interval bootstrap_interval(const std::vector<std::vector<std::size_t>>& blocks,
 
 Interval percentile_interval(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const auto at = [&](double fraction) {
-    return values[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)))];
-  };
-  return {at(0.025), at(0.975)};
+  return {value_at_share(values, 0.025), value_at_share(values, 0.975)};
 }
 
 Estimate share_inside(const std::vector<DriveOutage>& outages, const std::vector<std::vector<std::size_t>>& blocks,
@@ -318,7 +301,7 @@ DurationSummary summarise(std::vector<DriveOutage> outages, double duration_s, d
   summary.mean_m = mean_over(errors);
   std::vector<double> sorted = errors;
   std::sort(sorted.begin(), sorted.end());
-  summary.p95_m = sorted[static_cast<std::size_t>(std::lround(0.95 * static_cast<double>(sorted.size() - 1)))];
+  summary.p95_m = value_at_share(sorted, 0.95);
   summary.worst_m = sorted.back();
   summary.along_rms_m = root_mean_square(column([](const DriveOutage& o) { return o.along_m; }));
   summary.across_rms_m = root_mean_square(column([](const DriveOutage& o) { return o.across_m; }));
@@ -326,6 +309,7 @@ DurationSummary summarise(std::vector<DriveOutage> outages, double duration_s, d
   summary.straight_line_rms_m = root_mean_square(column([](const DriveOutage& o) { return o.straight_line_error_m; }));
   summary.promised_rms_m = root_mean_square(
       column([](const DriveOutage& o) { return std::sqrt(o.covariance_ned(0, 0) + o.covariance_ned(1, 1)); }));
+  summary.growth = growth_of(summary.outages, duration_s);
   for (const OutageClass one : {OutageClass::Rest, OutageClass::Straight, OutageClass::Turning}) {
     DurationSummary::Class of{one, 0, 0.0, 0.0};
     for (std::size_t i = 0; i < summary.outages.size(); ++i) {

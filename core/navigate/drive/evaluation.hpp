@@ -6,6 +6,7 @@
 /// from a bootstrap over blocks of one period, in which all phases stay together.
 ///
 /// Runs are tasks of the executor; results stand in the order of duration, phase and time for any number of threads.
+#include "core/navigate/drive/error_growth.hpp"
 #include "core/navigate/drive/filter_run.hpp"
 #include "core/signal/estimate.hpp"
 #include "core/signal/progress.hpp"
@@ -47,6 +48,7 @@ struct DurationSummary {
     double rms_m = 0.0, nees = 0.0;
   };
   std::vector<Class> classes;
+  ErrorGrowth growth;
 };
 
 /// A part of the drive in which the receiver itself gave no fix for longer than three of its intervals.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace driftlab::drive {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::size_t kTapedReadings = 9;  ///< the filter itself closes a step 
 constexpr double kTapedPoints = 0.08;      ///< [s]
 constexpr double kHeadingKnown = 1.0 * kDegree;
 
-enum class Step { Score, Begin, Position, Velocity, Odometer };  // in this order at one moment
+enum class Step { Score, Begin, Along, Position, Velocity, Odometer };  // in this order at one moment
 struct FilterEvent {
   double time_s = 0.0;  ///< on the unit's clock
   Step step = Step::Position;
@@ -108,6 +109,10 @@ class Driver {
     }
     for (std::size_t i = 0; i < task_.outages.size(); ++i) {
       add(own(task_.outages[i].start_s), Step::Begin, i);
+      for (std::size_t k = 1; k < kGrowthPoints; ++k) {
+        const double share = static_cast<double>(k) / static_cast<double>(kGrowthPoints);
+        add(own(task_.outages[i].start_s + share * task_.outages[i].duration_s), Step::Along, i);
+      }
       add(own(task_.outages[i].end_s()), Step::Score, i);
     }
     std::sort(list.begin(), list.end(), [](const FilterEvent& a, const FilterEvent& b) {
@@ -171,6 +176,9 @@ class Driver {
         return;
       case Step::Begin:
         begun_ = {now(), filter_.state()};
+        return;
+      case Step::Along:
+        note_error();
         return;
       case Step::Position:
         apply(MeasurementKind::Position, event.time_s,
@@ -294,9 +302,18 @@ class Driver {
     }
   }
 
+  [[nodiscard]] OutageMoment outage_moment() const {
+    return {now(), filter_.state(), filter_.attitude(), moment().arm()};
+  }
+
+  /// Of the state alone: asked for its covariance, the filter would end a step here.
+  void note_error() {
+    const auto error = antenna_error(drive_, options_, outage_moment());
+    begun_.growth_m.push_back(error ? error->head<2>().norm() : std::numeric_limits<double>::quiet_NaN());
+  }
+
   void score(std::size_t index) {
-    const OutageEnd end{
-        now(), filter_.state(), filter_.attitude(), moment().arm(), filter_.covariance().navigation(), heading_sd()};
+    const OutageEnd end{outage_moment(), filter_.covariance().navigation(), heading_sd()};
     if (auto scored = score_outage(drive_, options_, task_.outages[index], begun_, end)) {
       scored->phase = task_.phase;
       result_.outages.push_back(std::move(*scored));

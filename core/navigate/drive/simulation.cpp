@@ -302,6 +302,7 @@ Result<std::vector<SimulatedDuration>> simulate_outages(const PreparedDrive& pre
     result.rms_m = summary.rms_m.value;
     result.mean_m = summary.mean_m;
     result.median_m = summary.median_m.value;
+    result.growth = summary.growth;
     const EvaluationOptions bootstrap{.seed = options.seed};
     const auto share = [&](double fraction, std::uint64_t stream) {
       return share_inside(summary.outages, blocks, fraction, bootstrap, stream);

@@ -26,6 +26,7 @@ struct SimulatedDuration {
   /// Measured rms over simulated rms; blocks of the measured and of the simulated outages resampled, so that the
   /// interval holds the scatter of both.
   Estimate ratio;
+  ErrorGrowth growth;
 };
 
 /// A drive simulated once: as load_drive would give it. `poses` on the unit's clock. Errors: those of

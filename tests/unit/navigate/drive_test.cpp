@@ -213,6 +213,47 @@ TEST(DriveOutages, NeverOverlapAndLeaveTwentySecondsOfFixes) {
   }
 }
 
+TEST(DriveOutages, TheErrorIsFollowedFromTheLossOfTheFixesToTheirReturn) {
+  // Its end alone does not say whether an outage is ruled by an error of velocity or of the gyroscope.
+  const Drive drive = simulated_drive(23);
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation);
+  for (const DurationSummary& one : evaluation->durations) {
+    const ErrorGrowth& growth = one.growth;
+    ASSERT_EQ(growth.time_s.size(), kGrowthPoints);
+    EXPECT_DOUBLE_EQ(growth.time_s.front(), one.duration_s / static_cast<double>(kGrowthPoints));
+    EXPECT_DOUBLE_EQ(growth.time_s.back(), one.duration_s);
+    EXPECT_EQ(growth.count.back(), one.outages.size());
+    EXPECT_DOUBLE_EQ(growth.rms_m.back(), one.rms_m.value);
+    EXPECT_DOUBLE_EQ(growth.median_m.back(), one.median_m.value);
+    EXPECT_DOUBLE_EQ(growth.p95_m.back(), one.p95_m);
+    for (std::size_t k = 0; k < kGrowthPoints; ++k) {
+      EXPECT_LE(growth.p05_m[k], growth.median_m[k]);
+      EXPECT_LE(growth.median_m[k], growth.p95_m[k]);
+    }
+    EXPECT_LT(growth.rms_m[kGrowthPoints / 2 - 1], 0.6 * growth.rms_m.back()) << "faster than the time";
+    for (const DriveOutage& outage : one.outages) {
+      EXPECT_EQ(outage.growth_m.size(), kGrowthPoints);
+    }
+  }
+}
+
+TEST(DriveOutages, AGapOfTheReferenceIsNoErrorOfZero) {
+  Drive drive = simulated_drive(24);
+  const auto before = evaluate_drive(drive, {});
+  ASSERT_TRUE(before);
+  const DriveOutage& first = before->durations.back().outages.front();
+  const double middle = first.outage.start_s + 0.5 * first.outage.duration_s;
+  std::erase_if(drive.reference, [&](const ReferencePoint& point) { return std::abs(point.time_s - middle) < 4.0; });
+  const auto after = evaluate_drive(drive, {});
+  ASSERT_TRUE(after);
+  const DriveOutage& gappy = after->durations.back().outages.front();
+  ASSERT_EQ(gappy.growth_m.size(), kGrowthPoints);
+  EXPECT_TRUE(std::isnan(gappy.growth_m[kGrowthPoints / 2 - 1]));
+  EXPECT_EQ(gappy.growth_m.front(), first.growth_m.front());
+  EXPECT_LT(after->durations.back().growth.count[kGrowthPoints / 2 - 1], after->durations.back().growth.count.back());
+}
+
 TEST(DriveOutages, TheSameForAnyNumberOfThreads) {
   const Drive drive = simulated_drive(16);
   Executor executor(2);

@@ -13,9 +13,9 @@ import {usePageKeys} from '../shell/keys';
 import {MadeBy, Report} from '../shell/Report';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
-import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Simulated} from './drive/documents';
+import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Side, type Simulated} from './drive/documents';
 import {FactsPanel} from './drive/Facts';
-import {errorPlots, mendedPlots, outagesPlot} from './drive/plots';
+import {growthPlots, outagesPlot} from './drive/plots';
 import {Where} from './drive/Where';
 
 const ROWS = 20;
@@ -27,12 +27,13 @@ function Value({of, unit = ''}: {of: Estimated; unit?: string}): JSX.Element {
 
 const How = (): JSX.Element => <><p>Fixes are withheld in stretches of each length, and what the filter then says of the end is set against the reference. Intervals are from a bootstrap over blocks of one period. A simulation draws readings and fixes from the same model along the recorded way and runs the same outages.</p><p><a href="/docs/drives">The manual</a> has the details.</p></>;
 
-function Errors({durations, simulated, mended, id, curl}: {durations: Duration[]; simulated: Simulated[] | undefined; mended?: Explanation; id: string; curl: string}): JSX.Element {
-  const plots = useMemo(() => mended ? mendedPlots(mended.before, mended.after) : errorPlots(durations, simulated), [durations, simulated, mended]);
-  const last = durations[durations.length - 1]!;
-  return <Figure name={`${id}-error`} title="Error in outages" sub={mended ? 'all outages, before and after mending' : simulated ? 'measured, and the same simulated' : 'measured'} plots={plots} how={How} curl={curl} source={`driftlab, ${id}`}
-    describe={`Horizontal error against how long fixes are withheld, log-log: ${durations.map(each => `${writeNumber(each.rms_m.value)} m after ${each.duration_s} s`).join(', ')}.${simulated ? ` Simulated, ${simulated.map(each => `${writeNumber(each.rms_m)} m`).join(', ')}.` : ''}`}
-    readout={x => <><b>{x} s</b>{defaultReadout(plots[0]!, x)}<span>m</span></>} quietReadout={<span>{capital(plural(last.n, 'outage'))} of {last.duration_s} s: {writeNumber(last.rms_m.value)} m, by its own covariance {writeNumber(last.promised_rms_m)} m.</span>} />;
+function Errors({of, side, was, id, curl}: {of: Duration; side: Partial<Side>; was: Side | undefined; id: string; curl: string}): JSX.Element {
+  const alike = <T extends {duration_s: number}>(list: T[] | undefined): T | undefined => list?.find(each => each.duration_s === of.duration_s);
+  const simulated = alike(side.simulated);
+  const plots = useMemo(() => growthPlots(of, simulated, alike(was?.durations), alike(was?.simulated)), [of, side, was]);
+  return <Figure name={`${id}-error-${of.duration_s}s`} title={`Error in outages of ${of.duration_s} s`} sub={was ? 'before and after mending' : simulated ? 'measured, over the same simulated' : 'measured'} plots={plots} how={How} curl={curl} source={`driftlab, ${id}`}
+    describe={`Horizontal error against the time without fixes, log-log: ${writeNumber(of.rms_m.value)} m after ${of.duration_s} s.${simulated ? ` Simulated, ${writeNumber(simulated.rms_m)} m.` : ''}`}
+    readout={x => <><b>{writeNumber(x)} s</b>{defaultReadout(plots[0]!, x)}<span>m</span></>} quietReadout={<span>{capital(plural(of.n, 'outage'))} of {of.duration_s} s: {writeNumber(of.rms_m.value)} m, by its own covariance {writeNumber(of.promised_rms_m)} m.</span>} />;
 }
 
 function ByDuration({durations, simulated}: {durations: Duration[]; simulated: Simulated[] | undefined}): JSX.Element {
@@ -45,7 +46,7 @@ function ByDuration({durations, simulated}: {durations: Duration[]; simulated: S
   </Panel>;
 }
 
-function Outages({of, id, curl}: {of: Duration; id: string; curl: string}): JSX.Element {
+function Outages({of, path, id, curl}: {of: Duration; path: Measured['path']; id: string; curl: string}): JSX.Element {
   const {query} = usePlace();
   const from = Math.max(0, Number(query.get('from')) || 0);
   const worstFirst = query.get('order') === 'worst';
@@ -54,7 +55,7 @@ function Outages({of, id, curl}: {of: Duration; id: string; curl: string}): JSX.
   return <>
     <div class="grid wide-side">
       <Figure name={`${id}-outages-${of.duration_s}s`} title={`Every outage of ${of.duration_s} s`} sub={`${of.n}, over all phases`} plots={plots} curl={curl} source={`driftlab, ${id}`} describe={`${of.n} outages of ${of.duration_s} s by their start; median ${writeNumber(of.median_m.value)} m, worst ${writeNumber(of.worst_m)} m.`} readout={x => <><b>{writeDuration(x)}</b>{defaultReadout(plots[0]!, x)}<span>m</span></>} />
-      <Panel title="Where they lie" sub="a disc as large as the error"><Where of={of} /></Panel>
+      <Panel title="Where they ended" sub="with the error and the filter’s 95 % ellipse"><Where of={of} path={path} /></Panel>
     </div>
     <Panel title={`Table of outages of ${of.duration_s} s`} controls={<Segments label="Order" options={[['start', 'By start'], ['worst', 'Worst first']] as const} value={worstFirst ? 'worst' : 'start'} onChange={value => choose({order: value === 'worst' ? 'worst' : null, from: null})} />}>
       <div class="scroll" tabIndex={0} role="region" aria-label="Outages one by one"><table><thead><tr><th scope="col" class="n">start, s</th><th scope="col">motion</th><th scope="col" class="n">error, m</th><th scope="col" class="n">along</th><th scope="col" class="n">across</th><th scope="col" class="n">NEES</th><th scope="col" class="n">straight line, m</th><th scope="col" class="n">phase</th></tr></thead>
@@ -107,12 +108,12 @@ function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: strin
   return <>
     <p class="verdict">{first}{(more || notes.length > 0) && <small>{[more, ...notes].filter(Boolean).join(' ')}</small>}</p>
     {chosen && <>
-      <div class="grid wide-side"><Errors durations={durations} simulated={side.simulated} {...(explained ? {mended: evaluation} : {})} id={id} curl={curl} />{explained ? <Causes evaluation={evaluation} /> : <FactsPanel facts={evaluation.facts} />}</div>
+      <div class="grid wide-side"><Errors of={chosen} side={explained ? evaluation.after : side} was={explained ? evaluation.before : undefined} id={id} curl={curl} />{explained ? <Causes evaluation={evaluation} /> : <FactsPanel facts={evaluation.facts} />}</div>
       {explained && <div class="row no-print above"><Segments label="Model" options={[['after', 'Mended'], ['before', 'As it was']] as const} value={query.get('side') === 'before' ? 'before' : 'after'} onChange={value => choose({side: value === 'before' ? 'before' : null, from: null})} /><span class="sec">for the tables and figures below</span></div>}
       <ByDuration durations={durations} simulated={side.simulated} />
       {durations.length > 1 && <div class="row no-print above"><span class="sec">without fixes</span><Segments label="Duration" options={durations.map(each => [String(each.duration_s), `${each.duration_s} s`] as const)} value={String(chosen.duration_s)} onChange={value => choose({duration: value === String(durations[0]!.duration_s) ? null : value, from: null})} /></div>}
       {explained && <div class="grid two"><Steps evaluation={evaluation} duration={chosen.duration_s} /><FactsPanel facts={evaluation.facts} /></div>}
-      {chosen.outages.length > 0 && <Outages of={chosen} id={id} curl={curl} />}
+      {chosen.outages.length > 0 && <Outages of={chosen} path={evaluation.path} id={id} curl={curl} />}
     </>}
   </>;
 }

@@ -1,5 +1,5 @@
 // What the pages read of recorded drives and of what is asked of them.
-import type {Ends} from '../../api/documents';
+import type {Ends, Nullable} from '../../api/documents';
 
 export interface Source { recording?: string; columns: Record<string, {quantity: string; axis?: string; unit?: string}>; time: {column?: string; unit?: string; scale: string; rate_hz?: number; offset_s?: number} }
 export interface DriveText {
@@ -18,15 +18,16 @@ export interface Facts {
   imu: {rows: number; incomplete_rows: number; repeated_rows: number; stuck_rows: number; polled_faster_than_sampled: boolean; stamped_rate_hz: number; sensor_rate_hz: number; jitter_s: number; gaps_bridged: number; samples_bridged: number; gaps_splitting: number; longest_gap_s: number};
   gnss: {fixes: number; rate_hz: number; held: number; other_types: number; incomplete: number; far_away: number; accuracy_constant: boolean; speed_accuracy_constant: boolean};
 }
-export interface OutageOf { start_s: number; phase: number; motion: string; north_m: number; east_m: number; along_m: number; across_m: number; nees: number | null; straight_line_error_m: number; map_m: number[] }
+export interface Growth { time_s: number[]; rms_m: Nullable; p05_m: Nullable; median_m: Nullable; p95_m: Nullable }
+export interface OutageOf { start_s: number; phase: number; motion: string; north_m: number; east_m: number; along_m: number; across_m: number; nees: number | null; straight_line_error_m: number; map_m: number[]; covariance_m2: number[] }
 export interface Duration {
   duration_s: number; n: number; rms_m: Estimated; median_m: Estimated; p95_m: number; worst_m: number; along_rms_m: number; across_rms_m: number;
-  nees: Estimated; coverage50: Estimated; coverage95: Estimated; straight_line_rms_m: number; promised_rms_m: number; outages: OutageOf[];
+  nees: Estimated; coverage50: Estimated; coverage95: Estimated; straight_line_rms_m: number; promised_rms_m: number; growth?: Growth; outages: OutageOf[];
 }
-export interface Simulated { duration_s: number; n: number; rms_m: number; nees: number | null; coverage95: number; measured_over_simulated: Estimated }
+export interface Simulated { duration_s: number; n: number; rms_m: number; nees: number | null; coverage95: number; measured_over_simulated: Estimated; growth?: Growth }
 export interface Finding { cause: string; words?: string; parameter: string; title: string; value: number | null; se: number | null; unit: string; score: number | null; evidence: string; told_apart: string; kept: boolean; held_out_gain: number | null; pair?: string; pair_words?: string }
 export interface Rung { name: string; kept: boolean; durations: {duration_s: number; held_out: {n: number; rms_m: number; nees: number | null; coverage95: number; log_score: number | null}}[] }
-interface Common { id: string; vehicle: string; summary: string; algorithm_version: number; facts: Facts; notes: string[] }
+interface Common { id: string; vehicle: string; summary: string; algorithm_version: number; facts: Facts; path?: {north_m: number[]; east_m: number[]}; notes: string[] }
 export interface Measured extends Common { options: {velocity_constraint: boolean; zero_velocity: boolean; odometer: boolean}; durations: Duration[]; natural_outages: {start_s: number; duration_s: number}[]; rejected_fixes: number; heading_known_s: number | null; simulated?: Simulated[] }
 export interface Side { durations: Duration[]; simulated: Simulated[] }
 export interface Explanation extends Common { findings: Finding[]; rungs: Rung[]; white_noise_factors: {gyroscope: number; accelerometer: number}; before: Side; after: Side }

@@ -1,5 +1,6 @@
 // The drive in metres, north up, with its outages as thick strokes and the chosen one enlarged.
 import type {JSX} from 'preact';
+import {barLength} from '../../format/bar';
 import {writeTick} from '../../format/number';
 import {at95, type Evaluation, type Filter, type Path, type Track} from './documents';
 
@@ -21,12 +22,6 @@ function viewOf(east: number[], north: number[], left: number, top: number, widt
 const around = (track: Track | undefined, path: Path): Path => !track || track.start_s === null ? path : {...track, time_s: track.north_m.map((_, i) => track.start_s! + i / track.rate_hz)};
 const stretch = (path: Path, from: number, to: number): number[] => path.time_s.map((_, i) => i).filter(i => path.time_s[i]! >= from && path.time_s[i]! <= to);
 const points = (path: Path, indices: number[], view: View): string => indices.map(i => `${view.x(path.east_m[i]!).toFixed(1)},${view.y(path.north_m[i]!).toFixed(1)}`).join(' ');
-
-function barLength(scale: number, most: number): number {
-  const rough = most / scale;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  return [5, 2, 1].map(digit => digit * power).find(length => length <= rough) ?? power;
-}
 
 // What a filter believes of its own error at the end of an outage, around where it believes to be.
 function Belief({filter, outage, path, indices, zoom, colour}: {filter: Filter; outage: number; path: Path; indices: number[]; zoom: View; colour: string}): JSX.Element | null {
