@@ -65,7 +65,7 @@ Series simulated_growth(const Json& simulated, std::string name) {
     series.low = values_of(growth.at("p05_m"));
     series.high = values_of(growth.at("p95_m"));
   }
-  series.detail = "band: the middle 90 %";
+  series.detail = "middle 90 %";
   series.line = true;
   series.width = 2.0;
   series.colour = palette::kModel;
@@ -75,7 +75,7 @@ Series simulated_growth(const Json& simulated, std::string name) {
 
 Series median_growth(const Json& duration) {
   const Json growth = duration.value("growth", Json());
-  Series series{.name = "measured, median"};
+  Series series{.name = "median"};
   if (growth.is_object()) {
     series.x = numbers_of(growth.at("time_s"));
     series.y = values_of(growth.at("median_m"));
@@ -93,11 +93,29 @@ const Json* of_duration(const Json& list, const Json& duration_s) {
   return found == list.end() ? nullptr : &*found;
 }
 
+/// All curves, not those with marks alone, and a simulation far below them too.
+void frame_errors(Plot& plot) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const Series& series : plot.series) {
+    for (const auto& y : series.y) {
+      if (y && *y > 0.0) {
+        least = std::min(least, *y);
+        most = std::max(most, *y);
+      }
+    }
+  }
+  if (most > 0.0) {
+    plot.y.domain = {least / 1.5, most * 1.5};
+  }
+}
+
 NamedFigure growth_figure(const Json& document, const Json& duration, std::vector<Series> series,
                           std::string sentence) {
   Plot plot{.x = {ScaleKind::Log, "time without fixes, s"}, .y = {ScaleKind::Log, "horizontal error, m"}};
   plot.height = 300.0;
   plot.series = std::move(series);
+  frame_errors(plot);
   Figure figure{.title = "Error in outages of " + seconds(duration.at("duration_s")),
                 .sentence = std::move(sentence),
                 .source = source_of(document) + ", " + with_count(duration.value("n", std::size_t{0}), "outage")};

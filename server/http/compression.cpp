@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::string_view kEnding = "-gzip\"";
 constexpr int kGzipWindow = 15 + 16;  // zlib.h: 16 asks for the gzip format
-constexpr int kLevel = 6;
 constexpr int kMemoryLevel = 8;
 
 bool is_text(std::string_view type) {
@@ -24,10 +23,10 @@ bool is_text(std::string_view type) {
 
 }  // namespace
 
-std::string gzip(std::string_view text) {
+std::string gzip(std::string_view text, int level) {
   z_stream stream{};
   if (text.size() > std::numeric_limits<uInt>::max() ||
-      deflateInit2(&stream, kLevel, Z_DEFLATED, kGzipWindow, kMemoryLevel, Z_DEFAULT_STRATEGY) != Z_OK) {
+      deflateInit2(&stream, level, Z_DEFLATED, kGzipWindow, kMemoryLevel, Z_DEFAULT_STRATEGY) != Z_OK) {
     return {};
   }
   std::string packed(deflateBound(&stream, text.size()), '\0');

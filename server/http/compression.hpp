@@ -14,8 +14,12 @@ namespace driftlab::server {
 /// Answers shorter than this are sent as they are: less would be saved than the headers cost.
 inline constexpr std::size_t kSmallestCompressed = 1024;
 
+/// Levels of zlib: what is packed anew for each answer, and what is packed once and kept.
+inline constexpr int kQuick = 6;
+inline constexpr int kThorough = 9;
+
 /// `text` in the gzip format, the same bytes each time. Empty where there is no memory for it.
-[[nodiscard]] std::string gzip(std::string_view text);
+[[nodiscard]] std::string gzip(std::string_view text, int level = kQuick);
 
 /// Whether Accept-Encoding takes gzip.
 [[nodiscard]] bool takes_gzip(const Request& request);

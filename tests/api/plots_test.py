@@ -203,7 +203,7 @@ class Plots(DaemonTest):
         found: dict[str, Any] = json.loads(self.said(*command, "--json"))
         lengths = [f"{each['duration_s']:g}s" for each in found["durations"]]
         svg = self.every_form(command, "way", f"-error-{lengths[0]}", terminal=("horizontal error, m", "time without fixes, s", "simulated, rms"))
-        for label in ("measured, rms", "measured, median", "simulated, rms", "band: the middle 90 %"):
+        for label in ("measured, rms", "median", "simulated, rms", "middle 90 %"):
             self.assertIn(label, svg.texts)
         self.assertEqual(svg.count("band"), 1)
         self.judge_heights(svg, [value for value in found["durations"][0]["growth"]["rms_m"] if value])

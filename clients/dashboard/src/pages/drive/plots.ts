@@ -3,7 +3,7 @@ import type {Mark, Plot, Series} from '../../figure/spec';
 import {errorOf, type Duration, type Growth, type Simulated} from './documents';
 
 const curve = (id: string, name: string, growth: Growth, more: Partial<Series>): Series => ({id, name, x: growth.time_s, y: growth.rms_m, line: true, colour: 'var(--measured)', ...more});
-const simulation = (id: string, name: string, growth: Growth): Series => curve(id, name, growth, {detail: 'band: the middle 90 %', low: growth.p05_m, high: growth.p95_m, band: 'var(--modelband)', colour: 'var(--model)', width: 2});
+const simulation = (id: string, name: string, growth: Growth): Series => curve(id, name, growth, {detail: 'middle 90 %', low: growth.p05_m, high: growth.p95_m, band: 'var(--modelband)', colour: 'var(--model)', width: 2});
 
 // How the error grows while fixes are withheld, over what a simulation of the same outages gives; of an explanation before and after mending.
 export function growthPlots(of: Duration, simulated?: Simulated, was?: Duration, wasSimulated?: Simulated): Plot[] {
@@ -12,9 +12,11 @@ export function growthPlots(of: Duration, simulated?: Simulated, was?: Duration,
     was?.growth && curve('before', 'as it was', was.growth, {mark: 'open', width: 0.8, colour: 'var(--robust)'}),
     simulated?.growth && simulation('simulated', was ? 'simulated, mended' : 'simulated', simulated.growth),
     wasSimulated?.growth && curve('simulated-before', 'simulated, as it was', wasSimulated.growth, {dash: '2 3.5', colour: 'var(--model)'}),
-    ...(was ? [] : [of.growth && curve('median', 'measured, median', {...of.growth, rms_m: of.growth.median_m}, {dash: '4 4'})]),
+    ...(was ? [] : [of.growth && curve('median', 'median', {...of.growth, rms_m: of.growth.median_m}, {dash: '4 4'})]),
     end('promised', 'by its covariance', of.promised_rms_m, 'diamond'), end('straight', 'straight line', of.straight_line_rms_m, 'triangle')];
-  return [{id: 'error', height: 260, x: {scale: 'log', name: 'time without fixes, s'}, y: {scale: 'log', name: 'horizontal error, m'}, series: series.filter(one => one !== undefined)}];
+  const drawn = series.filter(one => one !== undefined);
+  const values = drawn.flatMap(one => one.y).filter(Number) as number[];
+  return [{id: 'error', height: 260, x: {scale: 'log', name: 'time without fixes, s'}, y: {scale: 'log', name: 'horizontal error, m', domain: [Math.min(...values) / 1.5, Math.max(...values) * 1.5]}, series: drawn}];
 }
 
 const MOTIONS: readonly (readonly [string, string, Mark])[] = [['straight', 'straight on', 'dot'], ['turning', 'turning', 'triangle'], ['rest', 'at rest', 'open']];
