@@ -58,14 +58,14 @@ Series measured_growth(const Json& duration, std::string name, const char* colou
 }
 
 /// The middle 90 % of the simulated outages as a band, the rms as a line.
-Series simulated_growth(const Json& simulated, std::string name) {
+Series simulated_growth(const Json& simulated, std::string detail) {
   const Json growth = simulated.value("growth", Json());
-  Series series = grown(growth, std::move(name));
+  Series series = grown(growth, "simulated, rms");
   if (growth.is_object()) {
     series.low = values_of(growth.at("p05_m"));
     series.high = values_of(growth.at("p95_m"));
   }
-  series.detail = "middle 90 %";
+  series.detail = std::move(detail);
   series.line = true;
   series.width = 2.0;
   series.colour = palette::kModel;
@@ -135,8 +135,8 @@ struct NeesClass {
   const char* colour;
 };
 // -2 ln(1 - p): chi-square of two degrees of freedom
-constexpr std::array kClasses{NeesClass{"in the 50 % ellipse", 1.3863, "#00785a"},
-                              NeesClass{"in the 95 % ellipse", 5.9915, palette::kModel},
+constexpr std::array kClasses{NeesClass{"in 50 % ellipse", 1.3863, "#00785a"},
+                              NeesClass{"in 95 % ellipse", 5.9915, palette::kModel},
                               NeesClass{"outside", std::numeric_limits<double>::infinity(), palette::kRobust}};
 
 /// What lies outside every class has no NEES, and is drawn as being outside.
@@ -296,18 +296,19 @@ std::vector<NamedFigure> figures_of_explanation(const Json& document) {
   const Json& before = document.at("before").at("durations");
   for (const Json& duration : document.at("after").at("durations")) {
     const Json& length = duration.at("duration_s");
-    std::vector<Series> series{measured_growth(duration, "measured, mended", palette::kInk, Mark::Dot)};
+    std::vector<Series> series{measured_growth(duration, "mended", palette::kInk, Mark::Dot)};
     std::string sentence = "In outages of " + seconds(length) + " the rms error of the mended model is " +
                            end_of(duration) + " at the end";
     if (const Json* const was = of_duration(before, length)) {
-      series.push_back(measured_growth(*was, "measured, as it was", palette::kRobust, Mark::Open));
+      series.push_back(measured_growth(*was, "as it was", palette::kRobust, Mark::Open));
       sentence += ", " + end_of(*was) + " before";
     }
     if (const Json* const simulated = of_duration(document.at("after").at("simulated"), length)) {
-      series.push_back(simulated_growth(*simulated, "simulated, mended"));
+      series.push_back(simulated_growth(*simulated, "mended, 90 %"));
     }
     if (const Json* const simulated = of_duration(document.at("before").at("simulated"), length)) {
-      Series was = grown(simulated->value("growth", Json()), "simulated, as it was");
+      Series was = grown(simulated->value("growth", Json()), "simulated, rms");
+      was.detail = "as it was";
       was.line = true;
       was.dash = {2.0, 3.5};
       was.colour = kDashed;
@@ -329,7 +330,7 @@ std::vector<NamedFigure> figures_of_measured(const Json& document) {
     std::string sentence =
         "In outages of " + seconds(duration.at("duration_s")) + " the rms error is " + end_of(duration) + " at the end";
     if (const Json* const simulated = of_duration(simulations, duration.at("duration_s"))) {
-      series.push_back(simulated_growth(*simulated, "simulated, rms"));
+      series.push_back(simulated_growth(*simulated, "middle 90 %"));
       sentence += ", simulated " + metres(simulated->at("rms_m").get<double>());
     }
     if (drawn(series.front())) {
