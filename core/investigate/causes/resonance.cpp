@@ -115,7 +115,7 @@ double log_gain(const FullRate& data, const Evidence& found) {
 }
 
 double density(const Evidence& found, double f_hz, double dt_s) {
-  return process_of(found).spectral_density(f_hz, dt_s).value();
+  return process_of(found).spectral_density(f_hz, dt_s).value_or(0.0);  // a resonance has one
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& random) {
