@@ -108,10 +108,10 @@ function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: strin
   return <>
     <p class="verdict">{first}{(more || notes.length > 0) && <small>{[more, ...notes].filter(Boolean).join(' ')}</small>}</p>
     {chosen && <>
+      {durations.length > 1 && <div class="row no-print"><span class="sec">without fixes</span><Segments label="Duration" options={durations.map(each => [String(each.duration_s), `${each.duration_s} s`] as const)} value={String(chosen.duration_s)} onChange={value => choose({duration: value === String(durations[0]!.duration_s) ? null : value, from: null})} /></div>}
       <div class="grid wide-side"><Errors of={chosen} side={explained ? evaluation.after : side} was={explained ? evaluation.before : undefined} id={id} curl={curl} />{explained ? <Causes evaluation={evaluation} /> : <FactsPanel facts={evaluation.facts} />}</div>
       {explained && <div class="row no-print above"><Segments label="Model" options={[['after', 'Mended'], ['before', 'As it was']] as const} value={query.get('side') === 'before' ? 'before' : 'after'} onChange={value => choose({side: value === 'before' ? 'before' : null, from: null})} /><span class="sec">for the tables and figures below</span></div>}
       <ByDuration durations={durations} simulated={side.simulated} />
-      {durations.length > 1 && <div class="row no-print above"><span class="sec">without fixes</span><Segments label="Duration" options={durations.map(each => [String(each.duration_s), `${each.duration_s} s`] as const)} value={String(chosen.duration_s)} onChange={value => choose({duration: value === String(durations[0]!.duration_s) ? null : value, from: null})} /></div>}
       {explained && <div class="grid two"><Steps evaluation={evaluation} duration={chosen.duration_s} /><FactsPanel facts={evaluation.facts} /></div>}
       {chosen.outages.length > 0 && <Outages of={chosen} path={evaluation.path} id={id} curl={curl} />}
     </>}
