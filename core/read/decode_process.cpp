@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t kLargest = std::uint64_t{2} << 30;
 constexpr int kInput = 3;           ///< the descriptor of the input in the child
-constexpr int kLookEvery_ms = 100;  ///< for a request to stop
+constexpr int kLookEveryMs = 100;  ///< for a request to stop
 
 Error system_error_of(int number, const std::string& action) {
   return {ErrorCode::Io, action + ": " + std::error_code(number, std::generic_category()).message() + ".", {}};
@@ -111,7 +111,7 @@ Result<std::size_t> read_from(int fd, std::span<char> into, const RunControl& co
       return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
     }
     pollfd waiting{fd, POLLIN, 0};
-    const int ready = ::poll(&waiting, 1, kLookEvery_ms);
+    const int ready = ::poll(&waiting, 1, kLookEveryMs);
     if (ready == 0 || (ready < 0 && errno == EINTR)) {
       continue;
     }

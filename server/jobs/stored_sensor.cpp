@@ -150,10 +150,11 @@ Status resolve_simulation_model(Json& sensor, const std::string& pointer, Store&
   if (!stored) {
     return fail(stored.error());
   }
-  if (!*stored) {
+  const auto& held = *stored;
+  if (!held) {
     return {};
   }
-  const Baseline& model = **stored;
+  const Baseline& model = *held;
   Json axes = Json::object();
   std::vector<std::string> columns;
   bool biased = false;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -32,18 +32,11 @@ std::string name_at(UtcMicros time) {
 
 /// The moment that a name says; nothing: it is no backup's.
 std::optional<UtcMicros> time_of(const std::string& name) {
-  int year = 0;
-  unsigned month = 0;
-  unsigned day = 0;
-  int hour = 0;
-  int minute = 0;
-  int second = 0;
-  if (std::sscanf(name.c_str(), "%4d%2u%2uT%2d%2d%2dZ", &year, &month, &day, &hour, &minute, &second) != 6) {
+  std::tm parts{};
+  if (::strptime(name.c_str(), "%Y%m%dT%H%M%SZ", &parts) == nullptr) {
     return std::nullopt;
   }
-  const std::chrono::sys_days date = std::chrono::year{year} / std::chrono::month{month} / std::chrono::day{day};
-  const auto moment = date + std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
-  const UtcMicros time = std::chrono::duration_cast<std::chrono::microseconds>(moment.time_since_epoch()).count();
+  const UtcMicros time = static_cast<UtcMicros>(::timegm(&parts)) * 1'000'000;
   return name_at(time) == name ? std::optional(time) : std::nullopt;
 }
 

@@ -32,7 +32,7 @@ const std::vector<std::string_view>& causes_of_bad_states() {
 std::string_view cause_of(const Error& error) { return error.code == ErrorCode::DiskFull ? "disk_full" : "io"; }
 
 void BadStates::begin(BadState state, std::string_view cause, std::string detail, std::string object) {
-  StandingState begun{state, std::move(object), cause, std::move(detail), clock_.now()};
+  const StandingState begun{state, std::move(object), cause, std::move(detail), clock_.now()};
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     const auto found = standing_.find({state, begun.object});

@@ -103,11 +103,12 @@ Result<RecordingOutcome> SqlStore::add_recording(const Blob& blob, const Recordi
 Status SqlStore::write_probe() {
   // A row that comes and goes: SQLite does not write a row that stays what it is. No client's key has a space in it.
   return database_->write(WriteKind::Fenced, [](Connection& c) -> Status {
-    Status written = c.prepare(
-                          "INSERT INTO idempotent_replies (key, method, target, body_sha256, status, headers_json, "
-                          "body, created_at) VALUES ('write probe', '', '', '', 0, '', '', 0) "
-                          "ON CONFLICT (key) DO NOTHING")
-                         .run();
+    const Status written =
+        c.prepare(
+             "INSERT INTO idempotent_replies (key, method, target, body_sha256, status, headers_json, "
+             "body, created_at) VALUES ('write probe', '', '', '', 0, '', '', 0) "
+             "ON CONFLICT (key) DO NOTHING")
+            .run();
     return written ? c.prepare("DELETE FROM idempotent_replies WHERE key = 'write probe'").run() : written;
   });
 }
