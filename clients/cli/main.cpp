@@ -98,8 +98,8 @@ namespace {
 void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kMebi = 1 << 20;
-  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMebi);
-  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMebi);
+  (void)::mallopt(M_MMAP_THRESHOLD, 64 * kMebi);   // NOLINT(concurrency-mt-unsafe): no other thread yet
+  (void)::mallopt(M_TRIM_THRESHOLD, 256 * kMebi);  // NOLINT(concurrency-mt-unsafe)
 #endif
 }
 

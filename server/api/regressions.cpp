@@ -230,8 +230,9 @@ Result<Response> move_anchor(ApiContext& context, const Request& request) {
   if (!kept) {
     return fail(kept.error());
   }
-  anchor.settings_json =
-      to_text(kept_settings_json(*kept ? regression::with_kept(**kept, given.settings, given.stated) : given.settings));
+  const auto& before = *kept;
+  anchor.settings_json = to_text(
+      kept_settings_json(before ? regression::with_kept(*before, given.settings, given.stated) : given.settings));
   anchor.device_id = device->id;
   auto moved = context.store.add_anchor(anchor);
   return moved ? Result<Response>(json_response(201, to_json(*moved))) : fail(moved.error());

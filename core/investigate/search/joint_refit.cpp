@@ -200,7 +200,7 @@ SlowModel refit_jointly(const FullRate& data, const std::vector<std::vector<unsi
   SlowFreedom freedom;
   freedom.stop = stop;
   for (int turn = 0; turn < kTurns && !stop.stop_requested(); ++turn) {
-    FullRate now = look_at_full_rate(*data.study, *data.group, model, residual, mask, options);
+    const FullRate now = look_at_full_rate(*data.study, *data.group, model, residual, mask, options);
     if (turn > 0) {
       renew_levels(now, found);
     }
