@@ -48,6 +48,9 @@ void ServiceManager::tell(std::string_view words) const {
     address.sun_path[0] = '\0';
   }
   const FileHandle out(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (out.get() < 0) {
+    return;
+  }
   const auto length = static_cast<::socklen_t>(offsetof(::sockaddr_un, sun_path) + socket_.size());
   (void)::sendto(out.get(), words.data(), words.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
                  reinterpret_cast<const ::sockaddr*>(&address), length);

@@ -158,7 +158,9 @@ Status Walk::dataset(hid_t id, const std::string& path) {
       if (H5Tinsert(wanted.get(), own.c_str(), 0, H5T_NATIVE_DOUBLE) < 0) {
         return damaged(path);
       }
-      if (auto taken = array(id, wanted.get(), shape, false, path + "." + own); !taken) {
+      std::string place = path;
+      place.append(".").append(own);
+      if (auto taken = array(id, wanted.get(), shape, false, place); !taken) {
         return taken;
       }
     }

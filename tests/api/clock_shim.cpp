@@ -10,7 +10,7 @@ namespace {
 
 std::time_t seconds_ahead() {
   static const std::time_t ahead = [] {
-    const char* const said = std::getenv("DRIFTLAB_CLOCK_AHEAD");
+    const char* const said = std::getenv("DRIFTLAB_CLOCK_AHEAD");  // NOLINT(concurrency-mt-unsafe): never set
     return said == nullptr ? 0 : static_cast<std::time_t>(std::strtoll(said, nullptr, 10));
   }();
   return ahead;

@@ -27,7 +27,7 @@
 
 namespace {
 
-enum Kind : std::int64_t { kNone = 0, kRead = 1, kWrite = 2, kSync = 3, kRename = 4 };
+enum class Kind : std::int64_t { None = 0, Read = 1, Write = 2, Sync = 3, Rename = 4 };
 
 /// Eight bytes each, in the order of the machine.
 struct Control {
@@ -44,15 +44,23 @@ Function real(const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
 }
 
+/// A variable of the environment, empty where it is not set. The daemon never sets one.
+std::string said(const char* name) {
+  const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
+  return value == nullptr ? "" : value;
+}
+
+/// A folder that the environment names, with the slash behind it; empty where it names none.
+std::string folder_said(const char* name) {
+  const std::string folder = said(name);
+  return folder.empty() ? folder : folder + "/";
+}
+
 /// What the environment says, read once.
 struct World {
-  World() {
-    const char* const named = std::getenv("DRIFTLAB_FAULT_BELOW");
-    below = named == nullptr ? "" : std::string(named) + "/";
-    const char* const kept = std::getenv("DRIFTLAB_FAULT_SHADOW");
-    shadow = kept == nullptr ? "" : std::string(kept) + "/";
-    if (const char* const file = std::getenv("DRIFTLAB_FAULT_CONTROL"); file != nullptr) {
-      const int descriptor = ::open(file, O_RDWR | O_CLOEXEC);
+  World() : below(folder_said("DRIFTLAB_FAULT_BELOW")), shadow(folder_said("DRIFTLAB_FAULT_SHADOW")) {
+    if (const std::string file = said("DRIFTLAB_FAULT_CONTROL"); !file.empty()) {
+      const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
       void* const mapped = ::mmap(nullptr, sizeof(Control), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
       control = mapped == MAP_FAILED ? nullptr : static_cast<Control*>(mapped);
       (void)::close(descriptor);
@@ -89,7 +97,7 @@ bool is_below(int descriptor) {
 template <class IsMeant>
 bool fails(Kind kind, IsMeant is_meant) {
   Control* const control = world().control;
-  if (control == nullptr || control->kind != kind || !is_meant()) {
+  if (control == nullptr || control->kind != static_cast<std::int64_t>(kind) || !is_meant()) {
     return false;
   }
   if (control->passes.fetch_sub(1) > 0 || control->fails.fetch_sub(1) <= 0) {
@@ -150,6 +158,7 @@ void keep(int descriptor) {
   if (S_ISDIR(found.stx_mode)) {
     const int copy = ::openat(descriptor, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     DIR* const folder = ::fdopendir(copy);
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): one thread has this folder
     for (const dirent* entry = ::readdir(folder); entry != nullptr; entry = ::readdir(folder)) {
       struct ::statx named{};
       const std::string name(static_cast<const char*>(entry->d_name));
@@ -175,7 +184,7 @@ void keep(int descriptor) {
 }
 
 int sync_now(int descriptor, int (*sync)(int)) {
-  if (fails(kSync, [descriptor] { return is_below(descriptor); })) {
+  if (fails(Kind::Sync, [descriptor] { return is_below(descriptor); })) {
     return -1;
   }
   // No need to reach the disk below: the machine stays on.
@@ -192,29 +201,29 @@ extern "C" {
 
 ssize_t read(int descriptor, void* into, std::size_t size) {
   static const auto next = real<ssize_t (*)(int, void*, std::size_t)>("read");
-  return fails(kRead, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, into, size);
+  return fails(Kind::Read, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, into, size);
 }
 
 ssize_t pread(int descriptor, void* into, std::size_t size, off_t at) {
   static const auto next = real<ssize_t (*)(int, void*, std::size_t, off_t)>("pread64");
-  return fails(kRead, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, into, size, at);
+  return fails(Kind::Read, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, into, size, at);
 }
 
 ssize_t pread64(int descriptor, void* into, std::size_t size, off64_t at) { return pread(descriptor, into, size, at); }
 
 ssize_t write(int descriptor, const void* from, std::size_t size) {
   static const auto next = real<ssize_t (*)(int, const void*, std::size_t)>("write");
-  return fails(kWrite, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, size);
+  return fails(Kind::Write, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, size);
 }
 
 ssize_t writev(int descriptor, const iovec* from, int count) {
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  return fails(kWrite, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, count);
+  return fails(Kind::Write, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, count);
 }
 
 ssize_t pwrite(int descriptor, const void* from, std::size_t size, off_t at) {
   static const auto next = real<ssize_t (*)(int, const void*, std::size_t, off_t)>("pwrite64");
-  return fails(kWrite, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, size, at);
+  return fails(Kind::Write, [descriptor] { return is_below(descriptor); }) ? -1 : next(descriptor, from, size, at);
 }
 
 ssize_t pwrite64(int descriptor, const void* from, std::size_t size, off64_t at) {
@@ -233,7 +242,7 @@ int fdatasync(int descriptor) {
 
 int rename(const char* from, const char* to) noexcept {
   static const auto next = real<int (*)(const char*, const char*)>("rename");
-  return fails(kRename, [to] { return is_below(to); }) ? -1 : next(from, to);
+  return fails(Kind::Rename, [to] { return is_below(to); }) ? -1 : next(from, to);
 }
 
 }  // extern "C"
