@@ -187,7 +187,8 @@ std::string sentence_of(const DriveExplanationReport& report) {
   const drive::SimulatedDuration& before = e.simulated_before.front();
   std::string causes;
   for (const drive::DriveFinding& finding : e.findings) {
-    const std::string_view words = drive::words_of(finding.cause);
+    const std::string words =
+        (finding.at_bound ? "what looks like " : "") + std::string(drive::words_of(finding.cause));
     if (causes.find(words) == std::string::npos) {
       causes.append(causes.empty() ? "" : ", ").append(words);
     }

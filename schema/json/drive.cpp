@@ -244,6 +244,7 @@ Json to_json(const DriveExplanationReport& report) {
                  {"score", number(f.score)},
                  {"evidence", f.evidence},
                  {"told_apart", f.told_apart},
+                 {"at_bound", f.at_bound},
                  {"kept", f.kept},
                  {"held_out_gain", number(f.held_out_gain)}};
     if (!f.pair.empty()) {

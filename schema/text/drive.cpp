@@ -135,6 +135,9 @@ std::string drive_explanation_to_text(const DriveExplanationReport& report) {
     text += printed("  %s %s: %s %.4g +- %.2g %s (score %.0f, from %s)%s\n", f.cause.c_str(), f.parameter.c_str(),
                     f.title.c_str(), f.value, f.se, f.unit.c_str(), f.score, f.evidence.c_str(),
                     f.pair.empty() ? "" : (", not told apart from " + std::string(drive::words_of(f.pair))).c_str());
+    if (f.at_bound) {
+      text += "      the value lies where the search ends, beyond what this can be: something else looks like it\n";
+    }
     if (f.judged) {
       text += printed("      held-out outages: log score %+.3f; %s\n", f.held_out_gain,
                       f.kept ? "kept in the mended model" : "found, but no gain: not in the mended model");

@@ -10,6 +10,7 @@ constexpr double kNamed = 5.0;  ///< score
 constexpr double kSure = 3.0;   ///< standard errors
 constexpr double kPair = 2.0;   ///< scores that differ by less are a pair
 constexpr int kRefits = 2;
+constexpr double kBound = 0.9;  ///< of the most that is sought: nearer to it an estimate is at its bound
 
 }  // namespace
 
@@ -56,11 +57,12 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
 }
 
 Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
+  const double set = knob.value(options);
   while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
     const bool up = bracket.high_value > bracket.low_value;
     const double edge = up ? bracket.high : bracket.low;
     const double next = edge + 2.0 * (edge - bracket.middle);
-    if (std::abs(next) > knob.most || control_.stop.stop_requested()) {
+    if (std::abs(set + next) > knob.most || control_.stop.stop_requested()) {
       return bracket;
     }
     const double value = values({turned(options, knob, next)}).front();
@@ -197,6 +199,9 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     const double value = named[i]->value(result.options) - named[i]->value(options);
     result.findings[i].value = named[i]->value(result.options) * named[i]->per_si;
     result.findings[i].se = last[i].se * named[i]->per_si;
+    const double wanted =
+        std::max(std::abs(named[i]->value(result.options)), std::abs(named[i]->value(result.options) + last[i].value));
+    result.findings[i].at_bound = wanted > kBound * named[i]->most;
     const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
     result.findings[i].score = std::max((at - without) / scale, 0.0);
   }

@@ -53,6 +53,22 @@ TEST(DriveCauses, EachHasWordsOfItsOwnWithoutItsNameInDocuments) {
   EXPECT_EQ(words_of(*find_knob("gnss_coloured_noise", "tau_s")), "lasting errors of positions (tau)");
 }
 
+TEST(DriveCauses, AValueWhereTheSearchEndsIsSaidToBeOne) {
+  // A phone's gyroscope was said to read 49 % too much. Refits walked there in strides that were each allowed.
+  Hidden hidden;
+  hidden.errors.gyroscope(2, 2) = 0.45;
+  const SearchResult result = searched(simulated_drive(31, hidden));
+  const DriveFinding* const scale = found_in(result, "gyro_scale_factor_error", "z");
+  ASSERT_NE(scale, nullptr) << names_of(result);
+  EXPECT_LE(std::abs(scale->value), 30.0 + 1e-9);
+  EXPECT_TRUE(scale->at_bound) << scale->value;
+  hidden.errors.gyroscope(2, 2) = 0.02;
+  const SearchResult small = searched(simulated_drive(31, hidden));
+  const DriveFinding* const usual = found_in(small, "gyro_scale_factor_error", "z");
+  ASSERT_NE(usual, nullptr) << names_of(small);
+  EXPECT_FALSE(usual->at_bound) << usual->value;
+}
+
 TEST(DriveCauses, AKnobTurnsItsOwnValueAndNoOther) {
   FilterOptions options;
   options.constraint.emplace();

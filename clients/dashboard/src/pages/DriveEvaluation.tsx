@@ -70,7 +70,7 @@ function Causes({evaluation}: {evaluation: Explanation}): JSX.Element {
     {evaluation.findings.length === 0 ? <p class="sec">None of those that are looked for reaches a score of 5 and three standard errors.</p> : <ul class="rows plain">{evaluation.findings.map(each => <li key={`${each.cause}${each.parameter}`} class="finding">
       <div><b>{capital(each.title)} {each.value === null ? '…' : writeNumber(each.value)}{each.se !== null ? ` ± ${writeNumber(each.se, 2)}` : ''} {writeUnit(each.unit)}</b> <span class="sec">score {writeNumber(each.score, 2)}, by {each.evidence}</span></div>
       <div class="u">{each.kept ? <><span class="g good" aria-hidden="true">✓ </span>mended{each.held_out_gain !== null ? `: log score ${each.held_out_gain >= 0 ? '+' : '−'}${writeNumber(Math.abs(each.held_out_gain))} on outages that were not used` : ''}</> : <><span class="g" aria-hidden="true">– </span>not kept: no gain on outages that were not used</>}{each.pair_words ? `; hardly told from ${each.pair_words}` : ''}</div>
-      <div class="sec">{capital(each.told_apart)}.</div></li>)}</ul>}
+      <div class="sec">{capital(each.told_apart)}.{each.at_bound && ' The search ends here: something else looks like it.'}</div></li>)}</ul>}
     <p class="note">White noise of the road: {writeNumber(evaluation.white_noise_factors.gyroscope)} times that of the model for the gyroscope, {writeNumber(evaluation.white_noise_factors.accelerometer)} for the accelerometer.</p>
   </Panel>;
 }

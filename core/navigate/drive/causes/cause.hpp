@@ -33,7 +33,9 @@ struct DriveFinding {
   std::string pair;      ///< a cause whose score was within 2 of this one's when it was named; empty: none
   std::string evidence;  ///< what showed it: the file, the fixes alone, the innovations
   std::string told_apart;
-  bool from_files = false;     ///< the files showed it, no filter
+  bool from_files = false;  ///< the files showed it, no filter
+  /// The value lies where the search ends (Knob::most), beyond what the cause can be: something else looks like it.
+  bool at_bound = false;
   bool judged = false;         ///< outages that it has not seen say what it is worth
   bool kept = true;            ///< in the extended model
   double held_out_gain = 0.0;  ///< mean log score gained on outages that it has not seen
@@ -41,15 +43,15 @@ struct DriveFinding {
 
 /// One parameter of a cause that the filter's options hold.
 struct Knob {
-  std::string_view cause = {};                                ///< filled in by the registry
-  std::string_view parameter;                                 ///< name in documents
-  std::string_view title;                                     ///< for people: "the unit's clock is off by"
-  std::string_view unit;                                      ///< lab unit
-  double per_si = 1.0;                                        ///< lab units in one SI unit
-  double step = 0.0;                                          ///< first step of the search, SI
-  double most = 0.0;                                          ///< beyond this magnitude it is not sought, SI
-  void (*turn)(FilterOptions& options, double by) = nullptr;  ///< SI
-  double (*value)(const FilterOptions& options) = nullptr;    ///< what the options hold, SI
+  std::string_view cause = {};  ///< filled in by the registry
+  std::string_view parameter;   ///< name in documents
+  std::string_view title;       ///< for people: "the unit's clock is off by"
+  std::string_view unit;        ///< lab unit
+  double per_si = 1.0;          ///< lab units in one SI unit
+  double step = 0.0;            ///< first step of the search, SI
+  double most = 0.0;            ///< beyond this magnitude the cause is not what it is called, and is not sought, SI
+  void (*turn)(FilterOptions& options, double by) = nullptr;                    ///< SI
+  double (*value)(const FilterOptions& options) = nullptr;                      ///< what the options hold, SI
   bool (*applies)(const Drive& drive, const FilterOptions& options) = nullptr;  ///< null: always
   std::string_view told_apart;  ///< the measurement that separates it from its rivals
   /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the

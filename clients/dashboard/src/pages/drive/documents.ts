@@ -25,7 +25,7 @@ export interface Duration {
   nees: Estimated; coverage50: Estimated; coverage95: Estimated; straight_line_rms_m: number; promised_rms_m: number; growth?: Growth; outages: OutageOf[];
 }
 export interface Simulated { duration_s: number; n: number; rms_m: number; nees: number | null; coverage95: number; measured_over_simulated: Estimated; growth?: Growth }
-export interface Finding { cause: string; words?: string; parameter: string; title: string; value: number | null; se: number | null; unit: string; score: number | null; evidence: string; told_apart: string; kept: boolean; held_out_gain: number | null; pair?: string; pair_words?: string }
+export interface Finding { cause: string; words?: string; parameter: string; title: string; value: number | null; se: number | null; unit: string; score: number | null; evidence: string; told_apart: string; at_bound?: boolean; kept: boolean; held_out_gain: number | null; pair?: string; pair_words?: string }
 export interface Rung { name: string; kept: boolean; durations: {duration_s: number; held_out: {n: number; rms_m: number; nees: number | null; coverage95: number; log_score: number | null}}[] }
 interface Common { id: string; vehicle: string; summary: string; algorithm_version: number; facts: Facts; path?: {north_m: number[]; east_m: number[]}; notes: string[] }
 export interface Measured extends Common { options: {velocity_constraint: boolean; zero_velocity: boolean; odometer: boolean}; durations: Duration[]; natural_outages: {start_s: number; duration_s: number}[]; rejected_fixes: number; heading_known_s: number | null; simulated?: Simulated[] }
