@@ -51,6 +51,8 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
     const Knob& knob = *knobs[i];
     const Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
     estimates[i] = parabola(stride(options, knob, bracket), scale);
+    const double set = knob.value(options);
+    estimates[i].value = std::clamp(estimates[i].value, -knob.most - set, knob.most - set);
     estimates[i].score = std::max(estimates[i].gain_to(at), 0.0) / scale;
   }
   return estimates;
