@@ -1,5 +1,6 @@
 #include "schema/json/drive_figures.hpp"
 
+#include "core/navigate/drive/outage_map.hpp"
 #include "core/signal/significant.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/figure/layout.hpp"
@@ -7,9 +8,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace driftlab {
@@ -125,8 +124,7 @@ NamedFigure growth_figure(const Json& document, const Json& duration, std::vecto
 
 bool drawn(const Series& series) { return !series.x.empty(); }
 
-/// East and north of one place [m].
-using Place = std::array<double, 2>;
+using Place = drive::MapPlace;
 
 /// What the map says of one class of outages: how the error compares with what the filter expects.
 struct NeesClass {
@@ -174,27 +172,6 @@ class Strokes {
   Series series_;
 };
 
-/// The 95 % ellipse of a covariance {north, north-east, east} about a place.
-std::vector<Place> ellipse(const Place& centre, const Json& covariance) {
-  constexpr int kCorners = 32;
-  const double nn = covariance.at(0).get<double>();
-  const double ne = covariance.at(1).get<double>();
-  const double ee = covariance.at(2).get<double>();
-  const double radius = std::sqrt(kClasses[1].most);
-  // Cholesky factor of the covariance in east and north.
-  const double a = std::sqrt(std::max(ee, 0.0));
-  const double b = a > 0.0 ? ne / a : 0.0;
-  const double c = std::sqrt(std::max(nn - b * b, 0.0));
-  std::vector<Place> places;
-  for (int k = 0; k <= kCorners; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / kCorners;
-    const double u = radius * std::cos(angle);
-    const double v = radius * std::sin(angle);
-    places.push_back({centre[0] + a * u, centre[1] + b * u + c * v});
-  }
-  return places;
-}
-
 /// Both axes with one length for a metre: the shorter side is widened, and nothing is drawn outside.
 void frame(Plot& plot) {
   std::array<double, 4> ends{1e300, -1e300, 1e300, -1e300};
@@ -232,9 +209,11 @@ NamedFigure map_figure(const Json& document, const Json& duration) {
     ends[k].x.push_back(truth[0]);
     ends[k].y.emplace_back(truth[1]);
     errors[k].add({truth, believed});
-    errors[k].add(ellipse(believed, outage.at("covariance_m2")));
+    const Json& covariance = outage.at("covariance_m2");
+    errors[k].add(drive::ellipse95(
+        believed, {covariance.at(0).get<double>(), covariance.at(1).get<double>(), covariance.at(2).get<double>()}));
     ++counts[k];
-    worst = std::max(worst, std::hypot(error[0], error[1]));
+    worst = std::max(worst, drive::horizontal_m(error[1], error[0]));
   }
   Plot plot{.x = {ScaleKind::Linear, "east, m"}, .y = {ScaleKind::Linear, "north, m"}};
   for (std::size_t k = 0; k < kClasses.size(); ++k) {
