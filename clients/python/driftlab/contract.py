@@ -696,6 +696,7 @@ class DriveEvaluationDuration(TypedDict):
     # By the filter's own covariance.
     promised_rms_m: float
     by_motion: list[DriveEvaluationDurationByMotionItem]
+    growth: NotRequired[DriveEvaluationGrowth]
     outages: list[DriveEvaluationOutage]
 
 
@@ -723,6 +724,7 @@ class DriveEvaluationExplanation(TypedDict):
     summary: str
     algorithm_version: int
     facts: DriveEvaluationFacts
+    path: NotRequired[DriveEvaluationPath]
     findings: list[DriveEvaluationFinding]
     rungs: list[DriveEvaluationRung]
     white_noise_factors: DriveEvaluationExplanationWhiteNoiseFactors
@@ -811,6 +813,9 @@ class DriveEvaluationFinding(TypedDict):
     score: float | None
     evidence: str
     told_apart: str
+    # The value lies where the search ends, beyond what the cause can be: something else looks like it. Absent from
+    # evaluations that were made before it was said.
+    at_bound: NotRequired[bool]
     # In the mended model.
     kept: bool
     # Mean log score gained on outages that were not used to find it.
@@ -819,6 +824,21 @@ class DriveEvaluationFinding(TypedDict):
     pair: NotRequired[str]
     # That cause as people call it.
     pair_words: NotRequired[str]
+
+
+class DriveEvaluationGrowth(TypedDict):
+    """Horizontal errors against the time in an outage, over the outages; null where no outage has a reference. Absent
+    from evaluations that were made before they had it."""
+
+    # After the outage's start; the last is its end.
+    time_s: list[float]
+    # Outages whose reference says where the vehicle was.
+    n: list[int]
+    rms_m: list[float | None]
+    # The middle 90 % of the outages lie between this and p95_m.
+    p05_m: list[float | None]
+    median_m: list[float | None]
+    p95_m: list[float | None]
 
 
 class DriveEvaluationInnovation(TypedDict):
@@ -843,6 +863,7 @@ class DriveEvaluationMeasured(TypedDict):
     algorithm_version: int
     facts: DriveEvaluationFacts
     options: DriveEvaluationMeasuredOptions
+    path: NotRequired[DriveEvaluationPath]
     starts: list[DriveEvaluationStart]
     durations: list[DriveEvaluationDuration]
     innovations: list[DriveEvaluationInnovation]
@@ -889,6 +910,13 @@ class DriveEvaluationOutage(TypedDict):
     straight_line_error_m: float
     # North and east of the first reference point.
     map_m: list[float]
+
+
+class DriveEvaluationPath(TypedDict):
+    """The reference of the drive for a map, some 500 points of it at most: metres north and east of its first."""
+
+    north_m: list[float]
+    east_m: list[float]
 
 
 class DriveEvaluationResource(TypedDict):
@@ -968,6 +996,7 @@ class DriveEvaluationSimulated(TypedDict):
     coverage95_ci95: NotRequired[list[float | None]]
     # The interval holds the scatter of both.
     measured_over_simulated: DriveEvaluationEstimate
+    growth: NotRequired[DriveEvaluationGrowth]
 
 
 class DriveEvaluationSimulation(TypedDict):
@@ -981,6 +1010,7 @@ class DriveEvaluationSimulation(TypedDict):
     algorithm_version: int
     facts: DriveEvaluationFacts
     options: DriveEvaluationSimulationOptions
+    path: NotRequired[DriveEvaluationPath]
     starts: list[DriveEvaluationStart]
     durations: list[DriveEvaluationDuration]
     innovations: list[DriveEvaluationInnovation]
