@@ -101,10 +101,14 @@ class Migrate(unittest.TestCase):
         self.fill()
         arguments = ("--blobs", "database", "--data", str(self.folder / "local"))
         command = [daemons.PROGRAM, "migrate", "--from", str(self.data), "--to", self.store, *arguments]
-        killed = 0
-        for delay in (0.2, 0.3, 0.5, 0.8):
+        killed, began_s = 0, 0.0
+        for more_s in (0.0, 0.02, 0.05, 0.1):  # from its beginning: a fast machine moves this lab in a fifth of a second
+            begun = time.monotonic()
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(delay)
+            while not (self.data / "moving").exists() and process.poll() is None:
+                time.sleep(0.001)
+            began_s = began_s or time.monotonic() - begun  # the mark of a killed one stays
+            time.sleep(max(0.0, begun + began_s + more_s - time.monotonic()))
             if process.poll() is None:
                 process.send_signal(signal.SIGKILL)
                 killed += 1
