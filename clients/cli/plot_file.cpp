@@ -23,19 +23,28 @@ Status write_bytes(const std::string& path, const std::string& bytes) {
   return {};
 }
 
+/// Why a figure cannot be written there; empty: it can.
+std::string refusal_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
+  return path == "-" || ending == ".svg" || ending == ".png"
+             ? ""
+             : "--plot writes .svg and .png, and - draws in the terminal; '" + path + "' ends otherwise.";
+}
+
 }  // namespace
 
 void add_plot_flag(CLI::App& command, std::string& path) {
-  command.add_option("--plot", path, "Draw the result to this file (.svg, .png); - draws it in the terminal");
+  command.add_option("--plot", path, "Draw the result to this file (.svg, .png); - draws it in the terminal")
+      ->check([](const std::string& given) { return refusal_of(given); });
 }
 
 Status write_plots(const Json& document, const std::string& path, const std::string& channel) {
-  const std::size_t dot = path.rfind('.');
-  const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
-  if (path != "-" && ending != ".svg" && ending != ".png") {
-    return fail(ErrorCode::InvalidArgument,
-                "--plot writes .svg and .png, and - draws in the terminal; '" + path + "' ends otherwise.");
+  if (std::string refused = refusal_of(path); !refused.empty()) {
+    return fail(ErrorCode::InvalidArgument, std::move(refused));
   }
+  const std::size_t dot = path.rfind('.');
+  const std::string ending = path == "-" ? "" : path.substr(dot);
   const auto figures = figures_of(document, channel);
   if (!figures) {
     return fail(figures.error());
