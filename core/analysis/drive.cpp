@@ -2,6 +2,7 @@
 
 #include "core/navigate/drive/smoother.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -186,12 +187,16 @@ std::string sentence_of(const DriveExplanationReport& report) {
   const drive::DriveExplanation& e = report.explanation;
   const drive::SimulatedDuration& before = e.simulated_before.front();
   std::string causes;
-  for (const drive::DriveFinding& finding : e.findings) {
-    const std::string words =
-        (finding.at_bound ? "what looks like " : "") + std::string(drive::words_of(finding.cause));
-    if (causes.find(words) == std::string::npos) {
-      causes.append(causes.empty() ? "" : ", ").append(words);
+  for (auto finding = e.findings.begin(); finding != e.findings.end(); ++finding) {
+    const auto of_cause = [&](const drive::DriveFinding& other) { return other.cause == finding->cause; };
+    if (std::any_of(e.findings.begin(), finding, of_cause)) {
+      continue;
     }
+    const bool doubtful = std::all_of(finding, e.findings.end(), [&](const drive::DriveFinding& other) {
+      return !of_cause(other) || other.at_bound;
+    });
+    causes.append(causes.empty() ? "" : ", ").append(doubtful ? "what looks like " : "");
+    causes.append(drive::words_of(finding->cause));
   }
   std::array<char, 512> text{};
   std::snprintf(

@@ -134,7 +134,7 @@ struct NeesClass {
 };
 // -2 ln(1 - p): chi-square of two degrees of freedom
 constexpr std::array kClasses{NeesClass{"in 50 % ellipse", 1.3863, "#00785a"},
-                              NeesClass{"in 95 % ellipse", 5.9915, palette::kModel},
+                              NeesClass{"between 50 and 95 %", 5.9915, palette::kModel},
                               NeesClass{"outside", std::numeric_limits<double>::infinity(), palette::kRobust}};
 
 /// What lies outside every class has no NEES, and is drawn as being outside.

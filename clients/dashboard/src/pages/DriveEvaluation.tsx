@@ -100,6 +100,7 @@ function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: strin
   const {durations} = side;
   const [first, more] = opened(writeSentence(evaluation.summary));
   const chosen = durations.find(each => String(each.duration_s) === query.get('duration')) ?? durations[0];
+  const drawn = explained ? evaluation.after.durations.find(each => each.duration_s === chosen?.duration_s) : chosen;
   const at = chosen ? durations.indexOf(chosen) : 0;
   const step = (by: number): void => { const next = durations[(at + by + durations.length) % Math.max(1, durations.length)]; if (next) choose({duration: String(next.duration_s), from: null}); };
   usePageKeys({'[': () => step(-1), ']': () => step(1)});
@@ -109,7 +110,7 @@ function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: strin
     <p class="verdict">{first}{(more || notes.length > 0) && <small>{[more, ...notes].filter(Boolean).join(' ')}</small>}</p>
     {chosen && <>
       {durations.length > 1 && <div class="row no-print"><span class="sec">without fixes</span><Segments label="Duration" options={durations.map(each => [String(each.duration_s), `${each.duration_s} s`] as const)} value={String(chosen.duration_s)} onChange={value => choose({duration: value === String(durations[0]!.duration_s) ? null : value, from: null})} /></div>}
-      <div class="grid wide-side"><Errors of={chosen} side={explained ? evaluation.after : side} was={explained ? evaluation.before : undefined} id={id} curl={curl} />{explained ? <Causes evaluation={evaluation} /> : <FactsPanel facts={evaluation.facts} />}</div>
+      <div class="grid wide-side">{drawn && <Errors of={drawn} side={explained ? evaluation.after : side} was={explained ? evaluation.before : undefined} id={id} curl={curl} />}{explained ? <Causes evaluation={evaluation} /> : <FactsPanel facts={evaluation.facts} />}</div>
       {explained && <div class="row no-print above"><Segments label="Model" options={[['after', 'Mended'], ['before', 'As it was']] as const} value={query.get('side') === 'before' ? 'before' : 'after'} onChange={value => choose({side: value === 'before' ? 'before' : null, from: null})} /><span class="sec">for the tables and figures below</span></div>}
       <ByDuration durations={durations} simulated={side.simulated} />
       {explained && <div class="grid two"><Steps evaluation={evaluation} duration={chosen.duration_s} /><FactsPanel facts={evaluation.facts} /></div>}

@@ -7,7 +7,7 @@ import type {Duration, Measured} from './documents';
 const SIZE = 420;
 const PAD = 34;
 // By the share of errors that the ellipse through it holds: -2 ln(1 - share) of NEES.
-const CLASSES: readonly (readonly [string, number, string])[] = [['in 50 %', 1.386, 'var(--good)'], ['in 95 %', 5.991, 'var(--model)'], ['outside', Infinity, 'var(--robust)']];
+const CLASSES: readonly (readonly [string, number, string])[] = [['in 50 %', 1.386, 'var(--good)'], ['50 to 95 %', 5.991, 'var(--model)'], ['outside', Infinity, 'var(--robust)']];
 
 export function Where({of, path}: {of: Duration; path: Measured['path']}): JSX.Element {
   const north = of.outages.map(outage => outage.map_m[0] ?? 0);
