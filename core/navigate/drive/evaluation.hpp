@@ -16,7 +16,7 @@
 namespace driftlab::drive {
 
 /// Changes whenever the same drive and seed may give other numbers.
-inline constexpr int kDriveAlgorithmVersion = 1;
+inline constexpr int kDriveAlgorithmVersion = 2;
 
 /// Outages of one run of the filter.
 struct PlannedRun {

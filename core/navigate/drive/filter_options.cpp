@@ -31,6 +31,14 @@ double even_noise_factor(const FilterOptions& options, std::size_t channel) {
   return (channel < 3 ? options.gyro_noise : options.force_noise) / std::sqrt(1.0 + vibration_of(options, channel));
 }
 
+double noise_after_correction(const ReadingErrors& errors, std::size_t channel) {
+  const Matrix3& own = channel < 3 ? errors.gyroscope : errors.accelerometer;
+  if (own.isZero(0.0)) {
+    return 1.0;
+  }
+  return (Matrix3::Identity() + own).inverse().row(static_cast<Eigen::Index>(channel % 3)).norm();
+}
+
 FilterOptions options_of(const Document& document) {
   FilterOptions options;
   options.lever_arm_m = document.gnss.lever_arm_m;

@@ -86,6 +86,11 @@ void scale_white_noise(AxisModel& axis, double factor);
 void add_vibration_noise(const Vibration& vibration, const FilterOptions& options, const ImuModel& model, double dt_s,
                          Random& random, std::vector<ImuSample>& readings);
 
+/// What taking the errors off the readings makes of the white noise of a channel: a factor of its density, the length
+/// of the channel's row of (I + M)^-1, as of axes with the same noise. A filter that does not know it takes quieter
+/// readings for better ones, and finds a scale factor on every axis that hardly turns.
+[[nodiscard]] double noise_after_correction(const ReadingErrors& errors, std::size_t channel);
+
 /// Factors of the white noise of an axis that do not follow the vibration.
 [[nodiscard]] double even_noise_factor(const FilterOptions& options, std::size_t channel);
 

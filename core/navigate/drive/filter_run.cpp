@@ -346,7 +346,7 @@ Result<FilterDesign> make_design(const Document& document, double dt_s, const St
   FilterSettings settings;
   settings.imu = document.model;
   for (std::size_t c = 0; c < kImuChannels; ++c) {
-    scale_white_noise(settings.imu.axes[c], even_noise_factor(options, c));
+    scale_white_noise(settings.imu.axes[c], even_noise_factor(options, c) * noise_after_correction(options.errors, c));
   }
   settings.initial = start.uncertainty;
   ConstantLayout layout;

@@ -18,7 +18,7 @@ class Profile {
  public:
   /// `drive` and `control` must outlive it. Only innovations of the folds that `used` marks count.
   Profile(const Drive& drive, std::array<bool, LogLikelihood::kFolds> used, const RunControl& control)
-      : drive_(drive), used_(used), control_(control) {}
+      : drive_(drive), used_(used), control_(control), stated_(options_of(drive.document)) {}
 
   /// Log likelihood of each trial; minus infinity for options that no filter can have.
   [[nodiscard]] std::vector<double> values(const std::vector<FilterOptions>& trials) const;
@@ -46,6 +46,7 @@ class Profile {
   const Drive& drive_;
   std::array<bool, LogLikelihood::kFolds> used_;
   const RunControl& control_;
+  FilterOptions stated_;  ///< by the document: Knob::most bounds the change from it
 };
 
 }  // namespace driftlab::drive

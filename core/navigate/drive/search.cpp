@@ -51,15 +51,23 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
     const Knob& knob = *knobs[i];
     const Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
     estimates[i] = parabola(stride(options, knob, bracket), scale);
-    const double set = knob.value(options);
-    estimates[i].value = std::clamp(estimates[i].value, -knob.most - set, knob.most - set);
+    const double set = knob.value(options) - knob.value(stated_);
+    const double within = std::clamp(estimates[i].value, -knob.most - set, knob.most - set);
+    if (within != estimates[i].value && estimates[i].se > 0.0) {
+      const double beyond = (estimates[i].value - within) / estimates[i].se;
+      estimates[i].top -= 0.5 * scale * beyond * beyond;
+      estimates[i].value = within;
+    }
+    if (knob.systematic != nullptr) {
+      estimates[i].se = std::hypot(estimates[i].se, knob.systematic(drive_, options));
+    }
     estimates[i].score = std::max(estimates[i].gain_to(at), 0.0) / scale;
   }
   return estimates;
 }
 
 Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
-  const double set = knob.value(options);
+  const double set = knob.value(options) - knob.value(stated_);
   while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
     const bool up = bracket.high_value > bracket.low_value;
     const double edge = up ? bracket.high : bracket.low;
@@ -96,6 +104,17 @@ ProfileEstimate Profile::parabola(const Bracket& b, double scale) {
 }
 
 FilterOptions Profile::with_noise_fitted(FilterOptions options, double first_factor) const {
+  // Levels that were fitted before a cause was set can lie where the likelihood is flat (0.01 of the gyroscope's beside
+  // 3.5 times the accelerometer's under a mounting that is 2 deg off), out of reach of the steps from the model's.
+  std::vector<FilterOptions> starts{options, options, options, options};
+  starts[1].gyro_noise = starts[3].gyro_noise = 1.0;
+  starts[2].force_noise = starts[3].force_noise = 1.0;
+  const std::vector<double> of_starts = values(starts);
+  const auto start = std::max_element(of_starts.begin(), of_starts.end()) - of_starts.begin();
+  if (start != 0) {
+    options = starts[static_cast<std::size_t>(start)];
+    first_factor = std::max(first_factor, 2.0);
+  }
   for (const bool gyroscope : {true, false, true}) {
     double step = first_factor;
     double best = values({options}).front();
@@ -148,11 +167,14 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
   SearchResult result;
   result.options = profile.with_noise_fitted(options, 4.0);
   std::vector<const Knob*> named;
-  while (static_cast<int>(named.size()) < most_causes && !control.stop.stop_requested()) {
-    std::vector<const Knob*> open;  // setting one may let another apply
+  const auto is_open = [&](const Knob& knob) {  // setting one may let another apply
+    return std::find(named.begin(), named.end(), &knob) == named.end() &&
+           (knob.applies == nullptr || knob.applies(drive, result.options));
+  };
+  for (int causes = 0; causes < most_causes && !control.stop.stop_requested(); ++causes) {
+    std::vector<const Knob*> open;
     for (const Knob& knob : all_knobs()) {
-      if (std::find(named.begin(), named.end(), &knob) == named.end() &&
-          (knob.applies == nullptr || knob.applies(drive, result.options))) {
+      if (!knob.companion && is_open(knob)) {
         open.push_back(&knob);
       }
     }
@@ -162,9 +184,11 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     std::size_t best = open.size();
     double second = 0.0;
     std::size_t second_at = open.size();
+    const auto is_clear = [&](std::size_t i) {
+      return open[i]->ratio || std::abs(estimates[i].value) >= kSure * estimates[i].se;
+    };
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const bool clear = open[i]->ratio || std::abs(estimates[i].value) >= kSure * estimates[i].se;
-      if (estimates[i].sound && estimates[i].score >= kNamed && clear &&
+      if (estimates[i].sound && estimates[i].score >= kNamed && is_clear(i) &&
           (best == open.size() || estimates[i].score > estimates[best].score)) {
         best = i;
       }
@@ -173,7 +197,7 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
       break;
     }
     for (std::size_t i = 0; i < open.size(); ++i) {
-      if (i != best && open[i]->cause != open[best]->cause && estimates[i].score > second) {
+      if (i != best && open[i]->cause != open[best]->cause && estimates[i].score > second && is_clear(i)) {
         second = estimates[i].score;
         second_at = i;
       }
@@ -187,6 +211,12 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     result.findings.push_back(finding);
     named.push_back(&knob);
     result.options = Profile::turned(result.options, knob, estimates[best].value);
+    for (const Knob& beside : all_knobs()) {
+      if (beside.companion && beside.cause == knob.cause && is_open(beside)) {
+        result.findings.push_back(finding_of(beside));
+        named.push_back(&beside);
+      }
+    }
     result.options = profile.refitted(result.options, named, 1);
     result.options = profile.with_noise_fitted(result.options, 1.3);
   }
@@ -200,9 +230,12 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
   for (std::size_t i = 0; i < named.size(); ++i) {
     const double value = named[i]->value(result.options) - named[i]->value(options);
     result.findings[i].value = named[i]->value(result.options) * named[i]->per_si;
+    if (named[i]->magnitude) {
+      result.findings[i].value = std::abs(result.findings[i].value);
+    }
     result.findings[i].se = last[i].se * named[i]->per_si;
-    const double wanted =
-        std::max(std::abs(named[i]->value(result.options)), std::abs(named[i]->value(result.options) + last[i].value));
+    const double change = named[i]->value(result.options) - named[i]->value(options_of(drive.document));
+    const double wanted = std::max(std::abs(change), std::abs(change + last[i].value));
     result.findings[i].at_bound = wanted > kBound * named[i]->most;
     const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
     result.findings[i].score = std::max((at - without) / scale, 0.0);

@@ -125,7 +125,11 @@ Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::
     return fail(truth.error());
   }
   world.truth_ = std::move(*truth);
-  world.model_ = drive.document.model;
+  world.believed_ = drive.document.model;
+  for (std::size_t c = 0; c < kImuChannels; ++c) {
+    scale_white_noise(world.believed_.axes[c], noise_after_correction(world.options_.errors, c));
+  }
+  world.model_ = world.believed_;
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     scale_white_noise(world.model_.axes[c], even_noise_factor(world.options_, c));
   }
@@ -144,6 +148,7 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
                                            const ReadingErrors& truth_errors) const {
   World world;
   world.drive.document = recorded_->document;
+  world.drive.document.model = believed_;
   world.drive.document.gnss.lever_arm_m = options_.lever_arm_m;
   world.drive.epoch_s = recorded_->epoch_s;
   world.drive.withheld_fixes = recorded_->withheld_fixes;

@@ -54,7 +54,8 @@ class SimulatedWorld {
   const Drive* recorded_ = nullptr;
   Start start_;
   FilterOptions options_;
-  ImuModel model_;
+  ImuModel believed_;  ///< what a filter is told of the unit whose errors are taken off
+  ImuModel model_;     ///< the same with the levels that the options say
   Trajectory truth_;
   Vibration vibration_;
   double start_s_ = 0.0;

@@ -1,6 +1,8 @@
-// Causes put into simulated drives and sought again, and the smoother's path.
+// What causes of drives are made of, and the smoother's path. Hidden ones: drive_hidden_test.cpp.
+#include "core/navigate/drive/motion_power.hpp"
+#include "core/navigate/drive/profile.hpp"
 #include "core/navigate/drive/smoother.hpp"
-#include "tests/unit/navigate/drive_fixture.hpp"
+#include "tests/unit/navigate/drive_injections.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,6 +71,20 @@ TEST(DriveCauses, AValueWhereTheSearchEndsIsSaidToBeOne) {
   EXPECT_FALSE(usual->at_bound) << usual->value;
 }
 
+TEST(DriveCauses, TheBoundIsOnWhatTheDocumentDoesNotSay) {
+  // A stated latency of 3 s was pulled to the 2 s at which the search ended, and everything after it was fitted on
+  // that.
+  Hidden hidden;
+  hidden.velocity_latency_s = 3.05;
+  Drive drive = simulated_drive(31, hidden);
+  drive.document.gnss.velocity_latency_s = 3.0;
+  const SearchResult result = searched(drive, options_of(drive.document));
+  const DriveFinding* const late = found_in(result, "gnss_velocity_latency", "delay_s");
+  ASSERT_NE(late, nullptr) << names_of(result);
+  EXPECT_NEAR(late->value, 3.05, 0.01);
+  EXPECT_FALSE(late->at_bound);
+}
+
 TEST(DriveCauses, AKnobTurnsItsOwnValueAndNoOther) {
   FilterOptions options;
   options.constraint.emplace();
@@ -88,30 +104,59 @@ TEST(DriveCauses, AKnobTurnsItsOwnValueAndNoOther) {
   }
 }
 
-TEST(DriveCauses, NothingIsNamedOnADriveOfItsOwnModel) {
-  const SearchResult result = searched(simulated_drive(31));
-  EXPECT_TRUE(result.findings.empty()) << names_of(result);
+TEST(DriveCauses, AQuietAxisHasNoScaleFactor) {
+  // A phone's gyroscope was said to read 30 to 49 % too much about an axis that hardly turned. There a smaller reading
+  // is a better one, whatever the scale: on a flat road, where the gyroscope turns about down alone, 30 % about y raise
+  // the log likelihood by 16, and by more where the filter believes the noise to stay as it was.
+  const Drive drive = simulated_drive(33);
+  const RunControl control;
+  const Profile profile(drive, {true, true}, control);
+  const FilterOptions none;
+  const double at = profile.values({none}).front();
+  FilterOptions quieter;
+  quieter.errors.gyroscope(1, 1) = 0.3;
+  EXPECT_GT(profile.values({quieter}).front(), at + 5.0);
+  const Knob* const flat = find_knob("gyro_scale_factor_error", "y");
+  const Knob* const turned = find_knob("gyro_scale_factor_error", "z");
+  const auto estimates = profile.estimates(none, at, {flat, turned}, profile.scale(none));
+  EXPECT_GT(estimates[0].se, 0.2);
+  EXPECT_LT(estimates[1].se, 0.01);
+  EXPECT_DOUBLE_EQ(noise_after_correction(none.errors, 1), 1.0);
+  ReadingErrors errors;
+  errors.gyroscope(1, 1) = 0.25;
+  EXPECT_DOUBLE_EQ(noise_after_correction(errors, 1), 0.8);
+  EXPECT_DOUBLE_EQ(noise_after_correction(errors, 2), 1.0);
+  EXPECT_DOUBLE_EQ(noise_after_correction(errors, 4), 1.0);
 }
 
-TEST(DriveCauses, FindsNoiseThatFollowsVibration) {
-  // A third of the time the unit is shaken at 20 Hz, which turns nothing, and its noise is four times as large: what
-  // follows the vibration is 15/3 times the rest. (Value over standard error is 2 to 3 here, though the likelihood is
-  // sure.)
-  Drive drive = simulated_drive(32);
-  Random random(32, 5);
+TEST(DriveCauses, MotionAndNoiseOfAChannelAreToldApart) {
+  Drive drive = simulated_drive(35);
+  const double noise = 0.02 * kDegree;
+  const MotionPower down = motion_power(drive, {}, 2, 1.0);
+  EXPECT_DOUBLE_EQ(down.noise, noise * noise);
+  EXPECT_GT(down.motion, 1e3 * down.noise);
+  Random random(35);
+  for (ImuSample& sample : drive.runs.front().readings) {
+    sample[2] = 0.3 + noise / std::sqrt(drive.runs.front().dt_s) * random.normal();
+  }
+  const MotionPower still = motion_power(drive, {}, 2, 1.0);
+  EXPECT_LT(still.motion, 0.3 * still.noise);
+  FilterOptions doubled;
+  doubled.gyro_noise = 2.0;
+  EXPECT_EQ(motion_power(drive, doubled, 2, 1.0).motion, 0.0);
+  EXPECT_TRUE(std::isinf(scale_of_noise(drive, doubled, 2)));
+}
+
+TEST(DriveCauses, TheArmDownIsNotSoughtOnAFlatRoad) {
+  // Read from the gyroscope's noise it was 1.1 m too high, with a score above 5, on three of eight drives.
+  const Knob& down = *find_knob("gnss_lever_arm", "z");
+  Drive drive = simulated_drive(34);
+  EXPECT_FALSE(down.applies(drive, {}));
   UniformRun& run = drive.runs.front();
   for (std::size_t i = 0; i < run.readings.size(); ++i) {
-    const double time_s = static_cast<double>(i) * run.dt_s;
-    for (std::size_t c = 0; c < 3 && std::fmod(time_s, 60.0) > 40.0; ++c) {
-      run.readings[i][c] += 2.0 * kDegree * std::sin(2.0 * std::numbers::pi * 20.0 * time_s) +
-                            std::sqrt(15.0) * 0.02 * kDegree / std::sqrt(run.dt_s) * random.normal();
-    }
+    run.readings[i][1] += 2.0 * kDegree * std::sin(0.02 * static_cast<double>(i));
   }
-  const SearchResult result = searched(drive);
-  const DriveFinding* const found = found_in(result, "vibration_noise", "gyroscope");
-  ASSERT_NE(found, nullptr) << names_of(result);
-  EXPECT_GT(found->value, 1.0);
-  EXPECT_LT(found->value, 25.0);
+  EXPECT_TRUE(down.applies(drive, {}));
 }
 
 TEST(DriveCauses, VibrationSaysWhenThereIsNoise) {
@@ -133,36 +178,8 @@ TEST(DriveCauses, VibrationSaysWhenThereIsNoise) {
   EXPECT_EQ(vibration.from(2000).at(0), vibration.at(2000));
 }
 
-/// Lasting errors of 0.5 m and 20 s on every position.
-Drive with_lasting_errors(std::uint64_t seed, double sigma_m, double tau_s) {
-  Drive drive = simulated_drive(seed, {}, 6);
-  Random random(seed, 6);
-  Vector3 error = Vector3::Zero();
-  double before = -1e9;
-  for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
-    Fix& fix = drive.fixes[i];
-    const double phi = std::exp(-(fix.time_s - before) / tau_s);
-    before = fix.time_s;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const double sd = sigma_m * (k == 2 ? 1.5 : 1.0);
-      error(k) = phi * error(k) + sd * std::sqrt(1.0 - phi * phi) * random.normal();
-    }
-    fix.position_ecef_m += ned_axes(fix.position_ecef_m) * error;
-    drive.reference[i].position_ecef_m = fix.position_ecef_m;
-  }
-  return drive;
-}
-
-TEST(DriveCauses, FindsLastingErrorsOfPositions) {
-  const SearchResult result = searched(with_lasting_errors(34, 0.5, 20.0));
-  const DriveFinding* const found = found_in(result, "gnss_coloured_noise", "sigma");
-  ASSERT_NE(found, nullptr) << names_of(result);
-  EXPECT_EQ(&result.findings.front(), found) << names_of(result);
-  EXPECT_NEAR(std::abs(found->value), 0.5, 0.25);
-}
-
 TEST(DriveFilter, KnowsItselfUnderLastingErrorsThatItEstimates) {
-  const Drive drive = with_lasting_errors(35, 0.5, 20.0);
+  const Drive drive = with_lasting_errors(35, 0.5, 20.0, 6);
   FilterOptions options;
   options.coloured = {0.5, 20.0};
   const auto with = PreparedDrive::make(drive, options);
@@ -183,19 +200,6 @@ TEST(DriveFilter, KnowsItselfUnderLastingErrorsThatItEstimates) {
   };
   EXPECT_NEAR(mean_square(*with), 1.0, 0.12);
   EXPECT_GT(mean_square(*without), 1.3);
-}
-
-TEST(DriveCauses, FindsAHeadingThatTheDocumentStatesWrongly) {
-  Drive drive = simulated_drive(36);
-  const auto course = find_start(drive, 0);
-  ASSERT_TRUE(course);
-  const Matrix3 axes = ned_axes(course->state.position_ecef_m);
-  drive.document.start.heading_rad =
-      to_euler(Quaternion(axes).conjugate() * course->state.attitude).heading_rad - 40.0 * kDegree;
-  const SearchResult result = searched(drive);
-  const DriveFinding* const found = found_in(result, "initial_heading", "heading");
-  ASSERT_NE(found, nullptr) << names_of(result);
-  EXPECT_NEAR(found->value, 40.0, 8.0);
 }
 
 TEST(DriveCauses, TellsASlipFromAScaleOfTheOdometer) {

@@ -16,16 +16,20 @@ struct Hidden {
   double velocity_latency_s = 0.0;
   Vector3 lever_arm_m = Vector3::Zero();
   ReadingErrors errors = {};
-  double noise_factor = 1.0;  ///< of the gyroscope's white noise
+  double noise_factor = 1.0;        ///< of the gyroscope's white noise
+  double force_noise_factor = 1.0;  ///< of the accelerometer's
+  Vector3 unit_m =
+      Vector3::Zero();     ///< from the point that moves along the nose to the unit; the antenna is at the unit
+  double rate_hz = 100.0;  ///< of the unit
 };
 
-inline ImuModel unit_model(double factor = 1.0) {
+inline ImuModel unit_model(double factor = 1.0, double force_factor = 1.0) {
   ImuModel model;
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const bool gyro = c < 3;
     model.axes[c].bias_sd = gyro ? 0.1 * kDegree : 0.05;
     model.axes[c].processes =
-        ModelSchedule::constant({*make_process("white_noise", {gyro ? 0.02 * kDegree * factor : 2e-3}),
+        ModelSchedule::constant({*make_process("white_noise", {gyro ? 0.02 * kDegree * factor : 2e-3 * force_factor}),
                                  *make_process("random_walk", {gyro ? 2e-5 : 2e-4})});
   }
   return model;
@@ -52,16 +56,36 @@ inline SegmentPlan town_plan(int laps) {
   return plan;
 }
 
-/// 100 Hz readings and 4 Hz fixes of 2 cm and 5 cm/s between two samples each. The document believes `unit_model()`.
+/// Readings of the force at a point `arm` away from where `ideal` has them: f + w' x r + w x (w x r).
+inline void move_unit(std::vector<ImuSample>& ideal, double dt_s, const Vector3& arm) {
+  const auto rate_of = [](const ImuSample& sample) { return Vector3(sample[0], sample[1], sample[2]); };
+  const std::vector<ImuSample> at_point = ideal;
+  for (std::size_t i = 0; i < ideal.size(); ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, ideal.size() - 1);
+    const Vector3 rate = rate_of(at_point[i]);
+    const Vector3 change =
+        (rate_of(at_point[after]) - rate_of(at_point[before])) / (static_cast<double>(after - before) * dt_s);
+    const Vector3 more = change.cross(arm) + rate.cross(rate.cross(arm));
+    for (std::size_t c = 0; c < 3; ++c) {
+      ideal[i][c + 3] += more(static_cast<Eigen::Index>(c));
+    }
+  }
+}
+
+/// Readings (100 Hz where nothing else is asked) and 4 Hz fixes of 2 cm and 5 cm/s between two samples each. The
+/// document believes `unit_model()`.
 inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int laps = 4) {
   const auto motion = make_segment_motion(town_plan(laps));
   EXPECT_TRUE(motion) << motion.error().message;
-  const auto truth = make_trajectory(**motion, 100.0);
+  const auto truth = make_trajectory(**motion, hidden.rate_hz);
   EXPECT_TRUE(truth);
   Drive drive;
   drive.document.id = "simulated";
   drive.document.model = unit_model();
   std::vector<ImuSample> ideal = truth->imu;
+  move_unit(ideal, truth->dt_s, hidden.unit_m);
+  const Vector3 antenna_m = hidden.unit_m + hidden.lever_arm_m;
   for (ImuSample& sample : ideal) {
     const Vector3 rate(sample[0], sample[1], sample[2]);
     const Vector3 force(sample[3], sample[4], sample[5]);
@@ -69,8 +93,10 @@ inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int 
     const Vector3 read_force = force + hidden.errors.accelerometer * force;
     sample = {read_rate.x(), read_rate.y(), read_rate.z(), read_force.x(), read_force.y(), read_force.z()};
   }
-  UniformRun run{0.0, truth->dt_s,
-                 simulate_imu(ideal, truth->dt_s, unit_model(hidden.noise_factor), {}, seed, 0).readings};
+  UniformRun run{
+      0.0, truth->dt_s,
+      simulate_imu(ideal, truth->dt_s, unit_model(hidden.noise_factor, hidden.force_noise_factor), {}, seed, 0)
+          .readings};
   run.start_s = -hidden.imu_offset_s;
   drive.runs.push_back(std::move(run));
   Random noise(seed, 77);
@@ -85,8 +111,8 @@ inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int 
     struct {
       Vector3 position, velocity;
     } antenna{state.position_ecef_m + step * state.velocity_ecef_m_s + 0.5 * step * step * acceleration +
-                  state.attitude * (rotation(step * rate) * hidden.lever_arm_m),
-              state.velocity_ecef_m_s + step * acceleration + state.attitude * rate.cross(hidden.lever_arm_m)};
+                  state.attitude * (rotation(step * rate) * antenna_m),
+              state.velocity_ecef_m_s + step * acceleration + state.attitude * rate.cross(antenna_m)};
     return antenna;
   };
   for (int k = 2; k * 0.25 + 0.5 < 20.0 + 100.0 * laps; ++k) {

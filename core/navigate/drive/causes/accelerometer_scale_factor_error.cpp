@@ -1,6 +1,7 @@
 /// accelerometer_scale_factor_error: the accelerometer reads too much of every force. (Down, a scale is a bias: gravity
 /// hardly varies.)
 #include "core/navigate/drive/causes/cause.hpp"
+#include "core/navigate/drive/motion_power.hpp"
 
 namespace driftlab::drive {
 namespace {
@@ -15,7 +16,8 @@ constexpr Knob force_scale(std::string_view parameter, std::string_view title) {
           .most = 0.3,
           .turn = [](FilterOptions& o, double by) { o.errors.accelerometer(Axis, Axis) += by; },
           .value = [](const FilterOptions& o) { return o.errors.accelerometer(Axis, Axis); },
-          .told_apart = "grows with acceleration along the axis"};
+          .told_apart = "grows with acceleration along the axis",
+          .systematic = [](const Drive& drive, const FilterOptions& o) { return scale_of_noise(drive, o, 3 + Axis); }};
 }
 
 }  // namespace

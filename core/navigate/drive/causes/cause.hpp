@@ -49,7 +49,7 @@ struct Knob {
   std::string_view unit;        ///< lab unit
   double per_si = 1.0;          ///< lab units in one SI unit
   double step = 0.0;            ///< first step of the search, SI
-  double most = 0.0;            ///< beyond this magnitude the cause is not what it is called, and is not sought, SI
+  double most = 0.0;            ///< SI: a change from the document by more is not what the cause is called
   void (*turn)(FilterOptions& options, double by) = nullptr;                    ///< SI
   double (*value)(const FilterOptions& options) = nullptr;                      ///< what the options hold, SI
   bool (*applies)(const Drive& drive, const FilterOptions& options) = nullptr;  ///< null: always
@@ -57,6 +57,13 @@ struct Knob {
   /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the
   /// effect is (at most sqrt(dof / 2)); what the likelihood loses without it decides alone.
   bool ratio = false;
+  /// What an estimate can be off by beside its standard error, SI; part of the error that is stated. Null: nothing.
+  double (*systematic)(const Drive& drive, const FilterOptions& options) = nullptr;
+  /// The sign says nothing: findings have none.
+  bool magnitude = false;
+  /// Fitted as soon as it applies, and found with the cause's first parameter, never before it: what a value of that
+  /// one means without it is another thing.
+  bool companion = false;
 };
 
 /// What the files show of a cause.

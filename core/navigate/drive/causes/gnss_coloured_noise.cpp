@@ -21,7 +21,8 @@ Cause gnss_coloured_noise() {
                      .most = 20.0,
                      .turn = [](FilterOptions& o, double by) { o.coloured.sigma_m += by; },
                      .value = [](const FilterOptions& o) { return o.coloured.sigma_m; },
-                     .told_apart = kColourApart},
+                     .told_apart = kColourApart,
+                     .magnitude = true},
                     {.parameter = "tau_s",
                      .title = "lasting errors of positions last",
                      .unit = "s",
@@ -31,7 +32,8 @@ Cause gnss_coloured_noise() {
                                 double by) { o.coloured.tau_s = std::max(o.coloured.tau_s + by, kShortestColour); },
                      .value = [](const FilterOptions& o) { return o.coloured.tau_s; },
                      .applies = [](const Drive&, const FilterOptions& o) { return !o.coloured.none(); },
-                     .told_apart = kColourApart}}};
+                     .told_apart = kColourApart,
+                     .companion = true}}};
 }
 
 }  // namespace driftlab::drive
