@@ -29,7 +29,7 @@ std::string refusal_of(const std::string& path) {
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return path == "-" || ending == ".svg" || ending == ".png"
              ? ""
-             : "--plot writes .svg and .png, and - draws in the terminal; '" + path + "' ends otherwise.";
+             : "Figures are written as .svg and .png, and - draws them in the terminal; '" + path + "' ends otherwise.";
 }
 
 }  // namespace

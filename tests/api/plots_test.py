@@ -230,7 +230,7 @@ class Plots(DaemonTest):
         self.judge_heights(svg, ratios)
 
     def test_another_ending_and_a_document_without_a_figure_are_one_sentence(self) -> None:
-        for arguments, words in ((("characterise", "1.csv", "--models", "WN", "--plot", "a.jpg"), "--plot writes .svg and .png"),
+        for arguments, words in ((("characterise", "1.csv", "--models", "WN", "--plot", "a.jpg"), "--plot: Figures are written as .svg and .png"),
                                  (("plot", "study.json", "--channel", "gq"), "no figure of 'gq'")):
             done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
             self.assertEqual(done.returncode, 2, done.stdout)
