@@ -116,7 +116,6 @@ void stop_log() {
   spdlog::shutdown();
 }
 
-void log_debug(std::string_view event, const Json& fields) { write(spdlog::level::debug, "debug", event, fields); }
 void log_info(std::string_view event, const Json& fields) { write(spdlog::level::info, "info", event, fields); }
 void log_warning(std::string_view event, const Json& fields) { write(spdlog::level::warn, "warning", event, fields); }
 void log_error(std::string_view event, const Json& fields) { write(spdlog::level::err, "error", event, fields); }

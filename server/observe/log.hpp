@@ -22,7 +22,6 @@ namespace driftlab::server {
 void stop_log();
 
 /// One event. `fields` is an object; `time`, `level` and `event` are added.
-void log_debug(std::string_view event, const Json& fields = Json::object());
 void log_info(std::string_view event, const Json& fields = Json::object());
 void log_warning(std::string_view event, const Json& fields = Json::object());
 void log_error(std::string_view event, const Json& fields = Json::object());
