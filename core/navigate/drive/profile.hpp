@@ -33,6 +33,10 @@ class Profile {
   /// The knobs at the top of the likelihood, one after the other.
   [[nodiscard]] FilterOptions refitted(FilterOptions options, const std::vector<const Knob*>& knobs, int sweeps) const;
 
+  /// By how much options differ from the document in a knob, SI; Knob::most bounds it.
+  [[nodiscard]] double change(const FilterOptions& options, const Knob& knob) const {
+    return knob.value(options) - knob.value(stated_);
+  }
   [[nodiscard]] static FilterOptions turned(const FilterOptions& options, const Knob& knob, double by);
 
  private:
@@ -46,7 +50,7 @@ class Profile {
   const Drive& drive_;
   std::array<bool, LogLikelihood::kFolds> used_;
   const RunControl& control_;
-  FilterOptions stated_;  ///< by the document: Knob::most bounds the change from it
+  FilterOptions stated_;  ///< by the document
 };
 
 }  // namespace driftlab::drive

@@ -51,7 +51,7 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
     const Knob& knob = *knobs[i];
     const Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
     estimates[i] = parabola(stride(options, knob, bracket), scale);
-    const double set = knob.value(options) - knob.value(stated_);
+    const double set = change(options, knob);
     const double within = std::clamp(estimates[i].value, -knob.most - set, knob.most - set);
     if (within != estimates[i].value && estimates[i].se > 0.0) {
       const double beyond = (estimates[i].value - within) / estimates[i].se;
@@ -67,7 +67,7 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
 }
 
 Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
-  const double set = knob.value(options) - knob.value(stated_);
+  const double set = change(options, knob);
   while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
     const bool up = bracket.high_value > bracket.low_value;
     const double edge = up ? bracket.high : bracket.low;
@@ -234,7 +234,7 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
       result.findings[i].value = std::abs(result.findings[i].value);
     }
     result.findings[i].se = last[i].se * named[i]->per_si;
-    const double change = named[i]->value(result.options) - named[i]->value(options_of(drive.document));
+    const double change = profile.change(result.options, *named[i]);
     const double wanted = std::max(std::abs(change), std::abs(change + last[i].value));
     result.findings[i].at_bound = wanted > kBound * named[i]->most;
     const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
