@@ -7,7 +7,7 @@ import type {Duration, Measured} from './documents';
 const SIZE = 420;
 const PAD = 34;
 // By the share of errors that the ellipse through it holds: -2 ln(1 - share) of NEES.
-const CLASSES: readonly (readonly [string, number, string])[] = [['in 50 %', 1.386, 'var(--good)'], ['50 to 95 %', 5.991, 'var(--model)'], ['outside', Infinity, 'var(--robust)']];
+const CLASSES: readonly (readonly [string, number, string])[] = [['in 50 %', 1.386, 'var(--good)'], ['more in 95 %', 5.991, 'var(--model)'], ['outside', Infinity, 'var(--robust)']];
 
 export function Where({of, path}: {of: Duration; path: Measured['path']}): JSX.Element {
   const north = of.outages.map(outage => outage.map_m[0] ?? 0);
@@ -34,6 +34,6 @@ export function Where({of, path}: {of: Duration; path: Measured['path']}): JSX.E
         <ellipse cx={cx} cy={cy} rx={radius(middle + more)} ry={radius(middle - more)} transform={`rotate(${-Math.atan2(2 * ne, ee - nn) * 90 / Math.PI} ${cx} ${cy})`} /></g>;
     })}
     <path class="ax" d={`M20,${height - 14}v-5v5h${bar * scale}v-5`} /><text x={20 + bar * scale / 2} y={height - 22} text-anchor="middle">{writeTick(bar)} m</text>
-    {CLASSES.map(([name,, colour], k) => <text key={name} x={150 + 82 * k} y={height - 16} style={{fill: colour}}>{counts[k]} {name}</text>)}<text x={SIZE - 10} y={height - 16} text-anchor="end">N ↑</text>
+    {CLASSES.map(([name,, colour], k) => <text key={name} x={[140, 210, 318][k]} y={height - 16} style={{fill: colour}}>{counts[k]} {name}</text>)}<text x={SIZE - 10} y={height - 16} text-anchor="end">N ↑</text>
   </svg>;
 }
