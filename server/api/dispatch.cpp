@@ -3,10 +3,9 @@
 #include "server/api/documents.hpp"
 #include "server/http/compression.hpp"
 #include "server/http/guard.hpp"
+#include "server/http/names.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
-
-#include <boost/beast/core/string.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -33,8 +32,8 @@ Response run_handler(const Handler& handler, const Request& request) {
 /// application/json, application/merge-patch+json and their like; parameters such as charset do not matter.
 bool is_json(std::string_view content_type) {
   const std::string_view type = trimmed(content_type.substr(0, content_type.find(';')));
-  const bool suffixed = type.size() > 5 && boost::beast::iequals(type.substr(type.size() - 5), "+json");
-  return suffixed || boost::beast::iequals(type, "application/json");
+  const bool suffixed = type.size() > 5 && same_name(type.substr(type.size() - 5), "+json");
+  return suffixed || same_name(type, "application/json");
 }
 
 bool is_reading(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }

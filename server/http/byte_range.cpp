@@ -1,8 +1,7 @@
 #include "server/http/byte_range.hpp"
 
 #include "core/signal/text.hpp"
-
-#include <boost/beast/core/string.hpp>
+#include "server/http/names.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -28,7 +27,7 @@ WantedBytes wanted_bytes(const Request& request, std::uint64_t size, std::string
   const auto range = request.header("range");
   const auto condition = request.header("if-range");
   if (request.method != "GET" || !range || (condition && trimmed(*condition) != etag) ||
-      !boost::beast::iequals(range->substr(0, kUnit.size()), kUnit)) {
+      !same_name(range->substr(0, kUnit.size()), kUnit)) {
     return whole;
   }
   const std::string_view wanted = trimmed(range->substr(kUnit.size()));

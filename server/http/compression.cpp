@@ -2,8 +2,8 @@
 
 #include "core/signal/number.hpp"
 #include "core/signal/text.hpp"
+#include "server/http/names.hpp"
 
-#include <boost/beast/core/string.hpp>
 #include <zlib.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ bool takes_gzip(const Request& request) {
   const std::string_view accepted = request.header("accept-encoding").value_or("");
   for (const std::string_view entry : split(accepted, ',')) {
     const std::vector<std::string_view> parts = split(entry, ';');
-    if (!boost::beast::iequals(trimmed(parts.front()), "gzip")) {
+    if (!same_name(trimmed(parts.front()), "gzip")) {
       continue;
     }
     for (const std::string_view part : parts) {

@@ -1,9 +1,9 @@
 #include "server/http/forwarded.hpp"
 
 #include "core/signal/text.hpp"
+#include "server/http/names.hpp"
 
 #include <boost/asio/ip/address.hpp>
-#include <boost/beast/core/string.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -52,7 +52,7 @@ std::optional<std::string> address_of(std::string_view node) {
 std::optional<std::string> address_in(std::string_view element) {
   for (const std::string_view pair : split(element, ';')) {
     const std::size_t equals = pair.find('=');
-    if (equals != std::string_view::npos && boost::beast::iequals(trimmed(pair.substr(0, equals)), "for")) {
+    if (equals != std::string_view::npos && same_name(trimmed(pair.substr(0, equals)), "for")) {
       return address_of(trimmed(pair.substr(equals + 1)));
     }
   }

@@ -1,6 +1,6 @@
 #include "server/http/guard.hpp"
 
-#include <boost/beast/core/string.hpp>
+#include "server/http/names.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -123,7 +123,7 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
     } else if (name == "sec-fetch-site") {
       site = value;
     } else if (name == "transfer-encoding") {
-      if (head.version != 11 || !boost::beast::iequals(value, "chunked")) {
+      if (head.version != 11 || !same_name(value, "chunked")) {
         return refuse(HttpFault::LengthRequired,
                       "Of transfer codings an upload takes chunked in HTTP/1.1; other bodies need Content-Length.");
       }
@@ -134,7 +134,7 @@ GuardVerdict inspect(const HeadView& head, const GuardLimits& limits) {
         return refuse(HttpFault::BadRequest, "Content-Length must be a whole number of bytes.");
       }
     } else if (name == "expect") {
-      if (!boost::beast::iequals(value, "100-continue")) {
+      if (!same_name(value, "100-continue")) {
         return refuse(HttpFault::BadRequest, "The only expectation that is met is 100-continue.");
       }
       verdict.expects_continue = true;

@@ -2,8 +2,8 @@
 
 #include "core/signal/number.hpp"
 #include "core/signal/text.hpp"
+#include "server/http/names.hpp"
 
-#include <boost/beast/core/string.hpp>
 #include <boost/url/pct_string_view.hpp>
 
 #include <algorithm>
@@ -14,15 +14,15 @@ namespace {
 
 /// How specifically a media range names a type: 3 exact, 2 type/*, 1 */*, 0 not at all.
 int specificity(std::string_view range, std::string_view type) {
-  if (boost::beast::iequals(range, type)) {
+  if (same_name(range, type)) {
     return 3;
   }
   if (range == "*/*") {
     return 1;
   }
   const std::size_t slash = type.find('/');
-  const bool family = range.size() == slash + 2 && range.ends_with("/*") &&
-                      boost::beast::iequals(range.substr(0, slash), type.substr(0, slash));
+  const bool family =
+      range.size() == slash + 2 && range.ends_with("/*") && same_name(range.substr(0, slash), type.substr(0, slash));
   return family ? 2 : 0;
 }
 
@@ -68,8 +68,7 @@ std::optional<std::string_view> Request::parameter(std::string_view name) const 
 }
 
 bool Response::has_header(std::string_view name) const {
-  return std::any_of(headers.begin(), headers.end(),
-                     [&](const auto& header) { return boost::beast::iequals(header.first, name); });
+  return std::any_of(headers.begin(), headers.end(), [&](const auto& header) { return same_name(header.first, name); });
 }
 
 std::optional<std::chrono::seconds> preferred_wait(const Request& request) {

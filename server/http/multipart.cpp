@@ -1,8 +1,7 @@
 #include "server/http/multipart.hpp"
 
 #include "core/signal/text.hpp"
-
-#include <boost/beast/core/string.hpp>
+#include "server/http/names.hpp"
 
 #include <algorithm>
 
@@ -20,7 +19,7 @@ std::optional<std::string> header_parameter(std::string_view header, std::string
   for (const std::string_view piece : split(header, ';')) {
     const std::string_view entry = trimmed(piece);
     const std::size_t equals = entry.find('=');
-    if (equals == std::string_view::npos || !boost::beast::iequals(trimmed(entry.substr(0, equals)), key)) {
+    if (equals == std::string_view::npos || !same_name(trimmed(entry.substr(0, equals)), key)) {
       continue;
     }
     std::string_view value = trimmed(entry.substr(equals + 1));
@@ -36,8 +35,7 @@ std::optional<std::string> header_parameter(std::string_view header, std::string
 std::string_view disposition_in(std::string_view header) {
   for (std::string_view line : split(header, '\n')) {
     const std::size_t colon = line.find(':');
-    if (colon != std::string_view::npos &&
-        boost::beast::iequals(trimmed(line.substr(0, colon)), "content-disposition")) {
+    if (colon != std::string_view::npos && same_name(trimmed(line.substr(0, colon)), "content-disposition")) {
       if (!line.empty() && line.back() == '\r') {
         line.remove_suffix(1);
       }
@@ -50,7 +48,7 @@ std::string_view disposition_in(std::string_view header) {
 }  // namespace
 
 std::optional<std::string> multipart_boundary(std::string_view content_type) {
-  if (!boost::beast::iequals(trimmed(split(content_type, ';').front()), "multipart/form-data")) {
+  if (!same_name(trimmed(split(content_type, ';').front()), "multipart/form-data")) {
     return std::nullopt;
   }
   auto boundary = header_parameter(content_type, "boundary");
