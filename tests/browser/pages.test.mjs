@@ -224,8 +224,9 @@ test('a device’s page leads to its comparison and exports its model as the com
   const {items: recordings} = await daemon.json('/v1/recordings?device=phone-07');
   for (const recording of recordings) {
     const about = attention.find(one => one.recording === recording.id);
-    const words = await page.locator('.list-of-recordings tr', {hasText: recording.metadata.id}).innerText();
-    assert.ok(words.includes(about ? about.verdict : 'fits'), words);
+    const row = page.locator('.list-of-recordings tr', {hasText: recording.metadata.id});
+    // What is to be looked at comes after the list of recordings: until then the row says an ellipsis.
+    await row.filter({hasText: about ? about.verdict : 'fits'}).waitFor();
   }
   assert.ok(attention.some(one => one.recording) && recordings.length > attention.filter(one => one.recording).length, 'both kinds are there');
   await page.getByRole('button', {name: 'Export model'}).click();
