@@ -1,28 +1,21 @@
 #include "server/api/record_blob.hpp"
 
-#include "core/analysis/unit_notes.hpp"
+#include "core/analysis/survey_recording.hpp"
 #include "core/read/format.hpp"
-#include "core/read/open_recording.hpp"
 #include "core/read/trace_pyramid.hpp"
-#include "core/signal/channel_survey.hpp"
-#include "core/signal/full_scale.hpp"
-#include "core/signal/recording_columns.hpp"
-#include "schema/json/measured_temperature.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/recording_survey.hpp"
 #include "server/api/documents.hpp"
 #include "server/api/stored_blob.hpp"
 #include "server/jobs/recording_calibration.hpp"
 #include "server/jobs/stored_recordings.hpp"
 #include "server/store/crash_point.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <span>
 #include <stop_token>
 #include <thread>
 
@@ -148,117 +141,20 @@ Error naming_patch(Error error) {
   return error;
 }
 
-/// Whether nothing in the file is said to be a sensor: fixes or a reference of a drive, which are not characterised.
-bool holds_only_fixes(const RecordingSpec& spec) {
-  return spec.condition.kind == ConditionKind::Drive && !spec.columns.empty() &&
-         std::none_of(spec.columns.begin(), spec.columns.end(),
-                      [](const auto& column) { return is_sensor(column.second.quantity); });
-}
-
-/// The quality of such a recording: its columns are those of the file.
-Result<std::string> quality_of_fixes(const RecordingSpec& spec, const std::filesystem::path& columns) {
-  const auto file = ColumnFile::open(columns);
-  if (!file) {
-    return fail(file.error());
-  }
-  const auto read = RecordingColumns::read(spec, file->names(), [&](std::size_t i) { return file->column(i); });
-  if (!read) {
-    return fail(read.error());
-  }
-  Quality quality;
-  quality.samples = file->rows();
-  quality.notes.emplace_back("No column is a sensor: the recording is for drives, and nothing in it is characterised.");
-  return to_text(driftlab::to_json(quality));
-}
-
-/// The longest gaps of the analysed part, the earlier of equal ones, in order of their rows.
-std::vector<Gap> longest_of(std::vector<Gap> gaps) {
-  constexpr std::size_t kTold = 64;  // more than a screen can tell apart
-  const auto end = gaps.begin() + static_cast<std::ptrdiff_t>(std::min(gaps.size(), kTold));
-  std::partial_sort(gaps.begin(), end, gaps.end(), [](const Gap& a, const Gap& b) {
-    return a.missing != b.missing ? a.missing > b.missing : a.row < b.row;
-  });
-  gaps.erase(end, gaps.end());
-  std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.row < b.row; });
-  return gaps;
-}
-
-/// Where a channel holds numbers that are no measurements: the first stretches of them, in order of their rows.
-Json implausible_in(const std::string& column, std::span<const double> values) {
-  constexpr std::size_t kTold = 64;  // more than a screen can tell apart
-  Json stretches = Json::array();
-  std::size_t next = 0;
-  for (const std::size_t row : survey_channel(column, values).unsound) {
-    if (std::isnan(values[row])) {
-      continue;
-    }
-    if (!stretches.empty() && row == next) {
-      stretches.back()["samples"] = stretches.back()["samples"].get<std::size_t>() + 1;
-    } else if (stretches.size() < kTold) {
-      stretches.push_back(Json{{"row", row + 1}, {"samples", 1}});
-    } else {
-      break;
-    }
-    next = row + 1;
-  }
-  return stretches;
-}
-
-/// The quality with how warm the recording was and what a drawing of the samples marks: where the longest gaps are,
-/// what is no measurement, and the ends of the range.
-Json quality_of(const OpenRecording& opened, const RecordingSpec& spec) {
-  Json quality = driftlab::to_json(opened.view.window.quality);
-  if (const auto temperature = measured_temperature(spec, opened.columns.names(), opened.view,
-                                                    [&](std::size_t index) { return opened.columns.column(index); })) {
-    quality["temperature"] = driftlab::to_json(*temperature);
-  }
-  for (const Gap& gap : longest_of(opened.view.window.gaps)) {
-    quality["longest_gaps"].push_back(Json{{"row", gap.row + 1}, {"missing", gap.missing}});
-  }
-  const auto or_null = [](const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); };
-  const auto& names = opened.columns.names();
-  for (Json& channel : quality["channels"]) {
-    const auto named = std::find(names.begin(), names.end(), channel.at("column").get<std::string>());
-    if (named == names.end()) {
-      continue;
-    }
-    const auto values = opened.columns.column(static_cast<std::size_t>(named - names.begin()));
-    if (channel.at("saturated").get<std::size_t>() > 0) {
-      const Rails rails = find_rails(*named, values);
-      channel["rails"] = Json::array({or_null(rails.low), or_null(rails.high)});
-    }
-    if (channel.at("implausible").get<std::size_t>() > 0) {
-      channel["implausible_at"] = implausible_in(*named, values);
-    }
-  }
-  return quality;
-}
-
 }  // namespace
 
 Result<std::string> surveyed_quality(ApiContext& context, const std::filesystem::path& columns,
                                      const RecordingSpec& spec, const Device& device) {
-  const bool calibrated = !spec.calibration.empty();
-  if (!calibrated && holds_only_fixes(spec)) {
-    return quality_of_fixes(spec, columns);
-  }
-  auto opened = open_recording(columns, spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  add_unit_notes(opened->view, opened->columns, spec, hardware_of(device));
-  std::string quality = to_text(quality_of(*opened, spec));
-  if (!calibrated) {
-    return quality;
-  }
   auto calibration = calibration_of(context.store, spec, device.id);
   if (!calibration) {
     return fail(calibration.error());
   }
-  if (auto applied = apply_calibration(*calibration, opened->view); !applied) {
-    return fail(applied.error());
+  const std::vector<std::string> hardware = hardware_of(device);
+  const auto survey = survey_recording({columns, spec, std::move(*calibration), hardware});
+  if (!survey) {
+    return fail(survey.error());
   }
-  return quality;
+  return to_text(driftlab::to_json(*survey));
 }
 
 Result<Response> record_blob(ApiContext& context, IncomingBlob& blob, const UploadMetadata& metadata) {

@@ -59,6 +59,11 @@ ABOVE_USE_CASES = ("server/jobs", "server/api", "server", "clients/cli")
 CAMPAIGN_DOORS = {"core/campaign/" + name for name in (
     "glance.hpp", "parameter_table.hpp", "population_report.hpp", "sensor_sources.hpp",
     "regression/kept_settings.hpp", "regression/recordings.hpp")}
+# Of core/signal these: the types of a recording, errors, progress, and how a number or a sentence is written. How columns
+# are read, times laid on a grid and channels surveyed is for the use cases to ask.
+SIGNAL_DOORS = {"core/signal/" + name for name in (
+    "angle.hpp", "condition.hpp", "decimated_trace.hpp", "find_column.hpp", "number.hpp", "progress.hpp", "quantity.hpp",
+    "recording.hpp", "result.hpp", "text.hpp", "with_count.hpp")}
 
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.
 RESERVED = {
@@ -130,6 +135,8 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
             fault(match.start(2), f"{module} may not include {included}: {target} is not below it")
         if module in ABOVE_USE_CASES and target == "core/campaign" and included not in CAMPAIGN_DOORS:
             fault(match.start(2), f"{module} may not include {included}: it is arithmetic of core/campaign")
+        if module in ABOVE_USE_CASES and target == "core/signal" and included not in SIGNAL_DOORS:
+            fault(match.start(2), f"{module} may not include {included}: it is arithmetic of core/signal")
         if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
             fault(match.start(2), f"include {included} by its path from the top of the repository")
         if module == "schema/json" and name not in WRITE_NUMBERS and included in COMPUTING_HEADERS:

@@ -61,6 +61,7 @@ class Floors(Planted):
                     ("server/jobs/a.hpp", "server/http/request.hpp"), ("server/http/a.hpp", "server/api/routes.hpp"),
                     ("server/api/a.hpp", "clients/cli/client.hpp"),
                     ("server/jobs/a.cpp", "core/fit/gmwm.hpp"), ("server/jobs/a.cpp", "core/investigate/search/search.hpp"),
+                    ("server/api/a.cpp", "core/signal/channel_survey.hpp"),
                     ("server/jobs/a.cpp", "core/campaign/replicates.hpp"), ("clients/cli/a.cpp", "core/campaign/structure.hpp"),
                     ("server/jobs/a.cpp", "core/read/format.hpp"), ("server/api/a.cpp", "core/calibrate/triad.hpp"),
                     ("clients/cli/a.cpp", "core/navigate/outage_runs.hpp"), ("clients/cli/a.cpp", "core/variance/allan.hpp"),
