@@ -127,4 +127,16 @@ Json to_json(const Model& model, Dimension channel) {
   return list;
 }
 
+Json to_si_json(const Model& model) {
+  Json list = Json::array();
+  for (const Process& process : model) {
+    Json params = Json::object();
+    for (std::size_t i = 0; i < process.parameters.size(); ++i) {
+      params[std::string(process.kind->parameters[i].name)] = process.parameters[i];
+    }
+    list.push_back(Json{{"process", process.kind->name}, {"params", std::move(params)}});
+  }
+  return list;
+}
+
 }  // namespace driftlab

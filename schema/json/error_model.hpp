@@ -24,4 +24,7 @@ namespace driftlab {
 /// In the units engineers use.
 [[nodiscard]] Json to_json(const Model& model, Dimension channel);
 
+/// Numbers alone, in SI, to the last bit.
+[[nodiscard]] Json to_si_json(const Model& model);
+
 }  // namespace driftlab

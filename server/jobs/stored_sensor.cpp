@@ -1,15 +1,13 @@
 #include "server/jobs/stored_sensor.hpp"
 
-#include "core/process/registry.hpp"
+#include "core/analysis/modelled_sensor.hpp"
 #include "core/signal/angle.hpp"
+#include "schema/json/error_model.hpp"
 #include "schema/json/simulation_model.hpp"
 
-#include <algorithm>
 #include <array>
-#include <map>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 namespace driftlab::server {
 namespace {
@@ -35,88 +33,15 @@ Place place_of(const std::string& pointer) {
   return place;
 }
 
-using investigate::Baseline;
-
-bool knows(const Baseline& model, const std::string& column) {
-  return model.by_channel.count(column) > 0 || model.bias.count(column) > 0 || model.drift.count(column) > 0;
-}
-
-/// The column of one axis; empty where the model does not tell channels apart, nothing where it is not clear.
-std::optional<std::string> column_of(const Baseline& model, const std::string& named, const Place& place,
-                                     std::size_t axis) {
-  if (!named.empty()) {
-    return knows(model, named) ? std::optional(named) : std::nullopt;
-  }
-  std::string usual(place.gyro ? "g" : "f");
-  usual.append(kAxes[axis]);
-  if (knows(model, usual)) {
-    return usual;
-  }
-  if (model.by_channel.empty()) {
-    return std::string();
-  }
-  return model.by_channel.size() == 1 ? std::optional(model.by_channel.begin()->first) : std::nullopt;
-}
-
-double value_of(const std::map<std::string, double>& by_column, const std::string& column) {
-  const auto own = by_column.find(column);
-  return own == by_column.end() ? 0.0 : own->second;
-}
-
-/// Processes of the column with their numbers in SI, its drift as one of them. A fault where they are of another
-/// quantity than the sensor's.
-Json processes_of(const Baseline& model, const std::string& column, const Place& place, const std::string& pointer,
-                  Faults& faults) {
-  const auto own = model.by_channel.find(column);
-  const bool apart = own != model.by_channel.end();
-  const Quantity quantity = apart ? model.quantity_by_channel.at(column) : model.quantity;
-  if (quantity != Quantity::Unspecified && quantity != (place.gyro ? Quantity::AngularRate : Quantity::SpecificForce)) {
-    faults.add(pointer, ErrorCode::UnitMismatch,
-               std::string("The model describes ") + (place.gyro ? "an accelerometer" : "a gyroscope") +
-                   ", and this is " + (place.gyro ? "a gyroscope." : "an accelerometer."));
-  }
-  driftlab::Model all = apart ? own->second : model.processes;
-  if (const double drift = value_of(model.drift, column); drift != 0.0) {
-    all.push_back({find_process("linear_drift"), {drift}});
-  }
-  Json processes = Json::array();
-  for (const Process& process : all) {
-    Json params = Json::object();
-    for (std::size_t k = 0; k < process.parameters.size(); ++k) {
-      params[std::string(process.kind->parameters[k].name)] = process.parameters[k];
-    }
-    processes.push_back(Json{{"process", process.kind->name}, {"params", std::move(params)}});
-  }
-  return processes;
-}
-
-/// Names of what the scenario cannot hold of the columns in use.
-void leave_out(const Baseline& model, const std::vector<std::string>& columns, bool biased, const Place& place,
-               const std::string& id, const std::string& pointer, StoredSensors& found) {
-  Json what = Json::array();
-  for (const investigate::GivenEffect& effect : model.effects) {
-    const std::vector<std::string>& channels = effect.channels;
-    const bool here = channels.empty() || std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
-                        return column.empty() || std::find(channels.begin(), channels.end(), column) != channels.end();
-                      });
-    if (here) {
-      what.push_back(effect.cause);
-    }
-  }
-  if (biased && !place.truth) {
-    what.push_back("bias");
-  }
-  if (!what.empty()) {
-    constexpr std::string_view kScenario = "/inputs/scenario";
-    std::string where = pointer.starts_with(kScenario) ? pointer.substr(kScenario.size()) : pointer;
-    found.left_out.push_back(Json{{"where", std::move(where)}, {"simulation_model", id}, {"what", std::move(what)}});
-  }
+std::string within_scenario(const std::string& pointer) {
+  constexpr std::string_view kScenario = "/inputs/scenario";
+  return pointer.starts_with(kScenario) ? pointer.substr(kScenario.size()) : pointer;
 }
 
 /// The stored model `id`; empty after a fault at `pointer` (there is none, or it cannot be read). The error is the
 /// store's.
-Result<std::optional<Baseline>> stored_model(const std::string& id, Store& store, const std::string& pointer,
-                                             Faults& faults) {
+Result<std::optional<investigate::Baseline>> stored_model(const std::string& id, Store& store,
+                                                          const std::string& pointer, Faults& faults) {
   auto stored = store.model(id);
   if (!stored && stored.error().code != ErrorCode::NotFound) {
     return fail(stored.error());
@@ -127,7 +52,7 @@ Result<std::optional<Baseline>> stored_model(const std::string& id, Store& store
     return std::nullopt;
   }
   Faults within;
-  Baseline model = simulation_model_from_json(*document, "", within);
+  investigate::Baseline model = simulation_model_from_json(*document, "", within);
   if (!within.none()) {
     faults.add(pointer, within.error());
     return std::nullopt;
@@ -150,38 +75,36 @@ Status resolve_simulation_model(Json& sensor, const std::string& pointer, Store&
   if (!stored) {
     return fail(stored.error());
   }
-  const auto& held = *stored;
-  if (!held) {
+  if (!*stored) {
     return {};
   }
-  const Baseline& model = *held;
+  ScenarioSensor asked{place.gyro, place.truth, {0, 1, 2}, named};
+  if (place.axis < kAxes.size()) {
+    asked.axes = {place.axis};
+  }
+  const auto made = sensor_of_model(**stored, asked);
+  if (!made) {
+    faults.add(made.error().code == ErrorCode::UnitMismatch ? pointer : pointer + "/channel", made.error());
+    return {};
+  }
   Json axes = Json::object();
-  std::vector<std::string> columns;
-  bool biased = false;
-  for (std::size_t k = place.axis < 3 ? place.axis : 0; k < (place.axis < 3 ? place.axis + 1 : 3); ++k) {
-    const auto column = column_of(model, named, place, k);
-    if (!column) {
-      faults.add(pointer + "/channel", named.empty() ? ErrorCode::InvalidArgument : ErrorCode::NotFound,
-                 named.empty() ? "The model tells channels apart; name the one that is meant."
-                               : "The model has no channel '" + named + "'.");
-      return {};
-    }
-    Json axis{{"processes", processes_of(model, *column, place, pointer, faults)}};
+  for (const ModelledAxis& one : made->axes) {
+    Json axis{{"processes", to_si_json(one.processes)}};
     if (bias_sd) {
       axis[bias_member] = *bias_sd;
     }
-    const double bias = value_of(model.bias, *column) / (place.gyro ? kDegree : 1.0);  // [deg/s] or [m/s^2]
-    biased = biased || bias != 0.0;
-    if (place.truth && bias != 0.0) {
+    if (place.truth && one.bias != 0.0) {
       Json& list = found.truth_bias[place.gyro ? "gyro_errors" : "accelerometer_errors"];
       list = list.is_null() ? Json{0.0, 0.0, 0.0} : list;
-      list[k] = bias;
+      list[one.axis] = one.bias / (place.gyro ? kDegree : 1.0);
     }
-    columns.push_back(*column);
-    axes[kAxes[k]] = std::move(axis);
+    axes[kAxes[one.axis]] = std::move(axis);
   }
-  leave_out(model, columns, biased, place, id, pointer, found);
-  sensor = place.axis < 3 ? Json(axes[kAxes[place.axis]]) : std::move(axes);
+  if (!made->left_out.empty()) {
+    found.left_out.push_back(
+        Json{{"where", within_scenario(pointer)}, {"simulation_model", id}, {"what", made->left_out}});
+  }
+  sensor = place.axis < kAxes.size() ? Json(axes[kAxes[place.axis]]) : std::move(axes);
   return {};
 }
 

@@ -43,7 +43,7 @@ FLOORS: dict[str, list[str]] = {
     "server/store": ["core/signal"],
     "server/observe": ["core/signal", "server/store", "schema/json"],
     "server/auth": SERVER,
-    "server/jobs": [*RESULTS, "core/process", *SERVER],  # core/process: the units of parameters
+    "server/jobs": [*RESULTS, *SERVER],
     "server/http": [*SERVER, "server/auth", "schema/json"],
     "server/webhooks": SERVER,
     "server/api": [*RESULTS, "core/read", *SERVER, "server/auth", "server/jobs", "server/http", "server/webhooks"],
