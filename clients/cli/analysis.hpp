@@ -4,7 +4,7 @@
 #include "clients/cli/input.hpp"
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/remote_job.hpp"
-#include "core/analysis/characterise.hpp"
+#include "core/analysis/characterise_campaign.hpp"
 
 namespace driftlab::cli {
 

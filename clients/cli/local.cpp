@@ -21,26 +21,19 @@ tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const Charac
     return tl::unexpected(Failure{files.error(), Exit::BadInput});
   }
   ProgressBar bar;
-  const RunControl work{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, 0.9 * f); }};
-  const auto found = characterise(**files, options, work);
+  const RunControl control{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }};
+  const auto found = characterise_campaign(**files, options, control);
   if (!found) {
     const Exit exit = found.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
     return tl::unexpected(Failure{found.error(), exit});
   }
   std::vector<Json> recordings;
-  for (const CharacterisedRecording& recording : *found) {
+  for (const CharacterisedRecording& recording : found->recordings) {
     recordings.push_back(to_json(recording));
   }
   Json document = characterisation_document(std::move(recordings));
   document["study"] = inputs.study;
-  const RunControl control{interrupt_token(),
-                           [&](std::string_view stage, double f) { bar.show(stage, 0.9 + 0.1 * f); }};
-  const auto summary = summarise_campaign(inputs.device, sensors_of(*found), control);
-  if (!summary) {
-    const Exit exit = summary.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
-    return tl::unexpected(Failure{summary.error(), exit});
-  }
-  add_summary(document, *summary);
+  add_summary(document, found->together);
   return document;
 }
 

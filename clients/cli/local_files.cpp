@@ -27,7 +27,7 @@ Result<SourceRecording> LocalFiles::open(std::size_t index, const RunControl& co
       return fail(std::move(checked.error()));
     }
   }
-  return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes), inputs_.hardware};
+  return SourceRecording{file.spec, std::move(*columns), std::move(decoded->notes), inputs_.hardware, inputs_.device};
 }
 
 Error LocalFiles::located(std::size_t index, Error error) const {

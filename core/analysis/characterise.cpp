@@ -65,6 +65,7 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
         characterise_recording(recording->spec, std::move(*view), *calibration, options, part_of(part, opened, 1.0));
     if (found_one) {
       found_one->temperature = std::move(temperature);
+      found_one->device = recording->device;
     }
     return found_one;
   };
@@ -78,7 +79,8 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
   return found;
 }
 
-std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings) {
+std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings,
+                                      const ResultName& result_name) {
   std::vector<SensorSources> sensors;
   for (const CharacterisedRecording& recording : recordings) {
     for (const CharacterisedChannel& channel : recording.channels) {
@@ -86,7 +88,8 @@ std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>&
       const auto quality = std::find_if(known.begin(), known.end(),
                                         [&](const ChannelQuality& one) { return one.column == channel.column; });
       add_source(sensors, {recording.spec.id, to_text(without_heading(recording.spec.condition)),
-                           reported(channel.column, channel.role, channel.result), "",
+                           reported(channel.column, channel.role, channel.result),
+                           result_name ? result_name(recording.spec.id, channel.column) : std::string(),
                            quality == known.end() ? 0 : quality->frozen});
     }
   }

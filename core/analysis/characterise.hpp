@@ -11,6 +11,7 @@
 #include "core/fit/characterise.hpp"
 #include "core/signal/measured_temperature.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct CharacterisedRecording {
   Window window;                                        ///< time base and quality
   std::optional<MeasuredTemperature> temperature = {};  ///< where the recording has a column of it
   std::vector<CharacterisedChannel> channels;
+  std::string device = {};  ///< name of the device, as its source has it
 };
 
 /// One recording from its view. Progress runs over its channels. Errors: those of apply_calibration; those of
@@ -44,8 +46,13 @@ struct CharacterisedRecording {
                                                                        const CharacteriseOptions& options,
                                                                        const RunControl& control);
 
+/// The id under which whoever asks will store the result of a recording's column: rows of tables and members of pooled
+/// axes then name it.
+using ResultName = std::function<std::string(const std::string& recording, const std::string& column)>;
+
 /// Their channels by sensor axis, in order of appearance: what a campaign's summary is made of
 /// (core/campaign/campaign_summary.hpp).
-[[nodiscard]] std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings);
+[[nodiscard]] std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings,
+                                                    const ResultName& result_name = {});
 
 }  // namespace driftlab

@@ -22,6 +22,7 @@ struct SourceRecording {
   std::vector<std::string> notes;  ///< what its decoding had to say; empty where that was said elsewhere
   /// Texts that describe the device, in which its sensor may be named, most telling first.
   std::vector<std::string> hardware = {};
+  std::string device = {};  ///< name of the device
 };
 
 class RecordingSource {

@@ -3,20 +3,21 @@
 ///
 /// `inputs`: {"recordings": ["rec_..."]}, 1 to 100 of them, or {"study": "stu_..."}. `parameters`: {"models": ["WN",
 /// ...], "seed": 1}, both optional.
-#include "core/analysis/characterise.hpp"
-
-#include "schema/json/characterisation.hpp"
 #include "schema/json/characterise.hpp"
+
+#include "core/analysis/characterise_campaign.hpp"
+#include "schema/json/campaign_summary.hpp"
+#include "schema/json/characterisation.hpp"
 #include "server/jobs/job_kind.hpp"
-#include "server/jobs/own_summary.hpp"
 #include "server/jobs/stored_recordings.hpp"
+
+#include <map>
+#include <utility>
 
 namespace driftlab::server {
 namespace {
 
 constexpr std::size_t kMostRecordings = 100;
-/// Of the progress; the rest is for what the recordings say together.
-constexpr double kRecordingsShare = 0.9;
 
 /// Ids of the recordings asked for, without repeats, in the order given.
 std::vector<std::string> listed_ids(const Json& list, Faults& faults) {
@@ -75,6 +76,8 @@ Result<Inputs> read_inputs(const Json& document, JobContext& context, Faults& fa
   }
   return inputs;
 }
+
+using ResultIds = std::map<std::pair<std::string, std::string>, std::string>;  ///< by recording and column
 
 /// The compiler's view of the machine: results name it, because other instruction sets may round differently.
 std::string_view instruction_set() {
@@ -148,22 +151,23 @@ class Characterise final : public JobKind {
       one.name = one.id;
     }
     StoredRecordings recordings(context.store, context.blobs, std::move(wanted), context.verify_columns);
-    const auto found = characterise(recordings, options, part_of(control, 0.0, kRecordingsShare));
+    ResultIds ids;
+    const auto named = [&](const std::string& recording, const std::string& column) {
+      return ids.try_emplace({recording, column}, make_id("chr", context.clock.now())).first->second;
+    };
+    const auto found = characterise_campaign(recordings, options, control, named);
     if (!found) {
       return fail(found.error());
     }
     JobResults results;
     std::vector<Json> documents;
-    for (std::size_t i = 0; i < found->size(); ++i) {
-      documents.push_back(to_json((*found)[i]));
-      collect(recordings.row(i), documents.back(), options, context, results);
+    for (std::size_t i = 0; i < found->recordings.size(); ++i) {
+      documents.push_back(to_json(found->recordings[i]));
+      collect(recordings.row(i), documents.back(), options, context, named, results);
     }
     Json document = characterisation_document(std::move(documents));
     document["study"] = request["inputs"].value("study", Json());
-    const RunControl last = part_of(control, kRecordingsShare, 1.0);
-    if (auto added = add_own_summary(document, *found, context, last, results); !added) {
-      return fail(added.error());
-    }
+    add_summary(document, found->together);
     results.document_json = to_text(document);
     return results;
   }
@@ -171,7 +175,7 @@ class Characterise final : public JobKind {
  private:
   /// Rows for the store: one per channel and one per fit.
   static void collect(const Recording& recording, const Json& document, const CharacteriseOptions& options,
-                      JobContext& context, JobResults& results) {
+                      JobContext& context, const ResultName& named, JobResults& results) {
     Json settings = to_json(options);
     settings["algorithm_version"] = kAlgorithmVersion;
     settings["instruction_set"] = instruction_set();
@@ -179,11 +183,11 @@ class Characterise final : public JobKind {
     const UtcMicros now = context.clock.now();
     for (const Json& channel : document["channels"]) {
       ChannelResult row;
-      row.id = make_id("chr", now);
       row.device_id = recording.device_id;
       row.recording_id = recording.id;
       row.recording_revision = recording.revision;
       row.channel = channel["channel"].get<std::string>();
+      row.id = named(row.recording_id, row.channel);
       row.quantity = channel["quantity"].get<std::string>();
       row.axis = channel["axis"].is_string() ? channel["axis"].get<std::string>() : "";
       row.condition = recording.condition;

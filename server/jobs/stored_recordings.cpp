@@ -66,7 +66,11 @@ Result<SourceRecording> StoredRecordings::open(std::size_t index, const RunContr
     spec.id = wanted.name;
   }
   rows_[index] = std::move(*row);
-  return SourceRecording{std::move(spec), std::move(*columns), {}, hardware_of(store_, rows_[index].device_id)};
+  const auto device = store_.device(rows_[index].device_id);
+  if (!device) {
+    return fail(device.error());
+  }
+  return SourceRecording{std::move(spec), std::move(*columns), {}, hardware_of(*device), device->name};
 }
 
 Result<Calibration> StoredRecordings::calibration(std::size_t index) {

@@ -24,8 +24,9 @@ class FileSource final : public RecordingSource {
   ~FileSource() override { std::filesystem::remove_all(folder_); }
 
   /// A file of these bytes under what its user says about it.
-  void add(const RecordingSpec& spec, const std::string& bytes) {
+  void add(const RecordingSpec& spec, const std::string& bytes, const std::string& device = "imu-07") {
     specs_.push_back(spec);
+    devices_.push_back(device);
     std::ofstream(path(specs_.size() - 1), std::ios::binary) << bytes;
   }
 
@@ -36,7 +37,7 @@ class FileSource final : public RecordingSource {
     if (!columns) {
       return fail(columns.error());
     }
-    return SourceRecording{specs_[index], std::move(*columns), std::move(decoded->notes)};
+    return SourceRecording{specs_[index], std::move(*columns), std::move(decoded->notes), {}, devices_[index]};
   }
   [[nodiscard]] Result<Calibration> calibration(std::size_t /*index*/) override { return Calibration{}; }
   [[nodiscard]] Error located(std::size_t index, Error error) const override {
@@ -48,6 +49,7 @@ class FileSource final : public RecordingSource {
 
   std::filesystem::path folder_;
   std::vector<RecordingSpec> specs_;
+  std::vector<std::string> devices_;
 };
 
 }  // namespace driftlab
