@@ -78,12 +78,12 @@ Result<ModelledSensor> sensor_of_model(const Baseline& model, const ScenarioSens
   bool biased = false;
   for (const std::size_t axis : sensor.axes) {
     const auto column = column_of(model, sensor, axis);
+    if (!column && sensor.column.empty()) {
+      return fail(ErrorCode::InvalidArgument, "The model tells channels apart; name the one that is meant.",
+                  {{"parameter", "channel"}});
+    }
     if (!column) {
-      return sensor.column.empty()
-                 ? fail(ErrorCode::InvalidArgument, "The model tells channels apart; name the one that is meant.",
-                        {{"parameter", "channel"}})
-                 : fail(ErrorCode::NotFound, "The model has no channel '" + sensor.column + "'.",
-                        {{"parameter", "channel"}});
+      return fail(ErrorCode::NotFound, "The model has no channel '" + sensor.column + "'.", {{"parameter", "channel"}});
     }
     auto processes = processes_of(model, *column, sensor.gyro);
     if (!processes) {
