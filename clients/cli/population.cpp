@@ -4,6 +4,7 @@
 #include "clients/cli/json_file.hpp"
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
+#include "core/analysis/compare_devices.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/text/population.hpp"
 
@@ -23,8 +24,8 @@ struct PopulationFlags {
   std::string format = "text";
 };
 
-/// The tables by Allan variance of a document that `characterise --json` wrote; the device has the file's name.
-Status add_tables(const std::string& file, const std::string& sensor, std::vector<ParameterTable>& tables) {
+/// The device of a document that `characterise --json` wrote; it has the file's name.
+Result<DeviceSensors> device_of(const std::string& file) {
   const auto document = read_json_file(file, "what `driftlab characterise --json` wrote, one for each device");
   if (!document) {
     return fail(document.error());
@@ -34,30 +35,25 @@ Status add_tables(const std::string& file, const std::string& sensor, std::vecto
     return fail(ErrorCode::InvalidArgument,
                 file + " is no result of `driftlab characterise --json`; make one for each device.");
   }
-  const auto sensors = sensors_of(*document);
+  auto sensors = sensors_of(*document);
   if (!sensors) {
     return fail(sensors.error());
   }
-  const std::string device = std::filesystem::path(file).stem().string();
-  for (const SensorSources& one : *sensors) {
-    const Quantity quantity = parse_quantity(one.quantity).value_or(Quantity::Unspecified);
-    const bool wanted = quantity != Quantity::Unspecified && (sensor.empty() || sensor == sensor_of(quantity));
-    if (auto table = build_parameter_table({device, quantity, one.axis, TableMethod::Av, ""}, one.sources);
-        table && wanted) {
-      tables.push_back(std::move(*table));
-    }
-  }
-  return {};
+  return DeviceSensors{std::filesystem::path(file).stem().string(), std::move(*sensors)};
 }
 
 Exit run_here(const PopulationFlags& flags) {
-  std::vector<ParameterTable> tables;
+  std::vector<DeviceSensors> devices;
   for (const std::string& file : flags.files) {
-    if (auto added = add_tables(file, flags.sensor, tables); !added) {
-      return complain(added.error());
+    auto device = device_of(file);
+    if (!device) {
+      return complain(device.error());
     }
+    devices.push_back(std::move(*device));
   }
-  const PopulationReport report = describe_populations(flags.model.empty() ? "these devices" : flags.model, tables);
+  const auto wanted = quantity_of_sensor(flags.sensor);
+  const PopulationReport report = compare_devices(flags.model.empty() ? "these devices" : flags.model, devices,
+                                                  wanted ? std::optional(*wanted) : std::nullopt);
   return write_text("", flags.format == "json"       ? to_json(report).dump(2) + "\n"
                         : flags.format == "csv"      ? populations_to_csv(report)
                         : flags.format == "markdown" ? populations_to_markdown(report)

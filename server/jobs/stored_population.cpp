@@ -1,7 +1,6 @@
 #include "server/jobs/stored_population.hpp"
 
-#include "server/jobs/stored_recordings.hpp"
-#include "server/jobs/stored_table.hpp"
+#include "server/jobs/axis_sources.hpp"
 
 #include <utility>
 
@@ -30,23 +29,24 @@ Result<std::vector<Device>> devices_of_model(Store& store, const std::string& mo
   }
 }
 
-/// The tables of a device by Allan variance. Axes without results have none.
-Status add_tables(Store& store, const Device& device, std::optional<Quantity> wanted,
-                  std::vector<ParameterTable>& tables) {
+/// What is stored of a device's gyroscope and accelerometer, axis by axis.
+Result<DeviceSensors> sensors_of(Store& store, const Device& device, std::optional<Quantity> wanted) {
+  DeviceSensors found{device.name, {}};
   for (const Quantity quantity : {Quantity::AngularRate, Quantity::SpecificForce}) {
     for (const char* const axis : {"x", "y", "z"}) {
       if (wanted && *wanted != quantity) {
         continue;
       }
-      auto stored = stored_table(store, {device.id, std::string(sensor_of(quantity)), axis, "av", ""});
-      if (stored) {
-        tables.push_back(std::move(stored->table));
-      } else if (stored.error().code != ErrorCode::NotFound && stored.error().code != ErrorCode::InvalidArgument) {
-        return fail(stored.error());
+      const std::string name(driftlab::name_of(quantity));
+      const auto results = store.axis_results({device.id, name, axis});
+      auto sources = results ? sources_of(*results) : fail(results.error());
+      if (!sources) {
+        return fail(sources.error());
       }
+      found.sensors.push_back({name, axis, std::move(*sources)});
     }
   }
-  return {};
+  return found;
 }
 
 }  // namespace
@@ -61,13 +61,15 @@ Result<PopulationReport> stored_populations(Store& store, const std::string& mod
                 "No device has the model or IMU '" + model +
                     "'; say it of your devices with PATCH /v1/devices/{id} and \"model\" or \"imu\".");
   }
-  std::vector<ParameterTable> tables;
+  std::vector<DeviceSensors> sensors;
   for (const Device& device : *devices) {
-    if (auto added = add_tables(store, device, quantity, tables); !added) {
-      return fail(added.error());
+    auto found = sensors_of(store, device, quantity);
+    if (!found) {
+      return fail(found.error());
     }
+    sensors.push_back(std::move(*found));
   }
-  return describe_populations(model, tables);
+  return compare_devices(model, sensors, quantity);
 }
 
 }  // namespace driftlab::server

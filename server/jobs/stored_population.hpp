@@ -1,6 +1,6 @@
 #pragma once
-/// The populations of a model (core/campaign/population_report.hpp) from stored results.
-#include "core/campaign/population_report.hpp"
+/// The populations of a model (core/analysis/compare_devices.hpp) from stored results.
+#include "core/analysis/compare_devices.hpp"
 #include "server/store/store.hpp"
 
 #include <optional>
