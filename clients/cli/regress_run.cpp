@@ -43,24 +43,18 @@ Result<regression::Recordings> compared(const std::string& label, const std::vec
   return arm;
 }
 
-/// Ids of an arm's recordings: what makes two runs the same look.
-std::string content_of(const std::vector<StoredRecording>& stored) {
+std::vector<std::string> ids_of(const std::vector<StoredRecording>& stored) {
   std::vector<std::string> ids;
   for (const StoredRecording& one : stored) {
     ids.push_back(one.document.value("id", ""));
   }
-  std::sort(ids.begin(), ids.end());
-  std::string content;
-  for (const std::string& id : ids) {
-    content += (content.empty() ? "" : " ") + id;
-  }
-  return content;
+  return ids;
 }
 
 /// The run with everything that the state adds to it.
 struct Prepared {
   RegressRequest request;
-  std::string content;
+  std::vector<std::string> candidate;  ///< ids of its recordings
 };
 
 Result<std::vector<StoredRecording>> baseline_of(WrittenRegression& run, RegressState& state, ResultReader& reader) {
@@ -105,19 +99,14 @@ Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultRead
   const bool counted = state.kept() && !run.candidate.label.empty();
   std::vector<std::string> earlier;
   if (counted) {
-    if (run.candidate.label == run.baseline.label) {
-      return fail(ErrorCode::InvalidArgument,
-                  "Baseline and candidate have the same label, " + run.baseline.label + ".");
+    if (Status differ = check_arms_differ(run.baseline.label, run.candidate.label); !differ) {
+      return fail(differ.error());
     }
-    for (const std::string& label : state.labels()) {
-      if (label != run.candidate.label && label != run.baseline.label) {
-        earlier.push_back(label);
-      }
-    }
+    earlier = state.history().releases(run.baseline.label, run.candidate.label);
     state.add(run.candidate.label, *candidate);
     *candidate = state.recordings(run.candidate.label);
-    prepared.content = content_of(*candidate);
-    prepared.request.look.number = state.look_of(run.candidate.label, prepared.content);
+    prepared.candidate = ids_of(*candidate);
+    prepared.request.look.number = state.look(run.candidate.label, prepared.candidate);
   }
   prepared.request.look.of = run.looks;
   prepared.request.look.counted = counted;
@@ -147,10 +136,7 @@ Result<Prepared> prepare(WrittenRegression& run, RegressState& state, ResultRead
     }
   }
   if (!earlier.empty()) {
-    const std::vector<std::string> known = state.labels();
-    const auto place = std::find(known.begin(), known.end(), run.baseline.label);
-    request.before_baseline = static_cast<std::size_t>(
-        std::count_if(known.begin(), place, [&](const std::string& label) { return label != run.candidate.label; }));
+    request.before_baseline = state.history().before(earlier, run.baseline.label);
     prepared.request.previous = request.history.back();
   }
   for (const WrittenArm& release : run.history) {
@@ -190,7 +176,8 @@ Exit accept(const RegressFlags& flags) {
   }
   if (!state->has(flags.accept)) {
     std::string known;
-    for (const std::string& label : state->labels()) {
+    const RegressionHistory history = state->history();
+    for (const std::string& label : history.labels()) {
       known += (known.empty() ? "" : ", ") + label;
     }
     return complain({ErrorCode::NotFound,
@@ -274,7 +261,7 @@ Exit run_regress(const RegressFlags& flags) {
     return complain_of_work(report.error());
   }
   if (prepared->request.look.counted) {
-    state->add_run(run->candidate.label, prepared->content, *report);
+    state->add_run(run->candidate.label, prepared->candidate, *report);
   }
   if (state->kept()) {
     if (auto saved = state->save(); !saved) {

@@ -63,6 +63,16 @@ const Json* find_label(const Json& document, const std::string& label) {
   return nullptr;
 }
 
+/// The ids of a run's candidate as the file keeps them, one text: ids may hold spaces, so it is compared as a whole.
+std::string content_of(std::vector<std::string> ids) {
+  std::sort(ids.begin(), ids.end());
+  std::string content;
+  for (const std::string& id : ids) {
+    content += (content.empty() ? "" : " ") + id;
+  }
+  return content;
+}
+
 }  // namespace
 
 Result<RegressState> RegressState::open(const std::string& path) {
@@ -106,12 +116,15 @@ std::optional<regression::Settings> RegressState::kept_settings() const {
 
 bool RegressState::has(const std::string& label) const { return find_label(document_, label) != nullptr; }
 
-std::vector<std::string> RegressState::labels() const {
-  std::vector<std::string> labels;
+RegressionHistory RegressState::history() const {
+  RegressionHistory history;
   for (const Json& known : document_["labels"]) {
-    labels.push_back(known.value("label", ""));
+    history.name(known.value("label", ""));
   }
-  return labels;
+  for (const Json& run : document_["runs"]) {
+    history.add_run(run["label"].get<std::string>(), {run["content"].get<std::string>()});
+  }
+  return history;
 }
 
 std::vector<StoredRecording> RegressState::recordings(const std::string& label) const {
@@ -156,19 +169,12 @@ std::string RegressState::last_pass() const {
   return label;
 }
 
-std::size_t RegressState::look_of(const std::string& label, const std::string& content) const {
-  std::vector<std::string> seen;
-  for (const Json& run : document_["runs"]) {
-    const std::string before = run.value("content", "");
-    if (run.value("label", "") == label && std::find(seen.begin(), seen.end(), before) == seen.end()) {
-      seen.push_back(before);
-    }
-  }
-  const auto same = std::find(seen.begin(), seen.end(), content);
-  return static_cast<std::size_t>(same - seen.begin()) + 1;
+std::size_t RegressState::look(const std::string& label, std::vector<std::string> recordings) const {
+  return history().look(label, {content_of(std::move(recordings))});
 }
 
-void RegressState::add_run(const std::string& label, const std::string& content, const RegressReport& report) {
+void RegressState::add_run(const std::string& label, std::vector<std::string> recordings, const RegressReport& report) {
+  const std::string content = content_of(std::move(recordings));
   document_["runs"].push_back(Json{{"label", label},
                                    {"baseline", report.report.baseline.label},
                                    {"content", content},

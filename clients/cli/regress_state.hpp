@@ -1,6 +1,7 @@
 #pragma once
 /// What a regression gate remembers without a server, in one JSON file: the anchor with its settings, the stored
 /// results of every label, and the runs made of them, from which looks are counted.
+#include "core/analysis/regression_history.hpp"
 #include "schema/json/regression.hpp"
 
 #include <optional>
@@ -28,17 +29,18 @@ class RegressState {
   /// What the anchor keeps of the settings; nothing in a state of before it did.
   [[nodiscard]] std::optional<regression::Settings> kept_settings() const;
   [[nodiscard]] bool has(const std::string& label) const;
-  /// Labels in the order in which they came.
-  [[nodiscard]] std::vector<std::string> labels() const;
+  /// Labels in the order in which they came, and the runs made of them.
+  [[nodiscard]] RegressionHistory history() const;
   [[nodiscard]] std::vector<StoredRecording> recordings(const std::string& label) const;
   /// Adds recordings to a label; those whose id it has already stay as they are.
   void add(const std::string& label, const std::vector<StoredRecording>& recordings);
   /// The last label with a run that passed; empty: none.
   [[nodiscard]] std::string last_pass() const;
 
-  /// The number of the look that a run over these recordings is: a run over the same recordings is the same look.
-  [[nodiscard]] std::size_t look_of(const std::string& label, const std::string& content) const;
-  void add_run(const std::string& label, const std::string& content, const RegressReport& report);
+  /// The number of the look that a run over the recordings of these ids is (core/analysis/regression_history.hpp).
+  [[nodiscard]] std::size_t look(const std::string& label, std::vector<std::string> recordings) const;
+  /// Remembers a run over the recordings of these ids.
+  void add_run(const std::string& label, std::vector<std::string> recordings, const RegressReport& report);
 
   /// Writes the file: whole or not at all. Error: Io.
   [[nodiscard]] Status save() const;

@@ -113,10 +113,8 @@ class PinnedArms {
   /// arm. Errors: those of the store.
   [[nodiscard]] Result<Json> earlier_releases(const WrittenArm& baseline, const WrittenArm& candidate) const {
     Json releases = Json::array();
-    for (const std::string& label : memory_.labels()) {
-      auto found = label == baseline.label || label == candidate.label
-                       ? Result<std::vector<WrittenRecording>>(std::vector<WrittenRecording>{})
-                       : memory_.recordings(label, "/inputs/history");
+    for (const std::string& label : memory_.history().releases(baseline.label, candidate.label)) {
+      auto found = memory_.recordings(label, "/inputs/history");
       if (!found) {
         return fail(found.error());
       }
@@ -150,13 +148,12 @@ class PinnedArms {
   Faults& faults_;
 };
 
-/// How many of the releases came before the baseline, in the order in which runs named them.
-std::size_t releases_before(const Json& releases, const RegressionMemory& memory, const std::string& baseline) {
-  const auto& order = memory.labels();
-  const auto place = std::find(order.begin(), order.end(), baseline);
-  return static_cast<std::size_t>(std::count_if(releases.begin(), releases.end(), [&](const Json& release) {
-    return std::find(order.begin(), place, release["label"].get<std::string>()) != place;
-  }));
+std::vector<std::string> labels_of(const Json& arms) {
+  std::vector<std::string> labels;
+  for (const Json& arm : arms) {
+    labels.push_back(arm["label"].get<std::string>());
+  }
+  return labels;
 }
 
 }  // namespace
@@ -171,9 +168,8 @@ Result<Json> pinned_inputs(WrittenRegression& written, const Device& device, con
     }
   }
   const std::string& label = written.candidate.label;
-  if (!label.empty() && label == written.baseline.label) {
-    faults.add("/inputs/candidate", ErrorCode::InvalidArgument,
-               "Baseline and candidate have the same label, " + label + ".");
+  if (const Status differ = check_arms_differ(written.baseline.label, label); !differ) {
+    faults.add("/inputs/candidate", differ.error());
   }
   Json inputs{{"device", device.id},
               {"device_name", device.name},
@@ -193,7 +189,7 @@ Result<Json> pinned_inputs(WrittenRegression& written, const Device& device, con
       return fail(releases.error());
     }
     if (!releases->empty()) {
-      inputs["before_baseline"] = releases_before(*releases, memory, written.baseline.label);
+      inputs["before_baseline"] = memory.history().before(labels_of(*releases), written.baseline.label);
       inputs["previous"] = releases->size() - 1;
     }
     inputs["history"] = std::move(*releases);

@@ -101,7 +101,7 @@ class Regress final : public JobKind {
     }
     const bool counted = !written.candidate.label.empty();
     const std::size_t look =
-        counted ? memory->look(written.candidate.label, regressed_ids((*canonical)["candidate"])) : 1;
+        counted ? memory->history().look(written.candidate.label, regressed_ids((*canonical)["candidate"])) : 1;
     if (const auto share = look_share({look, written.looks, counted}); !share) {
       return fail(share.error());
     }

@@ -28,7 +28,6 @@ std::vector<std::string> regressed_ids(const Json& arm) {
   for (const Json& recording : arm["recordings"]) {
     ids.push_back(recording["recording"].get<std::string>());
   }
-  std::sort(ids.begin(), ids.end());
   return ids;
 }
 
@@ -42,41 +41,36 @@ Result<RegressionMemory> RegressionMemory::of(Store& store, const Device& device
     if (label.empty()) {
       return;
     }
-    if (std::find(memory.labels_.begin(), memory.labels_.end(), label) == memory.labels_.end()) {
-      memory.labels_.push_back(label);
-    }
+    memory.history_.name(label);
     for (const std::string& id : regressed_ids(arm)) {
       memory.named_[label].insert(id);
     }
   };
-  const Status read = for_each_row(
-      [&](const Page& page) { return store.jobs(filter, page); },
-      [&](const Job& job) {
-        const auto request = parse_json(job.request_json);
-        const bool stands =
-            job.state == JobState::Queued || job.state == JobState::Running || job.state == JobState::Succeeded;
-        if (!stands || !request) {
-          return;
-        }
-        const Json& inputs = (*request)["inputs"];
-        for (const Json& release : inputs.value("history", Json::array())) {
-          note(release);
-        }
-        note(inputs["baseline"]);
-        note(inputs["candidate"]);
-        const std::string candidate = inputs["candidate"].value("label", "");
-        if (memory.first_baseline_.empty()) {
-          memory.first_baseline_ = inputs["baseline"].value("label", "");
-          memory.first_settings_ = (*request)["parameters"];
-        }
-        if (job.state == JobState::Succeeded) {
-          memory.succeeded_.push_back(job.id);
-        }
-        auto& looks = memory.looked_[candidate];
-        if (auto ids = regressed_ids(inputs["candidate"]); std::find(looks.begin(), looks.end(), ids) == looks.end()) {
-          looks.push_back(std::move(ids));
-        }
-      });
+  const Status read = for_each_row([&](const Page& page) { return store.jobs(filter, page); },
+                                   [&](const Job& job) {
+                                     const auto request = parse_json(job.request_json);
+                                     const bool stands = job.state == JobState::Queued ||
+                                                         job.state == JobState::Running ||
+                                                         job.state == JobState::Succeeded;
+                                     if (!stands || !request) {
+                                       return;
+                                     }
+                                     const Json& inputs = (*request)["inputs"];
+                                     for (const Json& release : inputs.value("history", Json::array())) {
+                                       note(release);
+                                     }
+                                     note(inputs["baseline"]);
+                                     note(inputs["candidate"]);
+                                     const std::string candidate = inputs["candidate"].value("label", "");
+                                     if (memory.first_baseline_.empty()) {
+                                       memory.first_baseline_ = inputs["baseline"].value("label", "");
+                                       memory.first_settings_ = (*request)["parameters"];
+                                     }
+                                     if (job.state == JobState::Succeeded) {
+                                       memory.succeeded_.push_back(job.id);
+                                     }
+                                     memory.history_.add_run(candidate, regressed_ids(inputs["candidate"]));
+                                   });
   return read ? Result<RegressionMemory>(std::move(memory)) : fail(read.error());
 }
 
@@ -158,7 +152,7 @@ Result<std::vector<WrittenRecording>> RegressionMemory::recordings(const std::st
 }
 
 Result<std::string> RegressionMemory::unknown_label(const std::string& label) const {
-  std::set<std::string> known(labels_.begin(), labels_.end());
+  std::set<std::string> known(history_.labels().begin(), history_.labels().end());
   RecordingFilter filter;
   filter.device_id = device_.id;
   const Status read = for_each_row(
@@ -180,15 +174,6 @@ Result<std::string> RegressionMemory::unknown_label(const std::string& label) co
   }
   return "No recording of " + device_.name + " has the label " + label +
          "; labels of this device: " + (list.empty() ? "none" : list) + ".";
-}
-
-std::size_t RegressionMemory::look(const std::string& label, const std::vector<std::string>& ids) const {
-  const auto looks = looked_.find(label);
-  if (looks == looked_.end()) {
-    return 1;
-  }
-  return static_cast<std::size_t>(std::find(looks->second.begin(), looks->second.end(), ids) - looks->second.begin()) +
-         1;
 }
 
 }  // namespace driftlab::server

@@ -2,6 +2,7 @@
 /// What the server remembers of regression runs of one device: which recordings a label means, the anchor, the last
 /// label that passed, the releases before, and how many looks a candidate has had (spec/regression.md, sections 2 and
 /// 8).
+#include "core/analysis/regression_history.hpp"
 #include "schema/json/regression.hpp"
 #include "server/store/store.hpp"
 
@@ -16,7 +17,7 @@ namespace driftlab::server {
 
 inline constexpr std::string_view kRegressKind = "regress";
 
-/// The ids of the recordings of an arm of a pinned request, sorted: equal for equal looks.
+/// The ids of the recordings of an arm of a pinned request.
 [[nodiscard]] std::vector<std::string> regressed_ids(const Json& arm);
 
 /// The runs of a device that stand: queued, running or succeeded.
@@ -24,8 +25,7 @@ class RegressionMemory {
  public:
   [[nodiscard]] static Result<RegressionMemory> of(Store& store, const Device& device);
 
-  /// Labels of arms in the order in which runs first named them.
-  [[nodiscard]] const std::vector<std::string>& labels() const { return labels_; }
+  [[nodiscard]] const RegressionHistory& history() const { return history_; }
   /// The label that was made the baseline last; until somebody does, the first baseline that had one. Empty: none.
   [[nodiscard]] Result<std::string> anchor() const;
   /// What goes with the anchor of the settings: those that were kept when it was moved, else those of the run that made
@@ -39,20 +39,17 @@ class RegressionMemory {
                                                                  const std::string& pointer) const;
   /// "No recording of imu-07 has the label …; labels of this device: …".
   [[nodiscard]] Result<std::string> unknown_label(const std::string& label) const;
-  /// The number of the look that a run over these candidates (sorted ids) is: the same recordings are the same look.
-  [[nodiscard]] std::size_t look(const std::string& label, const std::vector<std::string>& ids) const;
 
  private:
   RegressionMemory(Store& store, const Device& device) : store_(&store), device_(device) {}
 
   Store* store_;
   Device device_;
-  std::vector<std::string> labels_;
+  RegressionHistory history_;
   std::string first_baseline_;
-  Json first_settings_ = nullptr;                                        ///< of the run that named it
-  std::vector<std::string> succeeded_;                                   ///< ids of runs, oldest first
-  std::map<std::string, std::set<std::string>> named_;                   ///< recordings by label
-  std::map<std::string, std::vector<std::vector<std::string>>> looked_;  ///< candidates by label, each set once
+  Json first_settings_ = nullptr;                       ///< of the run that named it
+  std::vector<std::string> succeeded_;                  ///< ids of runs, oldest first
+  std::map<std::string, std::set<std::string>> named_;  ///< recordings by label
 };
 
 }  // namespace driftlab::server
