@@ -3,6 +3,8 @@
 #include "schema/json/measured_temperature.hpp"
 #include "schema/json/recording_spec.hpp"
 
+#include <algorithm>
+
 namespace driftlab {
 
 Json to_json(const RecordingSurvey& survey) {
@@ -25,6 +27,34 @@ Json to_json(const RecordingSurvey& survey) {
     }
   }
   return document;
+}
+
+SurveyedChannel surveyed_channel_from_json(const Json& quality, const std::string& column) {
+  SurveyedChannel found;
+  const Json none = Json::array();
+  const auto row_of = [](const Json& place) { return place.at("row").get<std::size_t>() - 1; };
+  for (const Json& gap : quality.value("longest_gaps", none)) {
+    found.longest_gaps.push_back({row_of(gap), gap.at("missing").get<std::size_t>()});
+  }
+  const Json channels = quality.value("channels", none);
+  const auto own = std::find_if(channels.begin(), channels.end(),
+                                [&](const Json& channel) { return channel.value("column", "") == column; });
+  if (own == channels.end()) {
+    return found;
+  }
+  if (own->value("frozen", std::size_t{0}) > 0 && own->value("frozen_from", Json()).is_number()) {
+    found.frozen = {own->at("frozen_from").get<std::size_t>() - 1, own->at("frozen").get<std::size_t>()};
+  }
+  for (const Json& wrong : own->value("implausible_at", none)) {
+    found.implausible.push_back({row_of(wrong), wrong.at("samples").get<std::size_t>()});
+  }
+  if (const auto rails = own->find("rails"); rails != own->end() && rails->is_array()) {
+    const auto value = [](const Json& rail) {
+      return rail.is_number() ? std::optional(rail.get<double>()) : std::nullopt;
+    };
+    found.rails = {value(rails->at(0)), value(rails->at(1))};
+  }
+  return found;
 }
 
 }  // namespace driftlab

@@ -62,7 +62,7 @@ CAMPAIGN_DOORS = {"core/campaign/" + name for name in (
 # Of core/signal these: the types of a recording, errors, progress, and how a number or a sentence is written. How columns
 # are read, times laid on a grid and channels surveyed is for the use cases to ask.
 SIGNAL_DOORS = {"core/signal/" + name for name in (
-    "angle.hpp", "condition.hpp", "decimated_trace.hpp", "find_column.hpp", "number.hpp", "progress.hpp", "quantity.hpp",
+    "angle.hpp", "condition.hpp", "find_column.hpp", "number.hpp", "progress.hpp", "quantity.hpp",
     "recording.hpp", "result.hpp", "text.hpp", "with_count.hpp")}
 
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.
