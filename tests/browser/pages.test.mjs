@@ -263,9 +263,12 @@ async function hashesOf(name) {
 
 test('a report on paper has verdict, figures, method, seeds and versions, and none of the controls', async () => {
   const page = await open(browser, daemon, '/');
+  // A report asks for paper by itself, once its figures are there. The browser prints one thing at a time, so it is counted here instead.
+  await page.addInitScript(() => { window.asked = 0; window.print = () => { window.asked += 1; }; });
   const most = {device: 2, recording: 1, investigation: 12, outage: 5, regression: 3, population: 4, 'drive-simulate': 5, 'drive-explain': 6};
   for (const [name, pages] of Object.entries(most)) {
     await page.goto(`${daemon.address}${paths[name]}?print=1`, {waitUntil: 'domcontentloaded'});
+    await page.waitForFunction(() => window.asked === 1);
     await settled(page);
     await page.emulateMedia({media: 'print'});
     // Figures are drawn as wide as they are on paper, not shrunk to it: their text is as large as that around them. The one sheet of a
