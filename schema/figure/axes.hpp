@@ -22,4 +22,19 @@ namespace driftlab::figure {
 /// From zero to a little beyond the greatest value.
 [[nodiscard]] Axis axis_from_zero(std::string name, double greatest);
 
+/// Along y all curves of a plot, those without intervals or marks too, with room of half as much again at both ends of
+/// a logarithmic axis. Values that are not positive are passed over; without any the axis stays as it is.
+void frame_by_curves(Plot& plot);
+
+/// A map: one length for a unit of both linear axes, and all curves within them. About the middle of the curves, with
+/// 4 % of the longer side as margin (0.04 where they are shorter than 1); the shorter side is widened, the height to at
+/// least 0.4 of the width and the width to at least the height. A plot without a value stays as it is.
+void frame_as_map(Plot& plot);
+
+/// The greatest value or upper end of an interval of a series, and at least 0.
+[[nodiscard]] double greatest_of(const Series& series);
+
+/// The greatest x of a series that has one.
+[[nodiscard]] double farthest_of(const Series& series);
+
 }  // namespace driftlab::figure

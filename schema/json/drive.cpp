@@ -1,5 +1,6 @@
 #include "schema/json/drive.hpp"
 
+#include "core/navigate/drive/outage_map.hpp"
 #include "core/signal/angle.hpp"
 
 #include <array>
@@ -58,17 +59,12 @@ Json growth_json(const drive::ErrorGrowth& growth) {
               {"median_m", numbers(growth.median_m)}, {"p95_m", numbers(growth.p95_m)}};
 }
 
-/// The way of the drive for a map: every so many points of the reference, its last one among them.
 Json path_json(const drive::Drive& drive) {
-  constexpr std::size_t kMost = 500;
-  const std::size_t step = drive.reference.size() / kMost + 1;
   Json north = Json::array();
   Json east = Json::array();
-  for (std::size_t i = 0; i < drive.reference.size(); i += step) {
-    const bool last = i + step >= drive.reference.size();
-    const Vector3 place = drive.on_map((last ? drive.reference.back() : drive.reference[i]).position_ecef_m);
-    north.push_back(number(place.x()));
-    east.push_back(number(place.y()));
+  for (const drive::MapPlace& place : drive::way_of(drive)) {
+    north.push_back(number(place[1]));
+    east.push_back(number(place[0]));
   }
   return Json{{"north_m", std::move(north)}, {"east_m", std::move(east)}};
 }

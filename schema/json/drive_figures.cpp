@@ -3,12 +3,12 @@
 #include "core/navigate/drive/outage_map.hpp"
 #include "core/signal/significant.hpp"
 #include "core/signal/with_count.hpp"
+#include "schema/figure/axes.hpp"
 #include "schema/figure/layout.hpp"
 #include "schema/json/figure_values.hpp"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 namespace driftlab {
@@ -92,29 +92,12 @@ const Json* of_duration(const Json& list, const Json& duration_s) {
   return found == list.end() ? nullptr : &*found;
 }
 
-/// All curves, not those with marks alone, and a simulation far below them too.
-void frame_errors(Plot& plot) {
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (const Series& series : plot.series) {
-    for (const auto& y : series.y) {
-      if (y && *y > 0.0) {
-        least = std::min(least, *y);
-        most = std::max(most, *y);
-      }
-    }
-  }
-  if (most > 0.0) {
-    plot.y.domain = {least / 1.5, most * 1.5};
-  }
-}
-
 NamedFigure growth_figure(const Json& document, const Json& duration, std::vector<Series> series,
                           std::string sentence) {
   Plot plot{.x = {ScaleKind::Log, "time without fixes, s"}, .y = {ScaleKind::Log, "horizontal error, m"}};
   plot.height = 300.0;
   plot.series = std::move(series);
-  frame_errors(plot);
+  figure::frame_by_curves(plot);
   Figure figure{.title = "Error in outages of " + seconds(duration.at("duration_s")),
                 .sentence = std::move(sentence),
                 .source = source_of(document) + ", " + with_count(duration.value("n", std::size_t{0}), "outage")};
@@ -124,108 +107,64 @@ NamedFigure growth_figure(const Json& document, const Json& duration, std::vecto
 
 bool drawn(const Series& series) { return !series.x.empty(); }
 
-using Place = drive::MapPlace;
-
-/// What the map says of one class of outages: how the error compares with what the filter expects.
-struct NeesClass {
+/// How the map calls and colours the classes of outages, by drive::EllipseClass.
+struct ClassStyle {
   const char* name;
-  double most;  ///< NEES
   const char* colour;
 };
-// -2 ln(1 - p): chi-square of two degrees of freedom
-constexpr std::array kClasses{NeesClass{"in 50 % ellipse", 1.3863, "#00785a"},
-                              NeesClass{"between 50 and 95 %", 5.9915, palette::kModel},
-                              NeesClass{"outside", std::numeric_limits<double>::infinity(), palette::kRobust}};
+constexpr std::array<ClassStyle, drive::kEllipseClasses> kClasses{
+    {{"in 50 % ellipse", "#00785a"}, {"between 50 and 95 %", palette::kModel}, {"outside", palette::kRobust}}};
 
-/// What lies outside every class has no NEES, and is drawn as being outside.
-std::size_t class_of(const Json& outage) {
-  const auto nees = value_of(outage.at("nees"));
-  for (std::size_t k = 0; k + 1 < kClasses.size(); ++k) {
-    if (nees && *nees <= kClasses[k].most) {
-      return k;
-    }
+drive::MappedOutage mapped(const Json& outage) {
+  const Json& covariance = outage.at("covariance_m2");
+  return {
+      .truth_m = {outage.at("map_m").at(1).get<double>(), outage.at("map_m").at(0).get<double>()},
+      .error_m = {outage.at("east_m").get<double>(), outage.at("north_m").get<double>()},
+      .covariance_m2 = {covariance.at(0).get<double>(), covariance.at(1).get<double>(), covariance.at(2).get<double>()},
+      .nees = value_of(outage.at("nees"))};
+}
+
+Series ends_of(const drive::MapClass& outages, const ClassStyle& style) {
+  Series series{.name = style.name, .detail = with_count(outages.truths_m.size(), "outage")};
+  for (const drive::MapPlace& truth : outages.truths_m) {
+    series.x.push_back(truth[0]);
+    series.y.emplace_back(truth[1]);
   }
-  return kClasses.size() - 1;
+  series.mark = Mark::Dot;
+  series.colour = style.colour;
+  return series;
 }
 
 /// Strokes that do not hang together, one after the other.
-class Strokes {
- public:
-  void add(std::initializer_list<Place> places) { add(std::vector<Place>(places)); }
-  void add(const std::vector<Place>& places) {
-    for (const Place& place : places) {
-      series_.x.push_back(place[0]);
-      series_.y.emplace_back(place[1]);
+Series strokes_of(const drive::MapClass& outages, const ClassStyle& style) {
+  Series series;
+  for (const std::vector<drive::MapPlace>& stroke : outages.strokes_m) {
+    for (const drive::MapPlace& place : stroke) {
+      series.x.push_back(place[0]);
+      series.y.emplace_back(place[1]);
     }
-    series_.x.push_back(places.back()[0]);
-    series_.y.emplace_back();
+    series.x.push_back(stroke.back()[0]);
+    series.y.emplace_back();
   }
-  [[nodiscard]] Series take(const char* colour, double width) {
-    series_.line = true;
-    series_.key = false;
-    series_.colour = colour;
-    series_.width = width;
-    return std::move(series_);
-  }
-
- private:
-  Series series_;
-};
-
-/// Both axes with one length for a metre: the shorter side is widened, and nothing is drawn outside.
-void frame(Plot& plot) {
-  std::array<double, 4> ends{1e300, -1e300, 1e300, -1e300};
-  for (const Series& series : plot.series) {
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      if (const auto& y = series.y[i]) {
-        ends = {std::min(ends[0], series.x[i]), std::max(ends[1], series.x[i]), std::min(ends[2], *y),
-                std::max(ends[3], *y)};
-      }
-    }
-  }
-  const double margin = 0.04 * std::max({ends[1] - ends[0], ends[3] - ends[2], 1.0});
-  double wide = ends[1] - ends[0] + 2.0 * margin;
-  double high = ends[3] - ends[2] + 2.0 * margin;
-  constexpr double kFlattest = 0.4;
-  wide = std::max(wide, high);
-  high = std::max(high, kFlattest * wide);
-  const double east = 0.5 * (ends[0] + ends[1]);
-  const double north = 0.5 * (ends[2] + ends[3]);
-  plot.x.domain = {east - 0.5 * wide, east + 0.5 * wide};
-  plot.y.domain = {north - 0.5 * high, north + 0.5 * high};
-  plot.equal_units = true;
+  series.line = true;
+  series.key = false;
+  series.colour = style.colour;
+  series.width = 1.0;
+  return series;
 }
 
 NamedFigure map_figure(const Json& document, const Json& duration) {
-  std::array<Series, kClasses.size()> ends;
-  std::array<Strokes, kClasses.size()> errors;
-  std::array<std::size_t, kClasses.size()> counts{};
-  double worst = 0.0;
+  std::vector<drive::MappedOutage> outages;
   for (const Json& outage : duration.at("outages")) {
-    const std::size_t k = class_of(outage);
-    const Place truth{outage.at("map_m").at(1).get<double>(), outage.at("map_m").at(0).get<double>()};
-    const Place error{outage.at("east_m").get<double>(), outage.at("north_m").get<double>()};
-    const Place believed{truth[0] + error[0], truth[1] + error[1]};
-    ends[k].x.push_back(truth[0]);
-    ends[k].y.emplace_back(truth[1]);
-    errors[k].add({truth, believed});
-    const Json& covariance = outage.at("covariance_m2");
-    errors[k].add(drive::ellipse95(
-        believed, {covariance.at(0).get<double>(), covariance.at(1).get<double>(), covariance.at(2).get<double>()}));
-    ++counts[k];
-    worst = std::max(worst, drive::horizontal_m(error[1], error[0]));
+    outages.push_back(mapped(outage));
   }
+  const drive::OutageMap map = drive::map_of(outages);
   Plot plot{.x = {ScaleKind::Linear, "east, m"}, .y = {ScaleKind::Linear, "north, m"}};
   for (std::size_t k = 0; k < kClasses.size(); ++k) {
-    if (counts[k] == 0) {
-      continue;
+    if (!map.classes[k].truths_m.empty()) {
+      plot.series.push_back(ends_of(map.classes[k], kClasses[k]));
+      plot.series.push_back(strokes_of(map.classes[k], kClasses[k]));
     }
-    ends[k].name = kClasses[k].name;
-    ends[k].detail = with_count(counts[k], "outage");
-    ends[k].mark = Mark::Dot;
-    ends[k].colour = kClasses[k].colour;
-    plot.series.push_back(std::move(ends[k]));
-    plot.series.push_back(errors[k].take(kClasses[k].colour, 1.0));
   }
   if (const Json path = document.value("path", Json()); path.is_object()) {
     Series way{.name = "the drive", .x = numbers_of(path.at("east_m")), .y = values_of(path.at("north_m"))};
@@ -233,12 +172,13 @@ NamedFigure map_figure(const Json& document, const Json& duration) {
     way.colour = palette::kRule;
     plot.series.push_back(std::move(way));
   }
-  frame(plot);
+  figure::frame_as_map(plot);
   const std::string time = seconds(duration.at("duration_s"));
   Figure figure{.title = "Where outages of " + time + " ended",
-                .sentence = "Of " + with_count(duration.at("outages").size(), "outage") + " of " + time + " " +
-                            std::to_string(counts.back()) +
-                            " ended outside the filter's 95 % ellipse; the largest error is " + metres(worst) + ".",
+                .sentence = "Of " + with_count(outages.size(), "outage") + " of " + time + " " +
+                            std::to_string(map.of(drive::EllipseClass::Outside).truths_m.size()) +
+                            " ended outside the filter's 95 % ellipse; the largest error is " +
+                            metres(map.largest_error_m) + ".",
                 .source = source_of(document)};
   figure.plots.push_back(std::move(plot));
   return {"map-" + short_name(duration.at("duration_s")), std::move(figure)};

@@ -4,7 +4,6 @@
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace driftlab {
@@ -41,11 +40,8 @@ std::vector<NamedFigure> figures_of_table(const Json& document, const std::strin
     if ((!parameter.empty() && key != parameter) || series.x.empty()) {
       continue;
     }
-    double most = 0.0;
-    for (std::size_t i = 0; i < series.y.size(); ++i) {
-      most = std::max({most, series.y[i].value_or(0.0), series.high[i].value_or(0.0)});
-    }
-    const double far = *std::max_element(series.x.begin(), series.x.end());
+    const double most = figure::greatest_of(series);
+    const double far = figure::farthest_of(series);
     series.mark = Mark::Dot;
     series.key = false;
     Plot plot{.x = figure::axis_about_zero(replaced(against, "_", " "), far),
