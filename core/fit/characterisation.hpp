@@ -87,13 +87,16 @@ struct ModelFit {
   std::string model;    ///< `WN`, `WN+GM`, `WN+2GM+RW`, ...
   bool robust = false;  ///< fitted to the robust wavelet variances
   std::vector<FittedProcess>
-      processes;                ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
-  double objective = 0.0;       ///< squared distance L on the logarithms at the optimum, which ranks
-  double wic = 0.0;             ///< criterion that ranks (smaller is better)
-  double eq8 = 0.0;             ///< seed paper's eq. 8 with optimism 2 tr(W C W D (D'WD)^-1 D'), diagonal W
-  double optimism = 0.0;        ///< its second term, never negative
-  std::size_t parameters = 0;   ///< free parameters of the fit (those of vanished components do not count)
-  bool plausible = false;       ///< in the set of models that the data cannot tell apart (holds the truth in 85-98 %)
+      processes;               ///< canonical order: kinds as registered, Gauss-Markov fastest (largest beta) first
+  double objective = 0.0;      ///< squared distance L on the logarithms at the optimum, which ranks
+  double wic = 0.0;            ///< criterion that ranks (smaller is better)
+  double eq8 = 0.0;            ///< seed paper's eq. 8 with optimism 2 tr(W C W D (D'WD)^-1 D'), diagonal W
+  double optimism = 0.0;       ///< its second term, never negative
+  std::size_t parameters = 0;  ///< free parameters of the fit (those of vanished components do not count)
+  bool plausible = false;      ///< in the set of models that the data cannot tell apart (holds the truth in 85-98 %)
+  /// L + 2p above the least of all fits of the channel (core/fit/closeness.hpp): 0 is the closest to the data. Empty
+  /// for a fit without a finite criterion.
+  std::optional<double> distance_2p;
   std::optional<JTest> j_test;  ///< at discrepancy 0; empty where no degree of freedom is left
   /// `accepted`: the J test does not reject at 0.01. `described`: it does, but the variances are within 2 % of the
   /// model's but for their scatter. `not_described`: they are not. `untested`: there is no J test.

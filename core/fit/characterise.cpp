@@ -3,6 +3,7 @@
 #include "core/fit/bootstrap.hpp"
 #include "core/fit/candidate_set.hpp"
 #include "core/fit/channel_variances.hpp"
+#include "core/fit/closeness.hpp"
 #include "core/fit/curve_description.hpp"
 #include "core/fit/fit_report.hpp"
 #include "core/fit/model_search.hpp"
@@ -385,6 +386,21 @@ Result<ChannelCharacterisation> characterise_as_given(const ChannelSamples& chan
   return result;
 }
 
+/// How close each fit is to the data, which only all of them together say.
+void tell_distances(ChannelCharacterisation& channel) {
+  std::vector<RankedModel> models;
+  models.reserve(channel.fits.size());
+  for (const ModelFit& fit : channel.fits) {
+    models.push_back({fit.model, fit.wic});
+  }
+  const std::size_t fitted = fitted_scales(channel.haar.scale, channel.dt_s, channel.from_tau_s);
+  const auto distances =
+      distances_2p(models, criterion_observations(channel.samples + channel.missing, channel.discrepancy, fitted));
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    channel.fits[i].distance_2p = distances[i];
+  }
+}
+
 }  // namespace
 
 Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& channel, const CharacteriseOptions& options,
@@ -396,6 +412,9 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
     return fail(std::move(status.error()));
   }
   Result<ChannelCharacterisation> result = characterise_as_given(channel, options, control);
+  if (result) {
+    tell_distances(*result);
+  }
   const bool untold = !result && result.error().code == ErrorCode::TooFewSamples && !channel.gaps.empty();
   const std::span<const double> rest = untold ? longest_between_gaps(channel) : std::span<const double>();
   if (rest.size() < kFewestSamples) {
@@ -404,6 +423,7 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   Result<ChannelCharacterisation> shorter =
       characterise_as_given({.values = rest, .dt_s = channel.dt_s, .si_factor = channel.si_factor}, options, control);
   if (shorter) {
+    tell_distances(*shorter);
     shorter->warnings.push_back(
         "The gaps leave too many equal samples to say what is missing in them: only the longest "
         "stretch without a gap is analysed, " +

@@ -12,6 +12,14 @@ double criterion_observations(std::size_t grid_samples, double discrepancy, std:
   return static_cast<double>(discrepancy > 0.0 ? scales : grid_samples);
 }
 
+std::size_t fitted_scales(std::span<const std::size_t> scale, double dt_s, double from_tau_s) {
+  constexpr double kRounding = 1e-9;
+  return static_cast<std::size_t>(std::count_if(scale.begin(), scale.end(), [&](std::size_t samples) {
+    const std::size_t averaged = samples / 2;  // tau of the scale
+    return static_cast<double>(averaged) * dt_s >= from_tau_s * (1.0 - kRounding);
+  }));
+}
+
 std::vector<std::optional<double>> distances_2p(std::span<const RankedModel> models, double observations) {
   std::vector<std::optional<double>> distances;
   double least = std::numeric_limits<double>::infinity();

@@ -22,6 +22,10 @@ struct RankedModel {
 /// scales that were fitted, for each is then one observation of a regression.
 [[nodiscard]] double criterion_observations(std::size_t grid_samples, double discrepancy, std::size_t scales);
 
+/// How many of the Haar filters of `scale` samples, whose tau is half their length, models were fitted to: those of tau
+/// from `from_tau_s` on, to 1e-9.
+[[nodiscard]] std::size_t fitted_scales(std::span<const std::size_t> scale, double dt_s, double from_tau_s);
+
 /// L + 2p of each above the least of all; nothing for a model without a finite criterion or of a name that is none.
 [[nodiscard]] std::vector<std::optional<double>> distances_2p(std::span<const RankedModel> models, double observations);
 

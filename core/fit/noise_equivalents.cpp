@@ -1,5 +1,6 @@
 #include "core/fit/noise_equivalents.hpp"
 
+#include "core/process/registry.hpp"
 #include "core/signal/angle.hpp"
 
 #include <cmath>
@@ -52,6 +53,19 @@ std::vector<NoiseEquivalent> random_walk_equivalents(Dimension channel, double d
   return {lab(channel, -1),
           {"kalibr_random_walk", std::string(symbols.walk_density), 1.0},
           {"step_per_sample", std::string(symbols.level), symbols.level_factor * std::sqrt(dt_s)}};
+}
+
+std::vector<LevelEquivalents> level_equivalents(const ModelFit& fit, Dimension channel, double dt_s) {
+  std::vector<LevelEquivalents> levels;
+  for (const FittedProcess& process : fit.processes) {
+    const FittedParameter& level = process.parameters.front();
+    const bool white = process.kind->white_square != nullptr;
+    if (level.estimate && (white || process.kind == find_process("random_walk"))) {
+      levels.push_back({std::string(level.declared->name), *level.estimate,
+                        white ? white_noise_equivalents(channel, dt_s) : random_walk_equivalents(channel, dt_s)});
+    }
+  }
+  return levels;
 }
 
 }  // namespace driftlab

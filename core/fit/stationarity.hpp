@@ -36,6 +36,9 @@ struct NoiseChange {
   double size = 0.0;
   double half_s = 0.0;     ///< half length of the coefficients that show it [s]; of a jump that of the levels
   double statistic = 0.0;  ///< standard deviations (a jump), or supremum of the bridge
+
+  /// After the first sample of a grid at `dt_s`.
+  [[nodiscard]] double time_s(double dt_s) const { return static_cast<double>(sample) * dt_s; }
   friend bool operator==(const NoiseChange&, const NoiseChange&) = default;
 };
 
@@ -45,6 +48,10 @@ struct Stationarity {
   /// The longest part between two changes, samples [first, last) of the grid: what should be analysed alone.
   std::size_t first = 0;
   std::size_t last = 0;
+
+  /// Where that part begins and ends, after the first sample of a grid at `dt_s`.
+  [[nodiscard]] double first_s(double dt_s) const { return static_cast<double>(first) * dt_s; }
+  [[nodiscard]] double last_s(double dt_s) const { return static_cast<double>(last) * dt_s; }
 };
 
 /// At least this many samples are tested.

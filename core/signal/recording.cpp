@@ -174,4 +174,15 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
   return roles;
 }
 
+const ChannelQuality* Quality::of(std::string_view column) const {
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [&](const ChannelQuality& channel) { return channel.column == column; });
+  return found == channels.end() ? nullptr : &*found;
+}
+
+std::size_t frozen_samples(const Quality& quality, std::string_view column) {
+  const ChannelQuality* const channel = quality.of(column);
+  return channel == nullptr ? 0 : channel->frozen;
+}
+
 }  // namespace driftlab

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace driftlab {
@@ -71,6 +72,8 @@ struct TimeBase {
                          ///< the analysed stretch
   double start_s = 0.0;  ///< first time stamp, 0 without a time column
   double first_s = 0.0;  ///< time of the first analysed row since the first row of the file
+
+  [[nodiscard]] double rate_hz() const { return 1.0 / dt_s; }
 };
 
 /// What is true of one sensor channel as it came (core/signal/channel_survey.hpp finds it). Counts are over the whole
@@ -107,7 +110,14 @@ struct Quality {
   std::optional<double> clock_ratio;  ///< measured over stated rate of the analysed stretch, where both are there
   std::vector<ChannelQuality> channels;
   std::vector<std::string> notes;  ///< sentences: unnamed columns, missing units, parts left out
+
+  /// What is said of a column, or nullptr.
+  [[nodiscard]] const ChannelQuality* of(std::string_view column) const;
 };
+
+/// Samples of a column in a stretch in which the sensor gives one value only; 0 where the quality does not speak of the
+/// column.
+[[nodiscard]] std::size_t frozen_samples(const Quality& quality, std::string_view column);
 
 /// The time base and the rows to analyse of a recording.
 struct Window {
@@ -116,6 +126,9 @@ struct Window {
   std::size_t count = 0;  ///< analysed rows
   std::vector<Gap> gaps;  ///< rows of the file, inside the window, before which samples are missing
   Quality quality;
+
+  /// The time that the analysed samples and those missing between them stand for [s].
+  [[nodiscard]] double duration_s() const { return static_cast<double>(count + quality.missing) * time.dt_s; }
 };
 
 /// Decides which rows are analysed and on which time base, from the time column (in `time_unit`; an empty span: none),

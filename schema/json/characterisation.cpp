@@ -1,9 +1,7 @@
 #include "schema/json/characterisation.hpp"
 
-#include "core/campaign/channel_closeness.hpp"
 #include "core/fit/noise_equivalents.hpp"
 #include "core/fit/robust_efficiency.hpp"
-#include "core/process/registry.hpp"
 #include "core/variance/deviation.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
@@ -11,23 +9,15 @@
 namespace driftlab {
 namespace {
 
-/// Of an Allan curve, and of what estimates it at the longest tau.
-template <class Curve>
-Json allan_json(const Curve& curve, double factor) {
-  Json tau = Json::array();
-  Json deviation = Json::array();
+Json allan_json(const DeviationCurve& curve, double factor) {
   Json ci95 = Json::array();
-  Json edf = Json::array();
-  for (std::size_t i = 0; i < curve.tau_s.size(); ++i) {
-    tau.push_back(number(curve.tau_s[i]));
-    deviation.push_back(number(deviation_of(curve.variance[i]) * factor));
-    ci95.push_back(interval(deviation_of(curve.ci95[i]), factor));
-    edf.push_back(number(curve.edf[i]));
+  for (const Interval& one : curve.ci95) {
+    ci95.push_back(interval(one, factor));
   }
-  return Json{{"tau_s", std::move(tau)},
-              {"deviation", std::move(deviation)},
+  return Json{{"tau_s", numbers(curve.tau_s)},
+              {"deviation", numbers(curve.deviation, factor)},
               {"ci95", std::move(ci95)},
-              {"edf", std::move(edf)}};
+              {"edf", numbers(curve.edf)}};
 }
 
 /// Robust variances, null where the estimator has no root.
@@ -148,23 +138,17 @@ Json description_json(const ChannelCharacterisation& channel, const Unit& unit) 
               {"sentence", description.sentence}};
 }
 
-/// N and K of the best model in the numbers of other books.
-Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimension) {
+/// N and K of a fit in the numbers of other books.
+Json equivalents_json(const std::vector<LevelEquivalents>& levels) {
   Json document = Json::object();
-  for (const FittedProcess& process : channel.fits[channel.best].processes) {
-    const FittedParameter& level = process.parameters.front();
-    const bool white = process.kind->white_square != nullptr;
-    if (!level.estimate || (!white && process.kind != find_process("random_walk"))) {
-      continue;
-    }
+  for (const LevelEquivalents& level : levels) {
     Json all = Json::array();
-    for (const NoiseEquivalent& one :
-         white ? white_noise_equivalents(dimension, channel.dt_s) : random_walk_equivalents(dimension, channel.dt_s)) {
-      Json entry = quantity(*level.estimate, one.factor, one.unit);
+    for (const NoiseEquivalent& one : level.conventions) {
+      Json entry = quantity(level.level, one.factor, one.unit);
       entry["convention"] = one.convention;
       all.push_back(std::move(entry));
     }
-    document[std::string(level.declared->name)] = std::move(all);
+    document[level.parameter] = std::move(all);
   }
   return document;
 }
@@ -174,28 +158,23 @@ Json equivalents_json(const ChannelCharacterisation& channel, Dimension dimensio
 namespace {
 
 Json stationarity_json(const Stationarity& found, double dt_s, double factor, const std::string& unit) {
-  const auto seconds = [dt_s](std::size_t sample) { return number(static_cast<double>(sample) * dt_s); };
   Json changes = Json::array();
   for (const NoiseChange& change : found.changes) {
     const bool jump = change.kind == NoiseChange::Kind::Jump;
     changes.push_back({{"kind", jump ? "jump" : "level"},
-                       {"time_s", seconds(change.sample)},
-                       {"size", number(change.size * (jump ? factor : 1.0))},
+                       {"time_s", number(change.time_s(dt_s))},
+                       {"size", number(jump ? change.size * factor : change.size)},
                        {"unit", jump ? unit : "1"},
                        {"scale_s", number(change.half_s)},
                        {"statistic", number(change.statistic)}});
   }
-  return {{"changes", std::move(changes)}, {"segment_s", {seconds(found.first), seconds(found.last)}}};
+  return {{"changes", std::move(changes)}, {"segment_s", {number(found.first_s(dt_s)), number(found.last_s(dt_s))}}};
 }
 
 Json dynamic_allan_json(const DynamicAllan& moving, double factor) {
   Json deviation = Json::array();
-  for (const std::vector<double>& row : moving.variance) {
-    Json line = Json::array();
-    for (const double variance : row) {
-      line.push_back(number(deviation_of(variance) * factor));
-    }
-    deviation.push_back(std::move(line));
+  for (const std::vector<double>& row : deviations_of(moving.variance)) {
+    deviation.push_back(numbers(row, factor));
   }
   return {{"window_s", number(moving.window_s)},
           {"start_s", moving.start_s},
@@ -216,30 +195,29 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
                 {"missing", channel.missing},
                 {"dt_s", number(channel.dt_s)},
                 {"mean", number(channel.mean * factor)},
-                {"allan", allan_json(channel.allan, factor)},
+                {"allan", allan_json(deviations_of(channel.allan), factor)},
                 {"haar", haar_json(channel.haar, factor)},
                 {"contamination", contamination_json(channel.contamination)},
                 {"allan_parameters", allan_parameters_json(reported(channel.allan_parameters, unit.dimension))}};
   if (channel.further.allan) {
-    document["allan_fine"] = allan_json(*channel.further.allan, factor);
+    document["allan_fine"] = allan_json(deviations_of(*channel.further.allan), factor);
   }
   if (channel.further.total) {
-    document["total"] = allan_json(*channel.further.total, factor);
+    document["total"] = allan_json(deviations_of(*channel.further.total), factor);
   }
   if (channel.further.theo1) {
-    document["theo1"] = allan_json(*channel.further.theo1, factor);
+    document["theo1"] = allan_json(deviations_of(*channel.further.theo1), factor);
   }
   if (channel.further.psd) {
     document["psd"] = psd_json(*channel.further.psd, factor);
   }
   document["description"] = description_json(channel, unit);
   Json fits = Json::array();
-  const auto distances = distances_2p(reported(identity.column, identity.role, channel));
-  for (std::size_t i = 0; i < channel.fits.size(); ++i) {
-    Json fit = to_json(reported(channel.fits[i], unit));
-    if (const std::optional<double>& distance = distances[i]) {
-      fit["distance_2p"] = number(*distance);
-      fit["closest"] = *distance == 0.0;
+  for (const ModelFit& one : channel.fits) {
+    Json fit = to_json(reported(one, unit));
+    if (one.distance_2p) {
+      fit["distance_2p"] = number(*one.distance_2p);
+      fit["closest"] = *one.distance_2p == 0.0;
     }
     fits.push_back(std::move(fit));
   }
@@ -248,7 +226,10 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
   if (channel.from_tau_s > 0.0) {
     document["from_tau_s"] = number(channel.from_tau_s);
   }
-  document["equivalents"] = channel.fits.empty() ? Json::object() : equivalents_json(channel, unit.dimension);
+  document["equivalents"] =
+      channel.fits.empty()
+          ? Json::object()
+          : equivalents_json(level_equivalents(channel.fits[channel.best], unit.dimension, channel.dt_s));
   document["best"] = channel.fits.empty() ? Json(nullptr) : Json(channel.best);
   if (!channel.stationarity.changes.empty()) {
     document["stationarity"] = stationarity_json(channel.stationarity, channel.dt_s, factor, unit.symbol);
@@ -264,8 +245,8 @@ Json recording_document(const std::string& id, const RecordingSpec& spec, const 
                         std::vector<Json> channels) {
   return Json{{"id", id},
               {"condition", to_json(spec.condition)},
-              {"duration_s", number(static_cast<double>(window.count + window.quality.missing) * window.time.dt_s)},
-              {"rate_hz", number(1.0 / window.time.dt_s)},
+              {"duration_s", number(window.duration_s())},
+              {"rate_hz", number(window.time.rate_hz())},
               {"quality", to_json(window.quality)},
               {"channels", std::move(channels)}};
 }

@@ -42,7 +42,7 @@ Json regression_unit_json(const regression::Report& report, const regression::Un
                 {"candidate", text_or_null(unit.structure[1])},
                 {"pooled", text_or_null(unit.model)},
                 {"changed", !unit.structure_test.compared},
-                {"p", number(std::min(unit.structure_test.p_fit, unit.structure_test.p_contrast))}}},
+                {"p", number(unit.structure_test.least_p())}}},
               {"tests", std::move(tests)}};
 }
 

@@ -11,6 +11,7 @@
 /// >= 0.01). Else scales alone decide.
 #include "core/campaign/regression/session_scatter.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -31,6 +32,9 @@ struct StructureTest {
   bool compared = false;  ///< there is a model, and both tests hold
   double p_fit = 1.0;
   double p_contrast = 1.0;
+
+  /// Of the test that speaks more against the model.
+  [[nodiscard]] double least_p() const { return std::min(p_fit, p_contrast); }
 };
 
 struct Contrast {

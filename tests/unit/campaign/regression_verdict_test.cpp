@@ -103,6 +103,8 @@ TEST(RegressionVerdict, ComparesNoLevelsWhereTheStructureChanged) {
   const regression::Comparison changed = regression::compare(rig.draw(random, 3, 3, 0, bump), {});
   EXPECT_FALSE(changed.contrast.structures[0].compared);
   EXPECT_LT(changed.contrast.structures[0].p_contrast, 0.01);
+  EXPECT_EQ(changed.contrast.structures[0].least_p(),
+            std::min(changed.contrast.structures[0].p_fit, changed.contrast.structures[0].p_contrast));
   EXPECT_EQ(changed.verdict, regression::Verdict::Fail);  // its scales decide
 }
 

@@ -35,9 +35,19 @@ TEST(Closeness, IsWhatThePlausibleSetIsMadeOf) {
     EXPECT_EQ(std::count(distances.begin(), distances.end(), std::optional<double>(0.0)), 1);
     for (std::size_t i = 0; i < distances.size(); ++i) {
       ASSERT_TRUE(distances[i]);
+      EXPECT_EQ(found->fits[i].distance_2p, distances[i]) << "a fit says its own";
       EXPECT_EQ(*distances[i] <= 6.0, found->fits[i].plausible) << found->fits[i].model << " " << *distances[i];
     }
   }
+}
+
+TEST(Closeness, CountsTheScalesFromATauThatIsWrittenInDecimals) {
+  const std::vector<std::size_t> scale{2, 4, 8, 16};
+  EXPECT_EQ(fitted_scales(scale, 0.01, 0.0), 4U);
+  EXPECT_EQ(fitted_scales(scale, 0.01, 0.02), 3U);  // 2 samples of 0.01 s are 0.02 s
+  EXPECT_EQ(fitted_scales(scale, 0.1 / 3.0, 0.0333333333333 * 2.0), 3U) << "one digit in 1e12 less";
+  EXPECT_EQ(fitted_scales(scale, 0.01, 0.021), 2U);
+  EXPECT_EQ(fitted_scales(scale, 0.01, 1.0), 0U);
 }
 
 TEST(Closeness, SaysNothingOfWhatWasNotRanked) {

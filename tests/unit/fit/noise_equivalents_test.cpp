@@ -1,5 +1,7 @@
 #include "core/fit/noise_equivalents.hpp"
 
+#include "core/process/registry.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,6 +42,39 @@ TEST(NoiseEquivalents, WalkGrowsByTheRootOfTheInterval) {
   EXPECT_NEAR(value(all, "step_per_sample", std::numbers::pi / 180.0), 0.1, 1e-15);
   EXPECT_NEAR(value(all, "kalibr_random_walk", 3e-5), 3e-5, 1e-20);
   EXPECT_NEAR(value(all, "ieee_952", 1.0), 180.0 / std::numbers::pi * 3600.0 * 60.0, 1e-3);
+}
+
+FittedProcess fitted(const char* name, std::optional<double> level) {
+  FittedProcess process;
+  process.kind = find_process(name);
+  for (const ParameterSpec& spec : process.kind->parameters) {
+    process.parameters.push_back({&spec, std::nullopt, ""});
+  }
+  if (level) {
+    process.parameters.front().estimate = Estimate{*level, {*level / 2.0, *level * 2.0}};
+  }
+  return process;
+}
+
+TEST(LevelEquivalents, AreOfTheWhiteNoiseAndTheRandomWalkOfAFitInTheOrderOfTheModel) {
+  ModelFit fit;
+  fit.processes = {fitted("white_noise", 2e-4), fitted("gauss_markov", 1e-3), fitted("random_walk", 3e-6)};
+  const auto levels = level_equivalents(fit, Dimension::AngularRate, 0.01);
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_EQ(levels[0].parameter, "N");
+  EXPECT_EQ(levels[0].level.value, 2e-4);
+  EXPECT_EQ(levels[0].level.ci95.high, 4e-4);
+  EXPECT_EQ(value(levels[0].conventions, "per_sample", 1.0),
+            value(white_noise_equivalents(Dimension::AngularRate, 0.01), "per_sample", 1.0));
+  EXPECT_EQ(levels[1].parameter, "K");
+  EXPECT_EQ(value(levels[1].conventions, "step_per_sample", 1.0),
+            value(random_walk_equivalents(Dimension::AngularRate, 0.01), "step_per_sample", 1.0));
+}
+
+TEST(LevelEquivalents, AreSilentOfALevelThatTheDataDoNotIdentify) {
+  ModelFit fit;
+  fit.processes = {fitted("white_noise", std::nullopt), fitted("gauss_markov", 1e-3)};
+  EXPECT_TRUE(level_equivalents(fit, Dimension::SpecificForce, 0.01).empty());
 }
 
 }  // namespace

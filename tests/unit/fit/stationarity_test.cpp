@@ -125,5 +125,15 @@ TEST(Stationarity, IsSaidOfACharacterisedChannelInItsUnit) {
   EXPECT_EQ(check_options(options).error().fields.at(0).value, "dynamic");
 }
 
+TEST(Stationarity, TellsItsSamplesAsTimes) {
+  Stationarity found;
+  found.changes = {{NoiseChange::Kind::Jump, 150, 1.0, 2.0, 9.0}};
+  found.first = 150;
+  found.last = 400;
+  EXPECT_DOUBLE_EQ(found.changes.front().time_s(0.02), 3.0);
+  EXPECT_DOUBLE_EQ(found.first_s(0.02), 3.0);
+  EXPECT_DOUBLE_EQ(found.last_s(0.02), 8.0);
+}
+
 }  // namespace
 }  // namespace driftlab

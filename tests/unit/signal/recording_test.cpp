@@ -433,5 +433,27 @@ TEST(PlanWindow, MeasuresTheMeanOfCoarseStamps) {
   EXPECT_DOUBLE_EQ(window->time.dt_s, 10.0 / 3000.0);
 }
 
+TEST(Window, LastsAsLongAsItsSamplesAndThoseMissingBetweenThem) {
+  Window window;
+  window.time.dt_s = 0.02;
+  window.count = 300;
+  window.quality.missing = 50;
+  EXPECT_DOUBLE_EQ(window.duration_s(), 7.0);
+  EXPECT_DOUBLE_EQ(window.time.rate_hz(), 50.0);
+}
+
+TEST(Quality, SaysHowManySamplesOfAColumnAreFrozenAndNoneOfAColumnThatItDoesNotKnow) {
+  Quality quality;
+  quality.channels.resize(2);
+  quality.channels[0].column = "gx";
+  quality.channels[0].frozen = 7;
+  quality.channels[1].column = "gz";
+  EXPECT_EQ(frozen_samples(quality, "gx"), 7U);
+  EXPECT_EQ(frozen_samples(quality, "gz"), 0U);
+  EXPECT_EQ(frozen_samples(quality, "gy"), 0U);
+  EXPECT_EQ(quality.of("gz"), &quality.channels[1]);
+  EXPECT_EQ(quality.of("gy"), nullptr);
+}
+
 }  // namespace
 }  // namespace driftlab
