@@ -260,6 +260,16 @@ std::string_view name_of(VerdictLevel level) {
   return level == VerdictLevel::Fine ? "fine" : level == VerdictLevel::Look ? "look" : "wrong";
 }
 
+GrossErrorEvidence evidence_of(const Contamination& contamination, std::size_t scales) {
+  return {contamination.not_gaussian, contamination.disjoint_scales.size(), scales};
+}
+
+std::optional<std::size_t> gravest_of(std::span<const Verdict> verdicts) {
+  const auto gravest = std::max_element(verdicts.begin(), verdicts.end(),
+                                        [](const Verdict& a, const Verdict& b) { return a.level < b.level; });
+  return gravest == verdicts.end() ? std::nullopt : std::optional(static_cast<std::size_t>(gravest - verdicts.begin()));
+}
+
 Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evidence) {
   Verdict verdict;
   if (channel.fits.empty()) {

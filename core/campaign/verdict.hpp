@@ -10,6 +10,8 @@
 #include "core/campaign/reported_channel.hpp"
 #include "core/fit/j_test.hpp"
 
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,10 +42,16 @@ struct GrossErrorEvidence {
   std::size_t scales = 0;
 };
 
+/// Of a channel with `scales` scales.
+[[nodiscard]] GrossErrorEvidence evidence_of(const Contamination& contamination, std::size_t scales);
+
 /// Of one channel of one recording.
 [[nodiscard]] Verdict verdict_of(const ReportedChannel& channel, const GrossErrorEvidence& evidence);
 
 /// Of one sensor axis over its conditions.
 [[nodiscard]] Verdict verdict_of(const ParameterTable& table);
+
+/// The verdict that a person should look at first: the first of those of the worst level. Nothing of none.
+[[nodiscard]] std::optional<std::size_t> gravest_of(std::span<const Verdict> verdicts);
 
 }  // namespace driftlab

@@ -1,6 +1,7 @@
 #include "schema/json/campaign_summary.hpp"
 
 #include "schema/json/pooled_sensor.hpp"
+#include "schema/json/quality.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 #include "schema/json/trend_table.hpp"
@@ -12,13 +13,14 @@ Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
   std::vector<SensorSources> sensors;
   for (const Json& recording : characterisation.at("recordings")) {
     Faults ignored;
+    const Quality quality = quality_from_json(recording.value("quality", Json()));
     const std::string condition = to_text(without_heading(condition_from_json(recording.at("condition"), "", ignored)));
     for (const Json& document : recording.at("channels")) {
       auto channel = reported_channel_from_json(document);
       if (!channel) {
         return fail(channel.error());
       }
-      const std::size_t frozen = frozen_samples(recording.value("quality", Json()), channel->channel);
+      const std::size_t frozen = frozen_samples(quality, channel->channel);
       add_source(sensors, {recording.at("id").get<std::string>(), condition, std::move(*channel), "", frozen});
     }
   }
@@ -26,17 +28,6 @@ Result<std::vector<SensorSources>> read_sensors(const Json& characterisation) {
 }
 
 }  // namespace
-
-std::size_t frozen_samples(const Json& quality, const std::string& column) {
-  if (const auto channels = quality.find("channels"); quality.is_object() && channels != quality.end()) {
-    for (const Json& channel : *channels) {
-      if (channel.value("column", "") == column) {
-        return channel.value("frozen", std::size_t{0});
-      }
-    }
-  }
-  return 0;
-}
 
 Result<std::vector<SensorSources>> sensors_of(const Json& characterisation) {
   try {

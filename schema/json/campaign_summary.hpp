@@ -14,9 +14,6 @@ namespace driftlab {
 /// for themselves, under their column name. Error: Internal, for a document that driftlab has not written.
 [[nodiscard]] Result<std::vector<SensorSources>> sensors_of(const Json& characterisation);
 
-/// Samples of a column that the quality of its recording calls frozen; 0 where it does not speak of the column.
-[[nodiscard]] std::size_t frozen_samples(const Json& quality, const std::string& column);
-
 /// Adds the summary to the document of its recordings as `replicates` and `trends`.
 void add_summary(Json& characterisation, const CampaignSummary& summary);
 

@@ -5,8 +5,6 @@
 #include "schema/json/figure_values.hpp"
 #include "schema/json/reported_channel.hpp"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -77,35 +75,36 @@ Json to_json(const Verdict& verdict) {
               {"facts", std::move(facts)}};
 }
 
-Result<Json> channel_summary(const Json& channel) {
+Result<Verdict> verdict_from_json(const Json& channel) {
   auto reported = reported_channel_from_json(channel);
   if (!reported) {
     return fail(reported.error());
   }
-  GrossErrorEvidence evidence;
-  if (channel.contains("contamination") && channel["contamination"].is_object()) {
-    const Json& contamination = channel["contamination"];
-    evidence.not_gaussian = contamination.value("not_gaussian", false);
-    evidence.disjoint_scales = contamination.value("disjoint_scales", Json::array()).size();
-  }
-  evidence.scales = reported->haar.scale.size();
-  return to_json(verdict_of(*reported, evidence));
+  const Contamination contamination = contamination_from_json(channel).value_or(Contamination{});
+  return verdict_of(*reported, evidence_of(contamination, reported->haar.scale.size()));
+}
+
+Result<Json> channel_summary(const Json& channel) {
+  const auto verdict = verdict_from_json(channel);
+  return verdict ? Result<Json>(to_json(*verdict)) : fail(verdict.error());
 }
 
 Json gravest_summary(const Json& channels) {
-  constexpr std::array<std::string_view, 3> kByGravity{"fine", "look", "wrong"};
-  const auto gravity = [&](const Json& summary) {
-    return std::find(kByGravity.begin(), kByGravity.end(), summary.at("level").get<std::string>());
-  };
-  Json gravest = nullptr;
+  std::vector<Verdict> verdicts;
+  std::vector<Json> names;
   for (const Json& channel : channels) {
-    auto summary = channel_summary(channel);
-    if (summary && (gravest.is_null() || gravity(*summary) > gravity(gravest))) {
-      gravest = std::move(*summary);
-      gravest["channel"] = channel.at("channel");
+    if (auto verdict = verdict_from_json(channel)) {
+      verdicts.push_back(std::move(*verdict));
+      names.push_back(channel.at("channel"));
     }
   }
-  return gravest;
+  const auto gravest = gravest_of(verdicts);
+  if (!gravest) {
+    return nullptr;
+  }
+  Json summary = to_json(verdicts[*gravest]);
+  summary["channel"] = std::move(names[*gravest]);
+  return summary;
 }
 
 Result<AxisGlance> axis_glance(const Json& fit) {

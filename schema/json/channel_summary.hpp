@@ -13,6 +13,10 @@ namespace driftlab {
 /// {"verdict", "details", "level", "facts"}.
 [[nodiscard]] Json to_json(const Verdict& verdict);
 
+/// What a member of `channels` of a characterisation document says. Error: Internal, for a document that driftlab has
+/// not written.
+[[nodiscard]] Result<Verdict> verdict_from_json(const Json& channel);
+
 /// The summary of one member of `channels` of a characterisation document. Error: Internal, for a document that
 /// driftlab has not written.
 [[nodiscard]] Result<Json> channel_summary(const Json& channel);

@@ -3,6 +3,7 @@
 #include "core/fit/noise_equivalents.hpp"
 #include "core/fit/robust_efficiency.hpp"
 #include "core/variance/deviation.hpp"
+#include "schema/json/quality.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 

@@ -1,5 +1,6 @@
 #include "schema/json/compared_recording.hpp"
 
+#include "schema/json/quality.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 
@@ -7,34 +8,6 @@
 
 namespace driftlab {
 namespace {
-
-std::size_t compared_count(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
-}
-
-regression::ChannelFacts compared_facts(const Json& quality, const Json& channel) {
-  regression::ChannelFacts facts;
-  facts.samples = compared_count(quality, "samples");
-  for (const Json& known : quality.value("channels", Json::array())) {
-    if (text_member(known, "column") == text_member(channel, "channel")) {
-      facts.missing = compared_count(known, "missing") + compared_count(known, "implausible");
-      facts.frozen = compared_count(known, "frozen");
-      facts.repeated = compared_count(known, "repeated");
-      facts.saturated = compared_count(known, "saturated");
-      facts.resolution = finite_member(known, "resolution", 0.0);
-    }
-  }
-  if (const auto mean = channel.find("mean"); mean != channel.end() && mean->is_number()) {
-    facts.mean = mean->get<double>();
-  }
-  facts.mean_of_error = channel.contains("reference");
-  if (const auto found = channel.find("contamination"); found != channel.end() && found->is_object()) {
-    // Where samples were not flagged one by one, and in results of before bursts were counted, each counts by itself.
-    facts.bursts = compared_count(*found, found->contains("bursts") ? "bursts" : "flagged_samples");
-  }
-  return facts;
-}
 
 regression::ComparedRecording compared_recording(const Json& document) {
   regression::ComparedRecording recording;
@@ -60,15 +33,18 @@ Result<regression::ComparedChannel> compared_channel_from_json(const Json& chann
   if (!read) {
     return fail(read.error());
   }
-  return regression::ComparedChannel{std::move(*read), compared_facts(quality, channel)};
+  const auto found = contamination_from_json(channel);
+  regression::ChannelFacts facts =
+      regression::facts_of(quality_from_json(quality), text_member(channel, "channel"), found);
+  if (const auto mean = channel.find("mean"); mean != channel.end() && mean->is_number()) {
+    facts.mean = mean->get<double>();
+  }
+  facts.mean_of_error = channel.contains("reference");
+  return regression::ComparedChannel{std::move(*read), facts};
 }
 
 void tell_quality(const Json& quality, regression::ComparedRecording& recording) {
-  recording.declared_hz = regression::stated_rate_hz(finite_member(quality, "measured_rate_hz", 0.0),
-                                                     finite_member(quality, "clock_ratio", 0.0), recording.rate_hz);
-  recording.jitter_s = finite_member(quality, "jitter_s", 0.0);
-  recording.samples = compared_count(quality, "samples");
-  recording.missing = compared_count(quality, "missing");
+  recording.tell(quality_from_json(quality));
   if (const auto temperature = quality.find("temperature"); temperature != quality.end() && temperature->is_object()) {
     const auto median = temperature->find("median_degc");
     if (median != temperature->end() && median->is_number()) {

@@ -227,25 +227,6 @@ Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text) {
   return columns;
 }
 
-namespace {
-
-Json to_json(const ChannelQuality& channel) {
-  return Json{{"column", channel.column},
-              {"missing", channel.missing},
-              {"implausible", channel.implausible},
-              {"repeated", channel.repeated},
-              {"distinct", channel.distinct ? Json(*channel.distinct) : Json(nullptr)},
-              {"resolution", channel.resolution > 0.0 ? number(channel.resolution) : Json(nullptr)},
-              {"saturated", channel.saturated},
-              {"frozen", channel.frozen},
-              {"frozen_from", channel.frozen > 0 ? Json(channel.frozen_from) : Json(nullptr)},
-              {"first", channel.first},
-              {"last", channel.last},
-              {"analysed", channel.analysed}};
-}
-
-}  // namespace
-
 Json role_json(const std::string& name, const std::optional<ColumnRole>& role) {
   Json document{{"name", name}, {"quantity", nullptr}, {"axis", nullptr}, {"unit", nullptr}};
   if (role) {
@@ -253,30 +234,6 @@ Json role_json(const std::string& name, const std::optional<ColumnRole>& role) {
     document["axis"] = role->axis.empty() ? Json(nullptr) : Json(role->axis);
     document["unit"] = role->unit ? Json(role->unit->symbol) : Json(nullptr);
   }
-  return document;
-}
-
-Json to_json(const Quality& quality) {
-  Json document{{"samples", quality.samples},
-                {"analysed", quality.analysed},
-                {"gaps", quality.gaps},
-                {"missing", quality.missing},
-                {"repeated_stamps", quality.repeated_stamps},
-                {"backward_steps", quality.backward_steps},
-                {"counter_wraps", quality.counter_wraps},
-                {"bursts", quality.bursts},
-                {"longest_gap_s", number(quality.longest_gap_s)},
-                {"jitter_s", number(quality.jitter_s)}};
-  document["measured_rate_hz"] = quality.measured_rate_hz > 0.0 ? number(quality.measured_rate_hz) : Json(nullptr);
-  document["clock_ratio"] = quality.clock_ratio ? number(*quality.clock_ratio) : Json(nullptr);
-  if (quality.repeated_rows > 0) {
-    document["repeated_rows"] = quality.repeated_rows;
-  }
-  document["channels"] = Json::array();
-  for (const ChannelQuality& channel : quality.channels) {
-    document["channels"].push_back(to_json(channel));
-  }
-  document["notes"] = quality.notes;
   return document;
 }
 

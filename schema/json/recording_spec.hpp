@@ -28,7 +28,4 @@ namespace driftlab {
 /// A column of a file and what it is taken to mean: {"name", "quantity", "axis", "unit"}, null where nobody says.
 [[nodiscard]] Json role_json(const std::string& name, const std::optional<ColumnRole>& role);
 
-/// What was found true of the recording as it came.
-[[nodiscard]] Json to_json(const Quality& quality);
-
 }  // namespace driftlab

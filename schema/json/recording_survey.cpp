@@ -1,7 +1,7 @@
 #include "schema/json/recording_survey.hpp"
 
 #include "schema/json/measured_temperature.hpp"
-#include "schema/json/recording_spec.hpp"
+#include "schema/json/quality.hpp"
 
 #include <algorithm>
 

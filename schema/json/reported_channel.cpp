@@ -130,6 +130,30 @@ ReportedChannel channel_from_json(const Json& document) {
 
 }  // namespace
 
+std::optional<Contamination> contamination_from_json(const Json& channel) {
+  const auto found = channel.find("contamination");
+  if (found == channel.end() || !found->is_object()) {
+    return std::nullopt;
+  }
+  Contamination contamination;
+  contamination.verdict = text_member(*found, "verdict");
+  contamination.p = finite_member(*found, "p", 1.0);
+  for (const Json& scale : found->value("disjoint_scales", Json::array())) {
+    contamination.disjoint_scales.push_back(scale.is_number_unsigned() ? scale.get<std::size_t>() : 0);
+  }
+  contamination.flagged_samples = count_member(*found, "flagged_samples");
+  if (found->contains("bursts")) {
+    contamination.bursts = count_member(*found, "bursts");
+  }
+  contamination.not_gaussian = found->value("not_gaussian", false);
+  return contamination;
+}
+
+std::size_t count_member(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
+}
+
 double finite_member(const Json& object, const char* name, double otherwise) {
   const auto found = object.find(name);
   return found != object.end() && found->is_number() ? found->get<double>() : otherwise;

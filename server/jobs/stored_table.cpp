@@ -2,6 +2,7 @@
 
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/pooled_sensor.hpp"
+#include "schema/json/quality.hpp"
 #include "server/jobs/axis_sources.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
@@ -100,7 +101,7 @@ Status tell_frozen(Store& store, std::vector<TableSource>& sources) {
       return fail(recording.error());
     }
     const auto quality = parse_json(recording->quality_json);
-    source.frozen = quality ? frozen_samples(*quality, source.channel.channel) : 0;
+    source.frozen = quality ? frozen_samples(quality_from_json(*quality), source.channel.channel) : 0;
   }
   return {};
 }

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace driftlab::regression {
@@ -27,6 +28,13 @@ struct ChannelFacts {
   std::optional<double> mean = std::nullopt;  ///< of the analysed samples [channel unit]
   bool mean_of_error = false;                 ///< a reference was subtracted first
 };
+
+/// Of a column as the quality of its file and the test for gross errors of the channel (core/fit/characterisation.hpp)
+/// tell them: cells that stand for no number count as missing, and where samples were not flagged one by one (or in
+/// results of before bursts were counted) each flagged one is a burst by itself. `mean` and `mean_of_error` are not of
+/// these.
+[[nodiscard]] ChannelFacts facts_of(const Quality& quality, std::string_view column,
+                                    const std::optional<Contamination>& contamination);
 
 struct ComparedChannel {
   ReportedChannel result;
@@ -64,6 +72,10 @@ struct ComparedRecording {
   bool investigated = false;        ///< somebody looked for causes
   std::vector<std::string> causes;  ///< identified ones
   std::vector<ComparedChannel> channels;
+
+  /// Takes over what the quality says of the whole file: samples, gaps, jitter, and the rate that somebody declared.
+  /// Needs `rate_hz`.
+  void tell(const Quality& quality);
 };
 
 /// An arm, or an earlier release.

@@ -106,5 +106,29 @@ TEST(Verdict, OfATableIsAboutTheDensityThatRowsShowWhateverTheModel) {
   EXPECT_THAT(verdict_of(table).sentence, HasSubstr("the model 2GM holds none"));
 }
 
+TEST(Verdict, OfSeveralTheGravestIsTheFirstOfTheWorstLevel) {
+  const auto of = [](std::vector<VerdictLevel> levels) {
+    std::vector<Verdict> verdicts(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      verdicts[i].level = levels[i];
+    }
+    return gravest_of(verdicts);
+  };
+  using enum VerdictLevel;
+  EXPECT_EQ(of({Fine, Look, Wrong, Wrong, Look}), 2U);
+  EXPECT_EQ(of({Fine, Fine}), 0U);
+  EXPECT_EQ(of({}), std::nullopt);
+}
+
+TEST(Verdict, RestsOnWhatTheTestForGrossErrorsFound) {
+  Contamination contamination;
+  contamination.not_gaussian = true;
+  contamination.disjoint_scales = {2, 4, 8};
+  const GrossErrorEvidence evidence = evidence_of(contamination, 18);
+  EXPECT_TRUE(evidence.not_gaussian);
+  EXPECT_EQ(evidence.disjoint_scales, 3U);
+  EXPECT_EQ(evidence.scales, 18U);
+}
+
 }  // namespace
 }  // namespace driftlab
