@@ -98,6 +98,20 @@ double bias_floor(double bias, const Unit& channel, const DrawnUnit& drawn) {
   return bias / lab_unit(channel.dimension, 0).per_si / channel.factor * drawn.factor * kFloorOverB;
 }
 
+std::optional<LevelPlace> level_place(std::string_view process, const DrawnCurve& curve,
+                                      std::span<const double> measured_tau_s) {
+  const double tau_s = process == "white_noise" ? 1.0 : process == "random_walk" ? 3.0 : 0.0;
+  if (tau_s == 0.0 || tau_s < measured_tau_s.front() || tau_s > measured_tau_s.back()) {
+    return std::nullopt;
+  }
+  const auto deviation = read_at(curve, tau_s);
+  return deviation ? std::optional(LevelPlace{tau_s, *deviation}) : std::nullopt;
+}
+
+bool robust_differs(const Contamination& contamination) {
+  return !contamination.disjoint_scales.empty() || contamination.verdict == "contaminated";
+}
+
 double farthest_log(const Values& ratios, double least) {
   for (const auto& ratio : ratios) {
     least = ratio && *ratio > 0.0 ? std::max(least, std::abs(std::log(*ratio))) : least;
@@ -105,7 +119,9 @@ double farthest_log(const Values& ratios, double least) {
   return least;
 }
 
-double end_of_ratios(double farthest, double widening) { return std::exp(farthest * widening); }
+double end_of_ratios(double farthest, double widening, double most) {
+  return std::min(std::exp(farthest * widening), most);
+}
 
 double reach_of_ratios(const Values& ratios, double margin, double least) {
   for (const auto& ratio : ratios) {

@@ -4,12 +4,15 @@
 /// A document has deviations in the channel's unit, wavelet variances and coefficients in the units of the field; a
 /// figure shows them in one unit, over one another, and read off at a round time. Values that are not known stay so
 /// through every step.
+#include "core/fit/characterisation.hpp"
 #include "core/signal/unit.hpp"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace driftlab {
@@ -55,11 +58,30 @@ struct DrawnUnit {
 /// `bias`: B in the unit of the field for a channel of that dimension.
 [[nodiscard]] double bias_floor(double bias, const Unit& channel, const DrawnUnit& drawn);
 
+/// Where the level of a process is read off its curve.
+struct LevelPlace {
+  double tau_s = 0.0;
+  double deviation = 0.0;
+};
+
+/// The Allan deviation of a process by itself (`curve`) at the averaging time at which it equals the level: a white
+/// noise at 1 s, sqrt(AV) = N/sqrt(tau), and a random walk at 3 s, sqrt(AV) = K sqrt(tau/3) (IEEE Std 952, C.1.1 and
+/// C.1.3). Nothing of other processes, outside the taus that were `measured` (rising, not empty), and where the curve
+/// says nothing.
+[[nodiscard]] std::optional<LevelPlace> level_place(std::string_view process, const DrawnCurve& curve,
+                                                    std::span<const double> measured_tau_s);
+
+/// Whether the robust deviations are worth drawing beside the classical ones: they differ at some scale, or gross
+/// errors move the variances.
+[[nodiscard]] bool robust_differs(const Contamination& contamination);
+
 /// How far ratios are from 1: the greatest |ln ratio|, and at least `least`. Those not positive are passed over.
 [[nodiscard]] double farthest_log(const Values& ratios, double least);
 
-/// The factor from 1 to the end of an axis of ratios that are at most exp(`farthest`) from it: exp(widening farthest).
-[[nodiscard]] double end_of_ratios(double farthest, double widening);
+/// The factor from 1 to the end of an axis of ratios that are at most exp(`farthest`) from it: exp(widening farthest),
+/// and no more than `most`.
+[[nodiscard]] double end_of_ratios(double farthest, double widening,
+                                   double most = std::numeric_limits<double>::infinity());
 
 /// The greatest of `least`, margin times each ratio and margin over each; those not positive are passed over.
 [[nodiscard]] double reach_of_ratios(const Values& ratios, double margin, double least);

@@ -18,6 +18,11 @@ struct RecordedPose {
   EulerAngles attitude;
 };
 
+/// From the first pose to the last [s]; `poses` are not empty.
+[[nodiscard]] inline double duration_of(const std::vector<RecordedPose>& poses) {
+  return poses.back().time_s - poses.front().time_s;
+}
+
 /// Time 0 of the motion is that of the first pose. Errors: TooFewSamples (fewer than 4), NonMonotonicTime, NonFinite.
 [[nodiscard]] Result<std::unique_ptr<Motion>> make_recorded_motion(const Geodetic& start,
                                                                    const std::vector<RecordedPose>& poses);

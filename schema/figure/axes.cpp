@@ -11,6 +11,16 @@ Axis ratio_axis(std::string name, double limit) {
   return {ScaleKind::Log, std::move(name), std::pair{1.0 / limit, limit}};
 }
 
+std::vector<double> ratio_ticks(double limit, bool finer) {
+  if (limit > 2.2) {
+    return {0.5, 1.0, 2.0};
+  }
+  if (limit > 1.6) {
+    return {0.67, 1.0, 1.5};
+  }
+  return finer ? std::vector{0.8, 0.9, 1.0, 1.1, 1.25} : std::vector{0.8, 1.0, 1.25};
+}
+
 Axis places_axis(std::string name, std::size_t count) {
   Axis axis{ScaleKind::Linear, std::move(name), std::pair{0.4, static_cast<double>(count) + 0.6}};
   for (std::size_t i = 1; i <= count; ++i) {

@@ -10,6 +10,10 @@ namespace driftlab::figure {
 /// Ratios on a logarithmic axis that ends as far below 1 as above it: at 1/limit and limit, limit > 1.
 [[nodiscard]] Axis ratio_axis(std::string name, double limit);
 
+/// Ticks of such an axis: 1 and round ratios on both sides that lie within the limit; between 1 and a small limit
+/// `finer` ones where it is asked for.
+[[nodiscard]] std::vector<double> ratio_ticks(double limit, bool finer = false);
+
 /// `count` places 1, 2, ... with a tick at each.
 [[nodiscard]] Axis places_axis(std::string name, std::size_t count);
 

@@ -4,10 +4,11 @@
 #include "core/fit/characterise.hpp"
 #include "core/signal/unit.hpp"
 #include "schema/figure/axes.hpp"
+#include "schema/figure/layout.hpp"
 #include "schema/json/channel_summary.hpp"
 #include "schema/json/figure_values.hpp"
+#include "schema/json/reported_channel.hpp"
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -54,10 +55,8 @@ DrawnModel drawn(const ImpliedBeside& implied, double factor) {
 
 std::optional<DrawnCurve> robust_of(const Json& channel, double factor) {
   const Json& haar = channel.at("haar");
-  const Json& contamination = channel.at("contamination");
-  const bool differs =
-      !contamination.at("disjoint_scales").empty() || contamination.value("verdict", "") == "contaminated";
-  if (!differs || !haar.contains("robust") || !haar["robust"].is_object()) {
+  const auto contamination = contamination_from_json(channel);
+  if (!contamination || !robust_differs(*contamination) || !haar.contains("robust") || !haar["robust"].is_object()) {
     return std::nullopt;
   }
   const Json& robust = haar["robust"];
@@ -164,16 +163,15 @@ std::vector<Note> notes_of(const Json& channel, const Json& fit, const DrawnChan
   const std::vector<double>& tau = drawn.classical.x;
   for (std::size_t i = 0; fit.is_object() && i < fit.at("processes").size() && i < components.size(); ++i) {
     const Json& process = fit.at("processes")[i];
-    const auto name = process.at("process").get<std::string>();
-    const double at = name == "white_noise" ? 1.0 : name == "random_walk" ? 3.0 : 0.0;
-    if (at < tau.front() || at > tau.back() || at == 0.0 || process.at("params").empty()) {
+    const auto place = level_place(process.at("process").get<std::string>(),
+                                   DrawnCurve{components[i].x, components[i].y, {}, {}}, tau);
+    if (!place || process.at("params").empty()) {
       continue;
     }
     const auto level = process.at("params").items().begin();
-    const auto y = read_at(DrawnCurve{components[i].x, components[i].y, {}, {}}, at);
-    if (level.value().is_object() && level.value().at("value").is_number() && y) {
-      notes.push_back({at, *y, level.key() + " = " + quantity_text(level.value()),
-                       std::string("read at τ = ") + (at == 1.0 ? "1" : "3") + " s", components[i].colour, false});
+    if (level.value().is_object() && level.value().at("value").is_number()) {
+      notes.push_back({place->tau_s, place->deviation, level.key() + " = " + quantity_text(level.value()),
+                       "read at τ = " + figure::tick_text(place->tau_s) + " s", components[i].colour, false});
     }
   }
   const Json bias = channel.at("allan_parameters").value("B", Json(nullptr));
@@ -197,11 +195,9 @@ Plot ratio_plot(const DrawnModel& model, const Series& classical, const std::opt
     return one;
   };
   Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .series = {relative(classical)}};
-  const double limit = std::min(end_of_ratios(farthest_log(plot.series.front().y, 0.25), 1.25), 8.0);
+  const double limit = end_of_ratios(farthest_log(plot.series.front().y, 0.25), 1.25, 8.0);
   plot.y = figure::ratio_axis("measured ÷ model", limit);
-  plot.y.ticks = limit > 2.2   ? std::vector{0.5, 1.0, 2.0}
-                 : limit > 1.6 ? std::vector{0.67, 1.0, 1.5}
-                               : std::vector{0.8, 1.0, 1.25};
+  plot.y.ticks = figure::ratio_ticks(limit);
   plot.height = 96.0;
   plot.rules = {1.0};
   if (robust) {

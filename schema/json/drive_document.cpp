@@ -310,7 +310,7 @@ void read_drive_outages(const Json& document, const std::string& pointer, drive:
   numbers("every_s", plan.every_s);
   numbers("at", plan.at_s);
   if (const auto phases = reader.integer("phases")) {
-    plan.phases = static_cast<int>(std::clamp<std::int64_t>(*phases, -1, 1000));
+    plan.phases = static_cast<int>(within(*phases, -1, 1000));
   }
   plan.settle_s = reader.real("settle_s").value_or(plan.settle_s);
   reader.reject_unknown();

@@ -126,8 +126,9 @@ DriveRequest drive_request_from_json(const Json& document, const std::string& po
   const std::int64_t seed = reader.integer("seed").value_or(1);
   if (seed < 0) {
     refuse("seed", "A seed is a whole number of at least 0.");
+  } else {
+    request.seed = static_cast<std::uint64_t>(seed);
   }
-  request.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
   if (taken("runs", !runs) != nullptr) {
     const std::int64_t count = reader.integer("runs").value_or(request.runs);
     if (count < 1 || count > kMostSimulatedDrives) {

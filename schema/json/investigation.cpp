@@ -82,7 +82,7 @@ Json allan_json(const investigate::ChannelFigures& figures, double level) {
 Json figures_json(const investigate::ChannelFigures& figures) {
   const investigate::LabUnit unit = investigate::level_unit(figures.unit);
   const double level = unit.per_si;
-  const double density = level * level;
+  const double density = unit.per_si * unit.per_si;
   return Json{{"channel", figures.channel},
               {"recording", figures.recording},
               {"unit", unit.symbol},

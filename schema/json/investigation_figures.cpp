@@ -16,7 +16,8 @@ using figure::Plot;
 using figure::ScaleKind;
 using figure::Series;
 
-constexpr double kHalfHeight = 130.0;  ///< of a figure of two plots [px]
+constexpr double kHalfHeight = 130.0;  ///< of one of two plots [px]
+constexpr double kHeight = 260.0;      ///< of one alone
 
 Series curve(std::string name, std::vector<double> x, Values y) {
   Series one{.name = std::move(name), .x = std::move(x), .y = std::move(y)};
@@ -46,7 +47,7 @@ Figure allan(const Json& series, const std::string& title, const std::string& un
   extended.colour = figure::palette::kModel;
   extended.width = 2.0;
   plot.series = {std::move(measured), std::move(extended), std::move(baseline)};
-  plot.height = 2.0 * kHalfHeight;
+  plot.height = kHeight;
   return figure_of(title + ": Allan deviation",
                    "Allan deviation as measured, as the baseline has it, and with what was found.", {std::move(plot)});
 }
@@ -121,7 +122,7 @@ Figure course(const Json& series, const std::string& title, const std::string& u
   effect.width = 2.0;
   Plot plot{.x = {ScaleKind::Linear, "time, s"}, .y = {ScaleKind::Linear, "error, " + unit}};
   plot.series = {std::move(effect), std::move(error)};
-  plot.height = 2.0 * kHalfHeight;
+  plot.height = kHeight;
   return figure_of(title + ": time course of " + series.at("recording").get<std::string>(),
                    "Means of the error over time in one recording, and the effect that was found.", {std::move(plot)});
 }

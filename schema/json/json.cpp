@@ -188,6 +188,10 @@ Json quantity(const Estimate& estimate, double per_si, std::string_view unit) {
   return Json{{"value", number(estimate.value * per_si)}, {"unit", unit}, {"ci95", interval(estimate.ci95, per_si)}};
 }
 
+std::int64_t within(std::int64_t value, std::int64_t least, std::int64_t most) {
+  return std::clamp(value, least, most);
+}
+
 void Faults::add(std::string pointer, ErrorCode code, std::string detail) {
   if (faults_.size() >= kMaxReportedFaults) {
     ++left_out_;

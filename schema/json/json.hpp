@@ -48,6 +48,10 @@ inline constexpr std::size_t kMaxReportedFaults = 100;  ///< of one document; th
 /// [low, high] times `factor`; an open end is null.
 [[nodiscard]] Json interval(const Interval& interval, double factor = 1.0);
 
+/// A whole number of a document brought between `least` and `most`: what lies outside is a fault that is told
+/// elsewhere, and its value must only fit its type until then.
+[[nodiscard]] std::int64_t within(std::int64_t value, std::int64_t least, std::int64_t most);
+
 /// One fault of a document, located by JSON pointer (RFC 6901).
 struct Fault {
   std::string pointer;

@@ -132,7 +132,7 @@ std::string valid_name(const std::string& name, std::set<std::string>& taken) {
   if (valid.empty() || !((valid[0] >= 'a' && valid[0] <= 'z') || (valid[0] >= 'A' && valid[0] <= 'Z'))) {
     valid.insert(0, "x");
   }
-  valid.resize(std::min(valid.size(), kLongestName));
+  valid = valid.substr(0, kLongestName);
   std::string unique = valid;
   for (int i = 2; !taken.insert(unique).second; ++i) {
     const std::string suffix = "_" + std::to_string(i);
@@ -171,7 +171,8 @@ bool fits_double(const Json& value) {
   if (value.is_number_unsigned()) {
     return value.get<std::uint64_t>() <= static_cast<std::uint64_t>(kMost);
   }
-  return !value.is_number_integer() || std::abs(value.get<std::int64_t>()) <= kMost;
+  const auto whole = value.is_number_integer() ? value.get<std::int64_t>() : 0;
+  return -kMost <= whole && whole <= kMost;
 }
 
 std::string value_of(const Json& value, const std::string& name) {

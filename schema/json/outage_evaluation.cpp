@@ -163,12 +163,13 @@ OutageOptions outage_options_from_json(const Json& parameters, const std::string
   }
   if (seed < 0) {
     faults.add(pointer + "/seed", ErrorCode::InvalidArgument, "The seed is a whole number from 0.");
+  } else {
+    options.seed = static_cast<std::uint64_t>(seed);
   }
   if (!(options.relative_precision >= 0.0 && options.relative_precision < 1.0)) {
     faults.add(pointer + "/relative_precision", ErrorCode::InvalidArgument, "The precision lies from 0 to below 1.");
   }
-  options.runs = static_cast<int>(std::clamp<std::int64_t>(runs, 2, 100000));
-  options.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(seed, 0));
+  options.runs = static_cast<int>(within(runs, 2, 100000));
   return options;
 }
 

@@ -84,7 +84,7 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
       faults.add(pointer + "/recorded", ErrorCode::InvalidArgument, "A trajectory is recorded or made of segments.");
     }
     if (plan.duration_s == 0.0 && !scenario.recorded.empty()) {
-      plan.duration_s = scenario.recorded.back().time_s - scenario.recorded.front().time_s;
+      plan.duration_s = duration_of(scenario.recorded);
     }
   } else if (segments == nullptr || !segments->is_array() || segments->size() > 10000) {
     faults.add(pointer + "/segments_by_start_time", ErrorCode::InvalidArgument, "The segments are a list.");
@@ -243,8 +243,8 @@ FilterCandidate read_filter(const Json& document, const std::string& pointer, co
   if (const Json* const accelerometer = reader.member("accelerometer")) {
     read_sensor(*accelerometer, 3, pointer + "/accelerometer", filter.settings.imu, faults);
   }
-  filter.settings.covariance_samples = static_cast<int>(std::clamp<std::int64_t>(
-      reader.integer("covariance_samples").value_or(filter.settings.covariance_samples), 0, 101));
+  filter.settings.covariance_samples = static_cast<int>(
+      within(reader.integer("covariance_samples").value_or(filter.settings.covariance_samples), 0, 101));
   reader.reject_unknown();
   return filter;
 }

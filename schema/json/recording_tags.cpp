@@ -72,8 +72,8 @@ Json to_json(const RecordingTags& tags) {
 Result<std::map<std::string, std::string>> parse_labels(std::string_view text) {
   std::map<std::string, std::string> labels;
   for (const std::string_view word : split(text, ',')) {
-    const std::size_t equals = std::min(word.find('='), word.size());
-    const std::string_view value = word.substr(std::min(equals + 1, word.size()));
+    const std::size_t equals = word.find('=');
+    const std::string_view value = equals == std::string_view::npos ? std::string_view() : word.substr(equals + 1);
     const bool sound = is_label(word.substr(0, equals), value);
     if (!sound || !labels.emplace(word.substr(0, equals), value).second) {
       return fail(ErrorCode::InvalidArgument,

@@ -53,9 +53,7 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
     }
     const double limit = end_of_ratios(far, 1.1);
     Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .y = figure::ratio_axis("candidate ÷ baseline", limit)};
-    plot.y.ticks = limit > 2.2   ? std::vector{0.5, 1.0, 2.0}
-                   : limit > 1.6 ? std::vector{0.67, 1.0, 1.5}
-                                 : std::vector{0.8, 0.9, 1.0, 1.1, 1.25};
+    plot.y.ticks = figure::ratio_ticks(limit, true);
     plot.series = {std::move(change), std::move(margin)};
     plot.rules = {1.0};
     Figure figure{

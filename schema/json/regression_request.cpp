@@ -80,7 +80,7 @@ void regression_read_limits(const Json& document, const std::string& pointer, re
     }
   }
   if (const auto sessions = reader.integer("findings")) {
-    limits.findings = static_cast<std::size_t>(std::clamp<std::int64_t>(*sessions, 0, 1000000));
+    limits.findings = static_cast<std::size_t>(within(*sessions, 0, 1000000));
   }
   reader.reject_unknown();
 }
@@ -183,7 +183,7 @@ void regression_read_excluded(const Json& document, std::vector<regression::Excl
 /// `Z`, `+hh:mm` or `-hh:mm` at the end, without which a time is a local one.
 bool names_its_zone(std::string_view time) {
   constexpr std::size_t kOffset = 6;
-  const std::string_view end = time.substr(time.size() - std::min(time.size(), kOffset));
+  const std::string_view end = time.size() > kOffset ? time.substr(time.size() - kOffset) : time;
   return time.ends_with('Z') || (end.size() == kOffset && (end[0] == '+' || end[0] == '-') && end[3] == ':');
 }
 
@@ -236,8 +236,8 @@ void regression_settings_from_json(const Json& document, const std::string& poin
   settings.test.through_s = reader.real("through_s").value_or(settings.test.through_s);
   settings.test.design_power = reader.real("design_power").value_or(settings.test.design_power);
   settings.test.prior_df = reader.real("prior_df").value_or(settings.test.prior_df);
-  settings.test.session_df = static_cast<int>(
-      std::clamp<std::int64_t>(reader.integer("session_df").value_or(settings.test.session_df), 0, 1000000));
+  settings.test.session_df =
+      static_cast<int>(within(reader.integer("session_df").value_or(settings.test.session_df), 0, 1000000));
   settings.min_edf = reader.real("min_edf").value_or(settings.min_edf);
   if (const auto seed = reader.integer("seed"); seed && *seed >= 0) {
     settings.test.seed = static_cast<std::uint64_t>(*seed);

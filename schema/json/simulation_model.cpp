@@ -187,8 +187,8 @@ Json given_effects_json(const Baseline& baseline, const Unit& channel) {
     Json params = Json::object();
     const auto* const mean = cause.as<investigate::MeanEffect>();
     const bool by_shape = mean != nullptr && !mean->shape_of_parameter.empty() && effect.values.size() > 1;
-    const std::size_t count = by_shape ? 1 : std::min(effect.values.size(), cause.parameters.size());
-    for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t most = by_shape ? 1 : cause.parameters.size();
+    for (std::size_t k = 0; k < most && k < effect.values.size(); ++k) {
       const CauseParameter& parameter = by_shape ? amplitude_of(cause, effect.values[1]) : cause.parameters[k];
       const investigate::LabUnit unit = parameter.unit(channel);
       params[std::string(parameter.name)] = value_json(effect.values[k], unit.per_si, unit.symbol);

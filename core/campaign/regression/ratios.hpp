@@ -14,6 +14,9 @@ struct RatioReport {
 };
 [[nodiscard]] RatioReport ratios_of(const ScaleReport& told);
 
+/// How far a ratio is from 1 [%]: 1.1 is 10.
+[[nodiscard]] inline double change_percent(double ratio) { return 100.0 * (ratio - 1.0); }
+
 /// A trend over releases.
 struct TrendRatios {
   double per_release = 1.0;

@@ -1,10 +1,8 @@
 #include "schema/json/report/html.hpp"
 
-#include "core/signal/text.hpp"
 #include "schema/figure/drawing.hpp"
+#include "schema/figure/paper.hpp"
 #include "schema/json/figures.hpp"
-
-#include <algorithm>
 
 namespace driftlab::page {
 namespace {
@@ -22,12 +20,6 @@ constexpr const char* kStyle =
     "solid #e2e2dc}"
     "footer{margin-top:32px;border-top:1px solid #e2e2dc;padding-top:8px}"
     "@media print{body{margin:0;max-width:none;padding:0}}";
-
-// Text of a fixed width, in tenths of a pixel of its size: between the margins of A4 lie 178 mm, 672 pixels at 96 an
-// inch, and a character of the fonts of `pre` is 0.61 of the size wide.
-constexpr std::size_t kPaperAdvances = 11016;
-constexpr std::size_t kLargest = 110;
-constexpr std::size_t kSmallest = 60;  // read with an effort; a longer line wraps
 
 }  // namespace
 
@@ -58,15 +50,7 @@ std::string list_html(const Json& sentences) {
 }
 
 std::string aligned_html(const std::string& text) {
-  // What is aligned by blanks falls apart where a line wraps; sentences may.
-  std::size_t longest = 1;
-  for (const std::string_view line : split(text, '\n')) {
-    const bool row = line.find("  ") != std::string_view::npos;
-    const auto characters = static_cast<std::size_t>(std::count_if(
-        line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-    longest = row ? std::max(longest, characters) : longest;
-  }
-  const std::size_t tenths = std::clamp(kPaperAdvances / longest, kSmallest, kLargest);
+  const std::size_t tenths = figure::aligned_type_tenths(text);
   return "<pre style=\"font-size:" + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "px\">" +
          html(text) + "</pre>\n";
 }

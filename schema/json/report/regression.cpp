@@ -1,4 +1,5 @@
 /// The report of a regression run: verdict, figures, the tests that decide, what else was compared, and the sessions.
+#include "core/campaign/regression/ratios.hpp"
 #include "schema/figure/drawing.hpp"
 #include "schema/json/figure_values.hpp"
 #include "schema/json/regression_figures.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 std::string percent(double ratio) {
   std::array<char, 32> buffer{};
-  (void)std::snprintf(buffer.data(), buffer.size(), "%+.1f %%", 100.0 * (ratio - 1.0));
+  (void)std::snprintf(buffer.data(), buffer.size(), "%+.1f %%", regression::change_percent(ratio));
   return buffer.data();
 }
 

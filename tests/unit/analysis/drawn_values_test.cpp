@@ -85,10 +85,43 @@ TEST(Ratios, EndWhereTheFarthestIs) {
   EXPECT_DOUBLE_EQ(farthest_log(ratios, 0.1), std::numbers::ln2);
   EXPECT_EQ(farthest_log(ratios, 2.0), 2.0);
   EXPECT_DOUBLE_EQ(end_of_ratios(std::numbers::ln2, 2.0), 4.0);
+  EXPECT_EQ(end_of_ratios(std::numbers::ln2, 2.0, 3.0), 3.0);
   EXPECT_DOUBLE_EQ(reach_of_ratios(ratios, 1.1, 1.5), 2.2);
   EXPECT_EQ(reach_of_ratios({}, 1.1, 1.5), 1.5);
   EXPECT_EQ(over({2.0, 1.0, std::nullopt, 1.0}, {4.0, 0.0, 1.0, std::nullopt}),
             (Values{0.5, std::nullopt, std::nullopt, std::nullopt}));
+}
+
+TEST(LevelPlace, IsWhereTheCurveOfAProcessEqualsItsLevel) {
+  // Allan deviations of N = 3 and K = 2: N/sqrt(tau) and K sqrt(tau/3), straight lines on both logarithms.
+  const std::vector<double> tau{0.01, 0.16, 2.56, 40.96};
+  DrawnCurve white{tau, {}, {}, {}};
+  DrawnCurve walk{tau, {}, {}, {}};
+  for (const double t : tau) {
+    white.y.emplace_back(3.0 / std::sqrt(t));
+    walk.y.emplace_back(2.0 * std::sqrt(t / 3.0));
+  }
+  const auto n = level_place("white_noise", white, tau);
+  ASSERT_TRUE(n);
+  EXPECT_EQ(n->tau_s, 1.0);
+  EXPECT_NEAR(n->deviation, 3.0, 1e-12);
+  const auto k = level_place("random_walk", walk, tau);
+  ASSERT_TRUE(k);
+  EXPECT_EQ(k->tau_s, 3.0);
+  EXPECT_NEAR(k->deviation, 2.0, 1e-12);
+  EXPECT_FALSE(level_place("gauss_markov", white, tau));
+  EXPECT_FALSE(level_place("random_walk", walk, std::vector{0.01, 2.0})) << "the record is too short to read it off";
+  EXPECT_FALSE(level_place("white_noise", white, std::vector{2.0, 8.0}));
+}
+
+TEST(RobustDiffers, WhereAScaleDiffersOrGrossErrorsMoveTheVariances) {
+  Contamination contamination;
+  EXPECT_FALSE(robust_differs(contamination));
+  contamination.disjoint_scales = {8};
+  EXPECT_TRUE(robust_differs(contamination));
+  contamination.disjoint_scales.clear();
+  contamination.verdict = "contaminated";
+  EXPECT_TRUE(robust_differs(contamination));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A regression run from stored curves to its sentence.
 #include "core/campaign/regression/gross_errors.hpp"
+#include "core/campaign/regression/ratios.hpp"
 #include "core/campaign/regression/report.hpp"
 #include "core/process/model.hpp"
 #include "tests/unit/campaign/regression_channels.hpp"
@@ -400,6 +401,11 @@ TEST(RegressionReport, RecordedSessionsThatDidNotChangeDoNotFailAndATwofoldGyroD
       EXPECT_EQ(doubled->verdict, Verdict::Fail) << a << " against " << b << ": " << doubled->summary.verdict;
     }
   }
+}
+
+TEST(RegressionRatios, ArePerCentAboveOrBelowOne) {
+  EXPECT_NEAR(change_percent(1.1), 10.0, 1e-12);
+  EXPECT_NEAR(change_percent(0.5), -50.0, 1e-12);
 }
 
 }  // namespace

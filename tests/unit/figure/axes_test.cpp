@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace driftlab::figure {
 namespace {
 
@@ -63,6 +65,19 @@ TEST(GreatestOf, CountsUpperEndsOfIntervalsAndPassesOverWhatIsNotKnown) {
   EXPECT_EQ(greatest_of({.name = "bare", .x = {1.0}, .y = {2.0}}), 2.0);
   EXPECT_EQ(greatest_of({.name = "negative", .x = {1.0}, .y = {-2.0}}), 0.0);
   EXPECT_EQ(farthest_of(series), 9.0);
+}
+
+TEST(RatioTicks, AreRoundAndLieWithinTheLimit) {
+  for (const double limit : {1.3, 1.7, 2.3, 8.0}) {
+    for (const bool finer : {false, true}) {
+      const std::vector<double> ticks = ratio_ticks(limit, finer);
+      EXPECT_NE(std::find(ticks.begin(), ticks.end(), 1.0), ticks.end()) << limit;
+      EXPECT_GE(ticks.front(), 1.0 / limit) << limit;
+      EXPECT_LE(ticks.back(), limit) << limit;
+    }
+  }
+  EXPECT_EQ(ratio_ticks(1.3).size(), 3U);
+  EXPECT_EQ(ratio_ticks(1.3, true).size(), 5U);
 }
 
 }  // namespace

@@ -145,5 +145,11 @@ TEST(ObjectReader, TakesWhatIsNoObjectAsOneFault) {
   EXPECT_EQ(faults.error().fields.size(), 1U);
 }
 
+TEST(Within, BringsAWholeNumberBetweenItsEnds) {
+  EXPECT_EQ(within(5, 0, 9), 5);
+  EXPECT_EQ(within(-5, 0, 9), 0);
+  EXPECT_EQ(within(std::numeric_limits<std::int64_t>::max(), 0, 9), 9);
+}
+
 }  // namespace
 }  // namespace driftlab

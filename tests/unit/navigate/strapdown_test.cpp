@@ -232,5 +232,15 @@ TEST(SegmentMotion, ChangesOfSpeedFollowEachOther) {
   EXPECT_TRUE(make_segment_motion(plan));
 }
 
+TEST(RecordedPoses, LastFromTheFirstToTheLast) {
+  std::vector<RecordedPose> poses(1);
+  poses[0].time_s = 3.0;
+  EXPECT_EQ(duration_of(poses), 0.0);
+  poses.resize(3);
+  poses[1].time_s = 4.0;
+  poses[2].time_s = 9.5;
+  EXPECT_EQ(duration_of(poses), 6.5);
+}
+
 }  // namespace
 }  // namespace driftlab
