@@ -61,6 +61,9 @@ class Floors(Planted):
                     ("server/jobs/a.hpp", "server/http/request.hpp"), ("server/http/a.hpp", "server/api/routes.hpp"),
                     ("server/api/a.hpp", "clients/cli/client.hpp"),
                     ("server/jobs/a.cpp", "core/fit/gmwm.hpp"), ("server/jobs/a.cpp", "core/investigate/search/search.hpp"),
+                    ("schema/json/a.cpp", "core/export/target.hpp"), ("schema/json/a.cpp", "core/investigate/slow/slow_model.hpp"),
+                    ("schema/json/a.cpp", "core/fit/gmwm.hpp"), ("schema/json/a.cpp", "core/variance/allan_variance.hpp"),
+                    ("schema/json/a.cpp", "core/signal/channel_survey.hpp"), ("schema/json/a.cpp", "core/process/decimation.hpp"),
                     ("server/api/a.cpp", "core/signal/channel_survey.hpp"),
                     ("server/jobs/a.cpp", "core/campaign/replicates.hpp"), ("clients/cli/a.cpp", "core/campaign/structure.hpp"),
                     ("server/jobs/a.cpp", "core/read/format.hpp"), ("server/api/a.cpp", "core/calibrate/triad.hpp"),
@@ -83,13 +86,26 @@ class Floors(Planted):
         # Figures were interpolated and averaged on JSON values, and nothing said so.
         for line in ("double y = std::exp(std::log(a) * share);", "auto d = std::sqrt(v);", "auto s = std::accumulate(a, b, 0.0);", "auto m = axes.transpose() * place;",
                      "auto e = to_euler(attitude);",
-                     "auto n = std::lround(100.0 * share);", "auto h = std::hypot(x, y);", "#include <cmath>", "#include <numeric>"):
+                     "auto n = std::lround(100.0 * share);", "auto h = std::hypot(x, y);", "#include <cmath>", "#include <numeric>",
+                     # A map was framed, a table's axis ended, the smaller p told and a step of a thinned path chosen there.
+                     "worst = std::max(worst, error);", "auto p = std::min(test.p_fit, test.p_contrast);", "auto m = std::clamp(tenths, 60, 110);",
+                     "const double far = *std::max_element(x.begin(), x.end());", "auto a = std::abs(ratio);", "auto [l, h] = std::ranges::minmax(x);",
+                     "plot.y.domain = {least / 1.5, top};", "const double margin = 0.04 * wide;", "auto w = ends[1] - ends[0];",
+                     "place = {truth[0] + error[0], north};", "auto d = number(static_cast<double>(window.count) * window.time.dt_s);",
+                     "plan.duration_s = poses.back().time_s - poses.front().time_s;", "auto t = start_s + trim.start_s;",
+                     "const std::size_t step = points.size() / kMost + 1;", "const double share = inside / all;", "sum *= weight;",
+                     "facts.missing = known.missing + known.implausible;", "d.push_back(number(deviation_of(variance)));"):
             with self.subTest(line=line):
                 path = self.plant("schema/json/report/a.cpp", "int before;\n" + line + "\n")
                 self.refused(floors.check(self.root), "schema/json/report/a.cpp:2: schema/json")
                 path.unlink()
         self.plant("schema/json/json.cpp", "#include <cmath>\nauto n = std::isfinite(x) ? std::round(x) : 0.0;\n")
-        self.plant("schema/json/a.cpp", '#include <algorithm>\nauto v = std::max(a, b) * unit.per_si;  // std::sqrt\nauto s = "std::exp";\n')
+        self.plant("schema/json/a.cpp", '#include <algorithm>\nauto v = number(channel.mean * unit.per_si);  // std::sqrt\nauto s = "std::exp - a / b";\n'
+                                        'auto a = angles.roll_rad / kDegree;\nauto b = 100.0 * tau0.device;\nauto c = *level * lab.per_si;\n'
+                                        'auto d = 1.0 / unit.factor;\nauto e = variance[i] * factor * factor;\nauto f = row[i * columns + k];\n'
+                                        'auto g = logs[cell * bands + band];\nauto h = "n " + std::to_string(i + 1) + end;\nauto k = text.size() - 1;\n'
+                                        'const Json* const list = &document;\nauto l = std::to_string(found - list.begin()) + name;\n')
+        self.plant("schema/json/mat_file.cpp", "bytes.resize((bytes.size() + 7) / eight * eight);\n")
         self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
         self.assertEqual(floors.check(self.root), [])
 
