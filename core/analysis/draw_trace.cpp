@@ -126,6 +126,9 @@ Result<RecordingTrace> draw_trace(const ColumnFile& columns, const std::filesyst
   }
   const Rows rows = rows_between(t0, t1, request.rate_hz, columns.rows());
   fill_buckets(columns, pyramid_path, request.column, rows, request.stretches, trace);
+  for (const TraceBucket& bucket : trace.buckets) {
+    trace.time_s.push_back(static_cast<double>(bucket.first) / request.rate_hz);
+  }
   trace.missing =
       spans_where(trace.buckets, rows.end, request.rate_hz,
                   [](const TraceBucket& bucket, std::size_t next) { return bucket.present < next - bucket.first; });

@@ -54,6 +54,7 @@ struct TimeSpan {
 
 struct RecordingTrace {
   std::vector<TraceBucket> buckets;  ///< `first` counts from the first row
+  std::vector<double> time_s;        ///< at which each of them begins
   std::size_t samples_per_bucket = 1;
   double duration_s = 0.0;        ///< of the recording
   std::vector<TimeSpan> missing;  ///< stretches that lack samples, joined where they touch

@@ -3,12 +3,10 @@
 namespace driftlab {
 
 Json to_json(const RecordingTrace& trace, double rate_hz) {
-  Json time = Json::array();
   Json low = Json::array();
   Json high = Json::array();
   Json mean = Json::array();
   for (const TraceBucket& bucket : trace.buckets) {
-    time.push_back(number(static_cast<double>(bucket.first) / rate_hz));
     low.push_back(bucket.present > 0 ? number(bucket.low) : Json(nullptr));
     high.push_back(bucket.present > 0 ? number(bucket.high) : Json(nullptr));
     mean.push_back(bucket.present > 0 ? number(bucket.mean) : Json(nullptr));
@@ -25,7 +23,7 @@ Json to_json(const RecordingTrace& trace, double rate_hz) {
     }
   }
   return Json{{"samples_per_bucket", trace.samples_per_bucket},
-              {"time_s", std::move(time)},
+              {"time_s", numbers(trace.time_s)},
               {"min", std::move(low)},
               {"max", std::move(high)},
               {"mean", std::move(mean)},

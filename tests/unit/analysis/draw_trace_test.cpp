@@ -75,6 +75,7 @@ TEST_F(DrawTrace, HoldsTheRowsBetweenTheTimesAskedFor) {
   EXPECT_EQ(trace->buckets.front().first, 20);
   EXPECT_EQ(trace->buckets.front().low, 20.0);
   EXPECT_EQ(trace->buckets.back().high, 39.0);
+  EXPECT_EQ(trace->time_s.back(), 3.6);
   EXPECT_EQ(trace->duration_s, 10.0);
 }
 
