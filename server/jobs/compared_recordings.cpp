@@ -25,9 +25,7 @@ Result<regression::ComparedRecording> compared(const Recording& row, const std::
     }
     recording.channels.push_back(std::move(*channel));
   }
-  const ReportedChannel& first = recording.channels.front().result;
-  recording.rate_hz = 1.0 / first.dt_s;
-  recording.duration_s = static_cast<double>(first.samples + first.missing) * first.dt_s;
+  recording.time_by_channels();
   tell_quality(*quality, recording);
   return recording;
 }

@@ -19,6 +19,12 @@ ChannelFacts facts_of(const Quality& quality, std::string_view column,
   return facts;
 }
 
+void ComparedRecording::time_by_channels() {
+  const ReportedChannel& first = channels.front().result;
+  rate_hz = 1.0 / first.dt_s;
+  duration_s = static_cast<double>(first.samples + first.missing) * first.dt_s;
+}
+
 void ComparedRecording::tell(const Quality& quality) {
   declared_hz = stated_rate_hz(quality.measured_rate_hz, quality.clock_ratio.value_or(0.0), rate_hz);
   jitter_s = quality.jitter_s;

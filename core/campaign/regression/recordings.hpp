@@ -73,6 +73,8 @@ struct ComparedRecording {
   std::vector<std::string> causes;  ///< identified ones
   std::vector<ComparedChannel> channels;
 
+  /// Sets rate and duration by the grid of the first channel, of which samples may be missing. Needs a channel.
+  void time_by_channels();
   /// Takes over what the quality says of the whole file: samples, gaps, jitter, and the rate that somebody declared.
   /// Needs `rate_hz`.
   void tell(const Quality& quality);

@@ -69,5 +69,16 @@ TEST(ComparedRecording, TakesOverTheRateThatSomebodyDeclared) {
   EXPECT_DOUBLE_EQ(recording.declared_hz.value_or(0.0), 50.0);
 }
 
+TEST(ComparedRecording, LastsAsLongAsItsGridWithWhatIsMissing) {
+  ComparedRecording recording;
+  recording.channels.resize(1);
+  recording.channels.front().result.dt_s = 0.02;
+  recording.channels.front().result.samples = 990;
+  recording.channels.front().result.missing = 10;
+  recording.time_by_channels();
+  EXPECT_DOUBLE_EQ(recording.rate_hz, 50.0);
+  EXPECT_DOUBLE_EQ(recording.duration_s, 20.0);
+}
+
 }  // namespace
 }  // namespace driftlab::regression
