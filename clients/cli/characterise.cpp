@@ -25,6 +25,37 @@ struct CharacteriseFlags {
   std::string plot;
 };
 
+/// What was found, as a document and as what its tables are made of.
+struct Found {
+  Json document;
+  TabledCampaign campaign;
+};
+
+tl::expected<Found, Failure> here(const Inputs& inputs, const CharacteriseOptions& options) {
+  const auto campaign = characterise_here(inputs, options);
+  if (!campaign) {
+    return tl::unexpected(campaign.error());
+  }
+  return Found{as_document(*campaign, inputs), tabled(*campaign)};
+}
+
+tl::expected<Found, Failure> there(const Inputs& inputs, const CharacteriseOptions& options,
+                                   const CharacteriseFlags& flags) {
+  auto document = characterise_there(inputs, options, flags.server);
+  if (!document) {
+    return tl::unexpected(document.error());
+  }
+  if (flags.json) {
+    return Found{std::move(*document), {}};
+  }
+  *document = named_as_here(std::move(*document), inputs);
+  auto campaign = tabled_from_json(*document);
+  if (!campaign) {
+    return tl::unexpected(Failure{campaign.error(), Exit::BadInput});
+  }
+  return Found{std::move(*document), std::move(*campaign)};
+}
+
 Exit run(const CharacteriseFlags& flags) {
   CharacteriseOptions options;
   options.seed = flags.seed;
@@ -43,28 +74,21 @@ Exit run(const CharacteriseFlags& flags) {
   if (!inputs) {
     return complain(inputs.error());
   }
-  auto document =
-      flags.server.empty() ? characterise_here(*inputs, options) : characterise_there(*inputs, options, flags.server);
-  if (!document) {
-    return complain(document.error().error, document.error().exit);
+  auto found = flags.server.empty() ? here(*inputs, options) : there(*inputs, options, flags);
+  if (!found) {
+    return complain(found.error().error, found.error().exit);
   }
-  if (!flags.server.empty() && !flags.json) {
-    *document = named_as_here(std::move(*document), *inputs);
-  }
+  const auto& [document, campaign] = *found;
   if (!flags.plot.empty()) {
-    if (auto drawn = write_plots(*document, flags.plot); !drawn) {
+    if (auto drawn = write_plots(document, flags.plot); !drawn) {
       return complain(drawn.error());
     }
   }
-  Result<std::string> text = flags.json ? Result<std::string>(document->dump(2) + "\n")
-                                        : tables_of(*document, inputs->device, inputs->hardware);
-  if (!text) {
-    return complain(text.error());
-  }
-  if (!flags.json) {
-    *text = verdict_lines(*document) + "\n" + *text + further_to_text(*document);
-  }
-  std::fwrite(text->data(), 1, text->size(), stdout);
+  const std::string text = flags.json
+                               ? document.dump(2) + "\n"
+                               : verdict_lines(document) + "\n" +
+                                     tables_of(campaign, inputs->device, inputs->hardware) + further_to_text(document);
+  std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }
 

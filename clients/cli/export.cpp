@@ -69,14 +69,24 @@ std::string why_no_density(const ImuNoise& imu) {
          axis.density.remark;
 }
 
-/// Device and document of what the user named: a characterisation as it stands, recordings characterised now.
-tl::expected<std::pair<std::string, Json>, Failure> characterised(const ExportFlags& flags) {
+/// A device and its sensor axes.
+struct Device {
+  std::string name;
+  std::vector<SensorSources> sensors;
+};
+
+/// What the user named: a characterisation as it stands, recordings characterised now.
+tl::expected<Device, Failure> characterised(const ExportFlags& flags) {
   if (auto document = as_characterisation(flags.files)) {
     std::string device = flags.file.device;
     if (device.empty()) {
       device = document->at("recordings").front().value("id", "unnamed");
     }
-    return std::pair(std::move(device), std::move(*document));
+    auto sensors = sensors_of(*document);
+    if (!sensors) {
+      return tl::unexpected(Failure{sensors.error(), Exit::BadInput});
+    }
+    return Device{std::move(device), std::move(*sensors)};
   }
   auto inputs = read_inputs(flags.files, flags.file);
   if (!inputs) {
@@ -85,11 +95,11 @@ tl::expected<std::pair<std::string, Json>, Failure> characterised(const ExportFl
   const bool corrected = std::any_of(inputs->files.begin(), inputs->files.end(), [](const InputFile& file) {
     return file.calibration.accelerometer || file.calibration.gyroscope;
   });
-  auto document = characterise_here(*inputs, {}, corrected ? ColumnCheck() : check_columns);
-  if (!document) {
-    return tl::unexpected(document.error());
+  const auto found = characterise_here(*inputs, {}, corrected ? ColumnCheck() : check_columns);
+  if (!found) {
+    return tl::unexpected(found.error());
   }
-  return std::pair(inputs->device, std::move(*document));
+  return Device{inputs->device, sensors_of(found->recordings)};
 }
 
 Exit run_here(const ExportFlags& flags, const ExportTarget& target) {
@@ -97,12 +107,7 @@ Exit run_here(const ExportFlags& flags, const ExportTarget& target) {
   if (!found) {
     return complain(found.error().error, found.error().exit);
   }
-  const auto& [device, document] = *found;
-  const auto sensors = sensors_of(document);
-  if (!sensors) {
-    return complain(sensors.error());
-  }
-  const auto imu = imu_noise_of(device, *sensors, {interrupt_token(), {}});
+  const auto imu = imu_noise_of(found->name, found->sensors, {interrupt_token(), {}});
   if (!imu) {
     return complain_of_work(imu.error());
   }

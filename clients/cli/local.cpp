@@ -14,76 +14,71 @@
 
 namespace driftlab::cli {
 
-tl::expected<Json, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options,
-                                              ColumnCheck check) {
+tl::expected<CharacterisedCampaign, Failure> characterise_here(const Inputs& inputs, const CharacteriseOptions& options,
+                                                               ColumnCheck check) {
   auto files = LocalFiles::of(inputs, std::move(check));
   if (!files) {
     return tl::unexpected(Failure{files.error(), Exit::BadInput});
   }
   ProgressBar bar;
   const RunControl control{interrupt_token(), [&](std::string_view stage, double f) { bar.show(stage, f); }};
-  const auto found = characterise_campaign(**files, options, control);
+  auto found = characterise_campaign(**files, options, control);
   if (!found) {
     const Exit exit = found.error().code == ErrorCode::Cancelled ? Exit::Interrupted : Exit::BadInput;
     return tl::unexpected(Failure{found.error(), exit});
   }
+  return std::move(*found);
+}
+
+Json as_document(const CharacterisedCampaign& campaign, const Inputs& inputs) {
   std::vector<Json> recordings;
-  for (const CharacterisedRecording& recording : found->recordings) {
+  for (const CharacterisedRecording& recording : campaign.recordings) {
     recordings.push_back(to_json(recording));
   }
   Json document = characterisation_document(std::move(recordings));
   document["study"] = inputs.study;
-  add_summary(document, found->together);
+  add_summary(document, campaign.together);
   return document;
 }
 
-namespace {
-
-/// What is true of the recordings, a line each: it was in the document alone, and a frozen sensor was tabled unmarked.
-std::string notes_of(const Json& document) {
-  std::string text;
-  const auto add = [&](const std::string& whose, const Json& sentences) {
-    for (const Json& sentence : sentences) {
-      text += "! " + whose + ": " + sentence.get<std::string>() + "\n";
-    }
-  };
-  for (const Json& recording : document.at("recordings")) {
-    const auto id = recording.at("id").get<std::string>();
-    add(id, recording.at("quality").at("notes"));
-    for (const Json& channel : recording.at("channels")) {
-      add(id + ", " + channel.at("channel").get<std::string>(), channel.at("warnings"));
-    }
-  }
-  return text;
+TabledCampaign tabled(const CharacterisedCampaign& campaign) {
+  return {sensors_of(campaign.recordings), campaign.together.replicates, remarks_of(campaign.recordings)};
 }
 
-}  // namespace
+Result<TabledCampaign> tabled_from_json(const Json& document) {
+  auto sensors = sensors_of(document);
+  if (!sensors) {
+    return fail(sensors.error());
+  }
+  auto pooled = pooled_sensors_of(document);
+  if (!pooled) {
+    return fail(pooled.error());
+  }
+  auto remarks = remarks_of(document);
+  if (!remarks) {
+    return fail(remarks.error());
+  }
+  return TabledCampaign{std::move(*sensors), std::move(*pooled), std::move(*remarks)};
+}
 
 namespace {
 
 /// A sensor axis with what was put together of it, and its tables by both methods.
 struct AxisTables {
-  const SensorSources* sensor = nullptr;
-  std::optional<PooledSensor> pooled;
+  const PooledSensor* pooled = nullptr;
   std::array<Result<ParameterTable>, 2> tables;  ///< Allan variance, GMWM
 };
 
 constexpr std::array kMethods{TableMethod::Av, TableMethod::Gmwm};
 
-Result<AxisTables> axis_tables(const Json& document, const std::string& device,
-                               const std::vector<std::string>& hardware, const SensorSources& sensor) {
-  auto found = pooled_of(document, sensor);
-  if (!found) {
-    return fail(found.error());
-  }
+AxisTables axis_tables(const TabledCampaign& campaign, const std::string& device,
+                       const std::vector<std::string>& hardware, const SensorSources& sensor) {
   AxisTables axis;
-  axis.sensor = &sensor;
-  axis.pooled = std::move(*found);
-  const PooledSensor* const pooled = axis.pooled ? &*axis.pooled : nullptr;
+  axis.pooled = find_pooled(campaign.pooled, sensor);
   const Quantity quantity = parse_quantity(sensor.quantity).value_or(Quantity::Unspecified);
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
     axis.tables[m] = build_parameter_table({device, quantity, sensor.axis, kMethods[m], "", std::nullopt, hardware},
-                                           sensor.sources, pooled);
+                                           sensor.sources, axis.pooled);
   }
   return axis;
 }
@@ -120,19 +115,11 @@ std::string one_axis_text(const AxisTables& axis) {
 
 }  // namespace
 
-Result<std::string> tables_of(const Json& document, const std::string& device,
-                              const std::vector<std::string>& hardware) {
-  const auto sensors = sensors_of(document);
-  if (!sensors) {
-    return fail(sensors.error());
-  }
+std::string tables_of(const TabledCampaign& campaign, const std::string& device,
+                      const std::vector<std::string>& hardware) {
   std::vector<AxisTables> axes;
-  for (const SensorSources& sensor : *sensors) {
-    auto axis = axis_tables(document, device, hardware, sensor);
-    if (!axis) {
-      return fail(axis.error());
-    }
-    axes.push_back(std::move(*axis));
+  for (const SensorSources& sensor : campaign.sensors) {
+    axes.push_back(axis_tables(campaign, device, hardware, sensor));
   }
   std::string text;
   for (std::size_t i = 0; i < axes.size();) {
@@ -150,7 +137,11 @@ Result<std::string> tables_of(const Json& document, const std::string& device,
     }
     i += count;
   }
-  return text + notes_of(document) + (axes.empty() ? "" : table_legend());
+  // It was in the document alone, and a frozen sensor was tabled unmarked.
+  for (const Remark& remark : campaign.remarks) {
+    text += "! " + remark.whose + ": " + remark.sentence + "\n";
+  }
+  return text + (axes.empty() ? "" : table_legend());
 }
 
 }  // namespace driftlab::cli

@@ -8,6 +8,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace driftlab::cli {
 namespace {
@@ -23,6 +24,7 @@ struct Documented {
   std::string device;
   std::vector<std::string> hardware;  ///< texts that describe the device
   Json document;
+  std::optional<TabledCampaign> campaign = std::nullopt;  ///< of recordings characterised now
 };
 
 /// A document as it stands, or recordings characterised now, with the name of their device.
@@ -45,11 +47,11 @@ tl::expected<Documented, Failure> document_of(const PlotFlags& flags) {
   if (!inputs) {
     return tl::unexpected(Failure{inputs.error(), Exit::BadInput});
   }
-  auto document = characterise_here(*inputs, {});
-  if (!document) {
-    return tl::unexpected(document.error());
+  const auto campaign = characterise_here(*inputs, {});
+  if (!campaign) {
+    return tl::unexpected(campaign.error());
   }
-  return Documented{inputs->device, inputs->hardware, std::move(*document)};
+  return Documented{inputs->device, inputs->hardware, as_document(*campaign, *inputs), tabled(*campaign)};
 }
 
 Exit run_plot(const PlotFlags& flags) {
@@ -68,11 +70,12 @@ Exit run_report(const PlotFlags& flags) {
   }
   std::string tables;
   if (document->document.contains("recordings") && document->document.at("recordings").is_array()) {
-    auto text = tables_of(document->document, document->device, document->hardware);
-    if (!text) {
-      return complain(text.error());
+    const auto campaign =
+        document->campaign ? Result<TabledCampaign>(*document->campaign) : tabled_from_json(document->document);
+    if (!campaign) {
+      return complain(campaign.error());
     }
-    tables = std::move(*text);
+    tables = tables_of(*campaign, document->device, document->hardware);
   }
   const auto page = report_page(document->document, document->device, tables);
   if (!page) {

@@ -79,18 +79,30 @@ Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& record
   return found;
 }
 
+std::vector<Remark> remarks_of(const std::vector<CharacterisedRecording>& recordings) {
+  std::vector<Remark> remarks;
+  for (const CharacterisedRecording& recording : recordings) {
+    for (const std::string& note : recording.window.quality.notes) {
+      remarks.push_back({recording.spec.id, note});
+    }
+    for (const CharacterisedChannel& channel : recording.channels) {
+      for (const std::string& warning : channel.result.warnings) {
+        remarks.push_back({recording.spec.id + ", " + channel.column, warning});
+      }
+    }
+  }
+  return remarks;
+}
+
 std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings,
                                       const ResultName& result_name) {
   std::vector<SensorSources> sensors;
   for (const CharacterisedRecording& recording : recordings) {
     for (const CharacterisedChannel& channel : recording.channels) {
-      const auto& known = recording.window.quality.channels;
-      const auto quality = std::find_if(known.begin(), known.end(),
-                                        [&](const ChannelQuality& one) { return one.column == channel.column; });
       add_source(sensors, {recording.spec.id, to_text(without_heading(recording.spec.condition)),
                            reported(channel.column, channel.role, channel.result),
                            result_name ? result_name(recording.spec.id, channel.column) : std::string(),
-                           quality == known.end() ? 0 : quality->frozen});
+                           frozen_samples(recording.window.quality, channel.column)});
     }
   }
   return sensors;

@@ -50,6 +50,17 @@ struct CharacterisedRecording {
 /// axes then name it.
 using ResultName = std::function<std::string(const std::string& recording, const std::string& column)>;
 
+/// What is true of a recording or one of its channels, and who reads its figures must know.
+struct Remark {
+  std::string whose;  ///< id of the recording; `id, channel` of a channel
+  std::string sentence;
+
+  friend bool operator==(const Remark&, const Remark&) = default;
+};
+
+/// The notes of each recording's quality, then the warnings of its channels.
+[[nodiscard]] std::vector<Remark> remarks_of(const std::vector<CharacterisedRecording>& recordings);
+
 /// Their channels by sensor axis, in order of appearance: what a campaign's summary is made of
 /// (core/campaign/campaign_summary.hpp).
 [[nodiscard]] std::vector<SensorSources> sensors_of(const std::vector<CharacterisedRecording>& recordings,

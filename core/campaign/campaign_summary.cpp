@@ -1,8 +1,16 @@
 #include "core/campaign/campaign_summary.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace driftlab {
+
+const PooledSensor* find_pooled(const std::vector<PooledSensor>& pooled, const SensorSources& sensor) {
+  const auto found = std::find_if(pooled.begin(), pooled.end(), [&](const PooledSensor& one) {
+    return one.quantity == sensor.quantity && one.sensor_axis == sensor.axis;
+  });
+  return found == pooled.end() ? nullptr : &*found;
+}
 
 Result<CampaignSummary> summarise_campaign(const std::string& device, const std::vector<SensorSources>& sensors,
                                            const RunControl& control) {

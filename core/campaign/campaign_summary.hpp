@@ -14,6 +14,9 @@ struct CampaignSummary {
   std::vector<TrendTable> trends;        ///< of the tables of these axes by both methods, where there is a table
 };
 
+/// The pooled result of a sensor axis, or nullptr where none was put together.
+[[nodiscard]] const PooledSensor* find_pooled(const std::vector<PooledSensor>& pooled, const SensorSources& sensor);
+
 /// Axes in the order given. Errors: those of pool_sensor.
 [[nodiscard]] Result<CampaignSummary> summarise_campaign(const std::string& device,
                                                          const std::vector<SensorSources>& sensors,

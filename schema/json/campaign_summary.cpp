@@ -50,21 +50,37 @@ void add_summary(Json& characterisation, const CampaignSummary& summary) {
   characterisation["replicates"] = std::move(replicates);
 }
 
-Result<std::optional<PooledSensor>> pooled_of(const Json& characterisation, const SensorSources& sensor) {
-  const auto list = characterisation.find("replicates");
-  if (list == characterisation.end()) {
-    return std::nullopt;
-  }
-  for (const Json& document : *list) {
+Result<std::vector<PooledSensor>> pooled_sensors_of(const Json& characterisation) {
+  std::vector<PooledSensor> sensors;
+  for (const Json& document : characterisation.value("replicates", Json::array())) {
     auto pooled = pooled_sensor_from_json(document);
     if (!pooled) {
       return fail(pooled.error());
     }
-    if (pooled->quantity == sensor.quantity && pooled->sensor_axis == sensor.axis) {
-      return std::optional(std::move(*pooled));
-    }
+    sensors.push_back(std::move(*pooled));
   }
-  return std::nullopt;
+  return sensors;
+}
+
+Result<std::vector<Remark>> remarks_of(const Json& characterisation) {
+  std::vector<Remark> remarks;
+  const auto add = [&](const std::string& whose, const Json& sentences) {
+    for (const Json& sentence : sentences) {
+      remarks.push_back({whose, sentence.get<std::string>()});
+    }
+  };
+  try {
+    for (const Json& recording : characterisation.at("recordings")) {
+      const auto id = recording.at("id").get<std::string>();
+      add(id, recording.at("quality").at("notes"));
+      for (const Json& channel : recording.at("channels")) {
+        add(id + ", " + channel.at("channel").get<std::string>(), channel.at("warnings"));
+      }
+    }
+  } catch (const Json::exception& fault) {
+    return fail(ErrorCode::Internal, "A characterisation cannot be read: " + std::string(fault.what()) + ".");
+  }
+  return remarks;
 }
 
 }  // namespace driftlab

@@ -1,6 +1,7 @@
 #pragma once
 /// What the recordings of a characterisation document say together (core/campaign/campaign_summary.hpp): read from the
 /// document, and written into it.
+#include "core/analysis/characterise.hpp"
 #include "core/campaign/campaign_summary.hpp"
 #include "schema/json/json.hpp"
 
@@ -17,8 +18,11 @@ namespace driftlab {
 /// Adds the summary to the document of its recordings as `replicates` and `trends`.
 void add_summary(Json& characterisation, const CampaignSummary& summary);
 
-/// The pooled result of a sensor axis in a characterisation document with a summary; nothing where it has none. Error:
-/// Internal, for a document that driftlab has not written.
-[[nodiscard]] Result<std::optional<PooledSensor>> pooled_of(const Json& characterisation, const SensorSources& sensor);
+/// The pooled sensor axes of a characterisation document with a summary; none of one without. Error: Internal, for a
+/// document that driftlab has not written.
+[[nodiscard]] Result<std::vector<PooledSensor>> pooled_sensors_of(const Json& characterisation);
+
+/// The notes and warnings of its recordings. Error: Internal, likewise.
+[[nodiscard]] Result<std::vector<Remark>> remarks_of(const Json& characterisation);
 
 }  // namespace driftlab

@@ -5,6 +5,7 @@
 #include "core/process/model.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
+#include "schema/json/characterise.hpp"
 #include "schema/json/parameter_table.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/trend_table.hpp"
@@ -88,7 +89,7 @@ TEST(CampaignSummaryDocument, GivesBackWhatWasPutTogether) {
   ASSERT_TRUE(sensors);
   const auto summary = summarise_campaign("phone-07", *sensors, {});
   ASSERT_TRUE(summary);
-  EXPECT_FALSE(pooled_of(document, sensors->front())->has_value());
+  EXPECT_TRUE(pooled_sensors_of(document)->empty());
   add_summary(document, *summary);
   ASSERT_EQ(document["replicates"].size(), 1U);
   const Json& replicates = document["replicates"][0];
@@ -96,10 +97,33 @@ TEST(CampaignSummaryDocument, GivesBackWhatWasPutTogether) {
   EXPECT_EQ(replicates["conditions"][0]["agreement"]["model"], replicates["model"]);
   EXPECT_TRUE(replicates["conditions"][1]["agreement"].is_null());
   EXPECT_EQ(document["trends"].size(), 2U);
-  const auto pooled = pooled_of(stored(document), sensors->front());
+  const auto pooled = pooled_sensors_of(stored(document));
   ASSERT_TRUE(pooled);
-  ASSERT_TRUE(pooled->has_value());
-  EXPECT_EQ(to_text(to_json(**pooled)), to_text(replicates));
+  const PooledSensor* const found = find_pooled(*pooled, sensors->front());
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(to_text(to_json(*found)), to_text(replicates));
+  EXPECT_EQ(find_pooled(*pooled, {"angular_rate", "x", {}}), nullptr);
+  EXPECT_FALSE(pooled_sensors_of(Json{{"replicates", {1}}}));
+}
+
+TEST(CampaignSummaryDocument, HasTheRemarksAndFrozenSamplesOfItsRecordings) {
+  CharacterisedRecording recording;
+  recording.spec.id = "a";
+  recording.window.time.dt_s = 0.01;
+  recording.window.quality.notes = {"The column t has no unit."};
+  recording.window.quality.channels.resize(1);
+  recording.window.quality.channels[0].column = "gz";
+  recording.window.quality.channels[0].frozen = 7;
+  recording.channels.push_back({"gz", kRole, characterised(0.02, 1), std::nullopt});
+  recording.channels[0].result.warnings = {"A sentence."};
+  const auto remarks = remarks_of(std::vector{recording});
+  EXPECT_EQ(remarks, (std::vector<Remark>{{"a", "The column t has no unit."}, {"a, gz", "A sentence."}}));
+  const Json document = stored(characterisation_document({to_json(recording)}));
+  const auto read = remarks_of(document);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, remarks);
+  EXPECT_EQ(sensors_of(document)->front().sources.front().frozen, 7U);
+  EXPECT_FALSE(remarks_of(Json{{"recordings", {{{"id", "a"}}}}}));
 }
 
 TEST(CampaignSummaryDocument, SaysWhyNothingCouldBePutTogether) {
