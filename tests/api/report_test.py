@@ -57,6 +57,13 @@ class Pages(unittest.TestCase):
         for heading in ("Extended model", "Not examined"):
             self.assertIn(f"<h2>{heading}</h2>", page)
 
+    def test_a_document_of_another_hand_is_one_sentence(self) -> None:
+        # A document whose recordings had no quality ended the program with SIGABRT.
+        (self.folder / "other.json").write_text(json.dumps({"recordings": [{"id": "a", "condition": {"kind": "static"}, "channels": []}]}))
+        done = subprocess.run([PROGRAM, "report", "other.json"], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, r"^driftlab: A characterisation cannot be read: .*'quality'.*\n$")
+
     def test_of_a_regression_run(self) -> None:
         page = self.page("r.json", "regress", "--baseline", "1.csv", "2.csv", "--candidate", "3.csv", "4.csv")
         document = json.loads((self.folder / "r.json").read_text())

@@ -24,14 +24,14 @@ RecordingSpec gyroscope_z() {
   return spec;
 }
 
-/// Values by row; a NaN is an empty cell.
+/// Values by row.
 template <class Value>
 std::string csv(const Value& value) {
   Random random(2214);
   std::string text = "gz\n";
   for (std::size_t i = 0; i < kRows; ++i) {
     const double x = value(i, random.normal());
-    text += std::isnan(x) ? "\n" : std::to_string(x) + "\n";
+    text += std::isnan(x) ? "nan\n" : std::to_string(x) + "\n";
   }
   return text;
 }

@@ -21,10 +21,10 @@ TEST(DriveUseCase, EstimatesWhatTheDocumentLeavesOpenAndNothingElse) {
   document.gnss.lever_arm_sd_m = 0.3;
   document.imu.mounting_sd_rad = 0.01;
   DriveRequest request;
-  EXPECT_EQ(options_of(request, document).constants.lever_arm_sd_m, 0.0) << "nobody asked";
+  EXPECT_FALSE(options_of(request, document).constants.lever_arm_sd_m) << "nobody asked";
   request.estimate = true;
   EXPECT_EQ(options_of(request, document).constants.lever_arm_sd_m, 0.3);
-  EXPECT_EQ(options_of(request, document).constants.mounting_sd_rad, 0.0) << "unobservable without the constraint";
+  EXPECT_FALSE(options_of(request, document).constants.mounting_sd_rad) << "unobservable without the constraint";
   request.velocity_constraint = true;
   EXPECT_EQ(options_of(request, document).constants.mounting_sd_rad, 0.01);
 }

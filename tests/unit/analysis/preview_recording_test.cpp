@@ -54,11 +54,24 @@ TEST(PreviewRecording, ProposesTheConditionThatTheReadingsShow) {
   EXPECT_EQ(resting.condition->condition.kind, ConditionKind::Static);
 }
 
-TEST(PreviewRecording, ProposesNoConditionWhereOneIsStated) {
-  const std::string bytes = turning(9.0);
-  RecordingSpec spec;
-  const RecordingPreview found = preview_recording({bytes, HeadExtent::WholeFile, spec, true});
-  EXPECT_FALSE(found.condition);
+TEST(PreviewRecording, HintsAtAUnitThatARestingAccelerometerContradicts) {
+  // At rest it feels gravity, 9.8 m/s^2; it reads 1.0.
+  Random random(812);
+  const auto resting = [&](const std::string& unit, double gravity) {
+    std::string text = "time (s),ax (" + unit + "),ay (" + unit + "),az (" + unit + ")\n";
+    for (int i = 0; i < 400; ++i) {
+      text += std::to_string(0.01 * i);
+      for (const double mean : {0.0, 0.0, gravity}) {
+        text += "," + std::to_string(mean + 1e-3 * random.normal());
+      }
+      text += "\n";
+    }
+    return text;
+  };
+  const std::string wrong = resting("m/s^2", 1.0);
+  const std::string right = resting("g", 1.0);
+  EXPECT_FALSE(preview_recording({wrong, HeadExtent::WholeFile, {}, true}).hints.empty());
+  EXPECT_TRUE(preview_recording({right, HeadExtent::WholeFile, {}, true}).hints.empty());
 }
 
 TEST(PreviewRecording, ProposesATimeForAColumnThatRisesAsOne) {
