@@ -33,6 +33,23 @@ std::pair<std::size_t, std::size_t> longest_run(std::size_t count, std::span<con
   return best;
 }
 
+/// The time of a channel's value since the first row of the file: by its row, and by what is missing before that.
+double time_of(const Window& window, const ChannelView& channel, std::size_t value) {
+  std::size_t row = window.first;
+  for (const RowRun& run : channel.stretch.runs) {
+    row = run.first + std::min(value, run.count);
+    if (value < run.count) {
+      break;
+    }
+    value -= run.count;
+  }
+  std::size_t missing = 0;
+  for (const Gap& gap : window.gaps) {
+    missing += gap.row <= row ? gap.missing : 0;
+  }
+  return window.time.first_s + static_cast<double>(row - window.first + missing) * window.time.dt_s;
+}
+
 /// Divides every band by its median over time, in place.
 void divide_by_medians(Spectrogram& found) {
   const std::size_t bands = found.frequency_hz.size();
@@ -79,7 +96,7 @@ Result<ChannelLook> ChannelLook::open(RecordingSource& source, std::string_view 
   look.run_ = channel->values.subspan(first, count);
   look.unit_ = channel->role.unit.value_or(Unit{});
   look.dt_s_ = look.view_.window.time.dt_s;
-  look.first_s_ = look.view_.window.time.first_s + static_cast<double>(first) * look.dt_s_;
+  look.first_s_ = time_of(look.view_.window, *channel, first);
   look.mean_ = count == 0 ? 0.0 : std::accumulate(look.run_.begin(), look.run_.end(), 0.0) / static_cast<double>(count);
   return look;
 }
