@@ -1,3 +1,4 @@
+#include "core/signal/kept_rows.hpp"
 #include "core/signal/no_rate.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
@@ -50,20 +51,15 @@ Result<Window> plan_uniform(const RecordingSpec& spec, std::size_t rows) {
   if (!spec.rate_hz) {
     return neither_time_nor_rate();
   }
-  // A sample at exactly the trim stays; the slack absorbs rounding of seconds times rate.
-  const auto samples_in = [&](double seconds) {
-    return std::min(std::ceil(seconds * *spec.rate_hz - 1e-6), static_cast<double>(rows));
-  };
-  const auto from_start = static_cast<std::size_t>(std::max(0.0, samples_in(spec.trim.start_s)));
-  const auto from_end = static_cast<std::size_t>(std::max(0.0, samples_in(spec.trim.end_s)));
-  if (from_start + from_end + 2 > rows) {
+  const KeptRows kept = kept_rows(spec.trim, 1.0 / *spec.rate_hz, rows);
+  if (kept.count() < 2) {
     return trimmed_away(spec, static_cast<double>(rows - 1) / *spec.rate_hz);
   }
   Window window;
   window.time.dt_s = 1.0 / *spec.rate_hz;
-  window.first = from_start;
-  window.time.first_s = window.time.dt_s * static_cast<double>(from_start);
-  window.count = rows - from_start - from_end;
+  window.first = kept.first;
+  window.time.first_s = window.time.dt_s * static_cast<double>(kept.first);
+  window.count = kept.count();
   window.quality.samples = rows;
   window.quality.analysed = window.count;
   return window;

@@ -1,6 +1,7 @@
 #include "core/investigate/study/study.hpp"
 
 #include "core/investigate/study/time_grid.hpp"
+#include "core/signal/kept_rows.hpp"
 #include "core/signal/no_rate.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording_columns.hpp"
@@ -14,6 +15,9 @@ namespace driftlab::investigate {
 namespace {
 
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+
+/// Below it there is nothing to examine: the least that a recording must hold after its trims.
+constexpr std::size_t kFewestSamples = 16;
 
 /// Values of the file's rows put on the grid; places between rows are interpolated.
 std::vector<double> on_grid(std::vector<double> rows, const TimeGrid& grid) {
@@ -152,7 +156,7 @@ Presence presence_of(const TimeGrid& grid) {
 }
 
 Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const RecordingColumns& columns) {
-  if (rows < 16) {
+  if (rows < kFewestSamples) {
     return fail(ErrorCode::TooFewSamples,
                 "The recording has " + with_count(rows, "sample") + "; an investigation needs at least 16.");
   }
@@ -172,17 +176,12 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
 }
 
 Status set_window(StudyRecording& recording, const Trim& trim) {
-  const auto samples = [&](double seconds) {
-    return static_cast<std::size_t>(
-        std::min(std::ceil(seconds / recording.dt_s - 1e-6), static_cast<double>(recording.length)));
-  };
-  const std::size_t from_start = samples(std::max(0.0, trim.start_s));
-  const std::size_t from_end = samples(std::max(0.0, trim.end_s));
-  if (from_start + from_end + 16 > recording.length) {
+  const KeptRows kept = kept_rows(trim, recording.dt_s, recording.length);
+  if (kept.count() < kFewestSamples) {
     return fail(ErrorCode::TooFewSamples, "The trims leave fewer than 16 samples of the recording.");
   }
-  recording.begin = from_start;
-  recording.end = recording.length - from_end;
+  recording.begin = kept.first;
+  recording.end = kept.end;
   return {};
 }
 
