@@ -13,6 +13,7 @@ namespace {
 
 /// A share of `n` with Wilson's 95 % interval.
 Estimate share_of(std::size_t k, std::size_t n) {
+  // The 97.5 % quantile of a normal distribution.
   constexpr double kZ = 1.959964;
   const auto count = static_cast<double>(n);
   const double p = static_cast<double>(k) / count;

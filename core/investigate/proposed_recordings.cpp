@@ -11,6 +11,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// [s] Lengths between which a proposal is sought: what a lab records in a minute to an hour. Chosen.
 constexpr double kShortest = 60.0;
 constexpr double kLongest = 3600.0;
 constexpr double kSlowRate = 36.0 * kDegree;  ///< [rad/s]; twice it is the other rate

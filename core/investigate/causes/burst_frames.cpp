@@ -181,6 +181,7 @@ struct Powers {
 };
 
 Powers powers_of(const FullRate& data, const std::vector<std::size_t>& scope, const Seen& seen) {
+  // Bins to either side of the band, into which the window of a frame leaks.
   constexpr std::size_t kBeside = 2;
   Powers powers;
   powers.first = seen.band.first - std::min(kBeside, seen.band.first - 1);
@@ -236,6 +237,7 @@ double coherence(const Powers& powers) {
 
 /// Amplitude and centroid of what loud frames hold more. Narrow noise stays alike for about two frames.
 void measure(const Powers& powers, double df_hz, Burstiness& bursts) {
+  // Frames that narrow noise stays alike for, about; the error of the amplitude counts them as one.
   constexpr double kAlike = 2.0;
   double more = 0.0;
   double moment = 0.0;
@@ -291,6 +293,7 @@ Burstiness describe(const FullRate& data, const std::vector<std::size_t>& scope,
 
 /// Second moment over the squared mean of sums over a few frames: large where few stretches are loud.
 double unevenness(const FrameRuns& runs) {
+  // Frames that are summed. Chosen, not measured: bursts of a few frames to a few tens stand out.
   constexpr std::size_t kTogether = 4;
   double count = 0.0;
   double sum = 0.0;

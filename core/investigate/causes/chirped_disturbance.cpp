@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kPiece = 4.0;  ///< [s], but no more than kMostSamples
 constexpr std::size_t kMostSamples = 512;
+/// Bounds the cost of a map, which is searched for every line through it. Chosen, not measured.
 constexpr std::size_t kMostPieces = 1500;
 constexpr double kLowest = 0.5;    ///< [Hz]: below, slow noise runs too
 constexpr double kLeastRun = 0.5;  ///< [Hz] from f0 to f1: less is a line that wanders
@@ -71,6 +72,7 @@ Map map_of(const FullRate& data, std::size_t r) {
 
 /// The straight line along which the maps of a scope hold most; nothing where chance would hold as much on one.
 std::optional<Sweep> coarse(const std::vector<const Map*>& maps, double seconds) {
+  // In logarithms of the chance over all lines looked along. Chosen, not measured.
   constexpr double kBeyondChance = 3.0;
   const double df = maps.front()->df_hz;
   const std::size_t bins = maps.front()->power.front().size();
@@ -224,6 +226,7 @@ std::vector<Evidence> examine(const FullRate& data) {
     if (data.stopped()) {
       break;
     }
+    // Pieces of a map: in fewer any slope fits. Chosen, not measured.
     constexpr std::size_t kFewest = 6;
     std::vector<const Map*> of_scope;
     double longest = 0.0;

@@ -28,9 +28,13 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Twice the log likelihood over the best slow process. Chosen, not measured, and high: three parameters are searched
+/// over a plane of starts.
 constexpr double kGain = 25.0;
 constexpr double kBlock = 0.5;  ///< [s]; longer where the recordings hold more than kMostBlocks
+/// Bounds the cost, which is a filter of two beliefs over all blocks for each trial. Chosen, not measured.
 constexpr double kMostBlocks = 20000.0;
+/// Fewer hold too few dwells to tell two levels from a drift. Chosen, not measured.
 constexpr double kFewestBlocks = 200.0;
 constexpr double kLeastDwell = 8.0;     ///< blocks
 constexpr double kFewestChanges = 8.0;  ///< seen in all recordings together
@@ -129,6 +133,7 @@ double gaussian_log_likelihood(const BlockSeries& series, const SlowModel& base)
       slow_component(markov, 0.3 * variance, 0.5), slow_component(registered<FlickerNoise>(), 0.1 * variance),
       slow_component(walk, at_record_length(walk, 0.1 * variance, series.longest_s()))};
   SlowFit best = fit_slow(series, columns, base);
+  // Slow processes beside the baseline that the telegraph must beat. Chosen, not measured.
   constexpr int kMore = 2;
   for (int more = 0; more < kMore; ++more) {
     const SlowModel start = best.model;
@@ -181,6 +186,7 @@ struct Sides {
 };
 
 Sides sides_seen(const BlockSeries& series, const Best& best) {
+  // Of the expected side, from -1 to 1: nine to one. Chosen, not measured.
   constexpr double kSure = 0.8;
   Sides seen;
   double blocks = 0.0;

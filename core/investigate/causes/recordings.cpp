@@ -10,6 +10,7 @@ namespace driftlab::investigate {
 ChannelName name_of(const StudyRecording& recording, const Channel& channel) { return {recording.id, channel.column}; }
 
 std::string list_of_names(const std::vector<std::string>& names) {
+  // Names in a sentence. Chosen for who reads it.
   constexpr std::size_t kMost = 6;
   std::string text;
   const std::size_t shown = names.size() > kMost ? kMost - 1 : names.size();

@@ -50,6 +50,7 @@ std::vector<double> without_freezes(std::span<const double> v, Runs& runs) {
 
 /// Largest share of one value in any of 32 parts of the record: while the mean stays there, a repeat is that likely.
 double commonest_share(std::span<const double> values) {
+  // Parts of the record, short enough for a drifting mean to stay at one value. Chosen, not measured.
   constexpr std::size_t kParts = 32;
   double largest = 0.0;
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -90,6 +91,7 @@ Runs count_runs(const StudyRecording& recording, const Channel& channel) {
   }
   const std::vector<double> v = without_freezes(channel.rows, runs);
   const auto awake = static_cast<double>(v.size());
+  // Samples apart at which a repeat is chance: a prime, so that no even period falls on it. Chosen, not measured.
   constexpr std::size_t kFar = 37;
   for (std::size_t i = kFar; i < v.size(); ++i) {
     equal_far += v[i] == v[i - kFar] ? 1.0 : 0.0;

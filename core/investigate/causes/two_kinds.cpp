@@ -130,6 +130,8 @@ FrameRuns loud_chances(const FrameLaw& law, const FrameRuns& runs, const TwoKind
 }
 
 TwoKinds fit_two_kinds(const FrameLaw& law, const FrameRuns& runs) {
+  // Of expectation and maximisation at most, from each start; and when ratio and fraction count as settled. Chosen, not
+  // measured.
   constexpr int kRounds = 40;
   constexpr double kSettled = 1e-3;
   TwoKinds best;

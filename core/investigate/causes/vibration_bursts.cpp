@@ -39,6 +39,8 @@ Evidence describe(const FullRate& data, const std::vector<std::size_t>& scope, c
 }
 
 std::vector<Evidence> examine(const FullRate& data) {
+  // Of a score; the search has its own threshold (core/investigate/search/thresholds.hpp), as high. Chosen, not
+  // measured.
   constexpr double kClear = 10.0;
   const auto scopes = scopes_of(data);
   std::vector<Evidence> found;
@@ -100,6 +102,7 @@ void inject_effect(Draft& draft, std::span<const double> values, Random& random)
 
 /// z^2 = sum over the frames of 2 (r - 1 - ln r) of the band's ordinates.
 std::vector<double> shown_values(const Stage& stage, Random& random) {
+  // Of the time in which the vibration runs, in the study that shows it.
   constexpr double kShare = 0.1;
   const double ordinates = kShare * stage.samples() * stage.dt_s();  // half a hertz of two sides
   const double frequency = 0.25 * stage.rate_hz * (0.8 + 0.6 * random.uniform());

@@ -13,6 +13,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Samples of a segment, whose bins lie in bands of four; so many segments at least. Chosen, not measured.
 constexpr std::size_t kSegment = 256;
 constexpr std::size_t kBandBins = 4;
 constexpr std::size_t kBands = kSegment / 2 / kBandBins;
@@ -139,6 +140,7 @@ std::optional<NoisyReference> judge(const StudyRecording& recording, const Chann
 /// The step of a coarse column: few distinct values for its length, and all steps between them multiples of the
 /// smallest. 0: it is not coarse.
 double coarse_step(const StudyRecording& recording, const Series& reference) {
+  // Chosen, not measured: a column of more distinct values than 12 bits give is not called coarse.
   constexpr std::size_t kMost = 4096;
   std::set<double> distinct;
   for (std::size_t i = recording.begin; i < recording.end; ++i) {

@@ -12,8 +12,11 @@ namespace {
 using Columns = std::vector<std::span<const double>>;
 using Keyed = std::pair<std::uint64_t, std::size_t>;  ///< a hash, and the row at which it begins
 
+/// Chosen, not measured: room for two blocks of the shortest length and for what is not copied.
 constexpr std::size_t kFewestRows = 64;
+/// Rows of a block. Chosen, not measured; whether a repeat is chance is judged by kByChance.
 constexpr std::size_t kShortest = 8;
+/// Pairs expected by chance in a file without a copy, at most. Chosen small, for a copied block is told as a fact.
 constexpr double kByChance = 1e-4;
 
 std::uint64_t mixed(std::uint64_t h) {
@@ -61,6 +64,7 @@ class Rows {
 
 /// Chance that equality goes on for one more row, a little above what was counted.
 double chance_of_going_on(const Rows& rows, std::vector<Keyed> keyed) {
+  // Runs of equal rows that end before this count for chance, from which its rate is estimated. Chosen, not measured.
   constexpr std::size_t kNoChance = 6;
   std::sort(keyed.begin(), keyed.end());
   double pairs = 0.0;
@@ -81,6 +85,7 @@ double chance_of_going_on(const Rows& rows, std::vector<Keyed> keyed) {
 }
 
 std::vector<Keyed> windows_of(const std::vector<Keyed>& row_hashes, std::size_t length) {
+  // 2^64 over the golden ratio, odd: the usual multiplier of a rolling hash.
   constexpr std::uint64_t kBase = 0x9e3779b97f4a7c15ULL;
   std::uint64_t leaving = 1;
   for (std::size_t k = 0; k < length; ++k) {

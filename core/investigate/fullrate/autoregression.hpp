@@ -9,6 +9,8 @@
 
 namespace driftlab::investigate {
 
+/// Chosen, not measured: what a filter colours is taken to be over within 24 samples; each order costs a product a
+/// sample.
 inline constexpr std::size_t kAutoregressionOrder = 24;
 
 /// The last values of a walk through a series.

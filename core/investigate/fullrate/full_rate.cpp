@@ -276,6 +276,7 @@ FullRate look_at_full_rate(const Study& study, const ChannelGroup& group, const 
   }
   data.spectrum.resize(data.members());
   data.slow.resize(data.members());
+  // Chosen, not measured: gaps fill the deep parts of a spectrum by about their share of its power.
   constexpr double kMostMissing = 0.005;
   double samples = 0.0;
   for (std::size_t r = 0; r < data.members(); ++r) {

@@ -10,6 +10,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Bins of the drive signal. Chosen, not measured: within a bin the variance is taken as constant.
 constexpr std::size_t kLevels = 60;
 
 /// Squares are cut at 25 (a 5-sigma innovation): outliers are another cause, and a Gaussian loses 1e-5 of its variance.

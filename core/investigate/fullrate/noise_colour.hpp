@@ -19,6 +19,7 @@ struct NoiseColour {
 
   /// Up to where the spectra show the density that is integrated: half the frequency of the lowest peak.
   [[nodiscard]] double flat_below_hz() const {
+    // [Hz] Chosen, not measured: below it slow noise is expected to lie above the white level, whatever the peak.
     constexpr double kLeast = 1.0;
     return peak_hz > 0.0 ? std::max(kLeast, 0.5 * peak_hz) : std::numeric_limits<double>::infinity();
   }

@@ -11,8 +11,11 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Width of a bin [standard deviations], which stands at the root mean square of its members. Chosen, not measured.
 constexpr double kWidth = 0.05;
+/// Innovations beyond are kept one by one: of a Gaussian 4e-33 are.
 constexpr double kTop = 12.0;
+/// Innovations beyond this many standard deviations count as this: one of them must not decide a width.
 constexpr double kCut = 1000.0;
 
 double gaussian(const InnovationHistogram& h, double variance) {

@@ -11,6 +11,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// The level at which a check fails, after Holm (1979) over all checks of the study.
 constexpr double kLevel = 0.05;
 
 /// One p-value of a check, before or after.
@@ -107,6 +108,7 @@ void list_unexplained(const std::vector<ChannelGroup>& groups, Report& report) {
       continue;
     }
     left.sentence = "The extended model does not describe " + group.column + ": ";
+    // Checks named in a sentence; the rest is counted. Chosen for who reads it.
     constexpr std::size_t kNamed = 4;
     for (std::size_t i = 0; i < std::min(kNamed, titles.size()); ++i) {
       left.sentence.append(i == 0 ? "" : ", ").append(titles[i]);

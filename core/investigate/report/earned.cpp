@@ -10,6 +10,8 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Times the longest recording: a time beyond it is at the end of its search and not measured by the data. Chosen, not
+/// measured.
 constexpr double kMostRecords = 20.0;
 
 bool is_fact(const Cause& cause) { return cause.as<FileFact>() != nullptr || cause.as<RecordingFault>() != nullptr; }
@@ -37,7 +39,9 @@ bool at_bound(const Evidence& evidence, const ChannelGroup& group) {
 /// The recording that alone carries a bias said to differ among all; empty where several do.
 std::string carried_by(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& mean) {
   const SlowNoise* const slow = evidence.cause->as<SlowNoise>();
+  // Recordings. Of three biases one always lies far from the median. Chosen, not measured.
   constexpr std::size_t kFewest = 4;
+  // Of the squares about the median. Chosen, not measured.
   constexpr double kAlone = 0.95;
   if (slow == nullptr || slow->kind != &constant_offset() || mean.size() < kFewest) {
     return "";
@@ -59,7 +63,9 @@ std::string carried_by(const Evidence& evidence, const ChannelGroup& group, cons
 /// Why one finding is not earned; empty: it is.
 std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& means,
                      const std::vector<Remainder>& remains, const Report& report) {
+  // Failed checks that take a finding back. Chosen, not measured: one or two may fail beside a true cause.
   constexpr std::size_t kFewest = 3;
+  // Chosen well below the level of a check, for a doubt takes a finding back. Not measured.
   constexpr double kClear = 0.001;
   if (at_bound(evidence, group)) {
     return "a parameter is at the bound of its search";

@@ -13,7 +13,9 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Points of a course over time. Chosen for the width of a figure.
 constexpr std::size_t kStretches = 200;
+/// Bins of a spectrum. Chosen for the width of a figure.
 constexpr std::size_t kBins = 240;
 constexpr std::size_t kLongestStretch = std::size_t{1} << 19U;  ///< samples of one stretch of the spectrum
 

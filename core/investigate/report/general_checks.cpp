@@ -58,6 +58,7 @@ struct ChiSquare {
 /// Variance over sixteen segments about their common level; a heavy tail widens the scatter by 1 + kurtosis/2. A
 /// segment with 20 samples in use or fewer has no say, and no degree of freedom.
 ChiSquare segment_statistic(const Series& e, const std::vector<unsigned char>& used, const Moments& all) {
+  // Of the record, for the variance over time. Chosen, not measured: as many degrees of freedom but one.
   constexpr std::size_t kSegments = 16;
   double sum = 0.0;
   double segments = 0.0;
@@ -107,6 +108,7 @@ ChiSquare whiteness_statistic(const Series& e, double dt_s) {
 /// Spectrum of the innovations in sixteen bands of equal width up to a share of the Nyquist frequency, against their
 /// mean.
 double band_statistic(const Series& e, double share) {
+  // Of the spectrum, likewise. Chosen, not measured.
   constexpr std::size_t kBands = 16;
   const std::size_t length = fast_length(e.size());
   const auto z = transform(e.part(0, length));
@@ -197,6 +199,8 @@ double cumulant_of_rounding(double mean, double sd, double step) {
 /// The same for member r of the data: that of a uniform error, -step^4/120, unless the lattice is coarse against noise
 /// that stands in one place of it (a constant reference and hardly any slow noise).
 double cumulant_of_lattice(const FullRate& data, std::size_t r) {
+  // Steps of the lattice over the standard deviation. Chosen, not measured: coarser values are no longer close to
+  // normal.
   constexpr double kCoarse = 1.2;
   constexpr double kStill = 0.95;
   const Channel& channel = *data.group->members[r].channel;

@@ -190,6 +190,7 @@ Remainder line_in_variance(const std::vector<double>& score, const std::vector<u
     variance += v * v / static_cast<double>(n);
   }
   const auto z = half_spectrum(n, beyond);
+  // Cycles in the recording of the slowest swelling looked for: slower ones are steps and drifts. Chosen, not measured.
   constexpr std::size_t kFirst = 8;
   Remainder best;
   best.places = static_cast<double>(z.size());
@@ -353,6 +354,7 @@ std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups, con
 }
 
 void report_remains(const std::vector<Remainder>& remains, Report& report) {
+  // Shown of one channel. Chosen for who reads the list.
   constexpr std::size_t kMostOfChannel = 3;
   std::map<std::string, std::size_t> shown;
   for (const Remainder& remainder : remains) {

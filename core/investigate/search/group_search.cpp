@@ -22,6 +22,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Rounds of the slow search. Chosen, not measured.
 constexpr int kRounds = 4;
 
 /// One group's state through the search.
@@ -313,6 +314,7 @@ class GroupSearch {
   void search_full_rate() {
     take_colours({given_.has_value(), quantization_, lattice_step_, mask_}, outcome_);
     FullRate& data = outcome_.after;
+    // Causes of the samples that are taken out one after the other. Chosen, not measured.
     constexpr int kMost = 2;
     for (int found = 0; !stopped(); ++found) {
       std::vector<Evidence> candidates = noise_candidates(data);

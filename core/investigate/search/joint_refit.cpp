@@ -11,6 +11,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Turns of the joint fit. Chosen, not measured.
 constexpr int kTurns = 3;
 
 using PerSample = std::vector<std::vector<double>>;

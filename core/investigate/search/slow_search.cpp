@@ -16,6 +16,7 @@ namespace {
 /// samples. Of very many, means over blocks tell enough, for what follows the vibration follows its power over a
 /// second; single ones take up to 480 bytes each.
 bool needs_full_rate(const ChannelGroup& group) {
+  // At 480 bytes each half a gigabyte, what an investigation may take.
   constexpr std::size_t kMost = std::size_t{1} << 20U;
   std::size_t samples = 0;
   for (const auto& member : group.members) {

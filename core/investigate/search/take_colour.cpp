@@ -15,6 +15,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Rounds in which a colour is sought. Chosen, not measured.
 constexpr int kMostColours = 4;
 constexpr double kApart = 1.5;  ///< what a peak leaves within this factor of its frequency is its own shape
 

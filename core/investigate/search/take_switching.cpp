@@ -12,6 +12,7 @@ namespace {
 
 void leave_out_changes(const std::vector<double>& course, const StudyRecording& recording,
                        std::vector<unsigned char>& mask) {
+  // Of the greatest expected level: nearer to zero the side is not sure. Chosen, not measured.
   constexpr double kSure = 0.9;
   constexpr double kAbout = 0.5;  // [s]
   const auto about = static_cast<std::size_t>(kAbout / recording.dt_s) + 1;

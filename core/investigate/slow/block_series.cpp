@@ -23,6 +23,7 @@ double BlockSeries::longest_s() const {
 
 BlockSeries average_blocks(const ChannelGroup& group, const std::vector<std::vector<unsigned char>>& mask,
                            bool full_rate) {
+  // Blocks of about a fifth of a second; what is faster is left to the full rate. Chosen, not measured.
   constexpr double kBlockRateHz = 5.0;
   BlockSeries series;
   series.dt_s = group.members.front().recording->dt_s;

@@ -11,6 +11,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// At which norms are computed; they are interpolated between, for they are smooth. Chosen, not measured.
 constexpr std::size_t kPlaces = 24;
 constexpr std::size_t kMargin = 5;  ///< blocks at either end where a step is not sought
 

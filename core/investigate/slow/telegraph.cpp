@@ -8,6 +8,7 @@
 namespace driftlab::investigate {
 namespace {
 
+/// Slow states that are carried on both sides; a model has eight processes at most.
 constexpr std::size_t kMostStates = 16;
 
 /// Estimate of the slow states, under one side.
@@ -196,6 +197,7 @@ double telegraph_log_likelihood(const BlockSeries& series, const SlowModel& mode
 }
 
 Telegraph with_best_offset(const BlockSeries& series, const SlowModel& model, Telegraph telegraph) {
+  // Of the climb at most; it ends by itself before. Chosen, not measured.
   constexpr int kRounds = 10;
   std::array<double, 1> at{telegraph.offset};
   const auto value = [&](const std::array<double, 1>& offset) {
@@ -207,6 +209,7 @@ Telegraph with_best_offset(const BlockSeries& series, const SlowModel& model, Te
 }
 
 TelegraphFit coarse_telegraph(const BlockSeries& series, const SlowModel& model) {
+  // Starts along amplitude and along dwell, each. Chosen, not measured.
   constexpr int kSteps = 5;
   const Spread spread = spread_of(series);
   const double scale = std::sqrt(spread.variance);
@@ -230,6 +233,7 @@ TelegraphFit coarse_telegraph(const BlockSeries& series, const SlowModel& model)
 TelegraphFit fit_telegraph(const BlockSeries& series, const SlowModel& model) {
   const TelegraphFit start = coarse_telegraph(series, model);
   const Dwells dwells = dwells_of(series);
+  // Of the climb at most, as above. Chosen, not measured.
   constexpr int kRounds = 12;
   const double unit = start.telegraph.amplitude;  // of the offset
   const auto telegraph_at = [&](const std::array<double, 3>& at) {

@@ -146,6 +146,8 @@ bool is_coarse(const Channel& channel) {
 /// The motion, as the channel reads it where it is slower, goes beyond `top` [SI] by more than rounding and noise do.
 bool goes_beyond(const Channel& channel, double top) {
   constexpr std::size_t kEnough = 8;
+  // Samples of slower motion from which the median error is taken; kEnough beyond the end of the range count. Chosen,
+  // not measured.
   constexpr std::size_t kSlower = 100;
   const double factor = std::fabs(channel.unit.factor);
   const double step = find_lattice(channel.rows).step * factor;
@@ -172,6 +174,7 @@ bool goes_beyond(const Channel& channel, double top) {
 
 double clipped_at(const Channel& channel) {
   constexpr std::ptrdiff_t kEnough = 8;
+  // Of the greatest reading: the motion must have come so near to it. Chosen, not measured.
   constexpr double kNear = 0.98;
   double top = 0.0;
   for (const double v : channel.rows) {

@@ -50,6 +50,7 @@ double centred_product(const std::vector<double>& a, const std::vector<double>& 
 }  // namespace
 
 double noise_of_third_differences(const Series& values, std::size_t begin, std::size_t end) {
+  // The variance of third differences of white noise over its own.
   constexpr double kGain = 1.0 + 9.0 + 9.0 + 1.0;
   if (end < begin + 8) {
     return 0.0;
@@ -85,6 +86,8 @@ std::string reference_lacks(const ChannelGroup& group) {
 }
 
 std::string why_reference_misleads(const ChannelGroup& group) {
+  // Times the noise of a mean over a second: the motion must be so much larger for its reference to be judged. Chosen,
+  // not measured.
   constexpr double kBeyondNoise = 30.0;
   for (const ChannelGroup::Member& member : group.members) {
     const StudyRecording& recording = *member.recording;

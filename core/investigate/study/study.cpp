@@ -221,6 +221,7 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   recording.dt_s = grid->dt_s;
   recording.length = grid->length;
   recording.stamps = grid->stamps;
+  // Relative, as for every recording (core/signal/window.cpp): more is another rate, not a clock error.
   constexpr double kContradicts = 0.01;
   if (spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > kContradicts) {
     recording.notes.push_back("The stated rate of " + short_text(*spec.rate_hz) +

@@ -83,6 +83,8 @@ double stamp_resolution(std::span<const double> stamps) {
 /// Few long stretches are gaps between sessions and no habit of a clock, and so are stretches whose steps are those of
 /// the stated rate.
 Bursts bursts_of(std::span<const double> stamps, double typical, std::optional<double> rate_hz) {
+  // Of the mean step: shorter ones are steps within a burst. kShare of them, and kFewest bursts, make a habit; a burst
+  // is no longer than kLongest mean steps. Chosen, not measured; time_grid.hpp says what follows.
   constexpr double kShort = 0.25;
   constexpr double kShare = 0.2;
   constexpr std::size_t kFewest = 10;
