@@ -61,8 +61,7 @@ double standard_error(const DriveInjection& one) {
   }
   const RunControl control;
   const drive::Profile profile(unhidden, {true, true}, control);
-  const double at = profile.values({options}).front();
-  return profile.estimates(options, at, {knob}, profile.scale(options)).front().se;
+  return profile.estimates(options, {knob}).knobs.front().se;
 }
 
 }  // namespace

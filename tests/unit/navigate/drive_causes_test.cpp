@@ -118,7 +118,7 @@ TEST(DriveCauses, AQuietAxisHasNoScaleFactor) {
   EXPECT_GT(profile.values({quieter}).front(), at + 5.0);
   const Knob* const flat = find_knob("gyro_scale_factor_error", "y");
   const Knob* const turned = find_knob("gyro_scale_factor_error", "z");
-  const auto estimates = profile.estimates(none, at, {flat, turned}, profile.scale(none));
+  const auto estimates = profile.estimates(none, {flat, turned}).knobs;
   EXPECT_GT(estimates[0].se, 0.2);
   EXPECT_LT(estimates[1].se, 0.01);
   EXPECT_DOUBLE_EQ(noise_after_correction(none.errors, 1), 1.0);
@@ -159,8 +159,7 @@ TEST(DriveCauses, TheArmDownIsNotSoughtOnAFlatRoad) {
   for (const std::uint64_t seed : {71U, 72U, 73U}) {
     const Drive flat = simulated_drive(seed, loud);
     const Profile profile(flat, {true, true}, control);
-    const double at = profile.values({told}).front();
-    EXPECT_NEAR(profile.estimates(told, at, {&down}, profile.scale(told)).front().value, -0.9, 0.5) << seed;
+    EXPECT_NEAR(profile.estimates(told, {&down}).knobs.front().value, -0.9, 0.5) << seed;
     EXPECT_FALSE(down.applies(flat, told));
   }
   Drive drive = simulated_drive(34);

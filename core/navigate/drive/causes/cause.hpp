@@ -30,7 +30,7 @@ struct DriveFinding {
   double value = 0.0;  ///< in `unit`
   double se = 0.0;
   double score = 0.0;
-  std::string pair;      ///< a cause whose score was within 2 of this one's when it was named; empty: none
+  std::string pair;      ///< a cause whose gain was within a score of 2 of this one's when it was named; empty: none
   std::string evidence;  ///< what showed it: the file, the fixes alone, the innovations
   std::string told_apart;
   bool from_files = false;  ///< the files showed it, no filter
