@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
 /// Below it there is nothing to examine: the least that a recording must hold after its trims.
-constexpr std::size_t kFewestSamples = 16;
+constexpr std::size_t kFewestOnGrid = 16;
 
 /// Values of the file's rows put on the grid; places between rows are interpolated.
 std::vector<double> on_grid(std::vector<double> rows, const TimeGrid& grid) {
@@ -156,7 +156,7 @@ Presence presence_of(const TimeGrid& grid) {
 }
 
 Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const RecordingColumns& columns) {
-  if (rows < kFewestSamples) {
+  if (rows < kFewestOnGrid) {
     return fail(ErrorCode::TooFewSamples,
                 "The recording has " + with_count(rows, "sample") + "; an investigation needs at least 16.");
   }
@@ -177,7 +177,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
 
 Status set_window(StudyRecording& recording, const Trim& trim) {
   const KeptRows kept = kept_rows(trim, recording.dt_s, recording.length);
-  if (kept.count() < kFewestSamples) {
+  if (kept.count() < kFewestOnGrid) {
     return fail(ErrorCode::TooFewSamples, "The trims leave fewer than 16 samples of the recording.");
   }
   recording.begin = kept.first;
