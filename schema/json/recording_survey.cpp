@@ -36,14 +36,15 @@ SurveyedChannel surveyed_channel_from_json(const Json& quality, const std::strin
   for (const Json& gap : quality.value("longest_gaps", none)) {
     found.longest_gaps.push_back({row_of(gap), gap.at("missing").get<std::size_t>()});
   }
+  const Quality read = quality_from_json(quality);
+  if (const ChannelQuality* const known = read.of(column); known != nullptr && known->frozen_from > 0) {
+    found.frozen = {known->frozen_from - 1, known->frozen};
+  }
   const Json channels = quality.value("channels", none);
   const auto own = std::find_if(channels.begin(), channels.end(),
                                 [&](const Json& channel) { return channel.value("column", "") == column; });
   if (own == channels.end()) {
     return found;
-  }
-  if (own->value("frozen", std::size_t{0}) > 0 && own->value("frozen_from", Json()).is_number()) {
-    found.frozen = {own->at("frozen_from").get<std::size_t>() - 1, own->at("frozen").get<std::size_t>()};
   }
   for (const Json& wrong : own->value("implausible_at", none)) {
     found.implausible.push_back({row_of(wrong), wrong.at("samples").get<std::size_t>()});
