@@ -1,6 +1,7 @@
 #include "core/analysis/channel_look.hpp"
 
 #include "core/analysis/implied_curves.hpp"
+#include "core/signal/row_times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,40 +15,6 @@ constexpr std::size_t kFewest = 64;
 tl::unexpected<Error> too_few(std::size_t samples) {
   return fail(ErrorCode::TooFewSamples,
               "A spectrum needs 64 samples without a gap; the channel has " + std::to_string(samples) + ".");
-}
-
-/// The rows of the longest run among `values`, which `gaps` cut: its first value and how many.
-std::pair<std::size_t, std::size_t> longest_run(std::size_t count, std::span<const Gap> gaps) {
-  std::pair<std::size_t, std::size_t> best{0, 0};
-  std::size_t first = 0;
-  const auto consider = [&](std::size_t end) {
-    if (end - first > best.second) {
-      best = {first, end - first};
-    }
-    first = end;
-  };
-  for (const Gap& gap : gaps) {
-    consider(gap.row);
-  }
-  consider(count);
-  return best;
-}
-
-/// The time of a channel's value since the first row of the file: by its row, and by what is missing before that.
-double time_of(const Window& window, const ChannelView& channel, std::size_t value) {
-  std::size_t row = window.first;
-  for (const RowRun& run : channel.stretch.runs) {
-    row = run.first + std::min(value, run.count);
-    if (value < run.count) {
-      break;
-    }
-    value -= run.count;
-  }
-  std::size_t missing = 0;
-  for (const Gap& gap : window.gaps) {
-    missing += gap.row <= row ? gap.missing : 0;
-  }
-  return window.time.first_s + static_cast<double>(row - window.first + missing) * window.time.dt_s;
 }
 
 /// Divides every band by its median over time, in place.
@@ -92,12 +59,13 @@ Result<ChannelLook> ChannelLook::open(RecordingSource& source, std::string_view 
                 "The recording has no sensor column '" + std::string(column) + "'; name one: ?channel=…",
                 {{"parameter", "channel"}});
   }
-  const auto [first, count] = longest_run(channel->values.size(), channel->gaps);
-  look.run_ = channel->values.subspan(first, count);
+  const RowRun run = channel->stretch.longest();
+  look.run_ = channel->rows(run.first, run.count);
   look.unit_ = channel->role.unit.value_or(Unit{});
   look.dt_s_ = look.view_.window.time.dt_s;
-  look.first_s_ = time_of(look.view_.window, *channel, first);
-  look.mean_ = count == 0 ? 0.0 : std::accumulate(look.run_.begin(), look.run_.end(), 0.0) / static_cast<double>(count);
+  look.first_s_ = RowTimes(look.view_.window).at(run.first);
+  look.mean_ =
+      run.count == 0 ? 0.0 : std::accumulate(look.run_.begin(), look.run_.end(), 0.0) / static_cast<double>(run.count);
   return look;
 }
 

@@ -3,6 +3,7 @@
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/repeated_rows.hpp"
+#include "core/signal/row_times.hpp"
 #include "core/signal/turns.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -46,24 +47,6 @@ std::vector<double> rate_behind(const Stretch& stretch, const Unit& unit, std::s
   }
   return reference;
 }
-
-/// Time of each analysed row since the first of the file.
-class RowTimes {
- public:
-  explicit RowTimes(const Window& window) : window_(window) {}
-  /// Rows must be asked for in rising order.
-  double at(std::size_t row) {
-    for (; next_ < window_.gaps.size() && window_.gaps[next_].row <= row; ++next_) {
-      missing_ += window_.gaps[next_].missing;
-    }
-    return window_.time.first_s + window_.time.dt_s * static_cast<double>(row - window_.first + missing_);
-  }
-
- private:
-  const Window& window_;
-  std::size_t next_ = 0;
-  std::size_t missing_ = 0;
-};
 
 /// The ramp from rest at the first row of the file, at the channel's rows.
 std::vector<double> ramp(const Stretch& stretch, const Unit& unit, const Condition& condition, const Window& window) {
