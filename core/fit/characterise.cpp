@@ -344,6 +344,21 @@ std::span<const double> longest_between_gaps(const ChannelSamples& channel) {
   return longest;
 }
 
+/// How close each fit is to the data, which only all of them together say.
+void tell_distances(ChannelCharacterisation& channel) {
+  std::vector<RankedModel> models;
+  models.reserve(channel.fits.size());
+  for (const ModelFit& fit : channel.fits) {
+    models.push_back({fit.model, fit.wic});
+  }
+  const std::size_t fitted = fitted_scales(channel.haar.scale, channel.dt_s, channel.from_tau_s);
+  const auto distances =
+      distances_2p(models, criterion_observations(channel.samples + channel.missing, channel.discrepancy, fitted));
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    channel.fits[i].distance_2p = distances[i];
+  }
+}
+
 Result<ChannelCharacterisation> characterise_as_given(const ChannelSamples& channel, const CharacteriseOptions& options,
                                                       const RunControl& control) {
   control.report("variance", 0.0);
@@ -382,23 +397,9 @@ Result<ChannelCharacterisation> characterise_as_given(const ChannelSamples& chan
   if (!status) {
     return fail(std::move(status.error()));
   }
+  tell_distances(result);
   control.report("done", 1.0);
   return result;
-}
-
-/// How close each fit is to the data, which only all of them together say.
-void tell_distances(ChannelCharacterisation& channel) {
-  std::vector<RankedModel> models;
-  models.reserve(channel.fits.size());
-  for (const ModelFit& fit : channel.fits) {
-    models.push_back({fit.model, fit.wic});
-  }
-  const std::size_t fitted = fitted_scales(channel.haar.scale, channel.dt_s, channel.from_tau_s);
-  const auto distances =
-      distances_2p(models, criterion_observations(channel.samples + channel.missing, channel.discrepancy, fitted));
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    channel.fits[i].distance_2p = distances[i];
-  }
 }
 
 }  // namespace
@@ -412,9 +413,6 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
     return fail(std::move(status.error()));
   }
   Result<ChannelCharacterisation> result = characterise_as_given(channel, options, control);
-  if (result) {
-    tell_distances(*result);
-  }
   const bool untold = !result && result.error().code == ErrorCode::TooFewSamples && !channel.gaps.empty();
   const std::span<const double> rest = untold ? longest_between_gaps(channel) : std::span<const double>();
   if (rest.size() < kFewestSamples) {
@@ -423,7 +421,6 @@ Result<ChannelCharacterisation> characterise_channel(const ChannelSamples& chann
   Result<ChannelCharacterisation> shorter =
       characterise_as_given({.values = rest, .dt_s = channel.dt_s, .si_factor = channel.si_factor}, options, control);
   if (shorter) {
-    tell_distances(*shorter);
     shorter->warnings.push_back(
         "The gaps leave too many equal samples to say what is missing in them: only the longest "
         "stretch without a gap is analysed, " +
