@@ -4,8 +4,6 @@
 #include "schema/json/recording_tags.hpp"
 #include "server/jobs/every_row.hpp"
 
-#include <algorithm>
-
 namespace driftlab::server {
 namespace {
 

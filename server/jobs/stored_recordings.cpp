@@ -9,11 +9,6 @@ namespace driftlab::server {
 
 std::vector<std::string> hardware_of(const Device& device) { return {device.imu, device.model, device.name}; }
 
-std::vector<std::string> hardware_of(Store& store, const std::string& device_id) {
-  const auto device = store.device(device_id);
-  return device ? hardware_of(*device) : std::vector<std::string>();
-}
-
 std::vector<StoredRecordingRequest> recordings_from_request(const Json& list) {
   std::vector<StoredRecordingRequest> wanted;
   for (const Json& entry : list) {

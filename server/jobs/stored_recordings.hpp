@@ -23,8 +23,6 @@ struct StoredRecordingRequest {
 
 /// Texts that describe a device, in which its sensor may be named, most telling first: IMU, model, name.
 [[nodiscard]] std::vector<std::string> hardware_of(const Device& device);
-/// The same of the device of that id; empty where it is not there.
-[[nodiscard]] std::vector<std::string> hardware_of(Store& store, const std::string& device_id);
 
 /// Rows from the store, columns mapped where the blob store keeps them. Not thread safe.
 class StoredRecordings : public RecordingSource {
