@@ -3,6 +3,7 @@
 #include "schema/json/quality.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <utility>
 

@@ -4,6 +4,7 @@
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 namespace driftlab {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 #include <limits>
 

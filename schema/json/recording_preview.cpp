@@ -1,7 +1,7 @@
 #include "schema/json/recording_preview.hpp"
 
 #include "schema/json/recording_spec.hpp"
-#include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 namespace driftlab {
 namespace {

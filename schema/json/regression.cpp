@@ -3,7 +3,7 @@
 #include "core/campaign/regression/ratios.hpp"
 #include "core/signal/angle.hpp"
 #include "schema/json/recording_spec.hpp"
-#include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 namespace driftlab {
 namespace {

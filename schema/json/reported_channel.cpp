@@ -1,5 +1,7 @@
 #include "schema/json/reported_channel.hpp"
 
+#include "schema/json/stored_member.hpp"
+
 #include <limits>
 
 namespace driftlab {
@@ -148,23 +150,6 @@ std::optional<Contamination> contamination_from_json(const Json& channel) {
   contamination.not_gaussian = found->value("not_gaussian", false);
   return contamination;
 }
-
-std::size_t count_member(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::size_t>() : 0;
-}
-
-double finite_member(const Json& object, const char* name, double otherwise) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
-}
-
-std::string text_member(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json to_json(const ReportedValue& value) {
   if (!value.value) {

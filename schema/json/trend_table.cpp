@@ -1,6 +1,6 @@
 #include "schema/json/trend_table.hpp"
 
-#include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 
 namespace driftlab {
 namespace {

@@ -6,6 +6,7 @@
 #include "schema/json/channel_summary.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/message.hpp"

@@ -1,6 +1,6 @@
 // A recording as it goes over the wire: what was said of it, and what its file tells.
 #include "schema/json/recording_spec.hpp"
-#include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_member.hpp"
 #include "server/api/documents.hpp"
 
 namespace driftlab::server {
