@@ -112,31 +112,34 @@ Model model_from_json(const Json& processes, Dimension channel, const std::strin
   return model_from_json(processes, known, pointer, faults);
 }
 
-Json to_json(const Model& model, Dimension channel) {
+namespace {
+
+/// `written(process, k)`: parameter k of a process as the document has it.
+template <class Written>
+Json processes_json(const Model& model, const Written& written) {
   Json list = Json::array();
   for (const Process& process : model) {
     Json params = Json::object();
-    for (std::size_t i = 0; i < process.parameters.size(); ++i) {
-      const ParameterSpec& spec = process.kind->parameters[i];
-      const ParameterUnit unit = lab_unit(spec.channel_power == 0 ? Dimension::One : channel, spec.second_power_halves);
-      params[std::string(spec.name)] =
-          Json{{"value", number(process.parameters[i] * unit.per_si)}, {"unit", unit.symbol}};
+    for (std::size_t k = 0; k < process.parameters.size(); ++k) {
+      params[std::string(process.kind->parameters[k].name)] = written(process, k);
     }
     list.push_back(Json{{"process", process.kind->name}, {"params", std::move(params)}});
   }
   return list;
 }
 
+}  // namespace
+
+Json to_json(const Model& model, Dimension channel) {
+  return processes_json(model, [&](const Process& process, std::size_t k) {
+    const ParameterSpec& spec = process.kind->parameters[k];
+    const ParameterUnit unit = lab_unit(spec.channel_power == 0 ? Dimension::One : channel, spec.second_power_halves);
+    return Json{{"value", number(process.parameters[k] * unit.per_si)}, {"unit", unit.symbol}};
+  });
+}
+
 Json to_si_json(const Model& model) {
-  Json list = Json::array();
-  for (const Process& process : model) {
-    Json params = Json::object();
-    for (std::size_t i = 0; i < process.parameters.size(); ++i) {
-      params[std::string(process.kind->parameters[i].name)] = process.parameters[i];
-    }
-    list.push_back(Json{{"process", process.kind->name}, {"params", std::move(params)}});
-  }
-  return list;
+  return processes_json(model, [](const Process& process, std::size_t k) { return process.parameters[k]; });
 }
 
 }  // namespace driftlab
