@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import computing
 import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
@@ -80,6 +81,8 @@ JSON_DOORS: dict[str, set[str]] = {
     "core/investigate/search": {"core/investigate/search/given_model.hpp"},
     "core/read": {"core/read/text_shape.hpp"},
 }
+# Module -> of these modules below it, the headers that it may include; of the others, all.
+DOORS = {**{module: {"core/campaign": CAMPAIGN_DOORS, "core/signal": SIGNAL_DOORS} for module in ABOVE_USE_CASES}, "schema/json": JSON_DOORS}
 
 # Headers -> the modules (by prefix) and single files that may include them; everything else may not.
 RESERVED = {
@@ -105,30 +108,7 @@ FORBIDDEN_IN_CORE = {
     r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(": "ends the process",
 }
 
-# What schema/json may not say: a document is what core computed, in the units of its readers. Whoever needs a function of
-# <cmath> or <numeric> there computes, and so does who looks for the least or greatest, and who adds, subtracts, multiplies or
-# divides numbers of a document by another (ARITHMETIC). A change of units passes. These write numbers: whether one is finite, to
-# how many decimals, that a whole number fits its type, and the bytes of a MATLAB file.
-COMPUTING_HEADERS = {"cmath", "complex", "numeric", "valarray", "math.h"}
-COMPUTING = re.compile(
-    r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|l?l?round|floor|ceil|trunc|f?abs|fmod|"
-    r"remainder|fma|lerp|midpoint|accumulate|(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element|"
-    r"(ranges::)?(min|max|minmax)(_element)?|(ranges::)?clamp|plus|minus|multiplies|divides)\b"
-    r"|\b(ned_axes|to_euler|deviation_of|distances_2p|(white_noise|random_walk)_equivalents|ellipse95|horizontal_m)\b"
-    r"|\.(transpose|conjugate|inverse|squaredNorm|norm|dot|cross)\(")
-WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json/mat_file.cpp"}
-
-# clang-format puts blanks around an operator of two operands, and none beside one of a single operand or a pointer.
-ARITHMETIC = re.compile(r"(?<=[\w)\]])\s+([-+*/])\s+(?=[\w(*\-])|(?<=[\w)\]])\s+([-*/]=)\s")
-# The last name of an operand that is a unit: kDegree, unit.per_si, a factor; or a power of ten, a reciprocal.
-UNIT = re.compile(r"k(Degree|StandardGravity|MilliG|Percent|RegressionMg|RegressionPpm)|per|(\w+_)?per_si|si|(\w+_)?factor|unit|100\.0|1e-?\d+")
-WHOLE = re.compile(r"\d[\d']*U?")
-PLACE = re.compile(r"size|begin|end|length")  # in a list or a text
-# Strings are added too: numbers are known by a unit in their name, by their decimals, or as elements of two lists.
-MEASURED = re.compile(r"\w+_(m|m2|s|hz|rad|deg|degc|m_s|rad_s|m_s2|si)|\d+\.\d*|missing|implausible|samples")
-
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
-COMMENT_OR_LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|' r"(?<!\w)'(?:\\.|[^'\\\n])+'", re.DOTALL)
 
 
 def module_of(name: str) -> str | None:
@@ -141,82 +121,6 @@ def module_of(name: str) -> str | None:
     return None
 
 
-def code_of(text: str) -> str:
-    """The text with comments and literals blanked out, line breaks kept."""
-    return COMMENT_OR_LITERAL.sub(lambda match: "\n" * match.group(0).count("\n") or " ", text)
-
-
-def hangs(code: str, place: int) -> bool:
-    """Whether the character belongs to names, members, calls and elements that hang together."""
-    return code[place].isalnum() or code[place] in "_.:'()[]" or "->" in code[max(0, place - 1):place + 2]
-
-
-def left_of(code: str, end: int) -> str:
-    """The operand that ends before `end`."""
-    start, depth = end, 0
-    while start > 0:
-        depth += (code[start - 1] in ")]") - (code[start - 1] in "([")
-        if depth < 0 or (depth == 0 and not hangs(code, start - 1)):
-            break
-        start -= 1
-    return code[start:end]
-
-
-def right_of(code: str, start: int) -> str:
-    """The operand that starts at `start`, without a sign or a star of its own."""
-    while code[start:start + 1] in ("*", "-"):
-        start += 1
-    end, depth = start, 0
-    while end < len(code):
-        depth += (code[end] in "([") - (code[end] in ")]")
-        if depth < 0 or (depth == 0 and not hangs(code, end)):
-            break
-        end += 1
-    return code[start:end]
-
-
-def last_name(operand: str) -> str:
-    """`back` of `list.back()`, `mean` of `channel.mean`, `]` of an element, `)` of what stands in brackets alone."""
-    if operand.endswith("]"):
-        return "]"
-    depth, end = 0, len(operand)
-    while end > 0 and operand.endswith(")"):
-        depth += (operand[end - 1] == ")") - (operand[end - 1] == "(")
-        end -= 1
-        if depth == 0:
-            break
-    name = operand[:end]
-    if re.fullmatch(r"[\d'].*|.*\d\.\d*|\d+\.", name):
-        return name
-    return re.split(r"\.|->|::", name)[-1] or ")"
-
-
-def inside_an_index(code: str, position: int) -> bool:
-    depth = 0
-    for k in range(position - 1, max(0, position - 200), -1):
-        depth += (code[k] in ")]") - (code[k] in "([")
-        if depth < 0 and code[k] == "[":
-            return True
-        if code[k] in ";{}":
-            return False
-    return False
-
-
-def arithmetic_of(code: str) -> list[tuple[int, str]]:
-    """Where numbers are added, subtracted, multiplied or divided that are neither places in a list nor changes of units."""
-    found: list[tuple[int, str]] = []
-    for match in ARITHMETIC.finditer(code):
-        left, right = left_of(code, match.start()), right_of(code, match.end())
-        names = (last_name(left), last_name(right))
-        sign = match.group(1) or match.group(2)
-        counted = any(WHOLE.fullmatch(name) or (sign in "+-" and PLACE.fullmatch(name)) for name in names) or inside_an_index(code, match.start())
-        unit = any(UNIT.fullmatch(name) for name in names[1 if sign[0] == "/" else 0:]) or (sign == "/" and left == "1.0")
-        number = sign != "+" or any(MEASURED.fullmatch(name) for name in names) or names == ("]", "]")
-        if number and not counted and not (unit and sign[0] in "*/"):
-            found.append((match.start(), f"{left} {sign} {right}"))
-    return found
-
-
 def faults_of(root: Path, name: str, text: str) -> list[str]:
     faults: list[str] = []
     module = module_of(name)
@@ -224,39 +128,32 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
         top = name.split("/")[0]
         return [f"{name}: belongs to no floor; name its module in tests/house/floors.py"] if top != "tests" else []
 
-    def fault(position: int, sentence: str) -> None:
-        faults.append(f"{name}:{text.count(chr(10), 0, position) + 1}: {sentence}")
+    def fault(position: int, sentence: str, within: str = text) -> None:
+        faults.append(f"{name}:{within.count(chr(10), 0, position) + 1}: {sentence}")
 
     for match in INCLUDE.finditer(text):
         included = match.group(2)
         target = module_of(included)
         if target is not None and target != module and target not in FLOORS[module]:
             fault(match.start(2), f"{module} may not include {included}: {target} is not below it")
-        if module in ABOVE_USE_CASES and target == "core/campaign" and included not in CAMPAIGN_DOORS:
-            fault(match.start(2), f"{module} may not include {included}: it is arithmetic of core/campaign")
-        if module in ABOVE_USE_CASES and target == "core/signal" and included not in SIGNAL_DOORS:
-            fault(match.start(2), f"{module} may not include {included}: it is arithmetic of core/signal")
-        if module == "schema/json" and target in JSON_DOORS and included not in JSON_DOORS[target]:
+        doors = DOORS.get(module, {}).get(target or "")
+        if doors is not None and included not in doors:
             fault(match.start(2), f"{module} may not include {included}: it is arithmetic of {target}")
         if match.group(1) == '"' and target is None and (root / name).parent.joinpath(included).exists():
             fault(match.start(2), f"include {included} by its path from the top of the repository")
-        if module == "schema/json" and name not in WRITE_NUMBERS and included in COMPUTING_HEADERS:
+        if module == "schema/json" and name not in computing.WRITE_NUMBERS and included in computing.COMPUTING_HEADERS:
             fault(match.start(2), f"schema/json may not include <{included}>: documents compute nothing, core does")
         for pattern, owners in RESERVED.items():
             if re.fullmatch(pattern, included) and not any(o in (module, name) or module.startswith(o + "/") for o in owners):
                 fault(match.start(2), f"{module} may not include <{included}>: it is kept to {', '.join(owners)}")
-    if module == "schema/json" and name not in WRITE_NUMBERS:
-        for number, line in enumerate(code_of(text).split("\n"), start=1):
-            for match in COMPUTING.finditer(line):
-                faults.append(f"{name}:{number}: schema/json computes ({match.group(0)}): that belongs to core")
-        code = code_of(text)
-        for position, said in arithmetic_of(code):
-            faults.append(f"{name}:{code.count(chr(10), 0, position + 1) + 1}: schema/json computes ({said}): that belongs to core")
+    code = computing.code_of(text)
+    if module == "schema/json" and name not in computing.WRITE_NUMBERS:
+        for position, said in computing.computing_in(code):
+            fault(position, f"schema/json computes ({said}): that belongs to core", code)
     if module.startswith("core/"):
-        for number, line in enumerate(code_of(text).split("\n"), start=1):
-            for pattern, sentence in FORBIDDEN_IN_CORE.items():
-                for match in re.finditer(pattern, line):
-                    faults.append(f"{name}:{number}: core {sentence} ({match.group(0).strip('( ')})")
+        for pattern, sentence in FORBIDDEN_IN_CORE.items():
+            for match in re.finditer(pattern, code):
+                fault(match.start(), f"core {sentence} ({match.group(0).strip('( ')})", code)
     return faults
 
 
