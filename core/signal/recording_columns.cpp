@@ -13,6 +13,24 @@ bool holds_text(std::span<const double> values) {
   return !values.empty() && std::isnan(values.front()) && why_missing(values.front()).why == Missing::Text;
 }
 
+/// Whether a name speaks of a gyroscope or an accelerometer, though not which axis: `gyro`, `acc_l_x`.
+bool sounds_inertial(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  return holds("gyr") || (holds("acc") && !holds("accuracy")) || holds("omega") || holds("angular");
+}
+
+/// A column of which nobody said what it is, and whose name says nothing, may be words, a serial number or a sparse
+/// sensor; so may one without a name that holds no number at all. Everything else is a sensor, whose holes are faults.
+bool may_be_left_out(const ColumnRole& role, const std::string& name, std::size_t index,
+                     std::span<const double> values) {
+  const bool named = name != std::to_string(index);
+  return role.quantity == Quantity::Unspecified &&
+         (named || std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
+}
+
 }  // namespace
 
 std::optional<std::size_t> axis_index(std::string_view axis) {
@@ -87,8 +105,65 @@ std::string RecordingColumns::note_of_time() const {
              : "";
 }
 
-std::string RecordingColumns::note_of_unnamed(std::size_t index) const {
-  return "The column '" + name(index) + "' has no stated meaning and is ignored.";
+bool RecordingColumns::has_inertial() const {
+  return std::any_of(roles_.begin(), roles_.end(), [](const std::optional<ColumnRole>& role) {
+    return role && (role->quantity == Quantity::AngularRate || role->quantity == Quantity::SpecificForce);
+  });
+}
+
+bool RecordingColumns::is_skipped(std::size_t index) const {
+  const std::optional<ColumnRole>& role = roles_[index];
+  return guessed_ && role && role->quantity == Quantity::Unspecified && !sounds_inertial(name(index)) && has_inertial();
+}
+
+std::string RecordingColumns::note_of_skipped() const {
+  std::string skipped;
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (is_skipped(i)) {
+      skipped += (skipped.empty() ? "'" : ", '") + name(i) + "'";
+    }
+  }
+  return skipped.empty() ? skipped
+                         : "No inertial sensor by their names, and skipped: " + skipped +
+                               ". State what they measure to have them analysed.";
+}
+
+Result<ColumnUse> RecordingColumns::use_of(std::size_t index, const Passed& passed) const {
+  const std::optional<ColumnRole>& role = roles_[index];
+  if (is_skipped(index)) {
+    return ColumnUse{};
+  }
+  if (!role) {
+    return ColumnUse{false, "The column '" + name(index) + "' has no stated meaning and is ignored.", {}};
+  }
+  if (!is_sensor(role->quantity)) {
+    return ColumnUse{};
+  }
+  if (const Status holes = check_holes(name(index), samples(index), passed); !holes) {
+    if (guessed_ && may_be_left_out(*role, name(index), index, samples(index))) {
+      return ColumnUse{false, "The column '" + name(index) + "' is left out: " + holes.error().message, holes.error()};
+    }
+    return fail(holes.error());
+  }
+  return ColumnUse{
+      true, role->unit ? "" : "The unit of column '" + name(index) + "' is not stated; its unit is 1.", {}};
+}
+
+ChannelSurvey RecordingColumns::survey(std::size_t index, const Passed& passed) const {
+  const std::span<const double> values = samples(index);
+  ChannelSurvey survey = survey_channel(name(index), values, passed);
+  const ColumnRole role = roles_[index].value_or(ColumnRole{});
+  if (const auto source = reference_of(role.quantity, role.axis)) {
+    const std::span<const double> subtracted = samples(source->index);
+    for (std::size_t i = 0; i < subtracted.size(); ++i) {
+      if (!std::isfinite(subtracted[i]) && std::isfinite(values[i])) {
+        survey.unsound.push_back(i);
+      }
+    }
+    std::sort(survey.unsound.begin(), survey.unsound.end());
+    survey.unsound.erase(std::unique(survey.unsound.begin(), survey.unsound.end()), survey.unsound.end());
+  }
+  return survey;
 }
 
 double stated_rate(const Condition& condition, std::string_view axis, double time_s) {

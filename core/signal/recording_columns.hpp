@@ -3,11 +3,13 @@
 ///
 /// Variances (core/signal/recording_view.hpp), calibrations and investigations (core/investigate/study/study.hpp) all
 /// ask here which column is the time, which the temperature and which the reference of a sensor, and what a
-/// condition says where there is no such column (spec/study.md). They differ only in the samples they then keep: a view
-/// takes the sound rows, a study puts every row on a grid.
+/// condition says where there is no such column (spec/study.md), which columns are examined at all, and which of their
+/// samples are none. They differ only in what they then do with sound samples: a view takes the rows, and leaves a
+/// frozen sensor out; a study puts them on a grid, and names the freeze.
 ///
 /// A drive has several files, each on a clock of its own, and quantities that no device has (fixes, a course, an
 /// accuracy): core/navigate/drive/table.hpp reads them. Both find the column that somebody names by find_column.hpp.
+#include "core/signal/channel_survey.hpp"
 #include "core/signal/recording.hpp"
 
 #include <functional>
@@ -26,6 +28,13 @@ namespace driftlab {
 struct ReferenceColumn {
   std::size_t index = 0;
   bool angle = false;  ///< an angle, whose derivative is the reference (core/signal/turns.hpp)
+};
+
+/// What is done with a column where sensors are examined.
+struct ColumnUse {
+  bool examined = false;
+  std::string note;            ///< why it is not, or that its unit is not stated; empty
+  std::optional<Error> fault;  ///< of its values, where they are why it is not
 };
 
 /// A file's columns with their roles. Copies are cheap but for the names; samples stay where they are.
@@ -55,12 +64,22 @@ class RecordingColumns {
   /// The reference of a sensor along an axis: its own column, else for a rate the angle's.
   [[nodiscard]] std::optional<ReferenceColumn> reference_of(Quantity sensor, std::string_view axis) const;
 
+  /// Whether a column is examined as a sensor. Where the roles come from names and one of them is a gyroscope or an
+  /// accelerometer, columns whose names say nothing are passed over; note_of_skipped() says which. Errors: those of
+  /// check_holes, of a column that is a sensor beyond doubt.
+  [[nodiscard]] Result<ColumnUse> use_of(std::size_t index, const Passed& passed = {}) const;
+  /// Survey of a sensor column; a row whose reference is missing is unsound as well.
+  [[nodiscard]] ChannelSurvey survey(std::size_t index, const Passed& passed = {}) const;
+
   /// Sentences for the recording's notes: a column that would be the time but for its text, or is it by its name alone
-  /// beside stated ones (empty: neither), and one that nobody named.
+  /// beside stated ones (empty: neither), and those that use_of() passes over (empty: none).
   [[nodiscard]] std::string note_of_time() const;
-  [[nodiscard]] std::string note_of_unnamed(std::size_t index) const;
+  [[nodiscard]] std::string note_of_skipped() const;
 
  private:
+  [[nodiscard]] bool has_inertial() const;
+  [[nodiscard]] bool is_skipped(std::size_t index) const;
+
   RecordingColumns(ColumnNames names, std::vector<std::optional<ColumnRole>> roles, Samples column, bool guessed,
                    bool time_stated);
 

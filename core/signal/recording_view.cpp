@@ -11,7 +11,6 @@
 #include <cassert>
 #include <cmath>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace driftlab {
@@ -99,34 +98,14 @@ void take_values(std::span<const double> column, ChannelView& channel) {
   channel.values = channel.owned;
 }
 
-/// A column of which nobody said what it is, and whose name says nothing, may be words, a serial number or a sparse
-/// sensor; so may one without a name that holds no number at all. Everything else is a sensor, whose holes are faults.
-bool may_be_left_out(const ColumnRole& role, const std::string& name, std::size_t index,
-                     std::span<const double> values) {
-  const bool named = name != std::to_string(index);
-  return role.quantity == Quantity::Unspecified &&
-         (named || std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
-}
-
 /// Surveys a sensor column and adds what is sound in its window as a channel.
 Status add_channel(const RecordingSpec& spec, const RecordingColumns& columns, std::size_t index, ViewUse use,
                    const Passed& passed, RecordingView& view) {
   const std::string& name = columns.name(index);
   const std::span<const double> values = columns.samples(index);
   const ColumnRole role = columns.role(index).value_or(ColumnRole{});
-  ChannelSurvey survey = survey_channel(name, values, passed);
+  ChannelSurvey survey = columns.survey(index, passed);
   const Window& window = view.window;
-  // Where the reference is missing the error is.
-  if (const auto source = columns.reference_of(role.quantity, role.axis)) {
-    const std::span<const double> subtracted = columns.samples(source->index);
-    for (std::size_t i = 0; i < subtracted.size(); ++i) {
-      if (!std::isfinite(subtracted[i]) && std::isfinite(values[i])) {
-        survey.unsound.push_back(i);
-      }
-    }
-    std::sort(survey.unsound.begin(), survey.unsound.end());
-    survey.unsound.erase(std::unique(survey.unsound.begin(), survey.unsound.end()), survey.unsound.end());
-  }
   const std::vector<RowRun> runs = cut_at_gaps(window.first, window.first + window.count, window.gaps);
   ChannelView channel{name, role, choose_stretch(without_rows(runs, survey.unsound, survey.frozen)), {}, {}, {},
                       {},   {}};
@@ -181,26 +160,6 @@ std::pair<std::size_t, std::size_t> longest_shared_run(std::span<const ChannelVi
 
 namespace {
 
-/// Whether a column is known to be a gyroscope or an accelerometer.
-bool has_inertial_column(const RecordingColumns& columns) {
-  for (std::size_t i = 0; i < columns.count(); ++i) {
-    const auto& role = columns.role(i);
-    if (role && (role->quantity == Quantity::AngularRate || role->quantity == Quantity::SpecificForce)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Whether a name speaks of a gyroscope or an accelerometer, though not which axis: `gyro`, `acc_l_x`.
-bool sounds_inertial(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
-  return holds("gyr") || (holds("acc") && !holds("accuracy")) || holds("omega") || holds("angular");
-}
-
 /// The view of columns in which no row repeats the one before.
 Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumns& columns, std::size_t rows,
                                 ViewUse use, const Passed& passed) {
@@ -217,31 +176,19 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
   if (std::string note = columns.note_of_time(); !note.empty()) {
     notes.push_back(std::move(note));
   }
-  const bool inertial = spec.columns.empty() && has_inertial_column(columns);
-  std::string skipped;
   for (std::size_t i = 0; i < columns.count(); ++i) {
-    const auto& role = columns.role(i);
-    if (role && role->quantity == Quantity::Unspecified && inertial && !sounds_inertial(columns.name(i))) {
-      skipped += (skipped.empty() ? "'" : ", '") + columns.name(i) + "'";
+    auto use_of_column = columns.use_of(i, passed);
+    if (!use_of_column) {
+      return fail(use_of_column.error());
+    }
+    if (use_of_column->fault && !first_fault) {
+      first_fault = std::move(use_of_column->fault);
+    }
+    if (!use_of_column->note.empty()) {
+      notes.push_back(std::move(use_of_column->note));
+    }
+    if (!use_of_column->examined) {
       continue;
-    }
-    if (!role) {
-      notes.push_back(columns.note_of_unnamed(i));
-      continue;
-    }
-    if (!is_sensor(role->quantity)) {
-      continue;
-    }
-    if (auto holes = check_holes(columns.name(i), columns.samples(i), passed); !holes) {
-      first_fault = first_fault ? first_fault : std::optional(holes.error());
-      if (spec.columns.empty() && may_be_left_out(*role, columns.name(i), i, columns.samples(i))) {
-        notes.push_back("The column '" + columns.name(i) + "' is left out: " + holes.error().message);
-        continue;
-      }
-      return fail(holes.error());
-    }
-    if (!role->unit) {
-      notes.push_back("The unit of column '" + columns.name(i) + "' is not stated; its unit is 1.");
     }
     // A sensor that is frozen throughout does not keep the others from being analysed.
     if (auto status = add_channel(spec, columns, i, use, passed, view); !status) {
@@ -249,9 +196,8 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
       notes.push_back(status.error().message + " It is left out.");
     }
   }
-  if (!skipped.empty()) {
-    notes.push_back("No inertial sensor by their names, and skipped: " + skipped +
-                    ". State what they measure to have them analysed.");
+  if (std::string skipped = columns.note_of_skipped(); !skipped.empty()) {
+    notes.push_back(std::move(skipped));
   }
   if (view.channels.empty() && first_fault) {
     return fail(std::move(*first_fault));

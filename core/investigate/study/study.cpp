@@ -1,5 +1,6 @@
 #include "core/investigate/study/study.hpp"
 
+#include "core/investigate/study/sound_columns.hpp"
 #include "core/investigate/study/time_grid.hpp"
 #include "core/signal/kept_rows.hpp"
 #include "core/signal/no_rate.hpp"
@@ -19,12 +20,14 @@ constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 /// Below it there is nothing to examine: the least that a recording must hold after its trims.
 constexpr std::size_t kFewestOnGrid = 16;
 
-/// Values of the file's rows put on the grid; places between rows are interpolated.
+/// Values of the file's rows put on the grid; places between rows are interpolated, those before the first and behind
+/// the last are as it.
 std::vector<double> on_grid(std::vector<double> rows, const TimeGrid& grid) {
   if (grid.place.empty()) {
     return rows;
   }
-  std::vector<double> values(grid.length);
+  std::vector<double> values(grid.length, rows.back());
+  std::fill_n(values.begin(), grid.place.front(), rows.front());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     values[grid.place[i]] = rows[i];
     if (i > 0) {
@@ -210,12 +213,21 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   if (!read) {
     return fail(read.error());
   }
-  const RecordingColumns& columns = *read;
-  auto grid = grid_of(spec, rows, columns);
+  auto grid = grid_of(spec, rows, *read);
   if (!grid) {
     return fail(grid.error());
   }
+  auto sound = sound_columns(spec, names, std::move(*read));
+  if (!sound) {
+    return fail(sound.error());
+  }
+  if (rows - sound->left_out.size() < kFewestOnGrid) {
+    return fail(ErrorCode::TooFewSamples, "Fewer than 16 rows of the recording hold a sample of every sensor.");
+  }
+  grid->leave_out(sound->left_out, rows);
+  const RecordingColumns& columns = sound->columns;
   StudyRecording recording;
+  recording.memory = sound->memory;
   recording.id = spec.id;
   recording.condition = spec.condition;
   recording.dt_s = grid->dt_s;
@@ -239,33 +251,19 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
     recording.notes.push_back(std::move(note));
   }
   set_rotation(recording, columns, *grid);
-  if (const auto index = columns.find(Quantity::Temperature)) {
+  // A temperature that is finite anywhere is finite throughout (sound_columns.hpp).
+  if (const auto index = columns.find(Quantity::Temperature); index && std::isfinite(columns.samples(*index).front())) {
     recording.temperature = column_on_grid(columns, *index, *grid);
   }
   const Presence present = presence_of(*grid);
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  recording.notes.insert(recording.notes.end(), sound->notes.begin(), sound->notes.end());
+  for (const std::size_t i : sound->examined) {
     const auto& role = columns.role(i);
-    if (!role) {
-      recording.notes.push_back(columns.note_of_unnamed(i));
-      continue;
-    }
-    if (!is_sensor(role->quantity)) {
-      continue;
-    }
     Channel channel;
     channel.column = names[i];
     channel.role = *role;
     channel.unit = role->unit.value_or(Unit{});
-    if (!role->unit) {
-      recording.notes.push_back("The unit of column '" + names[i] + "' is not stated; its unit is 1.");
-    }
     channel.rows = columns.samples(i);
-    for (std::size_t row = 0; row < channel.rows.size(); ++row) {
-      if (!std::isfinite(channel.rows[row])) {
-        return fail(ErrorCode::NonFinite, "The column '" + names[i] + "' holds a value that is not a finite number.",
-                    {{"column", names[i]}, {"row", std::to_string(row + 1)}});
-      }
-    }
     channel.measured = column_on_grid(columns, i, *grid);
     channel.valid = present;
     const auto axis = axis_index(role->axis);

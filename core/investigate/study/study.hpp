@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +76,8 @@ struct StudyRecording {
   std::array<ReferenceNoise, 3> reference_noise;  ///< of `rate`
   std::vector<Channel> channels;
   std::vector<std::string> notes;
+  /// What channels read where rows of the file are left out (sound_columns.hpp); null: they read the file's columns.
+  std::shared_ptr<const std::vector<std::vector<double>>> memory;
 
   [[nodiscard]] bool is_static() const { return condition.kind == ConditionKind::Static; }
   [[nodiscard]] std::size_t count() const { return end - begin; }
@@ -111,8 +114,9 @@ struct Study {
 };
 
 /// The recording of `spec` from its decoded columns, which must outlive it. The time column rules: samples are put on
-/// the grid that fits its stamps best, and what they say beside that is kept in `stamps`.
-/// Errors: those of assign_roles; NonMonotonicTime, InconsistentSampling, TooFewSamples.
+/// the grid that fits its stamps best, and what they say beside that is kept in `stamps`. A row that lacks a sample of
+/// one sensor has none of any (sound_columns.hpp), and a note says so.
+/// Errors: those of assign_roles and RecordingColumns::use_of; NonMonotonicTime, InconsistentSampling, TooFewSamples.
 [[nodiscard]] Result<StudyRecording> make_study_recording(
     const RecordingSpec& spec, const ColumnNames& names, std::size_t rows,
     const std::function<std::span<const double>(std::size_t)>& column);

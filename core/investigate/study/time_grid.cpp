@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -123,6 +124,23 @@ Bursts bursts_of(std::span<const double> stamps, double typical, std::optional<d
 }
 
 }  // namespace
+
+void TimeGrid::leave_out(std::span<const std::size_t> left_out, std::size_t rows) {
+  if (left_out.empty()) {
+    return;
+  }
+  std::vector<std::size_t> kept;
+  kept.reserve(rows - left_out.size());
+  auto next = left_out.begin();
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (next != left_out.end() && *next == row) {
+      ++next;
+    } else {
+      kept.push_back(place_of(row));
+    }
+  }
+  place = std::move(kept);
+}
 
 Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz) {
   const std::size_t rows = stamps_s.size();

@@ -14,6 +14,8 @@ struct TimeGrid {
   Stamps stamps;
 
   [[nodiscard]] std::size_t place_of(std::size_t row) const { return place.empty() ? row : place[row]; }
+  /// The grid of the `rows` rows less `left_out` (ascending), whose places then hold none.
+  void leave_out(std::span<const std::size_t> left_out, std::size_t rows);
 };
 
 /// Fits the grid to the stamps [s] of consecutive rows, which must not decrease. Lost samples are found as in every
