@@ -4,7 +4,7 @@
 #include "core/navigate/drive/document.hpp"
 #include "core/navigate/drive/sampling.hpp"
 #include "core/navigate/drive/table.hpp"
-#include "core/navigate/recorded_drive.hpp"
+#include "core/navigate/navigation_filter.hpp"
 
 #include <optional>
 #include <string>
@@ -52,13 +52,18 @@ struct FileFacts {
   std::vector<std::string> notes;  ///< sentences: what is true of the drive and was not silently repaired
 };
 
+struct ReferencePoint {
+  double time_s = 0.0;
+  Vector3 position_ecef_m = Vector3::Zero();
+};
+
 struct Drive {
   Document document;
   double epoch_s = 0.0;          ///< the clock's zero on the sources' scale: the first reading
   std::vector<UniformRun> runs;  ///< body axes
   std::vector<Fix> fixes;
-  std::vector<ReferencePoint> reference;
-  bool withheld_fixes = false;  ///< the reference is the fixes themselves
+  std::vector<ReferencePoint> reference;  ///< by time
+  bool withheld_fixes = false;            ///< the reference is the fixes themselves
   std::vector<OdometerReading> odometer;
   FileFacts facts;
 
