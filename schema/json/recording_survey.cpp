@@ -37,6 +37,7 @@ SurveyedChannel surveyed_channel_from_json(const Json& quality, const std::strin
     found.longest_gaps.push_back({row_of(gap), gap.at("missing").get<std::size_t>()});
   }
   const Quality read = quality_from_json(quality);
+  found.missing = read.missing;
   if (const ChannelQuality* const known = read.of(column); known != nullptr && known->frozen_from > 0) {
     found.frozen = {known->frozen_from - 1, known->frozen};
   }

@@ -2,7 +2,7 @@
 
 namespace driftlab {
 
-Json to_json(const RecordingTrace& trace, double rate_hz) {
+Json to_json(const RecordingTrace& trace) {
   Json low = Json::array();
   Json high = Json::array();
   Json mean = Json::array();
@@ -30,7 +30,7 @@ Json to_json(const RecordingTrace& trace, double rate_hz) {
               {"missing", std::move(missing)},
               {"flags", std::move(flags)},
               {"duration_s", number(trace.duration_s)},
-              {"rate_hz", number(rate_hz)}};
+              {"rate_hz", number(trace.rate_hz)}};
 }
 
 }  // namespace driftlab

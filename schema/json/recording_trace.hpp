@@ -5,7 +5,7 @@
 
 namespace driftlab {
 
-/// Without `unit`, which is that of the column. Row k lies at k / rate.
-[[nodiscard]] Json to_json(const RecordingTrace& trace, double rate_hz);
+/// Without `unit`, which is that of the column.
+[[nodiscard]] Json to_json(const RecordingTrace& trace);
 
 }  // namespace driftlab

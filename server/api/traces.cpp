@@ -49,10 +49,10 @@ Result<std::size_t> points_of(const Request& request) {
 
 /// Three float32, little-endian, of each stretch: seconds since the first one begins, least and greatest value; NaN
 /// where it has no sample.
-Response binary_trace(const RecordingTrace& trace, double rate_hz, const std::optional<std::string>& unit) {
+Response binary_trace(const RecordingTrace& trace, const std::optional<std::string>& unit) {
   Response response;
   response.content_type = "application/octet-stream";
-  const std::size_t first = trace.buckets.empty() ? 0 : trace.buckets.front().first;
+  const double start_s = trace.time_s.empty() ? 0.0 : trace.time_s.front();
   response.body.reserve(trace.buckets.size() * 3 * sizeof(float));
   const auto put = [&](double value) {
     const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
@@ -60,13 +60,14 @@ Response binary_trace(const RecordingTrace& trace, double rate_hz, const std::op
       response.body.push_back(static_cast<char>(bits >> shift & 0xFFU));
     }
   };
-  for (const TraceBucket& bucket : trace.buckets) {
+  for (std::size_t i = 0; i < trace.buckets.size(); ++i) {
+    const TraceBucket& bucket = trace.buckets[i];
     const double none = std::numeric_limits<double>::quiet_NaN();
-    put(static_cast<double>(bucket.first - first) / rate_hz);
+    put(trace.time_s[i] - start_s);
     put(bucket.present > 0 ? bucket.low : none);
     put(bucket.present > 0 ? bucket.high : none);
   }
-  response.headers.emplace_back("Trace-Start", to_text(number(static_cast<double>(first) / rate_hz)));
+  response.headers.emplace_back("Trace-Start", to_text(number(start_s)));
   response.headers.emplace_back("Trace-Samples-Per-Bucket", std::to_string(trace.samples_per_bucket));
   if (unit) {
     response.headers.emplace_back("Trace-Unit", *unit);
@@ -113,9 +114,8 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
   if (!t0 || !t1 || !points) {
     return fail(!t0 ? t0.error() : !t1 ? t1.error() : points.error());
   }
-  const double rate_hz = rate_of(*recording).value_or(1.0);
   const auto trace = draw_trace(*columns, pyramid_path(context.blobs.columns_path(recording->blob_sha256)),
-                                {column, rate_hz, *t0, *t1, *points, spec.trim,
+                                {column, rate_of(*recording).value_or(1.0), *t0, *t1, *points, spec.trim,
                                  surveyed_channel_from_json(stored(recording->quality_json), channel)});
   if (!trace) {
     return fail(trace.error());
@@ -124,9 +124,9 @@ Result<Response> get_trace(ApiContext& context, const Request& request) {
   const auto unit = role && role->unit ? std::optional<std::string>(role->unit->symbol) : std::nullopt;
   Response response;
   if (*type == "application/octet-stream") {
-    response = binary_trace(*trace, rate_hz, unit);
+    response = binary_trace(*trace, unit);
   } else {
-    Json document = to_json(*trace, rate_hz);
+    Json document = to_json(*trace);
     document["unit"] = unit ? Json(*unit) : Json(nullptr);
     response = json_response(200, document);
   }

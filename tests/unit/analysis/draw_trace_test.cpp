@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -114,18 +115,74 @@ TEST_F(DrawTrace, StretchesThatLackSamplesAreJoinedWhereTheyTouch) {
 TEST_F(DrawTrace, MarksTheEndsThatWereTrimmedAndWhatTheSurveyFound) {
   TraceRequest request = each_sample(100);
   request.trim = {1.0, 0.5};
-  request.survey.longest_gaps = {{40, 7}};
   request.survey.frozen = SampleStretch{60, 20};
   request.survey.implausible = {{10, 2}};
   const auto trace = draw(ramp(100), request);
   ASSERT_TRUE(trace);
   EXPECT_EQ(times_of(*trace, TraceMark::Trim), (Times{{0.0, 1.0}, {9.5, 10.0}}));
-  EXPECT_EQ(times_of(*trace, TraceMark::Gap), (Times{{3.9, 4.0}})) << "between row 39 and the one behind the gap";
   EXPECT_EQ(times_of(*trace, TraceMark::Frozen), (Times{{6.0, 8.0}}));
   EXPECT_EQ(times_of(*trace, TraceMark::Flagged), (Times{{1.0, 1.2}}));
-  for (const MarkedTime& one : trace->marks) {
-    EXPECT_EQ(one.missing, one.mark == TraceMark::Gap ? 7 : 0);
-  }
+}
+
+/// 100 rows at 10 Hz of which seven samples are lost before row 40.
+TraceRequest with_a_gap() {
+  TraceRequest request = each_sample(200);
+  request.rate_hz = 99.0 / 10.6;
+  request.survey.longest_gaps = {{40, 7}};
+  request.survey.missing = 7;
+  return request;
+}
+
+TEST_F(DrawTrace, AGapTakesItsTime) {
+  // Story: a recording of 10 min without its fourth minute was drawn at 90 Hz throughout, its gap a hundredth of a
+  // second wide and 22 s late.
+  TraceRequest request = with_a_gap();
+  request.survey.frozen = SampleStretch{60, 20};
+  const auto trace = draw(ramp(100), request);
+  ASSERT_TRUE(trace);
+  EXPECT_NEAR(trace->rate_hz, 10.0, 1e-9);
+  EXPECT_NEAR(trace->duration_s, 10.7, 1e-9);
+  const auto gap = times_of(*trace, TraceMark::Gap);
+  ASSERT_EQ(gap.size(), 1);
+  EXPECT_NEAR(gap[0].first, 3.9, 1e-9) << "row 39";
+  EXPECT_NEAR(gap[0].second, 4.7, 1e-9) << "row 40";
+  EXPECT_EQ(trace->marks[0].missing, 7);
+  EXPECT_NEAR(times_of(*trace, TraceMark::Frozen)[0].first, 6.7, 1e-9);
+  EXPECT_TRUE(trace->missing.empty()) << "no row lacks its value";
+}
+
+TEST_F(DrawTrace, NoLineIsDrawnAcrossAGap) {
+  const auto trace = draw(ramp(100), with_a_gap());
+  ASSERT_EQ(trace->buckets.size(), 101);
+  EXPECT_EQ(trace->buckets[40].present, 0);
+  EXPECT_NEAR(trace->time_s[40], 4.0, 1e-9) << "where row 39 ends";
+  EXPECT_NEAR(trace->time_s[41], 4.7, 1e-9);
+  EXPECT_EQ(trace->buckets[41].low, 40.0);
+  TraceRequest coarse = with_a_gap();
+  coarse.stretches = 3;  // of 34 rows: the gap lies in the second
+  const auto few = draw(ramp(100), coarse);
+  ASSERT_EQ(few->buckets.size(), 4);
+  EXPECT_EQ(few->buckets[2].present, 0);
+  EXPECT_TRUE(std::is_sorted(few->time_s.begin(), few->time_s.end()));
+}
+
+TEST_F(DrawTrace, TimesBehindAGapFindTheirRows) {
+  TraceRequest request = with_a_gap();
+  request.t0_s = 5.71;
+  request.t1_s = 5.91;
+  EXPECT_EQ(draw(ramp(100), request)->buckets.front().low, 50.0);
+  request.t0_s = 4.2;
+  request.t1_s = 4.5;
+  EXPECT_EQ(draw(ramp(100), request)->buckets.front().low, 40.0) << "in the gap: what comes behind it";
+}
+
+TEST_F(DrawTrace, GapsThatAreNotToldAreSpreadOverTheRows) {
+  TraceRequest request = with_a_gap();
+  request.rate_hz = 99.0 / 11.6;  // ten more samples are lost somewhere
+  request.survey.missing = 17;
+  const auto trace = draw(ramp(100), request);
+  EXPECT_NEAR(times_of(*trace, TraceMark::Gap)[0].second - trace->time_s[39], 0.7 + 1.0 / trace->rate_hz, 1e-9);
+  EXPECT_NEAR(trace->time_s.back(), 11.6, 1e-9);
 }
 
 TEST_F(DrawTrace, MarksWhereTheValuesPileUpAtAnEndOfTheRange) {

@@ -30,12 +30,12 @@ function visible(series: Series, place: Area): number[] {
 
 export function Band({series, place}: {series: Series; place: Area}): JSX.Element | null {
   if (!series.band || !series.low || !series.high) return null;
-  const inside = visible(series, place).filter(i => finite(series.high?.[i]));
+  const inside = new Set(visible(series, place).filter(i => finite(series.high?.[i])));
   const log = place.plot.y.scale === 'log';
-  const path = area<number>()
+  const path = area<number>().defined(i => inside.has(i))
     .x(i => round(place.x(series.x[i]!)))
     .y0(i => { const low = series.low![i]; return round(finite(low) && (!log || low > 0) ? place.y(low) : place.bottom); })
-    .y1(i => round(place.y(series.high![i]!)))(inside);
+    .y1(i => round(place.y(series.high![i]!)))(series.x.map((_, i) => i).filter(i => inside.has(i) || !finite(series.y[i])));
   return <path d={path ?? ''} fill={series.band} stroke="none" />;
 }
 

@@ -57,7 +57,7 @@ export function Signal({recording, column, quantity}: {recording: Recording; col
   const trace = read.data;
   const stretch = (trace.time_s[trace.time_s.length - 1] ?? 0) - (trace.time_s[0] ?? 0);
   return <Figure name={`${recording.metadata.id ?? recording.id}-signal`} title="Signal"
-    sub={<>{trace.samples_per_bucket === 1 ? `${trace.time_s.length} samples` : `least and greatest of every ${writeDuration(trace.samples_per_bucket / (trace.rate_hz ?? 1))}`}{zoomed ? <>, {writeDuration(stretch)} of {writeDuration(trace.duration_s ?? 0)} <button type="button" class="link" onClick={() => choose({t0: null, t1: null})}>Show all</button></> : <span class="no-print">, drag to enlarge</span>}</>}
+    sub={<>{trace.samples_per_bucket === 1 ? `${trace.mean.filter(finite).length} samples` : `least and greatest of every ${writeDuration(trace.samples_per_bucket / (trace.rate_hz ?? 1))}`}{zoomed ? <>, {writeDuration(stretch)} of {writeDuration(trace.duration_s ?? 0)} <button type="button" class="link" onClick={() => choose({t0: null, t1: null})}>Show all</button></> : <span class="no-print">, drag to enlarge</span>}</>}
     describe={`${sensorOf(quantity)} reading in ${writeUnit(trace.unit)} over ${writeDuration(stretch)}${places.length > 0 ? `; marked: ${[...new Set(places.map(each => each.kind))].join(', ')}` : ''}.`} plots={plots} source={`driftlab, ${recording.id} ${column}, revision ${recording.revision}`} curl={curlOf(path)}
     note={<Places recording={recording} column={column} places={whole.data ? placesOf(whole.data) : places} duration={trace.duration_s ?? 0} rate={trace.rate_hz ?? 1} />}
     onZoom={(a, b) => choose({t0: a.toPrecision(7), t1: b.toPrecision(7)})} />;
