@@ -17,16 +17,12 @@ namespace {
 
 constexpr std::size_t kFirst = 5;
 constexpr std::size_t kCourse = 120;
-constexpr std::size_t kFewest = 20;  ///< rows from which a mean or a rise says something
+constexpr std::size_t kFewest = 20;  ///< rows from which a mean says something
 
 constexpr double kTurns = 1.0 * kDegree;  ///< [rad/s]; a slower mean is a bias
 constexpr double kSteady = 0.2;           ///< deviation over mean of a rate that is constant
 constexpr double kStillRate = 0.02;       ///< [rad/s], as in growing_recording.cpp
 constexpr double kStillForce = 0.3;       ///< [m/s^2]
-constexpr double kLeastRate = 0.5;        ///< [Hz] of a time column that is guessed
-constexpr double kMostRate = 5e4;         ///< [Hz]
-constexpr double kEvenShare = 0.9;        ///< of the steps of a time lie near their median
-constexpr double kEvenWithin = 0.5;       ///< of the median
 
 struct Moments {
   double mean = 0.0;
@@ -66,56 +62,6 @@ std::string written(const char* format, double value) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), format, value);
   return text.data();
-}
-
-/// The median step of a column that rises evenly; nothing for another, and for a number of the row.
-std::optional<double> even_step(std::span<const double> values) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double step = values[i] - values[i - 1];
-    if (!(step > 0.0) || !std::isfinite(step)) {
-      return std::nullopt;
-    }
-    steps.push_back(step);
-  }
-  if (steps.size() < kFewest) {
-    return std::nullopt;
-  }
-  const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
-  if (*least == 1.0 && *most == 1.0) {
-    return std::nullopt;
-  }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double median = *middle;
-  const auto near = std::count_if(steps.begin(), steps.end(),
-                                  [&](double step) { return std::abs(step - median) <= kEvenWithin * median; });
-  const bool even = static_cast<double>(near) >= kEvenShare * static_cast<double>(steps.size());
-  return even ? std::optional<double>(median) : std::nullopt;
-}
-
-std::optional<TimeGuess> guess_time(const RecordingPreview& preview) {
-  const auto is_time = [](const PreviewColumn& column) {
-    return column.role && column.role->quantity == Quantity::Time && column.role->unit;
-  };
-  if (std::any_of(preview.columns.begin(), preview.columns.end(), is_time)) {
-    return std::nullopt;
-  }
-  for (std::size_t i = 0; i < preview.columns.size(); ++i) {
-    const PreviewColumn& column = preview.columns[i];
-    if (column.role && column.role->quantity != Quantity::Unspecified && column.role->quantity != Quantity::Time) {
-      continue;
-    }
-    const auto step = even_step(preview.head.columns[i]);
-    for (const std::string_view symbol : {"s", "ms", "us", "ns"}) {
-      const Unit unit = *parse_unit(symbol);
-      const double rate_hz = step ? 1.0 / unit.to_si(*step) : 0.0;
-      if (rate_hz >= kLeastRate && rate_hz <= kMostRate) {
-        return TimeGuess{column.name, unit, rate_hz};
-      }
-    }
-  }
-  return std::nullopt;
 }
 
 std::optional<ConditionGuess> guess_condition(const RecordingPreview& preview) {
@@ -236,7 +182,8 @@ RecordingPreview preview_recording(const PreviewRequest& request, const DecodeLi
                                                           : RoleOrigin::Number;
     preview.columns.push_back({preview.head.names[i], (*roles)[i], from, {first.begin(), first.end()}, spread(values)});
   }
-  preview.time = guess_time(preview);
+  preview.time = guess_time(preview.head.names, *roles,
+                            [&](std::size_t i) { return std::span<const double>(preview.head.columns[i]); });
   preview.condition = guess_condition(preview);
   const bool readable = preview.problems.empty() && preview.head.rows() > 0;
   const double dt_s = readable ? view(request, preview) : 0.0;

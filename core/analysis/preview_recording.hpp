@@ -9,6 +9,7 @@
 ///   it; at rest: every mean is below 1 deg/s, and no axis scatters more than a phone that lies still
 ///   (core/analysis/growing_recording.hpp).
 #include "core/read/decode_head.hpp"
+#include "core/signal/guess_time.hpp"
 #include "core/signal/recording.hpp"
 
 #include <optional>
@@ -35,13 +36,6 @@ struct PreviewColumn {
   RoleOrigin from = RoleOrigin::Header;
   std::vector<double> first;   ///< up to 5 values in the file's unit
   std::vector<double> course;  ///< up to 120 values spread over the rows seen
-};
-
-/// A column that rises as a time does, though nothing calls it one or nothing says in which unit it is.
-struct TimeGuess {
-  std::string column;
-  Unit unit;             ///< the one that gives a rate of 0.5 Hz to 50 kHz
-  double rate_hz = 0.0;  ///< by the median step
 };
 
 struct ConditionGuess {

@@ -10,6 +10,7 @@
 /// A drive has several files, each on a clock of its own, and quantities that no device has (fixes, a course, an
 /// accuracy): core/navigate/drive/table.hpp reads them. Both find the column that somebody names by find_column.hpp.
 #include "core/signal/channel_survey.hpp"
+#include "core/signal/guess_time.hpp"
 #include "core/signal/recording.hpp"
 
 #include <functional>
@@ -61,6 +62,8 @@ class RecordingColumns {
   [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, std::string_view axis = "") const;
   /// The time column. One that was only guessed from its name and holds text is none.
   [[nodiscard]] std::optional<std::size_t> time() const;
+  /// A column that is a time by its numbers, where none is by its name.
+  [[nodiscard]] std::optional<TimeGuess> guessed_time() const { return guess_time(names_, roles_, column_); }
   /// The reference of a sensor along an axis: its own column, else for a rate the angle's.
   [[nodiscard]] std::optional<ReferenceColumn> reference_of(Quantity sensor, std::string_view axis) const;
 

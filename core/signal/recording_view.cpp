@@ -1,6 +1,7 @@
 #include "core/signal/recording_view.hpp"
 
 #include "core/signal/channel_survey.hpp"
+#include "core/signal/no_rate.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/repeated_rows.hpp"
 #include "core/signal/row_times.hpp"
@@ -164,6 +165,9 @@ namespace {
 Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumns& columns, std::size_t rows,
                                 ViewUse use, const Passed& passed) {
   const auto time = columns.time();
+  if (!time && !spec.rate_hz) {
+    return neither_time_nor_rate(columns.guessed_time());
+  }
   auto window = plan_window(spec, rows, time ? columns.samples(*time) : std::span<const double>(),
                             time ? columns.unit(*time) : Unit{});
   if (!window) {

@@ -170,7 +170,7 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
     return fit_time_grid(stamps, spec.rate_hz);
   }
   if (!spec.rate_hz) {
-    return neither_time_nor_rate();
+    return neither_time_nor_rate(columns.guessed_time());
   }
   TimeGrid grid;
   grid.dt_s = 1.0 / *spec.rate_hz;

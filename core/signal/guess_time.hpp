@@ -1,0 +1,27 @@
+#pragma once
+/// A column that is a time by its numbers, where nobody says which one is.
+#include "core/signal/recording.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace driftlab {
+
+/// A column that rises as a time does, though nothing calls it one or nothing says in which unit it is.
+struct TimeGuess {
+  std::string column;
+  Unit unit;             ///< the first of s, ms, us, ns that gives a rate of 0.5 Hz to 50 kHz
+  double rate_hz = 0.0;  ///< by the median step
+};
+
+/// The first column without a role, or of a time without a unit, that rises throughout by steps of which nine tenths
+/// lie within a half of their median; a number of the row is none. Nothing where a column is the time. `column(i)`
+/// gives the samples of column i; the first 10,000 are looked at.
+[[nodiscard]] std::optional<TimeGuess> guess_time(const ColumnNames& names,
+                                                  std::span<const std::optional<ColumnRole>> roles,
+                                                  const std::function<std::span<const double>(std::size_t)>& column);
+
+}  // namespace driftlab
