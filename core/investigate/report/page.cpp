@@ -5,6 +5,7 @@
 #include "core/investigate/report/order.hpp"
 #include "core/signal/significant.hpp"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -109,9 +110,11 @@ void append_checks(const Report& report, std::string& page) {
       "\n## Checks\n\n| check | observed | simulated 2.5 % | median | 97.5 % | p adjusted | p with the extended model "
       "|\n|---|---|---|---|---|---|---|\n");
   for (const Check& check : report.checks) {
+    // A median of 0 that is the rounding of its sum.
+    const double median = std::fabs(check.median) < 1e-12 * (check.q975 - check.q025) ? 0.0 : check.median;
     page.append("| ").append(check.id).append(check.failed ? " **fails**" : "").append(" | ");
     page.append(significant(check.observed)).append(" | ").append(significant(check.q025)).append(" | ");
-    page.append(significant(check.median)).append(" | ").append(significant(check.q975)).append(" | ");
+    page.append(significant(median)).append(" | ").append(significant(check.q975)).append(" | ");
     page.append(significant(check.p_adjusted)).append(" | ").append(significant(check.p_after_adjusted));
     page.append(check.failed_after ? " **fails**" : "").append(" |\n");
   }
