@@ -3976,10 +3976,10 @@ class Trace(TypedDict):
 
     # 1: the samples themselves.
     samples_per_bucket: int
-    # Of the first sample of each stretch since the first of the file; evenly spaced, but in a long recording the first
-    # stretch may be shorter.
+    # Of the first sample of each stretch since the first of the file; evenly spaced but for gaps; in a long recording
+    # the first stretch may be shorter. Of a stretch that stands for a gap, where the gap begins.
     time_s: list[float]
-    # null where a stretch has no sample.
+    # null where a stretch has no sample, as in each of the longest gaps of the time column.
     min: list[float | None]
     max: list[float | None]
     mean: list[float | None]
@@ -3993,6 +3993,7 @@ class Trace(TypedDict):
     unit: str | None
     # Of the whole file.
     duration_s: float | None
+    # Of the samples between gaps.
     rate_hz: float | None
 
 
@@ -4000,7 +4001,7 @@ class TraceFlag(TypedDict):
     kind: Literal['trim', 'gap', 'flagged', 'frozen', 'saturated']
     # Of a gap the sample before it.
     t0: float
-    # Of a gap the sample after it: times count samples, and a gap has none.
+    # Of a gap the sample after it.
     t1: float
     # Of a gap: how many samples.
     missing: NotRequired[int]
