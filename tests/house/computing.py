@@ -1,4 +1,4 @@
-"""What of a document's code computes.
+"""What of a document's code computes, and what of a job kind's, an endpoint's or a command's is an analysis.
 
 A document is what core computed, in the units of its readers. Whoever needs a function of <cmath> or <numeric> in schema/json
 computes, and so does who looks for the least or greatest, and who adds, subtracts, multiplies or divides numbers of a document by
@@ -15,6 +15,11 @@ COMPUTING = re.compile(
     r"(ranges::)?(min|max|minmax)(_element)?|(ranges::)?clamp|plus|minus|multiplies|divides)\b"
     r"|\b(ned_axes|to_euler|deviation_of|distances_2p|(white_noise|random_walk)_equivalents|ellipse95|horizontal_m)\b"
     r"|\.(transpose|conjugate|inverse|squaredNorm|norm|dot|cross)\(")
+# What nobody needs to move documents, files and jobs about: job kinds, endpoints and commands hold no analysis (core/analysis does).
+# Costs, progress, paths and times are added and divided there, so that plain arithmetic passes.
+STATISTICS = re.compile(
+    r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|fma|lerp|midpoint|accumulate|"
+    r"(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element)\b")
 # These write numbers: whether one is finite, to how many decimals, that a whole number fits its type, the bytes of a MATLAB file.
 WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json/mat_file.cpp"}
 
@@ -104,6 +109,11 @@ def arithmetic_of(code: str) -> list[tuple[int, str]]:
         if number and not counted and not (unit and sign[0] in "*/"):
             found.append((match.start(), f"{left} {sign} {right}"))
     return found
+
+
+def statistics_in(code: str) -> list[tuple[int, str]]:
+    """Where code without comments calls what only an analysis calls."""
+    return [(match.start(), match.group(0)) for match in STATISTICS.finditer(code)]
 
 
 def computing_in(code: str) -> list[tuple[int, str]]:

@@ -108,6 +108,10 @@ FORBIDDEN_IN_CORE = {
     r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(": "ends the process",
 }
 
+# A number of processors is asked for by name of the class; no thread is started by that.
+THREADS = re.compile(r"\bstd::(jthread|thread|async)\b(?!::)|\bpthread_create\b")
+EXECUTOR = "core/signal/executor.cpp"
+
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -150,7 +154,12 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
     if module == "schema/json" and name not in computing.WRITE_NUMBERS:
         for position, said in computing.computing_in(code):
             fault(position, f"schema/json computes ({said}): that belongs to core", code)
+    if module in ("server/jobs", "server/api", "clients/cli"):
+        for position, said in computing.statistics_in(code):
+            fault(position, f"{module} analyses ({said}): that belongs to core/analysis", code)
     if module.startswith("core/"):
+        for match in THREADS.finditer(code) if name != EXECUTOR else ():
+            fault(match.start(), f"core starts threads in {EXECUTOR} alone, which keeps the budget ({match.group(0)})", code)
         for pattern, sentence in FORBIDDEN_IN_CORE.items():
             for match in re.finditer(pattern, code):
                 fault(match.start(), f"core {sentence} ({match.group(0).strip('( ')})", code)

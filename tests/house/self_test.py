@@ -109,6 +109,26 @@ class Floors(Planted):
         self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
         self.assertEqual(floors.check(self.root), [])
 
+    def test_an_analysis_in_a_job_kind_an_endpoint_or_a_command_is_refused(self) -> None:
+        for folder in ("server/jobs", "server/api", "clients/cli"):
+            for line in ("auto s = std::sqrt(sum / n);", "auto r = std::log(a / b);", "std::nth_element(v.begin(), middle, v.end());",
+                         "auto s = std::accumulate(v.begin(), v.end(), 0.0);"):
+                with self.subTest(folder=folder, line=line):
+                    path = self.plant(f"{folder}/a.cpp", "int before;\n" + line + "\n")
+                    self.refused(floors.check(self.root), f"{folder}/a.cpp:2: {folder} analyses")
+                    path.unlink()
+        self.plant("server/jobs/a.cpp", "auto cost = kBytesPerSample * size.rows;\nauto left = std::max(a, b) / threads;  // std::sqrt\n")
+        self.assertEqual(floors.check(self.root), [])
+
+    def test_a_thread_of_core_outside_its_executor_is_refused(self) -> None:
+        for line in ("std::thread helper(work);", "std::jthread helper(work);", "auto f = std::async(work);"):
+            with self.subTest(line=line):
+                self.plant("core/navigate/a.cpp", "int before;\n" + line + "\n")
+                self.refused(floors.check(self.root), "core/navigate/a.cpp:2: core starts threads")
+        self.plant("core/navigate/a.cpp", "const auto n = std::thread::hardware_concurrency();\n")
+        self.plant("core/signal/executor.cpp", "std::thread helper(work);\n")
+        self.assertEqual(floors.check(self.root), [])
+
     def test_reserved_headers_are_refused(self) -> None:
         for source, header in (("core/read/a.cpp", "iostream"), ("core/fit/a.cpp", "spdlog/spdlog.h"), ("core/read/b.cpp", "sqlite3.h"),
                                ("core/signal/b.cpp", "nlohmann/json.hpp"), ("core/signal/c.cpp", "boost/beast/http.hpp"),
