@@ -75,14 +75,15 @@ Status resolve_simulation_model(Json& sensor, const std::string& pointer, Store&
   if (!stored) {
     return fail(stored.error());
   }
-  if (!*stored) {
+  const auto& model = *stored;
+  if (!model) {
     return {};
   }
   ScenarioSensor asked{place.gyro, place.truth, {0, 1, 2}, named};
   if (place.axis < kAxes.size()) {
     asked.axes = {place.axis};
   }
-  const auto made = sensor_of_model(**stored, asked);
+  const auto made = sensor_of_model(*model, asked);
   if (!made) {
     faults.add(made.error().code == ErrorCode::UnitMismatch ? pointer : pointer + "/channel", made.error());
     return {};

@@ -180,7 +180,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
   }
   const auto time = [&](std::size_t i) { return recording.time_s(begin + i); };
   // A step between two samples is seen at the later one.
-  evidence.parameters.push_back({"t0_s",
+  evidence.parameters.push_back({std::string(evidence.cause->parameters[1].name),
                                  {time(best) - 0.5 * recording.dt_s, {time(low) - 1.01 * recording.dt_s, time(high)}},
                                  evidence.cause->parameters[1].unit(group_.unit)});
 }

@@ -258,16 +258,16 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   const Presence present = presence_of(*grid);
   recording.notes.insert(recording.notes.end(), sound->notes.begin(), sound->notes.end());
   for (const std::size_t i : sound->examined) {
-    const auto& role = columns.role(i);
+    const ColumnRole role = columns.role(i).value_or(ColumnRole{});
     Channel channel;
     channel.column = names[i];
-    channel.role = *role;
-    channel.unit = role->unit.value_or(Unit{});
+    channel.role = role;
+    channel.unit = role.unit.value_or(Unit{});
     channel.rows = columns.samples(i);
     channel.measured = column_on_grid(columns, i, *grid);
     channel.valid = present;
-    const auto axis = axis_index(role->axis);
-    if (role->quantity == Quantity::SpecificForce && axis) {
+    const auto axis = axis_index(role.axis);
+    if (role.quantity == Quantity::SpecificForce && axis) {
       recording.force[*axis] = channel.measured;
     }
     set_error(recording, channel, columns, *grid);
