@@ -1,11 +1,11 @@
 // How often the criteria choose the model that made the data (15 min at 100 Hz, phone-like values).
 #include "core/fit/candidate_set.hpp"
 #include "core/fit/characterise.hpp"
-#include "core/fit/kalman_likelihood.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
 #include "tests/accuracy/curve.hpp"
 #include "tests/accuracy/section.hpp"
+#include "tests/likelihood/kalman_likelihood.hpp"
 
 #include <gtest/gtest.h>
 

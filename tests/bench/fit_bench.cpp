@@ -2,11 +2,11 @@
 #include "core/fit/candidate_set.hpp"
 #include "core/fit/characterise.hpp"
 #include "core/fit/fit_report.hpp"
-#include "core/fit/kalman_likelihood.hpp"
 #include "core/variance/haar_variance.hpp"
 #include "core/variance/samples.hpp"
 #include "core/variance/variance_intervals.hpp"
 #include "tests/bench/recorded_axes.hpp"
+#include "tests/likelihood/kalman_likelihood.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,8 +1,8 @@
 /// Every fit took a process to have one shape at most; a resonance has two, its frequency and its quality.
 #include "core/fit/gmwm.hpp"
-#include "core/fit/kalman_likelihood.hpp"
 #include "core/fit/log_fit.hpp"
 #include "core/variance/haar_covariance.hpp"
+#include "tests/likelihood/kalman_likelihood.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/fit/kalman_likelihood.hpp"
+#include "tests/likelihood/kalman_likelihood.hpp"
 
 #include <Eigen/Cholesky>
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Exact Gaussian likelihood of a composite model, by the Kalman filter.
+/// Exact Gaussian likelihood of a composite model, by the Kalman filter: what the tests hold the GMWM, its ranking and
+/// the state spaces of the processes against. No part of the product.
 ///
 /// Model: y_t = c + s (t - middle) dt + sum of the model's processes, each in the state space that it declares
 /// (core/process/state_space.hpp; Durbin and Koopman 2012, ch. 2, 4 and 7). The constant c, which no wavelet variance
