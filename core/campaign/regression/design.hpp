@@ -9,6 +9,8 @@
 ///
 /// The model (eq. 2): x_r = mu_arm(r) + b_r + e_r; e_r is the error of sampling with covariance S_r/4, known from the
 /// length of the session, and b_r is what the session adds, with the covariance K of session_scatter.hpp.
+#include "core/campaign/regression/measured_constants.hpp"
+
 #include <Eigen/Core>
 
 #include <cstddef>
@@ -17,13 +19,6 @@
 #include <vector>
 
 namespace driftlab::regression {
-
-/// Prior standard deviations of what a session adds, in ln deviation (spec/regression.md, section 5).
-struct Tau0 {
-  double device = 0.010;  ///< common to all axes and scales
-  double axis = 0.012;    ///< common to the scales of one axis
-  double scale = 0.012;   ///< of one scale, correlated exp(-|j - j'|/1.5) with its neighbours
-};
 
 /// A level of a process of the model fitted to the pooled curve of a unit.
 struct Level {
@@ -35,7 +30,7 @@ struct Level {
 
 /// One unit and its place in the rows.
 struct Unit {
-  Tau0 tau0;
+  Tau0 tau0 = kGyroscopeTau0;
   std::size_t first = 0;  ///< its first row
   std::size_t count = 0;  ///< of its rows, which follow each other with rising tau
   /// Model of the pooled curve: 1/2 ln nu per row, and D = d ln deviation/d ln level (rows x levels). Empty without

@@ -129,8 +129,8 @@ struct Settings {
   Margins accelerometer = {{20.0, 25.0, 50.0}};
   double margin_sigma_percent = 25.0;  ///< of levels without a power of time: sigma, B
   double margin_slow_percent = 50.0;   ///< of the others beside N: K, Q, R
-  Tau0 tau0_gyroscope = {0.010, 0.012, 0.012};
-  Tau0 tau0_accelerometer = {0.015, 0.025, 0.025};
+  Tau0 tau0_gyroscope = kGyroscopeTau0;
+  Tau0 tau0_accelerometer = kAccelerometerTau0;
   double min_edf = 10.0;
   BiasMargins bias = {};
   ScaleMargins scale_factor = {};

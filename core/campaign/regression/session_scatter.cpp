@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kLowest = 0.25;
 constexpr double kHighest = 6.0;
-constexpr double kOctavesOfCorrelation = 1.5;
 
 using Grid = Eigen::Matrix<double, kFactors, kFactors>;
 
