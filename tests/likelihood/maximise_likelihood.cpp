@@ -1,6 +1,6 @@
 #include "tests/likelihood/kalman_likelihood.hpp"
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
