@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -57,6 +58,9 @@ std::string asked_text(const Asked& asked) {
 
 /// Goals of 5 % with twice the standard error of 500 runs.
 constexpr double kMostWrong = 7.0;
+/// Of the power that the specification's prototype had, and a verdict's least share of it here. Two cells reach 0.84
+/// and 0.91 of theirs, and why is not known; the others reach all of it.
+constexpr double kLeastPower = 0.8;
 
 void print_cell(Section& section, const Case& row, std::size_t plan, const Shares& shares) {
   section.print(" %.1f / %.1f / %.1f%s |", shares.percent(shares.pass), shares.percent(shares.inconclusive()),
@@ -64,6 +68,10 @@ void print_cell(Section& section, const Case& row, std::size_t plan, const Share
   if (row.wrong != Wrong::Neither) {
     const std::size_t wrong = row.wrong == Wrong::Fail ? shares.fail : shares.pass;
     EXPECT_LE(shares.percent(wrong), kMostWrong) << row.name << ", " << kPlans[plan].name;
+  } else if (const std::optional<double> fail = row.asked[plan].fail) {
+    const double expected = kLeastPower * *fail;
+    const double error = std::sqrt(expected * (100.0 - expected) / static_cast<double>(shares.runs));
+    EXPECT_GE(shares.percent(shares.fail), expected - 2.0 * error) << row.name << ", " << kPlans[plan].name;
   }
 }
 
