@@ -70,8 +70,8 @@ Exit run_report(const PlotFlags& flags) {
   }
   std::string tables;
   if (document->document.contains("recordings") && document->document.at("recordings").is_array()) {
-    const auto campaign =
-        document->campaign ? Result<TabledCampaign>(*document->campaign) : tabled_from_json(document->document);
+    const auto& told = document->campaign;
+    const auto campaign = told ? Result<TabledCampaign>(*told) : tabled_from_json(document->document);
     if (!campaign) {
       return complain(campaign.error());
     }

@@ -52,13 +52,14 @@ std::optional<TimeGuess> guess_time(const ColumnNames& names, std::span<const st
     return std::nullopt;
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (roles[i] && roles[i]->quantity != Quantity::Unspecified && roles[i]->quantity != Quantity::Time) {
+    const std::optional<ColumnRole>& role = roles[i];
+    if (role && role->quantity != Quantity::Unspecified && role->quantity != Quantity::Time) {
       continue;
     }
     const std::span<const double> values = column(i);
     const auto step = even_step(values.first(std::min(kSeen, values.size())));
     for (const std::string_view symbol : {"s", "ms", "us", "ns"}) {
-      const Unit unit = *parse_unit(symbol);
+      const Unit unit = parse_unit(symbol).value_or(Unit{});
       const double rate_hz = step ? 1.0 / unit.to_si(*step) : 0.0;
       if (rate_hz >= kLeastRate && rate_hz <= kMostRate) {
         return TimeGuess{names[i], unit, rate_hz};
