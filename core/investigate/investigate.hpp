@@ -4,24 +4,24 @@
 /// First, among all recordings together: what is wrong with a recording (search/right_recordings.hpp) is named and put
 /// right, or the recording is set aside. Then, per channel group (one sensor axis through all recordings):
 ///
-/// 1. Facts of the file (missing, jittering, clipped, stuck samples, a coarse lattice) come first; what they spoil is
-/// left out of everything after.
+/// 1. Facts of the file (missing, jittering, clipped, stuck samples, a coarse lattice) come first; the samples that
+/// they spoil take no part in the later steps.
 ///
-/// 2. Mean effects, slow noise and lines are searched together, the strongest taken, and everything looked at again
-/// with it in the null (forward selection).
+/// 2. Mean effects, slow noise and lines are searched together. The strongest is added to the model, and the search is
+/// repeated with that model as the null hypothesis (forward selection).
 ///
-/// 3. On what is left at full rate: band limit, level and modulation of the noise, its distribution, its correlation
-/// between axes.
+/// 3. The residuals at full rate are searched for a band limit, for the level and modulation of the noise, for its
+/// distribution and for its correlation between axes.
 ///
-/// 4. Backward check: what no longer pays when everything else is in goes out again.
+/// 4. Backward check: a finding that no longer earns its penalty beside all the others is removed.
 ///
-/// What decides that a cause is reported, and how surely, stands in search/thresholds.hpp.
+/// The thresholds at which a cause is reported and called identified are in search/thresholds.hpp.
 ///
-/// Its rooms, each on those before it: `study` (recordings on a grid, their references and how good these are), `slow`
-/// (processes over blocks), `fullrate` (single samples: spectra, innovations, tails), `facts` (what a file shows by
-/// itself: resampled rows, copied blocks), `consistency` (recordings held against each other and against their
-/// references: gains, clocks), `causes` (one file each), `search` (which of them, in which order) and `report`
-/// (sentences, checks, figures).
+/// The folders, each of which builds on those before it: `study` (recordings on a grid, their references and how good
+/// these are), `slow` (processes over blocks), `fullrate` (single samples: spectra, innovations, tails), `facts` (what
+/// a file shows by itself: resampled rows, copied blocks), `consistency` (recordings held against each other and
+/// against their references: gains, clocks), `causes` (one file each), `search` (which of them, in which order) and
+/// `report` (sentences, checks, figures).
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/study/study.hpp"
 #include "core/signal/progress.hpp"

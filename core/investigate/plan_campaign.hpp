@@ -1,10 +1,11 @@
 #pragma once
-/// The recordings to make next: which would decide most of what an investigation left open.
+/// The recordings to make next: those that would settle the most questions that an investigation left open.
 ///
-/// Open is a finding that is ambiguous, and a cause that could not be examined. For each of them the answer is taken to
-/// be known, what the laboratory would then record is simulated, and the whole study is investigated anew: a proposal
-/// decides if the investigation names the answer and leaves no rival beside it. The share of the simulated studies in
-/// which it does is the probability that is stated, with Wilson's interval (1927).
+/// An ambiguous finding is an open question, and so is a cause that could not be examined. For each question one answer
+/// is assumed, the recordings that a laboratory would then make are simulated, and the whole study is investigated
+/// anew. A proposal decides the question if the investigation names the assumed answer and reports no rival beside it.
+/// The share of the simulated studies in which it does is the probability that is stated, with Wilson's interval
+/// (1927).
 ///
 /// Simulated are the recordings that exist, under the extended model, and the proposed ones beside them. An ambiguous
 /// finding is simulated as it was estimated, and where it and a rival are both effects on the mean, in every second run
@@ -27,7 +28,7 @@ struct PlanOptions {
   std::uint64_t seed = 1;
 };
 
-/// What is open.
+/// An open question.
 struct OpenQuestion {
   std::string cause;
   std::string channel;              ///< column
@@ -62,7 +63,7 @@ struct CampaignPlan {
   std::vector<std::size_t> undecided;
 };
 
-/// What `report` leaves open, each once per channel.
+/// The open questions of `report`, each once per channel.
 [[nodiscard]] std::vector<OpenQuestion> open_questions(const Report& report);
 
 /// `report` is the investigation of `study`. Errors: Cancelled; those of investigate.

@@ -1,5 +1,5 @@
 #pragma once
-/// Recordings that a laboratory could make next, as recordings that have read nothing yet.
+/// Recordings that a laboratory could make next, as study recordings whose columns hold no readings yet.
 ///
 /// Each proposal is a small set made in one go: a longer rest, several short ones, constant rates of both signs, a
 /// profile with a reference, a rest through rising and falling temperature. Lengths follow the recordings there are.

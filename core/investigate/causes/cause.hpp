@@ -47,9 +47,9 @@ struct Cause {
   std::string_view needs;                ///< what a study must hold to show it
   std::string_view separates;            ///< the measurement that tells it from its rivals
   std::vector<CauseParameter> parameters;
-  /// The registered process that it is, parameter for parameter; empty: it is none.
+  /// The registered process that the cause adds, with the same parameters; empty: the cause is not a process.
   std::string_view process = {};
-  /// Empty: as its family has it (`concern_of`).
+  /// Empty: the concern that its family implies (`concern_of`).
   std::optional<Concern> concern = {};
   /// Why the cause cannot be examined in this group; empty: it can.
   std::string (*lacks)(const Study& study, const ChannelGroup& group) = nullptr;
@@ -71,8 +71,8 @@ struct Cause {
   [[nodiscard]] bool is_slow() const { return as<MeanEffect>() != nullptr || as<SlowNoise>() != nullptr; }
 };
 
-/// Its own; else facts of the file concern the recording, its lattice the format, mean effects the calibration, and all
-/// others the noise.
+/// The cause's own concern if it states one; else Format for a fact that gives the lattice step, Recording for all
+/// other facts of the file and faults of recordings, Calibration for mean effects and Noise for the rest.
 [[nodiscard]] Concern concern_of(const Cause& cause);
 
 /// The function that looks for a cause at full rate; null for causes that are not looked for there.

@@ -44,7 +44,7 @@ struct Evidence {
   std::vector<Evidence> rivals;  ///< that come near, best first
   bool ambiguous = false;
   std::string note;   ///< one more sentence for the report
-  std::string doubt;  ///< why something that has no name may be behind it; empty: nothing says so
+  std::string doubt;  ///< why an effect outside the registry may be behind it; empty: no doubt
 };
 
 /// Penalty for having chosen among `choices` equally likely places.

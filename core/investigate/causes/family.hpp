@@ -40,10 +40,10 @@ struct MeanEffect {
   bool scope_moving = false;
   bool scope_single = false;
   bool change_point = false;  ///< a step at an unknown time, paid for as step_scan.hpp says; `build` takes t0
-  /// A small part of the reference rate: what comes to more than 0.3 of it is no error of a scale factor or a mounting
-  /// but of unit, axis or clock, and is left unexplained.
+  /// The effect must be a small part of the reference rate. One that exceeds 0.3 of it is not an error of scale factor
+  /// or mounting but of unit, axis or clock, and is left unexplained.
   bool part_of_rate = false;
-  /// What all recordings share of it is the drift of an automatic baseline, and no finding.
+  /// The part that all recordings share is the drift of an automatic baseline and not a finding.
   bool drift_of_baseline = false;
   /// One value moves several axes: findings on several axes are one finding, their values weighted by the squares of
   /// their intervals, their scores, held-out gains and held-out samples added.
@@ -79,7 +79,8 @@ struct DifferencedNoise {
 };
 
 /// A low-pass that has narrowed the white noise. `Evidence::shape` is its corner [Hz]; the spectra of each half are
-/// held out in turn. It is sought before everything else at full rate, for it colours what all the others look at.
+/// held out in turn. It is sought before everything else at full rate, because it colours the data that the other
+/// searches use.
 struct BandLimit {
   std::vector<Evidence> (*examine)(const FullRate& data);
   double (*log_gain)(const FullRate& data, const Evidence& found);  ///< as DifferencedNoise::log_gain
@@ -123,9 +124,9 @@ struct CommonNoise {
   std::vector<Evidence> (*examine_together)(std::span<const FullRate> axes);
 };
 
-/// What the file itself shows, before any model. Its rivals are not sought beside it, for the file speaks plainly. It
-/// is held out by its own log likelihood where it gives one, else by the rate of its events: those it marks, or the
-/// places that it spoils; with none of these it is not held out.
+/// A fact that the file itself shows, before any model. Its rivals are not sought beside it, because the file leaves no
+/// doubt. It is held out by its own log likelihood if it declares one, else by the rate of its events: the places that
+/// it marks as events or as spoilt. A fact that declares none of these is not held out.
 struct FileFact {
   std::vector<Evidence> (*find)(const ChannelGroup& group);
   /// Marks the grid places of member r that the found fact has spoilt; nothing after it uses them.
@@ -139,16 +140,16 @@ struct FileFact {
   bool gives_lattice_step = false;
 };
 
-/// Noise that jumps between levels: not Gaussian, though its spectrum is that of a slow process. It is sought in what
-/// the search for slow effects leaves, taken off the error, and then that search is made once more, for a process of
-/// the baseline may have been fitted to it. `find` holds it out itself.
+/// Noise that jumps between levels: not Gaussian, though its spectrum is that of a slow process. It is sought in the
+/// residuals of the search for slow effects and subtracted from the error; that search is then repeated, because a
+/// process of the baseline may have been fitted to the jumps. `find` holds it out itself.
 struct SwitchingNoise {
   std::optional<Evidence> (*find)(const FullRate& data);
   /// Its expected course over the analysed part of member r, to be subtracted.
   std::vector<double> (*values)(const FullRate& data, std::size_t r, const Evidence& found);
 };
 
-/// One thing that is wrong with some recordings, and how it is put right.
+/// One fault of some recordings, and its repair.
 struct FaultyRecordings {
   std::vector<ChannelName> channels;
   std::vector<FoundParameter> parameters;
@@ -157,10 +158,10 @@ struct FaultyRecordings {
   std::function<void(Study& study, std::deque<std::vector<double>>& rows)> mend;
 };
 
-/// A recording that is not what it is said to be: in another unit, on another axis, on a clock that breaks, resampled
-/// by its driver. It is looked for before any model is fitted, among all recordings of the study together, and put
-/// right, so that everything after it sees the sensor. Causes of this family are taken in the order of the registry,
-/// each on what those before it have put right. They are facts: nothing is held out.
+/// A recording that differs from its description: another unit, another axis, a clock that breaks, samples resampled by
+/// the driver. Such faults are sought in all recordings of the study together and repaired before any model is fitted.
+/// Causes of this family are examined in the order of the registry, each on the recordings as repaired by those before
+/// it. They are facts: nothing is held out.
 struct RecordingFault {
   std::vector<FaultyRecordings> (*find)(const Study& study);
 };

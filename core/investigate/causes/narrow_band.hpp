@@ -1,5 +1,5 @@
 #pragma once
-/// Oscillations that are no line: a frequency that runs, an amplitude that is modulated.
+/// Oscillations that are not a single spectral line: their frequency runs, or their amplitude is modulated.
 ///
 /// Both are followed in the innovations, which are white and of unit variance under the model. With a phase
 /// p(t) = 2 pi (f t + c t^2/2) the sum S = sum e exp(-i p) of n innovations has X = 2 |S|^2 / n, chi-square with two

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether a reference column is noisy or coarse above the motion that it tells.
+/// Whether a reference column is noisy or coarse at frequencies above those of the motion that it measures.
 ///
 /// With a reading w + n and a reference w + u the error is n - u. Where the motion w has no power, reference and error
 /// share u alone, with opposite sign: the regression of the error on the reference, S_ru/S_rr in a band of frequencies,

@@ -1,14 +1,14 @@
 #pragma once
-/// Whether each recording shows the motion that it is said to show: the gain of every channel on it, and the noise.
+/// Whether each recording shows its stated motion, by the gain of every channel on that motion and by its noise.
 ///
-/// Per recording, the channels of a quantity are regressed on what drives them: on the reference where it varies, by
-/// means over a second, jointly on all axes that move; where it is constant, the gain is
+/// Per recording, the channels of a quantity are regressed on the motion that drives them: on the reference where it
+/// varies, by means over a second, jointly on all axes that move; where it is constant, the gain is
 ///   (mean - b) / w,   b the median of the channel's means over the recordings in which nothing drives it.
 /// A right recording has a gain of 1 on its own axis and of 0 on the others. Errors of calibration are small and common
 /// to all recordings; what comes to more than a tenth in one of them is an error of the recording: a turned sign (-1),
-/// exchanged axes (0, and 1 on another axis), another unit (a known factor), or another motion than the one stated. The
-/// noise carries the factor of a unit as well, which decides where nothing moves or where a bias is in the way. Samples
-/// at a clipped extreme are left out.
+/// exchanged axes (0, and 1 on another axis), another unit (a known factor), or another motion than the one stated. A
+/// wrong unit scales the noise by the same factor, so the noise decides at rest and where a bias hides the gain.
+/// Samples at a clipped extreme are left out.
 #include "core/investigate/study/study.hpp"
 
 #include <cstddef>
@@ -35,8 +35,8 @@ struct DoubtfulRecording {
   double deviation = 0.0;   ///< of the gain
 };
 
-/// Every channel of every recording that is not what it is said to be. A unit needs two other recordings or a motion.
-/// O(samples).
+/// Every channel of every recording that does not show its stated motion, axis, sign or unit. A wrong unit is found
+/// only with two other recordings or a motion. O(samples).
 [[nodiscard]] std::vector<DoubtfulRecording> doubtful_recordings(const Study& study);
 
 }  // namespace driftlab::investigate

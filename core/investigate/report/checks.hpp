@@ -1,9 +1,9 @@
 #pragma once
-/// The checks of the baseline and of the extended model: all of them, corrected for their number, and where each that
-/// fails comes to rest.
+/// All checks of the baseline and of the extended model, corrected for their number, and the explanation of each failed
+/// check: a finding, the extended model, or none.
 ///
-/// General checks suspect no cause (general_checks.hpp). They are made under the baseline that knows of no effect and,
-/// where something was found, once more under the extended model.
+/// General checks test for no particular cause (general_checks.hpp). They are made under the baseline that knows of no
+/// effect and, where something was found, once more under the extended model.
 ///
 /// There is one check per cause and channel that was examined: its likelihood ratio, at first sight and once more when
 /// the search ended. Each score includes a penalty for the places that the search tried, and the threshold is set so
@@ -25,7 +25,7 @@
 
 namespace driftlab::investigate {
 
-/// What the samples of one channel say by themselves.
+/// The general checks of one channel's samples.
 struct ChannelChecks {
   std::vector<Check> checks;             ///< the general ones, before and after; `p` is not adjusted
   std::vector<InnovationMoments> after;  ///< of each recording under the extended model
@@ -43,7 +43,8 @@ void make_checks(const std::vector<ChannelGroup>& groups, const std::vector<Grou
 [[nodiscard]] std::vector<std::string> checks_behind(const Evidence& evidence, const std::vector<ChannelGroup>& groups,
                                                      const Report& report);
 
-/// Says of every check where it comes to rest, once `because` of all findings is known.
+/// Sets for every check whether it ends in a finding, is mended by the extended model or stays unexplained; needs
+/// `because` of all findings.
 void settle_ends(Report& report);
 
 }  // namespace driftlab::investigate

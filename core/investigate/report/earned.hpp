@@ -1,14 +1,14 @@
 #pragma once
-/// Whether a name is earned.
+/// Whether the evidence suffices to name a cause for a finding.
 ///
-/// The best cause of a list is not a right cause: an effect that stands in no list is described best by some cause that
-/// does. A finding is therefore left open to something unnamed (Evidence::doubt) if
+/// The best of the registered causes need not be right: an effect that no registered cause describes is still described
+/// best by one of them. A finding is therefore marked ambiguous, with the reason in Evidence::doubt, if
 ///   - a parameter is at the bound of its search, or a time constant longer than twenty recordings;
 ///   - a bias that differs from recording to recording differs in one alone, of four or more: more than 95 % of the sum
 ///     of squares about the median is one recording's;
-///   - as many checks fail with the extended model as half of those that failed before, and three or more;
+///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp).
-/// Facts of files and recordings speak for themselves and are not doubted.
+/// Facts of a file and faults of a recording are never doubted.
 #include "core/investigate/report/remains.hpp"
 #include "core/investigate/report/report.hpp"
 
@@ -16,7 +16,7 @@
 
 namespace driftlab::investigate {
 
-/// Mean of each recording of a channel under the base alone.
+/// Mean residual of each recording of a channel under the base model alone [SI].
 [[nodiscard]] std::vector<double> means_of(const FullRate& before);
 
 /// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of

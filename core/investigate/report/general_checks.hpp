@@ -1,5 +1,6 @@
 #pragma once
-/// The checks that suspect no cause: statistics of the innovations as a right model would show them.
+/// The checks that test for no particular cause: statistics of the innovations, compared with their law under a right
+/// model.
 ///
 /// Per recording: variance over sixteen segments; correlation of one-second means (Ljung and Box 1978); spectrum in
 /// sixteen bands; wavelet variance per scale; kurtosis. Per channel: the level that its recordings keep. Under the

@@ -2,9 +2,9 @@
 /// The order of findings, and those that say the same of several channels.
 ///
 /// A laboratory acts on an error of the recording before it calibrates, and calibrates before it models noise; the
-/// digits of the file are worth knowing and no task. Nobody acts on what is ambiguous before what is sure. Findings
-/// therefore stand by certainty and concern (causes/cause.hpp), the format last; one cause after the other, the
-/// strongest first, and all findings of one cause together.
+/// number format of the file is information, not a task. Identified findings come before ambiguous ones. Findings are
+/// therefore sorted by certainty and then by concern (causes/cause.hpp), with the format last; within these the cause
+/// with the strongest finding comes first, and all findings of one cause stand together.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/report.hpp"
 

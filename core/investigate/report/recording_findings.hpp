@@ -1,6 +1,5 @@
 #pragma once
-/// What is wrong with recordings, in the report: before all other findings, for what follows is of the recordings put
-/// right.
+/// The faults of recordings in the report. They precede all other findings, which hold for the repaired recordings.
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/right_recordings.hpp"
 

@@ -1,9 +1,10 @@
 #pragma once
-/// What is left in the innovations when everything that was found has been taken out, whatever its name may be.
+/// Departures from white noise that remain in the innovations after every finding has been taken out, with no cause
+/// assumed.
 ///
 /// Under a right model innovations are white and of unit variance, so that any sum over them has a known law. They are
 /// first replaced by normal scores over all recordings of the channel, with uniform noise of one step added where the
-/// file is on a lattice: tails, gross values and equal values then cost nothing. Looked at are
+/// file is on a lattice: heavy tails, gross values and equal values then do not disturb the tests. The tests are
 ///   - tiles: the mean power r of m ordinates in an interval of time and a band of frequency, against the rest of the
 ///     recording in that band, for dyadic intervals and bands; m (r - 1 - ln r) / (1 - share) has a unit exponential
 ///     tail, `share` the part of the recording in the interval;
@@ -21,7 +22,7 @@
 
 namespace driftlab::investigate {
 
-/// The level below which something is shown.
+/// Departures with a p_study below this level are reported.
 inline constexpr double kShown = 0.003;
 
 /// One departure.
@@ -40,10 +41,10 @@ struct Remainder {
 /// O(samples log samples). Deterministic.
 [[nodiscard]] std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data);
 
-/// Those of the channels, with the strongest between two channels, most surprising first; those with p_study below
-/// kShown are findings of their own. Of the outcomes it looks at the innovations of usable ones;
-/// the correlation of noise found to be shared is no departure. O(samples log samples)
-/// a pair. Deterministic.
+/// The departures of all channels and the strongest correlation between two channels, smallest probability first; those
+/// with p_study below kShown are reported on their own. Only the innovations of usable outcomes are tested, and the
+/// correlation of noise that was already found to be shared is not a departure. O(samples log samples) a pair.
+/// Deterministic.
 [[nodiscard]] std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups,
                                                   const std::vector<GroupOutcome>& outcomes,
                                                   const std::vector<Evidence>& found,

@@ -11,7 +11,7 @@
 
 namespace driftlab::investigate {
 
-/// Where a check that fails comes to rest; none of them is left without a word.
+/// Whether a check fails and, if it does, what accounts for it; every failed check ends in one of the last three.
 enum class CheckEnd {
   None,         ///< it does not fail
   Finding,      ///< a finding rests on it

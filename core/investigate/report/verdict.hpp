@@ -1,5 +1,5 @@
 #pragma once
-/// What an investigation comes to, in one sentence that a person could act on.
+/// The verdict of an investigation: one sentence that a person can act on.
 ///
 /// It names the findings in the order of report/order.hpp, each cause once with its channels, and says how much of the
 /// misfit they explain, how many failing checks they mend and what still fails. `Wrong`: an identified cause concerns

@@ -1,9 +1,9 @@
 #pragma once
 /// Differenced uniform noise in an automatic baseline.
 ///
-/// A base of white noise and slow processes alone takes the rise of the spectrum towards the Nyquist frequency,
-/// Q^2 |1 - exp(-i w)|^2 / dt, for white noise, and whatever is sought in its innovations then meets their colour. The
-/// baseline of recordings that all show it has it.
+/// Quantisation noise makes the spectrum rise towards the Nyquist frequency as Q^2 |1 - exp(-i w)|^2 / dt. A base of
+/// white noise and slow processes alone fits this as white noise, which leaves the innovations coloured for every later
+/// search. If all recordings show the rise, the baseline therefore includes it.
 #include "core/investigate/fullrate/full_rate.hpp"
 
 namespace driftlab::investigate {

@@ -16,9 +16,9 @@ struct ChannelBase {
   double bias = 0.0;          ///< [SI]
 };
 
-/// The noise model of one channel, and what it cannot hold. An automatic baseline has two: as the recordings give it to
-/// somebody who knows of no effect, and as it stands in the extended model, fitted together with the effects. A gain is
-/// the difference between these two.
+/// The noise model of one channel, and what it cannot hold. An automatic baseline has two noise models: `alone` is
+/// fitted to the recordings as if there were no effect, `beside` is fitted together with the effects found. A gain is
+/// the difference in log likelihood between the two.
 struct ChannelModel {
   std::string channel;
   Unit unit;

@@ -1,5 +1,5 @@
 #pragma once
-/// The noise of an extended model, base and effects fitted to each other.
+/// The joint fit of an extended model's noise: base processes and effects on the noise, in turns.
 ///
 /// The search meets the recordings one effect after another. When it finds that the noise of some samples is louder
 /// than that of others, that a few samples are gross, or that the output is rounded, the white level it has in hand was
@@ -11,7 +11,7 @@
 ///      where m_r is the mean square of the white part's factor in recording r, H the gain of a band limit that was
 ///      found and v_r the density of gross errors and rounding;
 ///   3. the effects on the level, on innovations under this model.
-/// A given baseline is taken at its word and needs none of this.
+/// A given baseline is never refitted and skips this step.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 

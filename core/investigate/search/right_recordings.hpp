@@ -1,9 +1,9 @@
 #pragma once
-/// What is wrong with recordings, put right before any model is fitted.
+/// The faults of recordings, found and repaired before any model is fitted.
 ///
-/// Causes of the family RecordingFault are taken in the order of the registry; each sees the study as those before it
-/// have put it right. A recording whose gain on its own motion is odd, though neither sign, axis nor unit explains it,
-/// is set aside: it is another motion than the one stated, or another sensor, and would be taken for a cause.
+/// Causes of the family RecordingFault are examined in the order of the registry, each on the study as repaired by
+/// those before it. A recording whose gain on its own motion is odd, though neither sign, axis nor unit explains it, is
+/// set aside: it is another motion than the one stated, or another sensor, and would be taken for a cause.
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/consistency/recording_gains.hpp"
 
@@ -36,8 +36,8 @@ struct RightedRecordings {
   std::vector<SetAside> aside;
 };
 
-/// The study is copied only if something is wrong with it. Once `stop` asks, what is left is not looked at. O(samples
-/// log samples).
+/// The study is copied only if something is wrong with it. Once a stop is requested, the remaining causes are not
+/// examined. O(samples log samples).
 [[nodiscard]] RightedRecordings right_recordings(const Study& study, const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

@@ -1,6 +1,6 @@
 #pragma once
-/// What colours the noise of single samples: a band limit, and peaks of the spectrum. They are taken before everything
-/// else at full rate, for all the others look at what they have coloured.
+/// The colour of the noise at full rate: a band limit, and peaks of the spectrum. They are sought before everything
+/// else at full rate, because they colour the innovations in which all other effects are sought.
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/search/group_search.hpp"
 
