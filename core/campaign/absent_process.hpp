@@ -1,5 +1,5 @@
 #pragma once
-/// Processes that a fit was offered and has nothing of.
+/// Processes of a fitted model whose estimated level is zero.
 #include "core/campaign/reported_channel.hpp"
 
 namespace driftlab {

@@ -1,5 +1,6 @@
 #pragma once
-/// What the recordings of one campaign say together: every sensor axis pooled, and the trends of its parameter tables.
+/// The joint results of the recordings of one campaign: every sensor axis pooled, and the trends of its parameter
+/// tables.
 #include "core/campaign/pooled_sensor.hpp"
 #include "core/campaign/trend_table.hpp"
 #include "core/signal/progress.hpp"

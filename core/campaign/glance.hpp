@@ -1,9 +1,9 @@
 #pragma once
-/// A sensor axis at a glance: what a list of devices shows of it, before anybody opens a result.
+/// A sensor axis at a glance: the summary that a list of devices shows for it.
 ///
-/// Of all results of an axis one stands for it, that at rest where there is one. It says the noise density of rate or
-/// acceleration, which model is ranked first, and whether that model fits; a longer answer is the verdict of the
-/// channel (core/campaign/verdict.hpp).
+/// One result represents the axis, one recorded at rest if there is any. The summary gives the noise density of rate or
+/// acceleration, the model that is ranked first, and whether that model fits; the verdict of the channel says more
+/// (core/campaign/verdict.hpp).
 #include "core/campaign/reported_channel.hpp"
 #include "core/campaign/verdict.hpp"
 
@@ -19,8 +19,8 @@ struct AxisGlance {
   ReportedValue density;  ///< N, in the unit of the field; without a value where there is none
 };
 
-/// `fit`: the best of a channel. `density`: the N that the channel's Allan deviation has at low frequencies, whatever
-/// the model; nothing where a result was stored before it was kept, and then the model's own white noise stands for it.
+/// `fit`: the best of a channel. `density`: the coefficient N of the channel at low frequencies, for any model; nothing
+/// for an older stored result that lacks it, and the N of the model's white noise is then used.
 [[nodiscard]] AxisGlance glance_of(const ReportedFit& fit, const std::optional<ReportedValue>& density);
 
 /// A result that may stand for its axis.
@@ -29,8 +29,9 @@ struct AxisCandidate {
   VerdictLevel level = VerdictLevel::Look;  ///< of its glance
 };
 
-/// Whether `candidate` stands for the axis rather than `shown`: the one at rest does, and of two at rest the one to be
-/// looked at, for a glance must not pass over it. Of two in motion the one seen first stays.
+/// Whether `candidate` replaces `shown` as the result that represents the axis. A result at rest replaces one in
+/// motion; of two at rest the one with the worse verdict level is shown, so that the list does not hide it; of two in
+/// motion the first stays.
 [[nodiscard]] bool tells_more(const AxisCandidate& candidate, const AxisCandidate& shown);
 
 }  // namespace driftlab

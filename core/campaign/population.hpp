@@ -1,10 +1,10 @@
 #pragma once
-/// One parameter over all devices of a model: where a production line lies, how much its devices differ, and which one
-/// is not of it.
+/// One parameter over all devices of a model: the mean of the production line, the spread between its devices, and the
+/// devices that do not belong to it.
 ///
-/// Model (random effects): y_i = ln value_i = mu + u_i + e_i over devices i = 1..k. u_i ~ N(0, tau^2) is what makes a
-/// device itself; e_i ~ N(0, s_i^2) is the error of its estimate, s_i the half-width of its 95 % interval on the log
-/// scale over 1.96. Error parameters are positive, so logarithms are their scale, and tau = 0.1 is 10 %.
+/// Model (random effects): y_i = ln value_i = mu + u_i + e_i over devices i = 1..k. u_i ~ N(0, tau^2) is the deviation
+/// of a device from the mean; e_i ~ N(0, s_i^2) is the error of its estimate, s_i the half-width of its 95 % interval
+/// on the log scale over 1.96. Error parameters are positive, so logarithms are their scale, and tau = 0.1 is 10 %.
 ///
 /// Mean: weights 1/(s_i^2 + tau^2) with tau by restricted maximum likelihood.
 ///
@@ -55,7 +55,7 @@ struct DevicePlace {
   bool outlying = false;         ///< p_holm < 0.05
 };
 
-/// A device that has no share in the figures.
+/// A device that is not used in the figures.
 struct LeftOut {
   std::string device;
   std::string reason;

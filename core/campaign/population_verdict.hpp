@@ -5,8 +5,8 @@
 
 namespace driftlab {
 
-/// Which devices are not of the line and by what; else that none stands out. Details: mean and spread of N for each
-/// sensor axis and condition that has a mean. Facts: the smallest p_holm of each device that is named.
+/// Names the devices that are outlying and their parameters, or says that none is. Details: mean and spread of N for
+/// each sensor axis and condition that has a mean. Facts: the smallest p_holm of each device that is named.
 [[nodiscard]] Verdict verdict_of(const PopulationReport& report);
 
 }  // namespace driftlab

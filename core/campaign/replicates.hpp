@@ -28,7 +28,7 @@
 
 namespace driftlab {
 
-/// What is kept of a recording's channel: its curve. All records of one stack are in one unit.
+/// The wavelet-variance curve of a recording's channel. All records of one stack are in one unit.
 struct WaveletRecord {
   std::vector<std::size_t> half;  ///< half lengths m, rising, in samples
   std::vector<double> variance;   ///< [unit^2]; entries that are not positive are left out
@@ -41,8 +41,8 @@ struct WaveletRecord {
   double discrepancy = 0.0;  ///< by how much the curve may differ from every model (core/fit/discrepancy.hpp)
 };
 
-/// What a joint fit takes of a channel [SI]: its wavelet variances, the robust ones where gross errors move the
-/// classical (verdict `contaminated`).
+/// The input of a joint fit from one channel [SI]: its wavelet variances, or the robust ones if gross errors move the
+/// classical ones (verdict `contaminated`).
 [[nodiscard]] WaveletRecord record_of(const ReportedChannel& channel);
 
 /// The same with the estimator that the caller wants, for curves that are compared with each other. A channel without

@@ -1,12 +1,12 @@
 #pragma once
-/// What is kept of a channel once it was characterised, in the units in which people read it.
+/// The stored characterisation of a channel, in the units in which people read it.
 ///
-/// A channel's characterisation is computed in SI (core/fit/characterisation.hpp). What leaves the estimator is told in
-/// other units: the curves in the channel's own unit, the parameters in those of the field (deg/sqrt(h), ug/sqrt(Hz)).
-/// A result is stored in that form, and everything that is said about several recordings together is computed from
-/// stored results: pooled fits, parameter tables, trends. These types hold what such a computation needs. They are made
-/// from a characterisation (below) or read from a stored document (schema/json/reported_channel.hpp), and both ways
-/// give the same numbers to the bit, so that a table does not depend on whether its results were stored in between.
+/// A channel's characterisation is computed in SI (core/fit/characterisation.hpp). Results are stored in other units:
+/// the curves in the channel's own unit, the parameters in those of the field (deg/sqrt(h), ug/sqrt(Hz)). Everything
+/// that combines several recordings is computed from stored results: pooled fits, parameter tables, trends. These types
+/// hold what such a computation needs. They are made from a characterisation (below) or read from a stored document
+/// (schema/json/reported_channel.hpp), and both ways give the same numbers to the bit, so that a table does not depend
+/// on whether its results were stored in between.
 #include "core/fit/characterisation.hpp"
 #include "core/signal/recording.hpp"
 

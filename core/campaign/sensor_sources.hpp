@@ -1,5 +1,6 @@
 #pragma once
-/// The recordings of one sensor axis that are put together: who takes part, and in which order conditions are shown.
+/// The recordings that tables and joint fits combine, grouped by sensor axis, and the order in which their conditions
+/// are shown.
 #include "core/campaign/reported_channel.hpp"
 #include "core/signal/condition.hpp"
 
@@ -10,7 +11,7 @@
 
 namespace driftlab {
 
-/// One channel of one recording that takes part.
+/// One channel of one recording, with its stored result.
 struct TableSource {
   std::string recording_id;
   std::string condition;  ///< compact text form (core/signal/condition.hpp)
@@ -18,30 +19,31 @@ struct TableSource {
   std::string result_id = {};  ///< of the stored result; empty outside a store
   std::size_t frozen = 0;      ///< samples of the channel left out because the sensor gave one value only
 
-  /// Under which it counts as a member of what is computed together: the result, or else the recording.
+  /// The id by which a joint result names this member: that of the stored result if there is one, else that of the
+  /// recording.
   [[nodiscard]] const std::string& member_id() const { return result_id.empty() ? recording_id : result_id; }
 };
 
 /// The sources of one sensor axis.
 struct SensorSources {
   std::string quantity;
-  std::string axis;  ///< or the column name of a channel that nobody named by axis
+  std::string axis;  ///< the column name if the channel has no stated axis
   std::vector<TableSource> sources;
 };
 
-/// Puts a source to those of its sensor axis, which is added where it is not there yet. Channels that nobody named by
-/// axis stand each for themselves, under their column name.
+/// Adds a source to the list of its sensor axis, and the axis if it is new. A channel without a stated axis is an axis
+/// of its own, under its column name.
 void add_source(std::vector<SensorSources>& sensors, TableSource source);
 
-/// Why the channels cannot be put together: a sentence that names two units which do not convert into each other. Empty
-/// where all units are of one dimension.
+/// Why the channels cannot be combined: a sentence that names two units which do not convert into each other. Empty if
+/// all units have one dimension.
 [[nodiscard]] std::string unit_conflict(const std::vector<TableSource>& sources);
 
 /// The worse of two verdicts on contamination: contaminated before undecided before clean before none (empty).
 [[nodiscard]] const std::string& worse_verdict(const std::string& a, const std::string& b);
 
-/// Order of conditions in tables: static first, then by kind, axis and value. Complete: of two different conditions
-/// exactly one comes before the other.
+/// Order of conditions in tables: static first, then by kind, axis and value. The order is total: of two different
+/// conditions exactly one comes before the other.
 [[nodiscard]] bool comes_before(const Condition& a, const Condition& b);
 
 }  // namespace driftlab

@@ -5,15 +5,16 @@
 /// Ranking. Parameters are free in every condition, so the joint criterion of a structure is the sum of its criteria
 /// over the conditions.
 ///
-/// The claim. Candidates are nested: a component that one condition shows and another does not may have a level there
-/// that the record does not reach, which is a parameter that moved; a random walk is the limit of a Gauss-Markov
-/// process whose correlation time is beyond the record, and counts as a part of it. A structure therefore *serves* a
-/// condition if it or a part of it has a criterion within 6 of the best (a posterior ratio of 20; Kass and Raftery
-/// 1995: strong evidence begins there). `common` is the smallest candidate that serves every condition. The largest
-/// candidate always does, so the claim can fail only in this way: no condition shows `common` as a whole, that is,
-/// conditions want components that never occur together. `excess` is by how much the criterion of `common` exceeds the
-/// best in the condition that shows it best; above 6 the structure changes. `p` tests that `common` fits every
-/// condition: the sum of the least L, chi-square with the sum of their degrees of freedom. Measured: tests/ACCURACY.md.
+/// The claim. Candidates are nested: a component that one condition shows and another does not may have, in the latter,
+/// a level too low for the record to resolve, which is a change of a parameter and not of the structure; a random walk
+/// is the limit of a Gauss-Markov process whose correlation time is beyond the record, and counts as a part of it. A
+/// structure therefore *serves* a condition if it or a part of it has a criterion within 6 of the best (a posterior
+/// ratio of 20; Kass and Raftery 1995: strong evidence begins there). `common` is the smallest candidate that serves
+/// every condition. The largest candidate always does, so the claim can fail only in this way: no condition shows
+/// `common` as a whole, that is, conditions want components that never occur together. `excess` is by how much the
+/// criterion of `common` exceeds the best in the condition that shows it best; above 6 the structure changes. `p` tests
+/// that `common` fits every condition: the sum of the least L, chi-square with the sum of their degrees of freedom.
+/// Measured: tests/ACCURACY.md.
 #include <cstddef>
 #include <string>
 #include <string_view>

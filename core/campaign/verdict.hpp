@@ -1,5 +1,5 @@
 #pragma once
-/// What a result says, in one sentence that a person could act on.
+/// The verdict on a result: one sentence that a person can act on.
 ///
 /// Command line, API and page show the same sentence, so it is made once, here, from what is kept of a channel
 /// (core/campaign/reported_channel.hpp) or of a device (core/campaign/parameter_table.hpp): results just computed and
@@ -31,7 +31,7 @@ struct Verdict {
   std::string sentence;
   std::vector<std::string> details;  ///< sentences with the evidence
   VerdictLevel level = VerdictLevel::Fine;
-  /// What the sentence rests on: JSON pointers into the channel's document, and the values there.
+  /// The values on which the sentence rests, each with its JSON pointer into the channel's document.
   std::vector<std::pair<std::string, double>> facts;
 };
 

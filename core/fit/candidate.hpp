@@ -9,13 +9,14 @@
 ///
 /// The criterion adds p ln N to the distance (BIC type: Andrews 1999; Andrews and Lu 2001); p counts the parameters of
 /// the structure, those of vanished components too, so that a model with a vanished component loses to the model
-/// without it. While a candidate is accepted, the distance that ranks is that under the covariance which the fit itself
-/// implies: a true model scatters like itself, and a model that lacks a slow process scatters too little for what it
-/// misses. (With the covariance of the curve for all, WN+GM+RW is found in 63 instead of 93 % of phone records of 15
-/// min.) It is at most that of a model contained, whose covariance is one of the model's too. Where the curve has a
-/// discrepancy no candidate is true: L itself ranks, and a parameter costs the logarithm of the number of scales, each
-/// of which is one observation of a regression. Models whose ranked distance + 2p is within 6 of the best cannot be
-/// told apart by the data.
+/// without it. If the J test accepts a candidate, so that the discrepancy of the curve is 0, each candidate is ranked
+/// by its least L under the covariance that its own fit implies: the true model then has the right scatter, and a model
+/// without a slow process implies too little scatter to excuse its misfit. (With the covariance of the curve for all,
+/// WN+GM+RW is found in 63 instead of 93 % of phone records of 15 min.) A model is given at most the distance of any
+/// model that it contains, whose covariance it can imply too. If the curve has a discrepancy, no candidate is true:
+/// candidates are ranked by L itself, and each parameter costs the logarithm of the number of scales, since each scale
+/// is then one observation of a regression. Models whose ranked distance + 2p is within 6 of the best cannot be told
+/// apart by the data.
 #include "core/fit/gmwm.hpp"
 #include "core/fit/log_fit.hpp"
 
@@ -40,13 +41,13 @@ struct Candidate {
   std::size_t test_parameters = 0;  ///< `parameters` there
   std::unique_ptr<LogFit> log_fit;  ///< over the positive components; null where nothing is positive
 
-  /// Least distance under the covariance that the fit implies, where that ranks.
+  /// Least L under the covariance that the fit implies; empty if candidates are ranked by L itself.
   std::optional<double> own_distance = std::nullopt;
 
-  /// The distance that ranks.
+  /// The distance by which candidates are ranked.
   [[nodiscard]] double ranked_distance() const { return own_distance ? *own_distance : log_fit->minimum(); }
   [[nodiscard]] double criterion(double samples) const;
-  /// Takes over what a search from elsewhere has found in `log_fit`.
+  /// Updates the members from `log_fit` after another search has lowered its minimum.
   void settle();
 };
 

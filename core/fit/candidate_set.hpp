@@ -4,7 +4,7 @@
 /// First every candidate is fitted at delta = 0, smaller models before those that contain them. If the J test rejects
 /// none of them at 0.01, delta stays 0. Else delta is the value at which L of the largest candidate that the curve can
 /// test equals its degrees of freedom, and every candidate is fitted again with it. So the distances of nested models
-/// are ordered, and no model is charged for what no candidate can do.
+/// are ordered, and no model is penalised for a misfit that all candidates share.
 #include "core/fit/candidate.hpp"
 #include "core/signal/progress.hpp"
 #include "core/signal/result.hpp"
@@ -39,8 +39,8 @@ struct CandidateSet {
 /// Sets the own distance of every candidate that has none, where the set has no discrepancy.
 void measure_by_own(const WaveletMoments& moments, CandidateSet& set, const CovarianceLaw& covariance_of);
 
-/// A search from elsewhere has lowered the minimum of candidate `lowered`: looks whether models that contain it now
-/// have a smaller distance, and keeps the order of nested models.
+/// To be called when another search has lowered the minimum of candidate `lowered`: refits the models that contain it
+/// from there, so that the distances of nested models stay ordered.
 void spread(const WaveletMoments& moments, CandidateSet& set, std::size_t lowered);
 
 }  // namespace driftlab

@@ -55,7 +55,7 @@ struct Contamination {
   bool not_gaussian = false;  ///< they differ by the shape of the noise, not by a few samples
 };
 
-/// The limit of what nothing bounds.
+/// The limit of a level that the data do not bound: infinity.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// One parameter of a process in a fit. `estimate` is empty where the data do not identify it; `reason` then says why

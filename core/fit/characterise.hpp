@@ -34,8 +34,8 @@ struct CharacteriseOptions {
   /// Windows of a dynamic Allan variance (core/variance/dynamic_allan.hpp); 0: none.
   std::size_t dynamic = 0;
   FurtherRequest also = {};  ///< curves beside the Allan and wavelet variances
-  /// Models are fitted to the scales of tau = m dt from here on [s]; 0: to all. For who knows that a filter of the
-  /// sensor rules the first scales. The curves are those of all scales.
+  /// Models are fitted to the scales of tau = m dt from here on [s]; 0: to all. For a sensor whose filter is known to
+  /// shape the first scales. The curves are still given at all scales.
   double from_tau_s = 0.0;
 };
 

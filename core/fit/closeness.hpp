@@ -26,7 +26,7 @@ struct RankedModel {
 /// from `from_tau_s` on, to 1e-9.
 [[nodiscard]] std::size_t fitted_scales(std::span<const std::size_t> scale, double dt_s, double from_tau_s);
 
-/// L + 2p of each above the least of all; nothing for a model without a finite criterion or of a name that is none.
+/// L + 2p of each model minus the least of all; nothing for a model without a finite criterion or with an unknown name.
 [[nodiscard]] std::vector<std::optional<double>> distances_2p(std::span<const RankedModel> models, double observations);
 
 }  // namespace driftlab

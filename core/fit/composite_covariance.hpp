@@ -42,7 +42,7 @@ class CompositeCovariance {
   [[nodiscard]] CurveCovariance of_model(const Composite& model) const;
 
  private:
-  /// What the shape of the noise adds to the scatter.
+  /// The covariance that the kurtosis of the noise adds.
   void add_kurtosis(const Composite& model, Eigen::MatrixXd& covariance) const;
   /// Near the end of the record fewer coefficients than the table assumes lie side by side.
   void correct_long_scales(const Composite& mixture);

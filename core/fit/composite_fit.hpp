@@ -17,8 +17,8 @@
 
 namespace driftlab {
 
-/// A quantity of some components of a model: the logarithm of the sum of what each of them adds. It is reported with
-/// its interval, and held fixed while everything else is free to find that.
+/// A quantity to which some components of a model contribute: the logarithm of the sum of their contributions. It is
+/// reported with an interval, which is found by holding it fixed while everything else is free.
 struct CompositeQuantity {
   enum class Of {
     Density,  ///< at frequency 0 [unit^2 s]: N^2

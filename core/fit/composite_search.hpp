@@ -22,7 +22,7 @@
 
 namespace driftlab {
 
-/// A model of more says nothing to anybody.
+/// Models with more parameters are not fitted: they could not be interpreted.
 inline constexpr std::size_t kMostCompositeParameters = 12;
 
 /// The discrepancies that are tried, one after the other, until a model describes the curve: relative errors of the

@@ -1,6 +1,6 @@
 #pragma once
-/// What describes a channel's curve: the composite model that a stepwise search finds, and the coefficients of IEEE
-/// Std 952 with it.
+/// The description of a channel's curve: the composite model that a stepwise search finds, and the coefficients of IEEE
+/// Std 952 that follow from it.
 ///
 /// The curve is taken on four scales to the octave from the samples themselves. Where gross errors call for robust
 /// variances, or samples are missing, the octaves serve for which these exist.

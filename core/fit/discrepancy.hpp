@@ -9,10 +9,10 @@
 /// delta is 0 where the data do not reject the model, else the value at which L equals its degrees of freedom. It is
 /// the relative error of the variances that is left: "described to 1.2 %". With a delta so chosen L is no test any
 /// more. The errors of the scales are taken to be independent; on dense scales neighbours share theirs, and delta is
-/// then a lower bound of what the fit says.
+/// then a lower bound of the relative error.
 ///
-/// The scatter of parameters fitted with weights of one delta where the misfit is that of another is the sandwich
-/// (Huber 1967; White 1982).
+/// If parameters are fitted with the weights of one delta but the misfit corresponds to another, their covariance is
+/// the sandwich (Huber 1967; White 1982).
 #include "core/fit/curve_covariance.hpp"
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 #pragma once
-/// What a channel's characterisation holds beside its Allan and wavelet variances, on request: the Allan variance at
-/// more averaging times than its octaves, total variance, Theo1 (core/variance/long_tau.hpp) and the power spectral
+/// Optional curves of a channel's characterisation, beside its Allan and wavelet variances at octaves: the Allan
+/// variance at more averaging times, total variance and Theo1 (core/variance/long_tau.hpp), and the power spectral
 /// density with its lines (core/variance/power_spectrum.hpp).
 #include "core/signal/progress.hpp"
 #include "core/variance/long_tau.hpp"
@@ -32,16 +32,16 @@ struct FurtherCurves {
   std::optional<LongTauCurve> allan;
 };
 
-/// The octave curve of the record: where the finer one takes its scatter from.
+/// The curve of the record at octaves, from which the finer Allan curve derives its degrees of freedom.
 struct OctaveCurve {
   const VarianceIntervals& intervals;  ///< in units of `unit_square`
   HaarCovariance& plan;
 };
 
 /// `samples` without gaps in their own unit, `octaves` their curve in units of `unit_square` [sample unit^2],
-/// `si_factor` sample unit -> SI. The variance of a finer Allan variance is that of the mixture of `octaves`, times
-/// what the octaves' own variances are of theirs (lost samples, heavy tails, scatter seen in the record), interpolated
-/// in ln tau.
+/// `si_factor` sample unit -> SI. The estimation variance at each finer tau is the one that the mixture of `octaves`
+/// implies, times a ratio interpolated in ln tau: at each octave, the estimation variance stated in `octaves.intervals`
+/// over the one that the mixture implies. The ratio carries lost samples, heavy tails and scatter seen in the record.
 [[nodiscard]] FurtherCurves further_curves(const FurtherRequest& request, std::span<const double> samples, double mean,
                                            double unit_square, double si_factor, const OctaveCurve& octaves,
                                            const RunControl& control = {});

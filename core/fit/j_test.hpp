@@ -1,5 +1,5 @@
 #pragma once
-/// The over-identification test of a fit (Hansen 1982), and what a fit may say of itself.
+/// The over-identification test of a fit (Hansen 1982), and the verdict that follows from it.
 #include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"
 

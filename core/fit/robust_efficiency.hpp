@@ -1,5 +1,5 @@
 #pragma once
-/// How much the robust variances of a channel lose against the classical ones.
+/// The efficiency of a channel's robust variances relative to the classical ones.
 #include "core/fit/characterisation.hpp"
 
 #include <optional>

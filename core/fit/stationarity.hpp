@@ -16,8 +16,8 @@
 /// does not inflate; the estimate has 31 degrees of freedom, so that 2.6 is asked for where 1.95 would be 0.1 %.
 ///
 /// A series with a change is cut there and both parts are tested again, until nothing is found or a part is shorter
-/// than 1,500 samples. False alarms: tests/ACCURACY.md. What moves, warms up or is switched is not stationary, and is
-/// said not to be: the test does not know why.
+/// than 1,500 samples. False alarms: tests/ACCURACY.md. A sensor that moves, warms up or is switched is reported as not
+/// stationary; the test does not say why.
 #include <cstddef>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// What a report says of the recordings of an arm.
+/// The recordings of an arm, as a report describes them.
 #include "core/campaign/regression/sessions.hpp"
 
 #include <string>

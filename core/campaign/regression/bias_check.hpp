@@ -1,9 +1,9 @@
 #pragma once
 /// Whether the bias moved with the change (spec/regression.md, section 7).
 ///
-/// The mean of a sensor axis at rest is its bias and what the axis truly saw; of it a session has one. It is compared
-/// as session_means.hpp says. Recordings of motion give none, for there the mean holds the scale factor too
-/// (scale_check.hpp).
+/// The mean of a sensor axis at rest is its bias plus the true input of the axis. Each session has one such mean, and
+/// the means are compared as in session_means.hpp. Recordings in motion are left out, because their mean depends on the
+/// scale factor too (scale_check.hpp).
 #include "core/campaign/regression/event_checks.hpp"
 
 namespace driftlab::regression {

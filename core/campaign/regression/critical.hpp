@@ -59,14 +59,14 @@ struct Gate {
 [[nodiscard]] Gate choose_gate(const Design& design, const Contrast& contrast, const Critical& critical,
                                const TestSettings& settings);
 
-/// What would let an unchanged device pass with `design_power`, the factors at their posterior means. Empty: nothing
-/// that was tried.
+/// The designs that would let an unchanged device pass with probability `design_power`, with the factors at their
+/// posterior means. Empty: none of the tried designs would.
 struct Needs {
   std::optional<std::size_t> sessions_per_arm;  ///< up to 30, of the mean length
   std::optional<double> length_factor;          ///< 2, 4, ... 64 times as long, as many sessions
 };
 
-/// `stop` is polled before each trial; what was found until then is of no use.
+/// `stop` is polled before each trial; after a stop the result must not be used.
 [[nodiscard]] Needs what_would_decide(const Design& design, const Contrast& contrast, const SessionScatter& scatter,
                                       const Gate& gate, const TestSettings& settings, const std::stop_token& stop = {});
 

@@ -1,6 +1,6 @@
 #pragma once
-/// What is not a level of noise: facts of the candidate's sessions against those of all baseline sessions
-/// (spec/regression.md, section 7).
+/// Checks of facts other than noise levels: the candidate's sessions against all baseline sessions (spec/regression.md,
+/// section 7).
 ///
 /// Saturation, missing, frozen and repeated samples, jitter of the time stamps, resolution, sampling rate and
 /// identified causes are compared as facts. Gross errors are counted (gross_errors.hpp); their p share the level of the
@@ -30,8 +30,8 @@ struct EventCheck {
                                                    const std::vector<PowerUp>& candidate, double event_alpha,
                                                    const EventLimits& limits = {});
 
-/// `gyroscope z`, `accelerometer x, 9 deg/s about z`: how a channel under a condition is called; empty for a channel
-/// that is not compared, for nobody said what it measures or along which axis.
+/// `gyroscope z`, `accelerometer x, 9 deg/s about z`: the name of a channel under a condition; empty for a channel
+/// without a stated quantity and axis, which is not compared.
 [[nodiscard]] std::string unit_name(const ComparedRecording& recording, const ReportedChannel& channel);
 
 }  // namespace driftlab::regression

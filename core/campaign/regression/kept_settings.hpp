@@ -23,7 +23,7 @@ struct ChangedSetting {
   std::string now;
 };
 
-/// What a run does otherwise than its anchor says; empty where nothing.
+/// The settings of a run that differ from those kept with its anchor; empty if none does.
 [[nodiscard]] std::vector<ChangedSetting> changed_settings(const Settings& kept, const Settings& now);
 
 /// "Settings differ from those kept with the anchor: margin.gyroscope 20, 25, 50 % (kept: 10, 25, 50 %)."; empty

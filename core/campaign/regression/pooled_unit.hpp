@@ -6,10 +6,10 @@
 /// has no scale at that tau, its nearest is taken times the ratio of the mixture at both. Several recordings of a
 /// session are averaged with weights edf_j. S and eta come from the mixture fitted to the pooled curve of both arms,
 /// not from that of a session, so that its own fluctuation does not choose its weight; what the samples' kurtosis adds
-/// is taken from the degrees of freedom that were stored. Where a channel of one arm has gross errors all sessions are
-/// compared by their robust variances, those without gross errors too: noise with heavy tails has a smaller robust
-/// variance than its classical one, and an arm that changes the estimator would show a change that is none. Kurtosis is
-/// then not asked for, and the efficiency of each estimate is that of its recording.
+/// is taken from the degrees of freedom that were stored. If a channel of either arm has gross errors, all sessions are
+/// compared by their robust variances, also those without gross errors: heavy-tailed noise has a smaller robust
+/// variance than classical variance, so that a different estimator in each arm would look like a change of the noise.
+/// Kurtosis is then not corrected for, and each estimate has the efficiency that was stored with its recording.
 ///
 /// The model is the candidate with the least sum of criteria over all recordings, fitted to the pooled curve. Its
 /// levels are named by the registry, so that a new process is compared as soon as it is fitted.

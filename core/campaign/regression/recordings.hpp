@@ -16,7 +16,7 @@
 
 namespace driftlab::regression {
 
-/// What is true of one channel as it came.
+/// Facts of one channel as recorded.
 struct ChannelFacts {
   std::size_t samples = 0;                    ///< of the file
   std::size_t missing = 0;                    ///< cells without a number, or with one that stands for none
@@ -41,7 +41,7 @@ struct ComparedChannel {
   ChannelFacts facts;
 };
 
-/// Range of a sensor as somebody stated it; nothing where nobody did.
+/// The stated full-scale range of a sensor; nothing if it was not stated.
 struct FullScales {
   std::optional<double> gyroscope;      ///< [rad/s]
   std::optional<double> accelerometer;  ///< [m/s^2]

@@ -1,5 +1,5 @@
 #pragma once
-/// The use of it all: a request in, a verdict in sentences out.
+/// The report of a regression run: compares the recordings of a request and states the verdict in sentences.
 #include "core/campaign/regression/arms.hpp"
 #include "core/campaign/regression/comparability.hpp"
 #include "core/campaign/regression/event_checks.hpp"

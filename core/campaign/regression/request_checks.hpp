@@ -1,5 +1,6 @@
 #pragma once
-/// What a regression run is refused for, whatever its recordings hold. Internal to core/campaign/regression.
+/// The checks that refuse a regression request before its recordings are compared. Internal to
+/// core/campaign/regression.
 #include "core/campaign/regression/recordings.hpp"
 #include "core/signal/result.hpp"
 

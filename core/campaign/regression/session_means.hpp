@@ -1,5 +1,6 @@
 #pragma once
-/// Whether a figure that a session has one of (a bias, a scale factor) moved with the change by more than a margin.
+/// Whether a figure of which each session has one value (a bias, a scale factor) moved with the change by more than a
+/// margin.
 ///
 /// How much such a figure moves from one power-up to the next differs by orders of magnitude between sensors, so there
 /// is no prior for it: it is tested only where a margin and three sessions an arm are given, else reported. The test is
@@ -32,7 +33,7 @@ struct SessionFigure {
   bool gyroscope = false;
 };
 
-/// Of each unit that both arms have, what `of` finds in each session.
+/// For each unit that both arms have, the figure that `of` finds in each session.
 [[nodiscard]] FiguresByUnit arm_figures(const std::vector<PowerUp>& baseline, const std::vector<PowerUp>& candidate,
                                         const std::function<std::map<std::string, SessionFigure>(const PowerUp&)>& of);
 

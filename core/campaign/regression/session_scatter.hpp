@@ -49,7 +49,7 @@ struct SessionScatter {
 };
 
 /// `prior_df` is v above. Baseline, candidate and history take part. Cost: 81 Cholesky factors of the size of the rows
-/// per set of sessions with equal lengths; `stop` is polled before each, and what was learnt of a part is of no use.
+/// per set of sessions with equal lengths; `stop` is polled before each; after a stop the result must not be used.
 [[nodiscard]] SessionScatter learn_scatter(const Design& design, const ScatterTerms& terms, double prior_df,
                                            const std::stop_token& stop = {});
 

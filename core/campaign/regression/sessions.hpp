@@ -1,10 +1,10 @@
 #pragma once
-/// Which recordings are of one power-up.
+/// The grouping of recordings into sessions, each one power-up of the device.
 ///
-/// The session is the replicate: segments of one power-up are one, however many files they are. Treated as three, they
-/// fail an unchanged ADIS16405 in 6 of 30 comparisons (spec/regression.md, section 5). A stated session holds; without
-/// one, recordings that begin within ten minutes of each other's end are one session; without a time either, each file
-/// is taken for a session of its own, and the notes say so.
+/// The session is the replicate: the segments of one power-up are one session, in any number of files. Three segments
+/// treated as three sessions fail an unchanged ADIS16405 in 6 of 30 comparisons (spec/regression.md, section 5). A
+/// stated session holds; without one, recordings that begin within ten minutes of each other's end are one session;
+/// without a time either, each file is taken for a session of its own, and the notes say so.
 #include "core/campaign/regression/recordings.hpp"
 
 #include <string>

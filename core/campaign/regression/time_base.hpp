@@ -1,5 +1,5 @@
 #pragma once
-/// Does the change look like one of the clock? Internal to core/campaign/regression.
+/// Does the change look like a change of the sampling clock's rate? Internal to core/campaign/regression.
 #include "core/campaign/regression/report.hpp"
 
 #include <vector>

@@ -49,7 +49,7 @@ struct Comparison {
 
 /// The whole comparison of noise. Deterministic in design and settings; the order of the sessions changes nothing but
 /// rounding. Without a test that both arms have the verdict is inconclusive. Cost at 6 axes of 13 scales: some 50 ms.
-/// Once `stop` is requested it ends soon, with what is of no use.
+/// Once `stop` is requested it ends soon, with a result that must not be used.
 [[nodiscard]] Comparison compare(const Design& design, const TestSettings& settings, const std::stop_token& stop = {});
 
 }  // namespace driftlab::regression
