@@ -50,7 +50,7 @@ struct CharacterisedRecording {
 /// axes then name it.
 using ResultName = std::function<std::string(const std::string& recording, const std::string& column)>;
 
-/// What is true of a recording or one of its channels, and who reads its figures must know.
+/// A fact about a recording or one of its channels that a reader of its figures must know.
 struct Remark {
   std::string whose;  ///< id of the recording; `id, channel` of a channel
   std::string sentence;

@@ -3,9 +3,9 @@
 ///
 /// The Allan deviation so far at octaves of tau, with the intervals that a finished recording gets
 /// (core/variance/variance_intervals.hpp); white noise as IEEE Std 952 reads it off, N = sigma(tau) sqrt(tau), at the
-/// longest tau of at most 1 s around which the slope is -1/2; and whether the sensor lies still. Steps of the time
-/// stamps beyond one and a half times their median are gaps; the deviation is that of the longest run without one. What
-/// is said here is provisional: the result is that of the characterisation which follows.
+/// longest tau of at most 1 s around which the slope is -1/2; and whether the sensor lies still. A step of the time
+/// stamps longer than 1.5 times the median step is a gap, and the deviation is computed on the longest run without a
+/// gap. All figures are provisional: the characterisation of the finished recording replaces them.
 #include "core/signal/estimate.hpp"
 #include "core/signal/unit.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The use case "preview": the beginning of a file in, what a recording of it would be out. Nothing is kept.
+/// The use case "preview": reads the beginning of a file and describes the recording that its upload would make.
+/// Nothing is stored.
 ///
 /// Columns mean what an upload would take them to mean (core/signal/recording.hpp), the rate is that of the time column
 /// or the one stated, and everything that would refuse the upload is a problem with the field that repairs it. What

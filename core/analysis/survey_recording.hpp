@@ -1,5 +1,5 @@
 #pragma once
-/// The use case "survey": what is true of a recording as it came, found when it is uploaded and when its metadata are
+/// The use case "survey": the facts about a recording as it came, found when it is uploaded and when its metadata are
 /// changed.
 ///
 /// Metadata and samples are held against each other as an analysis would: roles of the columns, window, gaps, and per

@@ -1,5 +1,5 @@
 #pragma once
-/// The attitude of a vehicle of which only velocities were recorded: it looks where it goes.
+/// The attitude of a vehicle of which only velocities were recorded: its nose is taken to point along the velocity.
 #include "core/navigate/recorded_motion.hpp"
 
 #include <vector>

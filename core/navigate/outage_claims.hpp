@@ -9,10 +9,10 @@
 /// For the Allan variance alone, switching is M_dyn(AV) against M_stat(AV). Negative differences are gains.
 ///
 /// The claim that one filter is better is supported if the whole 95 % interval of the paired difference is below 0 and
-/// the gain is at least kPracticalSize. Common random numbers make differences significant that nobody would notice;
-/// such differences are reported as being of no practical size. A claim of a size is supported if the interval of the
-/// relative difference contains it. The gain is attributed to the switching if there is a gain, the interval of the
-/// switching's part is below 0, and that part is more than half of the whole.
+/// the gain is at least kPracticalSize. Common random numbers make differences statistically significant that are too
+/// small to matter; such differences are reported as being of no practical size. A claim of a size is supported if the
+/// interval of the relative difference contains it. The gain is attributed to the switching if there is a gain, the
+/// interval of the switching's part is below 0, and that part is more than half of the whole.
 #include "core/navigate/outage_evaluation.hpp"
 
 namespace driftlab {

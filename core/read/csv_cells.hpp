@@ -1,5 +1,5 @@
 #pragma once
-/// The careful half of the CSV reader: one cell, whatever it holds. Internal to core/read.
+/// The slow path of the CSV reader, which reads one cell of any content. Internal to core/read.
 #include "core/read/format.hpp"
 #include "core/signal/result.hpp"
 

@@ -1,13 +1,13 @@
 #pragma once
 /// One recording out of a file that holds several inertial streams, each on its own clock. Internal to core/read.
 ///
-/// Logs of flight controllers and robots hold many streams at several rates; a recording is one table on one clock. The
-/// rule, the same for every such format: of the streams with gyroscope and accelerometer the one with the most samples,
-/// that is of the highest rate, for all are counted over the same stretch of the file; where there is none, the same
-/// among those with a gyroscope alone, then an accelerometer alone; of equals the one that comes first in the file.
-/// What other inertial streams there are stands in a note; what is no inertial stream but belongs to the same journey,
-/// fixes and odometers, stands beside the chosen one (core/read/beside_streams.hpp). A file with nothing but such is a
-/// table of them.
+/// Logs of flight controllers and robots hold many streams at several rates; a recording is one table on one clock.
+/// Every such format uses one rule. Among the streams with gyroscope and accelerometer the one with the most samples is
+/// taken, which is the one with the highest rate, since all are counted over the same stretch of the file. Without such
+/// a stream the rule is applied to streams with a gyroscope alone, then to those with an accelerometer alone. If
+/// several streams tie, the first in the file is taken. A note names the other inertial streams. Fixes and odometers of
+/// the same journey are written beside the chosen stream (core/read/beside_streams.hpp); a file that holds only those
+/// becomes a table of them.
 ///
 /// The rule is applied at the end of the file or when 16 MiB of samples are waiting, whichever is first: from there on
 /// the chosen stream passes through and the others are counted. Memory: those 16 MiB.

@@ -1,9 +1,9 @@
 #pragma once
 /// Least, greatest and mean values of a long recording at every zoom, kept beside its columns.
 ///
-/// Level k holds one node for each 256 * 16^k samples: least, greatest, sum and count of what is present. A trace of
-/// any stretch is put together from the coarsest nodes that fit, so that 10^8 samples are shown from some thousand
-/// nodes instead of 800 MB. The nodes take 1.7 % of the space of the columns.
+/// Level k holds one node for each 256 * 16^k samples: least, greatest, sum and count of the samples that are present.
+/// A trace of any stretch is put together from the coarsest nodes that fit, so that 10^8 samples are shown from some
+/// thousand nodes instead of 800 MB. The nodes take 1.7 % of the space of the columns.
 ///
 /// The file is a column file (core/read/column_file.hpp) with four columns for each column of the recording, `i.low`,
 /// `i.high`, `i.sum` and `i.present`, whose rows are the nodes of level 0, then those of level 1, and so on to the

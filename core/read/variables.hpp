@@ -1,5 +1,5 @@
 #pragma once
-/// A recording from named arrays: what .npz and MATLAB files hold. Internal to core/read.
+/// A recording from the named arrays of an .npz or MATLAB file. Internal to core/read.
 #include "core/read/memory_table.hpp"
 
 #include <string>
@@ -13,13 +13,13 @@ struct Variable {
   std::vector<std::vector<double>> columns;
 };
 
-/// Puts the arrays together that have one length: that of the most columns named as sensors are
-/// (core/signal/infer_role.hpp), of equals that of the most numbers. A matrix of at most 16 rows and more columns than
-/// rows holds its samples across. Three columns of one array are called `<name>_x`, `_y`,
-/// `_z`, others
-/// `<name>_0`, ...; a single column keeps the array's name. A single number called rate, fs, freq, sampling_rate,
-/// sample_rate gives the time where no array does. What is left out is noted. Errors: NoSamples (no array of two
-/// samples), LimitExceeded, those of the sink.
+/// Delivers the arrays of one length as columns of one recording. The length is the one with the most columns whose
+/// names are those of a gyroscope or accelerometer (core/signal/infer_role.hpp); if several lengths tie, the one with
+/// the most numbers. A matrix of at most 16 rows with more columns than rows is transposed: its samples lie along the
+/// rows. Three columns of one array are called `<name>_x`, `<name>_y`, `<name>_z`, any other number of columns
+/// `<name>_0`, `<name>_1`, ...; a single column keeps the array's name. If no array is a time, a single number called
+/// rate, rate_hz, fs, freq, frequency, samplerate, sampling_rate or sample_rate gives the sampling rate [Hz]. A note
+/// names the arrays that are left out. Errors: NoSamples (no array of two samples), LimitExceeded, those of the sink.
 [[nodiscard]] Status deliver_variables(std::vector<Variable> variables, const DecodeLimits& limits, ColumnSink& sink);
 
 }  // namespace driftlab

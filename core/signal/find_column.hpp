@@ -1,5 +1,5 @@
 #pragma once
-/// The column of a file that somebody calls by a name: a study and a drive both name columns so.
+/// Finds a column of a file by the name that a study or a drive document gives for it.
 #include "core/signal/recording.hpp"
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 
 namespace driftlab {
 
-/// So many distinct values tell a range of which an end is only one.
+/// A channel with at least this many distinct values has a range of which an extreme is only one value.
 inline constexpr std::size_t kVaried = 8;
 
 /// How often the extreme value is met, and the one next to it.

@@ -1,5 +1,5 @@
 #pragma once
-/// Samples on a uniform grid of which some are missing.
+/// Samples on a uniform grid, some of which are missing.
 ///
 /// Row r of a file is the sample of one instant; where the time column jumps, instants without a row lie between two
 /// rows. Everything that needs equal steps (variances, state-space models) works on the grid, where a missing sample is

@@ -1,5 +1,5 @@
 #pragma once
-/// A column that is a time by its numbers, where nobody says which one is.
+/// A guess of the time column from its numbers, for files in which no column is stated to be the time.
 #include "core/signal/recording.hpp"
 
 #include <cstddef>

@@ -76,7 +76,7 @@ struct TimeBase {
   [[nodiscard]] double rate_hz() const { return 1.0 / dt_s; }
 };
 
-/// What is true of one sensor channel as it came (core/signal/channel_survey.hpp finds it). Counts are over the whole
+/// Facts of one sensor channel as recorded (found by core/signal/channel_survey.hpp). Counts are over the whole
 /// file.
 struct ChannelQuality {
   std::string column;
@@ -93,7 +93,7 @@ struct ChannelQuality {
   std::size_t analysed = 0;             ///< samples analysed: those of [first, last] without any of the above
 };
 
-/// What is true of the recording as it came, reported and never silently repaired.
+/// Facts of the recording as it came; they are reported and never silently repaired.
 struct Quality {
   std::size_t samples = 0;          ///< rows of the file, less those that repeat the row before
   std::size_t repeated_rows = 0;    ///< rows with the stamp and all values of the row before: one sample written twice

@@ -1,8 +1,8 @@
 #pragma once
 /// Welch's mean periodogram: the power spectral density of a record as a mean over pieces of it.
 ///
-/// Of a piece of L samples at dt a line is taken off, the rest x_t is multiplied by a window w_t and transformed. The
-/// two-sided density at f_k = k/(L dt), k = 0 ... L/2, is the mean over all pieces of
+/// From each piece of L samples at dt a line is subtracted; the residual x_t is multiplied by a window w_t and
+/// transformed. The two-sided density at f_k = k/(L dt), k = 0 ... L/2, is the mean over all pieces of
 ///   dt / (w_1^2 + ... + w_L^2) |sum_t w_t x_t exp(-2 pi i k t/L)|^2   [unit^2/Hz]
 /// (Welch 1967, eqs. 3 to 5, with a density that counts negative frequencies too). Of white noise N its mean is N^2 at
 /// every frequency; of other noise the mean is the density smoothed by the window's own spectrum, and the noise must be
@@ -10,12 +10,12 @@
 /// dt/6 at f_m and a quarter of that at either side.
 ///
 /// Hann: w_t = (1 - cos(2 pi (t + 1/2)/L))/2. Its leakage falls as f^-6 in power and is worth 1.5 bins. None: w_t = 1,
-/// the periodogram of Bartlett (1950), whose leakage falls as f^-2 only and which is for what is white already.
-/// Disjoint pieces of Gaussian noise are independent, so that the mean of K has 2 K degrees of freedom; Hann pieces
-/// that overlap by half have 36 K^2/(19 K - 1) (Percival and Walden 1993, eq. 292b).
+/// the periodogram of Bartlett (1950), whose leakage falls only as f^-2 and which is meant for series that are white
+/// already. Disjoint pieces of Gaussian noise are independent, so that the mean of K has 2 K degrees of freedom; Hann
+/// pieces that overlap by half have 36 K^2/(19 K - 1) (Percival and Walden 1993, eq. 292b).
 ///
-/// Where the pieces stand is the caller's choice, who knows what may be skipped. The order of the sums is that of the
-/// pieces: the same pieces in the same order give the same bits.
+/// The caller chooses the places of the pieces, because it knows which samples must be skipped. The order of the sums
+/// is that of the pieces: the same pieces in the same order give the same bits.
 #include <unsupported/Eigen/FFT>
 
 #include <complex>
@@ -27,7 +27,7 @@ namespace driftlab {
 
 enum class Taper { Hann, None };
 
-/// What is taken off each sample of a piece: level + slope t, t = 0 at its first.
+/// The line that is subtracted from a piece: level + slope t, t = 0 at its first.
 struct PieceLine {
   double level = 0.0;  ///< [unit of the samples]
   double slope = 0.0;  ///< [unit a sample]

@@ -3,18 +3,19 @@
 /// with the verdict that the data allow.
 ///
 /// Every filter runs over the same readings and fixes and loses the same fixes, so that errors are compared outage by
-/// outage: what the road did to one filter it did to the other. With a_i and b_i the horizontal errors of two filters
-/// at the end of outage i, the difference is mean(a) - mean(b) and the relative one mean(a)/mean(b) - 1. Outages of
-/// different phases overlap, so that intervals come from a bootstrap over blocks of one period, in which all phases and
-/// both filters stay together; one set of resamples serves every pair.
+/// outage under the same motion. With a_i and b_i the horizontal errors of two filters at the end of outage i, the
+/// difference is mean(a) - mean(b) and the relative one mean(a)/mean(b) - 1. Outages of different phases overlap, so
+/// that intervals come from a bootstrap over blocks of one period, in which all phases and both filters stay together;
+/// one set of resamples serves every pair.
 ///
 /// A difference is shown if the whole 95 % interval of the relative one lies on one side of 0. Else the interval says
 /// how large it can be at most: "no difference larger than x % is shown". Every interval holds 95 % by itself; of many
 /// pairs some exclude 0 by chance.
 ///
-/// The level of a model is mostly characterised at rest, and on the road every model is then too sure of itself alike.
-/// Where asked, the white noise of each is first scaled, gyroscope and accelerometer apart, to the level at which the
-/// innovations fit best (explain.hpp); the scale is the same in all bands of a model that follows the rate.
+/// The noise level of a model is mostly characterised at rest, so that on the road every model states too small an
+/// error. On request the white noise of each model is first scaled, separately for gyroscope and accelerometer, to the
+/// level at which the innovations fit best (explain.hpp); the scale is the same in all bands of a model that follows
+/// the rate.
 #include "core/navigate/drive/evaluation.hpp"
 
 #include <string>
@@ -23,7 +24,7 @@
 
 namespace driftlab::drive {
 
-/// What a filter believes of the unit, with its name.
+/// The error model that a filter uses, with its name.
 struct BelievedModel {
   std::string name;
   std::string about;

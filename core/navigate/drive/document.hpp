@@ -1,6 +1,6 @@
 #pragma once
-/// What a drive document says: which files a recorded drive consists of, what their columns mean, how the unit sits in
-/// the vehicle, what the filter believes, and which outages are wanted (spec/drives.md, section 1).
+/// The drive document as values: the files of a recorded drive, the meaning of their columns, the mounting of the unit
+/// in the vehicle, the error model of the filter, and the outages to simulate (spec/drives.md, section 1).
 ///
 /// Lengths are metres, body axes forward, right, down. Times of the sources may be on different scales; those of one
 /// drive must be convertible into each other (time_scale.hpp).

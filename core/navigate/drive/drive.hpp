@@ -28,7 +28,7 @@ struct OdometerReading {
   double speed_m_s = 0.0;
 };
 
-/// What was found in the files and done with them.
+/// Facts of the drive's files, and the repairs that were made.
 struct FileFacts {
   SamplingFacts sampling;
   StampFacts imu_stamps, gnss_stamps;
@@ -40,7 +40,7 @@ struct FileFacts {
   bool accuracy_constant = false;           ///< the position's; not used
   bool speed_accuracy_constant = false;     ///< not used
   bool vertical_accuracy_constant = false;  ///< not used
-  bool height_zero = false;                 ///< every height is 0: nobody's
+  bool height_zero = false;                 ///< every height is 0: not measured
   bool course_constant = false;             ///< the same number throughout; no velocity comes of it
   std::size_t without_accuracy = 0;         ///< accuracies of used fixes that are no number above 0
   std::size_t without_type = 0;             ///< of `other_types`, rows without a fix type
@@ -49,7 +49,7 @@ struct FileFacts {
   double fix_rate_hz = 0.0;
   double highest_speed_m_s = 0.0;
   double length_m = 0.0;
-  std::vector<std::string> notes;  ///< sentences: what is true of the drive and was not silently repaired
+  std::vector<std::string> notes;  ///< sentences: facts of the drive that were not repaired
 };
 
 struct ReferencePoint {
@@ -98,7 +98,7 @@ struct LoadOptions {
 [[nodiscard]] Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table,
                                                 const StampedRows& stamped, FileFacts& facts);
 
-/// Compares what the sources say of the same motion. Error: InvalidArgument with the repair.
+/// Checks that the sources agree on the motion. Error: InvalidArgument, whose sentence states the repair.
 [[nodiscard]] Status check_plausible(const Drive& drive);
 
 /// C that turns sensor axes into body axes for the mounting angles roll, pitch, yaw.

@@ -1,6 +1,6 @@
 #pragma once
-/// An outage of a recorded drive and what a filter made of it: the error of the antenna's estimate at its end, along
-/// and across the way, its covariance, how the error grew, and what the vehicle did meanwhile.
+/// An outage of a recorded drive and a filter's error in it: the error of the antenna's estimate at its end, along and
+/// across the way, its covariance, the growth of the error, and the motion of the vehicle meanwhile.
 #include "core/navigate/drive/drive.hpp"
 #include "core/navigate/drive/filter_options.hpp"
 #include "core/navigate/error_covariance.hpp"
@@ -40,14 +40,14 @@ struct DriveOutage {
   [[nodiscard]] double nees() const;  ///< two dimensions
 };
 
-/// What a filter knows when an outage begins, and how its error has grown since.
+/// The state of a filter at the start of an outage, and the growth of its error since.
 struct OutageStart {
   double time_s = 0.0;  ///< on the unit's clock
   NavigationState state;
   std::vector<double> growth_m = {};  ///< as of DriveOutage, without the end
 };
 
-/// Where a filter believes to be at a moment of an outage.
+/// A filter's estimate of the pose at a moment of an outage.
 struct OutageMoment {
   double time_s = 0.0;  ///< on the unit's clock
   NavigationState state;
@@ -55,7 +55,7 @@ struct OutageMoment {
   Vector3 lever_arm_m = Vector3::Zero();   ///< as the filter has it
 };
 
-/// What it knows when the outage ends.
+/// The state of a filter at the end of an outage.
 struct OutageEnd {
   OutageMoment at;
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();  ///< of position, velocity and attitude

@@ -15,7 +15,7 @@
 
 namespace driftlab::drive {
 
-/// Changes whenever the same drive and seed may give other numbers.
+/// Raised whenever the same drive and seed may give other numbers.
 inline constexpr int kDriveAlgorithmVersion = 2;
 
 /// Outages of one run of the filter.
@@ -124,7 +124,7 @@ struct EvaluationOptions {
 /// Blocks of one period for a bootstrap: each holds the indices of the outages that start in it.
 [[nodiscard]] std::vector<std::vector<std::size_t>> blocks_of(const std::vector<DriveOutage>& outages, double period_s);
 
-/// Fewer blocks say nothing of an interval.
+/// With fewer blocks no interval is given.
 inline constexpr std::size_t kLeastBlocks = 3;
 
 /// From the 2.5 % to the 97.5 % quantile of resampled values. Not empty.

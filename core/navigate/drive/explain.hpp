@@ -1,17 +1,19 @@
 #pragma once
 /// Why a simulation of a drive is too optimistic, by profile likelihood (spec/drives.md, section 6).
 ///
-/// The search starts from the level of white noise at which the innovations fit best: before that, scores mean nothing.
-/// Every knob (causes/cause.hpp) is then turned by -h and +h and the parabola through the three log likelihoods gives
-/// estimate, uncertainty and score; where the likelihood still rises the step is doubled until it falls. The knob with
-/// the best score is set, those found before and the noise level are fitted again, and the search goes on until no knob
-/// has a score of 5 at three standard errors. Two whose scores differ by less than 2 are reported as a pair.
+/// The search starts from the level of white noise at which the innovations fit best, because at another level the
+/// scores have no scale. Every knob (causes/cause.hpp) is then turned by -h and +h and the parabola through the three
+/// log likelihoods gives estimate, uncertainty and score; where the likelihood still rises the step is doubled until it
+/// falls. The knob with the best score is set, those found before and the noise level are fitted again, and the search
+/// goes on until no knob has a score of 5 at three standard errors. Two whose scores differ by less than 2 are reported
+/// as a pair.
 ///
-/// What the files show without a filter (velocities older than positions) is found first.
+/// Causes that the files show without a filter (velocities older than positions) are found first.
 ///
-/// A cause found is not a gain. Values are fitted once more on every second stretch of 100 s; outages that lie whole in
-/// the other stretches have not been seen, and say what the mended model gains. A parameter stays in the extended model
-/// if the held-out outages are then described better (Gaussian log score, in which error and coverage both count).
+/// A cause that was found need not improve the filter. Its values are fitted once more on every second stretch of 100
+/// s, and the gain of the mended model is measured on the outages that lie entirely in the other stretches. A parameter
+/// stays in the extended model if the held-out outages are then described better (Gaussian log score, in which error
+/// and coverage both count).
 ///
 /// Runs are tasks of the executor; results do not depend on the number of threads.
 #include "core/navigate/drive/causes/cause.hpp"
@@ -20,7 +22,7 @@
 
 namespace driftlab::drive {
 
-/// Errors of one duration on outages that found the model's values and on those that did not.
+/// Errors of one duration, on the outages to which the model's values were fitted and on the held-out ones.
 struct RungFigures {
   double duration_s = 0.0;
   std::size_t found_count = 0, held_out_count = 0;
@@ -31,7 +33,7 @@ struct RungFigures {
   double held_out_log_score = 0.0;  ///< mean of -(ln |P| + e^T P^-1 e)/2
 };
 
-/// One step of the repair: everything before, and this.
+/// One step of the repair: the model with this finding and all before it.
 struct Rung {
   std::string name;
   bool kept = true;
@@ -62,8 +64,8 @@ struct DriveExplanation {
                                                      const ExplainOptions& options = {},
                                                      const RunControl& control = {});
 
-/// The search alone: what of a drive's options the innovations of the folds that `used` marks show. `options` is where
-/// it starts from and ends at. With `only`, no new cause is named and those given are fitted.
+/// The search alone, on the innovations of the folds that `used` marks. It starts from `options` and leaves its result
+/// there. With `only`, the given causes are fitted and no new one is named.
 struct SearchResult {
   FilterOptions options;
   std::vector<DriveFinding> findings;

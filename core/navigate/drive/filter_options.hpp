@@ -1,6 +1,6 @@
 #pragma once
-/// What a filter over a recorded drive assumes beside the error model: clocks, arms, constraints, states that it
-/// estimates; and how those assumptions act on the readings and on their noise.
+/// The assumptions of a filter over a recorded drive beside the error model: clocks, lever arms, constraints and
+/// estimated constants; and the effect of these assumptions on the readings and their noise.
 #include "core/navigate/drive/drive.hpp"
 #include "core/navigate/drive/vibration.hpp"
 #include "core/process/random.hpp"
@@ -72,23 +72,23 @@ struct FilterOptions {
       false;  ///< fixes count as of the end of their sample: what a filter does that ignores their dates
 };
 
-/// What the document says: arm and latencies.
+/// The options that the document states: lever arm and latencies.
 [[nodiscard]] FilterOptions options_of(const Document& document);
 
-/// Mean noise of a channel that follows the vibration over that which does not.
+/// Ratio of a channel's mean noise that follows the vibration to its noise that does not.
 [[nodiscard]] double vibration_of(const FilterOptions& options, std::size_t channel);
 
 /// Multiplies the white noise of an axis, at every rate.
 void scale_white_noise(AxisModel& axis, double factor);
 
-/// Adds the noise that follows the vibration, by the options' ratios, to readings whose other noise is of `model`,
-/// which is the design's: what does not follow it.
+/// Adds the noise that follows the vibration, by the options' ratios, to readings simulated from `model`, the design's
+/// model of the noise that does not follow it.
 void add_vibration_noise(const Vibration& vibration, const FilterOptions& options, const ImuModel& model, double dt_s,
                          Random& random, std::vector<ImuSample>& readings);
 
-/// What taking the errors off the readings makes of the white noise of a channel: a factor of its density, the length
-/// of the channel's row of (I + M)^-1, as of axes with the same noise. A filter that does not know it takes quieter
-/// readings for better ones, and finds a scale factor on every axis that hardly turns.
+/// The factor by which correcting the readings for M changes the white noise density of a channel: the length of the
+/// channel's row of (I + M)^-1, for axes with the same noise. A filter without this factor would prefer corrections
+/// that merely make the readings quieter, and find a scale factor on every axis that hardly turns.
 [[nodiscard]] double noise_after_correction(const ReadingErrors& errors, std::size_t channel);
 
 /// Factors of the white noise of an axis that do not follow the vibration.

@@ -2,12 +2,12 @@
 /// One run of the navigation filter over a recorded drive, with outages.
 ///
 /// Every fix is dated to its own moment: position and velocity of a fix are two measurements, each applied at the first
-/// sample that ends after the moment it describes and carried back by the time between. (Applied at the end of the
-/// sample as if they were of then, fixes are up to a sample late: 15 cm at 15 m/s and 100 Hz, a sawtooth that doubles
+/// sample that ends after the moment it describes and carried back by the time between. (Fixes that are applied at the
+/// end of the sample, as if taken then, are up to one sample late: 15 cm at 15 m/s and 100 Hz, a sawtooth that doubles
 /// the uncertainty of everything that is found from the innovations.)
 ///
-/// A fix is withheld from an outage if its stamp or a moment that it describes lies in [start, end). What is withheld
-/// leaves no trace: without it in the file the result is the same to the bit.
+/// A fix is withheld from an outage if its stamp or a moment that it describes lies in [start, end). A withheld fix has
+/// no effect: the result is the same to the bit as with a file that lacks it.
 ///
 /// At the end of an outage, before the first returning fix, the antenna's estimate is compared with the reference.
 #include "core/navigate/drive/drive_outage.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// Which fixes of a receiver are believed: a gate on the normalised innovation, with a memory.
+/// Acceptance of a receiver's fixes: a gate on the normalised innovation, with a memory.
 ///
 /// A fix is rejected where the largest normalised square of its innovations is above the gate. A filter that has gone
 /// astray rejects every fix, so that after five in a row the receiver is right and the filter is not: fixes are

@@ -1,5 +1,5 @@
 #pragma once
-/// The innovations of a filter as evidence on what the filter is told (spec/drives.md, section 6).
+/// The innovations of a filter as evidence on the filter's options (spec/drives.md, section 6).
 ///
 /// The log likelihood of a run is the sum over scalar innovations z of variance S of -(ln S + min(z^2/S, 9))/2; the cap
 /// keeps a few wild ones from deciding. A filter's model is never quite right, so innovations are neither white nor of

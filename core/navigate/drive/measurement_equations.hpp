@@ -1,5 +1,6 @@
 #pragma once
-/// What each measurement of a drive says of the filter's errors, linearised at the present estimate.
+/// The measurement equations of a drive: each measurement as a function of the filter's errors, linearised at the
+/// present estimate.
 ///
 /// The errors are those of the filter (navigation_filter.hpp): position, velocity and attitude in e, then the sensors'
 /// states, then the constants that the options ask to be estimated. Body axes are forward, right, down; C is body to e,

@@ -1,10 +1,11 @@
 #pragma once
-/// How much of what a channel reads is motion, and how much its own white noise.
+/// The power of a channel's readings, split into motion and the channel's own white noise.
 ///
-/// Means over windows of T have a variance of (motion's) + N^2/T about their mean. The ratio bounds what a filter can
-/// tell of a channel's scale: on an axis that hardly moves the best reading is a smaller one, (1 - N^2/(motion + N^2))
-/// of it (Wiener's), whatever the scale is. A likelihood of fixes then shows a scale factor of about noise over motion
-/// that is nobody's, and outages that it has not seen gain from it.
+/// Means of the readings over windows of length T have the variance motion + noise, where noise = N^2/T. The ratio of
+/// the two limits how well a filter can determine the channel's scale factor. On an axis that hardly moves, the
+/// estimate of the motion with the least error is the reading times motion/(motion + noise) (Wiener filter), for any
+/// true scale factor. The likelihood of the fixes therefore shows an apparent scale factor of about noise/motion that
+/// the sensor does not have, and it improves held-out outages too.
 #include "core/navigate/drive/filter_options.hpp"
 
 namespace driftlab::drive {
@@ -14,12 +15,12 @@ struct MotionPower {
   double noise = 0.0;   ///< N^2/T, with the options' level of N
 };
 
-/// Of a channel of the whole drive; zero windows: both 0. O(readings). `window_s` > 0.
+/// For one channel over the whole drive; both are 0 if no window fits. O(readings). `window_s` > 0.
 [[nodiscard]] MotionPower motion_power(const Drive& drive, const FilterOptions& options, std::size_t channel,
                                        double window_s);
 
-/// The scale factor that a channel shows though it has none: noise over motion, in windows as long as a filter keeps
-/// an angle or a velocity to itself between fixes. Infinite for a channel without motion.
+/// The apparent scale factor of a channel without a scale-factor error: noise over motion in windows of 5 s, for about
+/// so long a filter keeps an angle or a velocity by itself between fixes. Infinite for a channel without motion.
 [[nodiscard]] double scale_of_noise(const Drive& drive, const FilterOptions& options, std::size_t channel);
 
 }  // namespace driftlab::drive

@@ -4,7 +4,8 @@
 ///
 /// A filter that gives a covariance P of its horizontal error e says that e' P^-1 e (NEES) is chi-square distributed
 /// with two degrees of freedom, whose quantile of a share p is -2 ln(1 - p). Outages are told apart by the ellipses of
-/// 50 and 95 %: of many outages of a filter that knows itself, half lie in the first and one in twenty outside both.
+/// 50 and 95 %: of many outages of a filter whose covariance is right, half lie in the first and one in twenty outside
+/// both.
 #include "core/navigate/drive/drive.hpp"
 
 #include <array>
@@ -33,7 +34,8 @@ using MapPlace = std::array<double, 2>;
 enum class EllipseClass { Within50, Within95, Outside };
 inline constexpr std::size_t kEllipseClasses = 3;
 
-/// An end of an ellipse counts as within it. What has no NEES (the filter's covariance is none) lies outside.
+/// A NEES on the boundary of an ellipse counts as within it. An outage without a NEES (the filter's covariance is not
+/// positive definite) lies outside.
 [[nodiscard]] EllipseClass ellipse_class(const std::optional<double>& nees);
 
 /// One outage as it is kept of a drive.

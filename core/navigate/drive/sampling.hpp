@@ -37,7 +37,7 @@ struct UniformRun {
   [[nodiscard]] double end_s() const { return start_s + static_cast<double>(readings.size()) * dt_s; }
 };
 
-/// What is true of the unit's rows.
+/// Facts of the unit's rows.
 struct SamplingFacts {
   std::size_t rows = 0;
   std::size_t incomplete = 0;       ///< rows left out: a number was missing

@@ -1,12 +1,13 @@
 #pragma once
-/// The outages of a recorded drive, simulated: what the model says of the same trajectory with the same outages.
+/// Simulation of a recorded drive's outages: the errors that the model predicts on the same trajectory with the same
+/// outages.
 ///
 /// The truth follows the attitude and velocity that the filter found along the recording. Readings are its ideal ones
 /// with errors drawn from the model, fixes have the stated errors and describe the moment of their stamp, and the first
-/// estimate is the truth with a draw of its uncertainty: everything that the filter believes is so. A recorded attitude
-/// does not point where the vehicle goes; this side slip belongs to the truth, and a velocity constraint measures it
-/// with the white error that it believes in. So the simulation's own coverage is right with and without constraints,
-/// and what a measurement shows beyond it is what the simulation gets wrong.
+/// estimate is the truth plus a draw of its uncertainty: every assumption of the filter holds. A recorded attitude does
+/// not point where the vehicle goes; this side slip belongs to the truth, and a velocity constraint measures it with
+/// the white error that it believes in. So the simulation's own coverage is right with and without constraints, and a
+/// measured error beyond it is due to an effect that the simulation lacks.
 #include "core/navigate/drive/evaluation.hpp"
 
 namespace driftlab::drive {
@@ -21,7 +22,7 @@ struct SimulatedDuration {
   double duration_s = 0.0;
   std::size_t count = 0;
   double rms_m = 0.0, mean_m = 0.0, median_m = 0.0;
-  /// What the simulation's own filter makes of itself; blocks of one period of one simulated drive resampled.
+  /// The coverage of the simulation's own filter; its interval resamples blocks of one period of one simulated drive.
   Estimate nees, coverage50, coverage95;
   /// Measured rms over simulated rms; blocks of the measured and of the simulated outages resampled, so that the
   /// interval holds the scatter of both.

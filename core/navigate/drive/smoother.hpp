@@ -1,6 +1,6 @@
 #pragma once
-/// The trajectory of a drive by all its fixes, those after a moment as much as those before it: what a filter's errors
-/// can be measured against where a drive has no reference of its own.
+/// The smoothed trajectory of a drive, from the fixes before and after each moment. It serves as the reference for a
+/// filter's errors if a drive has none of its own.
 ///
 /// The filter runs once and keeps, in order, its transitions Phi and its scalar measurements (h, gain K, innovation z
 /// of variance s). Backward over these runs the smoother of Bierman (1973, "Fixed interval smoothing with discrete
@@ -16,7 +16,7 @@
 
 namespace driftlab::drive {
 
-/// What a filter run keeps for the way back. One for each run of readings.
+/// The record of a filter run that the backward pass needs. One for each run of readings.
 class FilterTape {
  public:
   /// A transition of all states.
@@ -59,8 +59,8 @@ class FilterTape {
 /// not positive are left out: the first seconds, in which it is a small difference of large numbers.
 [[nodiscard]] std::vector<FilterTape::Point> smoothed_path(const PreparedDrive& prepared);
 
-/// The drive with its antenna's smoothed path as reference. What it shares with the filter, a note says. Errors: those
-/// of PreparedDrive::make; TooFewSamples.
+/// The drive with its antenna's smoothed path as reference. A note states what that reference shares with the filter.
+/// Errors: those of PreparedDrive::make; TooFewSamples.
 [[nodiscard]] Result<Drive> with_smoothed_reference(Drive drive, const FilterOptions& options);
 
 }  // namespace driftlab::drive

@@ -18,7 +18,7 @@ struct Table {
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
-/// What was done to the stamps of one source.
+/// The repairs that were made to the stamps of one source.
 struct StampFacts {
   std::size_t rows = 0;
   std::size_t without_stamp = 0;  ///< rows left out: no stamp

@@ -1,11 +1,11 @@
 #pragma once
 /// How strongly an inertial unit is shaken, over time: the power of its readings above about 5 Hz.
 ///
-/// Where a unit is shaken its noise grows: scale factors rectify vibration, and what a sensor folds down from above its
-/// band is noise below it. The power is the mean square of what a moving mean over a tenth of a second leaves of the
+/// The noise of a shaken unit grows: nonlinear scale factors rectify vibration, and vibration above the sensor's band
+/// is aliased into it. The power is the mean square of what a moving mean over a tenth of a second leaves of the
 /// readings (half at 4.4 Hz), in blocks of half a second. White noise
 ///   N^2(t) = N^2 (1 + r P(t)/mean P) / (1 + r)
-/// has the same mean for every ratio r, so that r says when there is noise and the level how much.
+/// has the same mean for every ratio r, so that r sets the distribution of the noise over time and N its mean level.
 #include "core/navigate/imu_model.hpp"
 #include "core/navigate/motion.hpp"
 

@@ -57,22 +57,22 @@ struct Knob {
   /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the
   /// effect is (at most sqrt(dof / 2)); what the likelihood loses without it decides alone.
   bool ratio = false;
-  /// What an estimate can be off by beside its standard error, SI; part of the error that is stated. Null: nothing.
+  /// A further error of the estimate beside its standard error, SI; it is included in the stated error. Null: none.
   double (*systematic)(const Drive& drive, const FilterOptions& options) = nullptr;
   /// The sign says nothing: findings have none.
   bool magnitude = false;
-  /// Fitted as soon as it applies, and found with the cause's first parameter, never before it: what a value of that
-  /// one means without it is another thing.
+  /// Fitted as soon as it applies, and reported with the cause's first parameter, never before it, because that
+  /// parameter has another meaning without this one.
   bool companion = false;
 };
 
-/// What the files show of a cause.
+/// The evidence for a cause in the drive's files, before any filter runs.
 struct FromFiles {
   DriveFinding finding;  ///< all but the cause, and what the explanation fills in
   /// What the options are then; null: the loading has mended the drive already.
   std::function<void(FilterOptions&)> use;
-  /// It says which readings may be used, so that every filter is told; else it is a value of the model, and a rung of
-  /// the explanation is its own.
+  /// True if the cause decides which readings may be used: every filter then gets the options. False if it is a value
+  /// of the model: it is then a step of the explanation by itself.
   bool of_readings = false;
 };
 
@@ -114,7 +114,7 @@ struct Cause {
 /// One parameter of a cause in words: the cause alone where it has no other, else "misaligned gyroscope axes (xz)".
 [[nodiscard]] std::string words_of(const Knob& knob);
 
-/// What the innovations say of a knob, but for numbers.
+/// The finding of a knob by the innovations, without its numbers.
 [[nodiscard]] DriveFinding finding_of(const Knob& knob);
 
 }  // namespace driftlab::drive

@@ -1,6 +1,6 @@
 #pragma once
-/// The knob of one element of the gyroscope's error matrix: what the axis `Row` reads of a turn about the axis
-/// `Column`.
+/// The knob of one element of the gyroscope's error matrix: the part of a rate about the axis `Column` that the axis
+/// `Row` reads.
 #include "core/navigate/drive/causes/cause.hpp"
 
 namespace driftlab::drive {
