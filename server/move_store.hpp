@@ -1,10 +1,10 @@
 #pragma once
 /// Moves a lab between an SQLite store and a PostgreSQL database: rows and recordings, in either direction.
 ///
-/// Nobody may work with the two meanwhile: both are locked. A run that was cut off is gone on with by the same command;
-/// a file `moving` in the directory of the SQLite store says that it is under way, and no daemon starts there before it
-/// has ended. At the end everything is compared: rows by number and SHA-256, recordings by their checksums. The source
-/// stays as it is.
+/// Both stores are locked meanwhile, so that no daemon works with them. The same command continues a run that was
+/// interrupted; a file `moving` in the directory of the SQLite store says that it is under way, and no daemon starts
+/// there before it has ended. At the end everything is compared: rows by number and SHA-256, recordings by their
+/// checksums. The source stays as it is.
 #include "core/signal/result.hpp"
 #include "server/settings.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Reads back everything that is stored, over and over, slowly: damage is found before somebody needs the file, columns
-/// are healed, and what cannot be healed is logged once, counted and shown by /readyz.
+/// Reads back all stored files in a slow, endless loop, so that damage is found before a file is needed. Damaged
+/// columns are healed; damage that cannot be healed is logged once, counted and shown by /readyz.
 #include "core/read/byte_source.hpp"
 #include "server/api/stored_blob.hpp"
 #include "server/store/bad_states.hpp"

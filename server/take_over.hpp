@@ -1,5 +1,5 @@
 #pragma once
-/// What a start does with a store before anything works with it.
+/// The start of a process: puts the store in order before any work begins.
 #include "core/signal/result.hpp"
 #include "server/auth/gate.hpp"
 #include "server/settings.hpp"

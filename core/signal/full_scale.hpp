@@ -8,7 +8,7 @@
 
 namespace driftlab {
 
-/// A channel with at least this many distinct values has a range of which an extreme is only one value.
+/// The least number of distinct values at which the extreme values of a channel are taken for the ends of its range.
 inline constexpr std::size_t kVaried = 8;
 
 /// How often the extreme value is met, and the one next to it.

@@ -6,8 +6,8 @@
 /// stands, so that whoever was told that a change is stored reads it in every later answer. Whoever asks is part of
 /// the key: a token that is limited to devices never gets the answer of another.
 ///
-/// With the first question at a later number all earlier ones go: none of them can be given again, and under a mixed
-/// load they would fill the budget with what nobody can read.
+/// The first request at a later number removes all earlier answers: they can never be given again, and under a mixed
+/// load they would fill the budget.
 ///
 /// The least recently used answers go first where the budget `answer_cache_bytes` is spent. Thread safe.
 #include "server/http/message.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// From bytes on disk to a recording: recognised, decoded once, checked against their metadata and recorded. Every way
-/// in ends here: an upload in one request, a resumable one, a live recording. Whatever goes wrong before the row is
-/// written leaves nothing behind.
+/// in ends here: an upload in one request, a resumable one, a live recording. A failure before the row is written
+/// leaves nothing behind.
 #include "server/api/api.hpp"
 #include "server/api/upload_metadata.hpp"
 

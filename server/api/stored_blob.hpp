@@ -1,6 +1,6 @@
 #pragma once
-/// What is stored is verified before it is used: damaged columns are decoded again from the uploaded bytes, which carry
-/// their own checksum as their name; damaged bytes cannot be healed here and are reported.
+/// Stored files are verified before they are used: damaged columns are decoded again from the uploaded bytes, which
+/// carry their own checksum as their name; damaged bytes cannot be healed here and are reported.
 #include "core/read/byte_source.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/budgets.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// The gate: who asks, and whether they may.
+/// The gate: identifies the caller of each request and decides whether it is allowed.
 ///
 /// Authentication is on once there ever was a token, or where the daemon was told to require one; before that everybody
 /// who reaches the daemon may do everything, and the daemon listens on loopback alone. It never switches itself off:

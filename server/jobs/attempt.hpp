@@ -1,9 +1,8 @@
 #pragma once
 /// One attempt at one job: from the claim to the row that says how it ended.
 ///
-/// `run` belongs to a worker thread; the other functions may be called meanwhile by others. Whatever
-/// they race for, the store decides: every write carries the attempt's number, and one that comes too late changes
-/// nothing.
+/// `run` belongs to a worker thread; other threads may call the other functions meanwhile. The store resolves every
+/// race between them: each write carries the attempt's number, and a late one changes nothing.
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/worker_pool.hpp"
 

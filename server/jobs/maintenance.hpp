@@ -1,5 +1,5 @@
 #pragma once
-/// What has to be done now and then, whoever works: expired leases, old replies, files without rows.
+/// Periodic maintenance of the store: expired leases, old replies, files without rows.
 #include "core/signal/result.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/budgets.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// What the store keeps about who may do what: tokens, the sessions of dashboards, and the audit log.
+/// The store's records of access: tokens, the sessions of dashboards, and the audit log.
 ///
 /// Secrets are kept as SHA-256 only: they are random and long, so that no slow hash is needed. Every change of a token
 /// is a row of the audit log, written in its transaction. Methods are thread safe and may block on disk; every one may

@@ -1,6 +1,6 @@
 #pragma once
-/// The audit log: what was changed, by whom, as a chain in which no row can be altered, removed or put in between
-/// without every later digest being wrong.
+/// The audit log: who changed what, as a chain of digests. Altering, removing or inserting a row makes every later
+/// digest wrong.
 ///
 /// digest = SHA-256 of previous, sequence, at_us, actor, action, object, request_id, address and detail, each written
 /// as its length in bytes, a colon, its text and a comma. The first row's previous digest is 64 zeros. Rows taken off

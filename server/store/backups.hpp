@@ -1,9 +1,11 @@
 #pragma once
-/// Backups that the daemon makes of its own data directory: by a timer, and when somebody asks. One at a time, in a
-/// thread of its own, so that nothing waits for it.
+/// Backups that the daemon makes of its own data directory, by a timer and on request. One backup is made at a time, in
+/// a thread of its own, so that no request waits for it.
 ///
 /// Each is a folder `<directory>/<name>` as `driftlabd backup` makes it (server/store/sqlite/backup.hpp), named by the
-/// moment that it holds. What a folder is missing was not finished and is none. Of complete ones the newest are kept.
+/// moment that it holds. A folder appears under that name only when its backup is complete; an unfinished one has
+/// another name and does not count as a backup. The newest backups are kept (`BackupOptions::keep`); older ones are
+/// removed after a backup that found no damage.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/store_report.hpp"
@@ -41,12 +43,13 @@ struct Backup {
   std::optional<UtcMicros> finished_at;
   std::int64_t blobs = 0;
   std::int64_t bytes = 0;           ///< of recordings and their columns
-  std::vector<std::string> faults;  ///< sentences: what is damaged, or why there is none
+  std::vector<std::string> faults;  ///< sentences: what is damaged, or why the backup failed
 };
 
 struct BackupOptions {
   std::filesystem::path directory;  ///< of the backups of this daemon alone; empty: none are made
-  /// Makes one in a folder that is not there yet. Error: Cancelled where it was asked to stop, and nothing stays.
+  /// Makes a backup in a folder that does not exist yet. Error: Cancelled if a stop was requested; no file is left
+  /// then.
   std::function<Result<StoreReport>(const std::filesystem::path& target, const std::string& now,
                                     const std::stop_token& stop)>
       make = {};
@@ -68,17 +71,17 @@ class Backups {
   /// Removes what a process that was killed left unfinished, and starts the timer: the first backup is due when the
   /// newest of the directory is old enough.
   void start();
-  /// Gives up the one that is being made, of which nothing stays. Blocks until it has.
+  /// Cancels the backup under way, whose files are removed, and blocks until that is done.
   void stop();
 
-  /// Begins one, or names the one that is being made. Errors: Conflict (there is no directory for them); Cancelled (the
+  /// Begins a backup, or returns the one under way. Errors: Conflict (there is no directory for them); Cancelled (the
   /// daemon is stopping).
   [[nodiscard]] Result<Backup> begin();
 
-  /// Newest first: those of this process, and complete ones of the directory. Error: Io.
+  /// The backups that this process began and the complete ones in the directory, newest first. Error: Io.
   [[nodiscard]] Result<std::vector<Backup>> list() const;
 
-  /// When the newest complete one was begun; nothing: there is none, or none are made here.
+  /// When the newest undamaged backup was begun; nothing if there is none or the daemon has no directory for backups.
   [[nodiscard]] std::optional<UtcMicros> newest() const;
 
  private:

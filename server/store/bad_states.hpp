@@ -1,5 +1,5 @@
 #pragma once
-/// What is wrong with this daemon now: said once when it begins and once when it ends, and shown while it lasts.
+/// The bad states of this daemon: each is reported once when it begins and once when it ends, and shown while it lasts.
 ///
 /// Each begin and end goes to a listener (the log) at once and to the audit log as soon as that can be written: a store
 /// that cannot be written says so afterwards. Thread safe.
@@ -59,7 +59,8 @@ class BadStates {
 
   [[nodiscard]] std::vector<StandingState> standing() const;
 
-  /// To be called now and then: ends what has passed, and writes the rows of the audit log that are due. Blocks.
+  /// To be called periodically: ends states that have passed, and writes the rows of the audit log that are due.
+  /// Blocks.
   void look_after();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Every budget of the daemon: what one client, one document, one job or all of them together may take.
+/// Every budget of the daemon: the limits of one client, one document, one job, or all of them together.
 ///
 /// This list is the one place where they are stated. Each is enforced before its cost arises, and what is refused says
 /// which budget refused it. They are set by `--budget NAME=VALUE`, `DRIFTLAB_BUDGET_NAME` or the table `[budgets]` of
@@ -88,7 +88,7 @@ struct Budgets {
 #undef DRIFTLAB_DECLARE_BUDGET
 };
 
-/// Those in force where nothing was said.
+/// The default budgets.
 [[nodiscard]] inline const Budgets& default_budgets() {
   static const Budgets budgets;
   return budgets;

@@ -1,5 +1,5 @@
 #pragma once
-/// Time and identity are injected, so that clock jumps, expired leases and id order are unit tests and not hopes.
+/// Time and ids are injected, so that unit tests can cover clock jumps, expired leases and the order of ids.
 #include <chrono>
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 #pragma once
-/// Who asks: what they may do, and which devices they may know of.
+/// The caller of a request: its scope, and the devices that it may see.
 ///
 /// A request carries its caller from the check that admits it (server/auth/gate.hpp) to whatever it does. Below the
 /// handlers the caller is that of the thread: a handler runs on one thread from its first line to its last, so that
-/// the store can write, in the transaction of a change, who made it. Threads of the daemon itself act for nobody.
+/// the store can write, in the transaction of a change, who made it. Threads of the daemon itself have no caller.
 #include "core/signal/result.hpp"
 
 #include <optional>

@@ -17,7 +17,7 @@
 
 namespace driftlab::server {
 
-/// What a caller limited to devices may know of: what belongs to one of them, and what it asked for itself.
+/// The rows that a caller limited to devices may see: those of its devices, and those that it asked for itself.
 struct Visibility {
   std::string devices_json;  ///< names, as a JSON list
   std::string token;
@@ -136,7 +136,8 @@ struct RecordingOutcome {
   bool created = false;
 };
 
-/// What a worker holds while it works: writes carry both, and the attempt fences off a worker whose lease was lost.
+/// A worker's claim on a job: every write carries both members, and the attempt number fences off a worker whose lease
+/// was lost.
 struct Lease {
   std::string job_id;
   std::int64_t attempt = 0;
@@ -259,7 +260,8 @@ class Store {
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
   [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
-  /// What must be read of the results: of each recording by its newest characterisation, of every other job.
+  /// The results whose verdict a person must read: those of the newest characterisation of each recording, and of every
+  /// other job.
   [[nodiscard]] virtual Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) = 0;
   /// The latest result per (recording, channel) of the recording's current revision, by condition, content of the
   /// recording (its blob's hash) and channel: the same order however and whenever the recordings came.

@@ -1,5 +1,5 @@
 #pragma once
-/// What was found or copied of everything that is stored.
+/// The outcome of a check or a backup of all stored data.
 #include <cstdint>
 #include <string>
 #include <vector>

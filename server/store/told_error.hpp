@@ -1,6 +1,5 @@
 #pragma once
-/// An error as clients are told it: where the daemon keeps its files is nobody's business but the operator's, who finds
-/// it in the log.
+/// The error that a client receives, without the paths of the daemon's files; the operator finds those in the log.
 #include "core/signal/result.hpp"
 
 #include <string_view>

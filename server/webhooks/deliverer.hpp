@@ -2,8 +2,8 @@
 /// The threads that deliver what the outbox holds.
 ///
 /// Each takes the delivery that has been due longest, of a webhook that no other thread is telling something: a
-/// receiver gets one message at a time, and one that is slow holds up nobody else. The outcome is written before the
-/// next is taken; a daemon that dies in between sends the message again, with the same id. Everything but 2xx is a
+/// receiver gets one message at a time, and a slow receiver does not delay the others. The outcome is written before
+/// the next is taken; a daemon that dies in between sends the message again, with the same id. Everything but 2xx is a
 /// failure and is tried again after a pause (pauses.hpp); 410 disables the webhook at once, and so do deliveries given
 /// up in a row (budgets webhook_attempts, webhook_give_ups).
 #include "server/store/budgets.hpp"

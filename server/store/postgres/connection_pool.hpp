@@ -3,8 +3,8 @@
 ///
 /// Where one turns out to be broken all idle ones are closed, for they broke with it. Where the database does not
 /// answer it is asked again after pauses of 0.1 s to 5 s, each drawn between its half and its whole, so that daemons
-/// that lost it together do not come back together; whoever asks meanwhile is told at once what the last attempt was
-/// told.
+/// that lost it together do not come back together; a request during a pause fails at once with the error of the last
+/// attempt.
 #include "core/signal/result.hpp"
 #include "server/store/postgres/connection.hpp"
 

@@ -3,8 +3,8 @@
 ///
 /// A daemon whose recordings only it can reach holds the lock alone. Daemons and workers that share their recordings
 /// hold it together; the first of them has it alone until it has put the store in order (`admit_others`). The server
-/// ends the lock with the connection. Where that breaks, the lock is taken again when somebody asks; what others wrote
-/// meanwhile is fenced off like the work of any lost lease.
+/// ends the lock with the connection. If the connection breaks, the lock is taken again at the next call of `hold`;
+/// attempts that another process took over meanwhile are fenced off like those of any lost lease.
 #include "core/signal/result.hpp"
 #include "server/store/postgres/connection_pool.hpp"
 
@@ -23,7 +23,8 @@ class DaemonLock {
   /// The same for the start of a daemon: waits a moment for a connection that has just lost its daemon to end, and for
   /// a first one that puts the store in order.
   [[nodiscard]] Status hold_at_start();
-  /// Whether nobody else held it at the start. Of the kind Together, nobody comes before `admit_others` then.
+  /// Whether no other process held the lock at the start. A lock of the kind Together is then held alone until
+  /// `admit_others`.
   [[nodiscard]] bool came_first() const { return came_first_; }
   /// Errors: Io.
   [[nodiscard]] Status admit_others();

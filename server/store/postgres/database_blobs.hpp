@@ -1,10 +1,10 @@
 #pragma once
 /// Blobs in a PostgreSQL database, in parts of 1 MiB, with copies in a local directory where jobs map them into memory.
 ///
-/// What an upload keeps is in the database before it is acknowledged. The path of a blob is that of the local copy,
-/// which is fetched and compared with its checksum where it is absent; the copies that were used longest ago are
-/// removed where they take more than their budget. So every daemon and worker reaches every recording with no folder
-/// between them, at the price of a database as large as the recordings: base backups and pg_dump hold them too.
+/// The files of an upload are in the database before the upload is acknowledged. The path of a blob is that of the
+/// local copy, which is fetched and compared with its checksum where it is absent; the copies that were used longest
+/// ago are removed where they take more than their budget. So every daemon and worker reaches every recording with no
+/// folder between them, at the price of a database as large as the recordings: base backups and pg_dump hold them too.
 #include "server/store/blobs.hpp"
 #include "server/store/sql/database.hpp"
 

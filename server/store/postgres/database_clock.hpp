@@ -1,6 +1,6 @@
 #pragma once
-/// The clock of a database, known from its answers: daemons whose machines disagree about the time agree about that of
-/// their database, by which tokens expire, rows are dated and recordings grow old.
+/// The clock of a database, estimated from its answers. Daemons on machines with different clocks share it for the
+/// expiry of tokens, the dates of rows and the age of recordings.
 #include "server/store/clock.hpp"
 
 #include <chrono>

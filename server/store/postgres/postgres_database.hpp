@@ -1,12 +1,12 @@
 #pragma once
 /// Transactions of a PostgreSQL database that any number of daemons share.
 ///
-/// A write that decides by what it read is SERIALIZABLE: where it does not fit between others the server refuses it,
-/// and it is run again. So every rule of the tables that holds for one writing thread holds here too. Audited writes
-/// wait for each other by a lock on the audit log, taken before anything is read: they extend one chain. Writes that
-/// decide by the row that they change are READ COMMITTED and hinder nobody. A transaction that lost its connection
-/// before its COMMIT was sent is run again on another one; after that it may have been stored, and the caller is told
-/// so.
+/// A write that depends on rows it has read is SERIALIZABLE: if it conflicts with concurrent writes the server refuses
+/// it, and it is run again. So every rule of the tables that holds for one writing thread holds here too. Audited
+/// writes wait for each other by a lock on the audit log, taken before anything is read: they extend one chain. Writes
+/// that depend only on the row that they change are READ COMMITTED and are never refused for a conflict. A transaction
+/// that lost its connection before its COMMIT was sent is run again on another one; after that it may have been stored,
+/// and the caller is told so.
 #include "server/store/postgres/connection_pool.hpp"
 #include "server/store/postgres/database_clock.hpp"
 #include "server/store/sql/database.hpp"

@@ -54,7 +54,8 @@ class PostgresStore final : public SqlStore {
   [[nodiscard]] const PostgresFacts& facts() const { return facts_; }
   /// The clock by which its rows are dated, that of the database. Lives as long as the store.
   [[nodiscard]] const Clock& clock() const { return clock_; }
-  /// What daemons on one database owe each other; nullptr unless the lock is held together. Lives as long as the store.
+  /// The coordination of the daemons on one database; nullptr unless the lock is held together. Lives as long as the
+  /// store.
   [[nodiscard]] Coordination* coordination() { return coordination_.get(); }
   /// Also that the database has not been brought to another schema since, nor taken over by another daemon. Errors:
   /// Conflict; Io.

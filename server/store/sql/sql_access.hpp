@@ -16,7 +16,7 @@ class AuditedWriter {
   AuditedWriter(Database& database, AuditListener listener) : database_(database), listener_(std::move(listener)) {}
 
   /// Runs `work(connection)`, which gives a `Result`. Where this thread acts for a caller and `entry_of(outcome)` says
-  /// that something changed, the row is written with it. Where it acts for nobody nothing is.
+  /// that something changed, the row is written with it. Without a caller no row is written.
   template <class Work, class EntryOf>
   [[nodiscard]] auto write(Work work, EntryOf entry_of) {
     const Caller* const caller = caller_of_thread();

@@ -57,8 +57,8 @@ template <class Row>
   }
 }
 
-/// Which jobs somebody limited to devices sees: those asked for by the token (first value), and those that name devices
-/// and none but these (second value, a JSON list of names).
+/// The jobs that a caller limited to devices sees: those asked for by its token (first value), and those that name only
+/// devices of its list (second value, a JSON list of names).
 constexpr std::string_view kVisibleJob =
     "(EXISTS (SELECT 1 FROM owners WHERE object_id = jobs.id AND token_id = ?) OR (EXISTS (SELECT 1 FROM job_devices "
     "WHERE job_id = jobs.id) AND NOT EXISTS (SELECT 1 FROM job_devices JOIN devices ON devices.id = "

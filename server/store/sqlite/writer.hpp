@@ -2,10 +2,10 @@
 /// The one thread that writes: callers hand it work and wait until it is on disk.
 ///
 /// Work that is queued while a transaction is being flushed is committed together in the next one (group commit): at
-/// most kBatchSize pieces or kBatchTime, whichever comes first; nobody waits for company. Each piece runs inside a
-/// savepoint, so that one that fails takes nothing of its neighbours with it. Where the whole transaction fails (a full
-/// disk), each piece is tried once more alone, so that a large one does not fail the small ones. A piece of work may
-/// therefore run twice, but what it did the first time is undone.
+/// most kBatchSize pieces or kBatchTime, whichever comes first; work is never delayed to fill a batch. Each piece runs
+/// inside a savepoint, so that one that fails takes nothing of its neighbours with it. Where the whole transaction
+/// fails (a full disk), each piece is tried once more alone, so that a large one does not fail the small ones. A piece
+/// of work may therefore run twice, but what it did the first time is undone.
 #include "core/signal/result.hpp"
 #include "server/store/sqlite/connection.hpp"
 
