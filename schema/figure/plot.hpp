@@ -26,7 +26,7 @@ inline constexpr const char* kRobustBand = "#c04a0026";
 
 enum class Mark { None, Dot, Open, Diamond };
 
-/// One curve; the lists are as long as `x`, or empty. What has no value is not drawn.
+/// One curve; the lists are as long as `x`, or empty. Points without a value are not drawn.
 struct Series {
   std::string name;
   std::string detail = {};  ///< second line of its key

@@ -11,7 +11,7 @@
 
 namespace driftlab {
 
-/// The sensor axes of a characterisation document in order of appearance; channels that nobody named by axis stand each
+/// The sensor axes of a characterisation document in order of appearance; channels without a stated axis stand each
 /// for themselves, under their column name. Error: Internal, for a document that driftlab has not written.
 [[nodiscard]] Result<std::vector<SensorSources>> sensors_of(const Json& characterisation);
 

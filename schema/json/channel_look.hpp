@@ -1,5 +1,5 @@
 #pragma once
-/// What is looked at of a channel, as documents: densities and widths in the channel's own unit.
+/// The views of a channel as documents: densities and widths in the channel's own unit.
 #include "core/analysis/channel_look.hpp"
 #include "schema/json/json.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a drive shows as documents (schema/drive-evaluation.schema.json).
+/// The results of a recorded drive as documents (schema/drive-evaluation.schema.json).
 #include "core/analysis/drive.hpp"
 #include "schema/json/json.hpp"
 
@@ -11,11 +11,11 @@ namespace driftlab {
 [[nodiscard]] Json to_json(const DriveSimulationReport& simulation);
 [[nodiscard]] Json to_json(const drive::DurationSummary& duration, const drive::Drive& drive);
 
-/// What is true of the drive's files, before any filter.
+/// The facts of the drive's files, before any filter runs.
 [[nodiscard]] Json facts_to_json(const drive::Drive& drive);
 /// With the interval of a bootstrap.
 [[nodiscard]] Json estimate_to_json(const Estimate& estimate);
-/// What a filter was told beside the document.
+/// The settings of a filter beyond those of the drive document.
 [[nodiscard]] Json options_to_json(const drive::FilterOptions& options);
 
 }  // namespace driftlab

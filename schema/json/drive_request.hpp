@@ -1,5 +1,5 @@
 #pragma once
-/// What is asked of a drive as JSON: the parameters of a job of kind `drive_evaluation`.
+/// The request of a drive evaluation as JSON: the parameters of a job of kind `drive_evaluation`.
 #include "core/analysis/drive.hpp"
 #include "schema/json/json.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What is known of a recording while it grows, as the data of an event.
+/// The provisional results of a growing recording, as the data of an event.
 #include "core/analysis/growing_recording.hpp"
 #include "schema/json/json.hpp"
 

@@ -73,7 +73,7 @@ class Faults {
   std::size_t left_out_ = 0;  ///< beyond kMaxReportedFaults
 };
 
-/// Reads one JSON object member by member and reports what is missing, mistyped or unknown.
+/// Reads one JSON object member by member and reports members that are missing, mistyped or unknown.
 class ObjectReader {
  public:
   /// `object` must outlive the reader. Not an object: a fault, and every read gives nothing.
@@ -89,7 +89,7 @@ class ObjectReader {
   [[nodiscard]] std::string required_text(std::string_view name);
   /// The pointer of a member of this object.
   [[nodiscard]] std::string pointer(std::string_view name) const;
-  /// Reports every member that nobody asked for. Call last.
+  /// Reports as unknown every member that was not asked for before. Call last.
   void reject_unknown();
 
  private:

@@ -13,7 +13,7 @@ namespace driftlab {
 /// Faults are added at `pointer` and below; the result is then unspecified.
 [[nodiscard]] Condition condition_from_json(const Json& document, const std::string& pointer, Faults& faults);
 
-/// One recording without its file: id, rate_hz, columns, condition, trim. Members nobody gave are left out.
+/// One recording without its file: id, rate_hz, columns, condition, trim. Members that were not stated are left out.
 [[nodiscard]] Json to_json(const RecordingSpec& spec);
 
 /// Reads the members of a recording; `file` is accepted and ignored (an upload carries its bytes itself), and so are
@@ -25,7 +25,7 @@ namespace driftlab {
 /// UnknownQuantity, UnknownUnit, UnitMismatch; each names the column.
 [[nodiscard]] Result<std::map<std::string, ColumnRole>> parse_columns(std::string_view text);
 
-/// A column of a file and what it is taken to mean: {"name", "quantity", "axis", "unit"}, null where nobody says.
+/// A column of a file and its meaning: {"name", "quantity", "axis", "unit"}, null for a member that is not stated.
 [[nodiscard]] Json role_json(const std::string& name, const std::optional<ColumnRole>& role);
 
 }  // namespace driftlab

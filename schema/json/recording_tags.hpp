@@ -21,7 +21,7 @@ struct RecordingTags {
 /// `labels`, `session` and `recorded_at` of a recording's members; others are left alone.
 [[nodiscard]] RecordingTags recording_tags_from_json(const Json& document, const std::string& pointer, Faults& faults);
 
-/// Only members that somebody gave.
+/// Members that were not stated are left out.
 [[nodiscard]] Json to_json(const RecordingTags& tags);
 
 /// `firmware=1.5.0,board=b`, as a query and a command line have it. Error: InvalidArgument.

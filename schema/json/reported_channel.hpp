@@ -23,12 +23,12 @@ namespace driftlab {
 /// N, B, ... with null where there is no value; the reasons for it are added to `reasons`.
 [[nodiscard]] Json to_json(const ReportedValues& values, Json& reasons);
 
-/// One member of `channels`. Members that nobody needs for several recordings are passed over. Error: Internal, for a
+/// One member of `channels`. Members that a combination of recordings does not need are ignored. Error: Internal, for a
 /// document that driftlab has not written.
 [[nodiscard]] Result<ReportedChannel> reported_channel_from_json(const Json& document);
 
-/// What a member of `channels` says of gross errors; nothing where nobody looked. Of a document that driftlab has
-/// written, of any age.
+/// The verdict of a member of `channels` on gross errors; nothing if they were not tested for. Of a document that
+/// driftlab has written, of any age.
 [[nodiscard]] std::optional<Contamination> contamination_from_json(const Json& channel);
 
 }  // namespace driftlab

@@ -15,9 +15,9 @@ namespace driftlab {
 struct StatedFacts {
   std::optional<double> temperature_degc;
   regression::FullScales full_scale;               ///< written in deg/s and g
-  std::optional<std::vector<std::string>> causes;  ///< nothing: nobody investigated; empty: nothing was found
+  std::optional<std::vector<std::string>> causes;  ///< nothing: not investigated; empty: no cause was found
 
-  /// Nobody said anything.
+  /// True if no fact is stated.
   [[nodiscard]] bool empty() const;
   /// Adds causes that stored investigations found.
   void add_causes(const std::set<std::string>& found);

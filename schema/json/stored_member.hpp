@@ -1,5 +1,5 @@
 #pragma once
-/// Members of documents that driftlab wrote, of any age: what is null or not there has a meaning.
+/// Reads members of documents that any release of driftlab wrote, in which a null or missing member has a meaning.
 #include "schema/json/json.hpp"
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace driftlab {
 
-/// The member as a finite number, else `otherwise`: null stands for what is not finite or not known.
+/// The member as a finite number, else `otherwise`: null stands for a value that is not finite or not known.
 [[nodiscard]] double finite_member(const Json& object, const char* name, double otherwise);
 
 /// The member as a count; 0 where it is null, absent or none.

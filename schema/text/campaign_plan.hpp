@@ -6,7 +6,8 @@
 
 namespace driftlab {
 
-/// What is open, and for each proposal what to record and how likely it decides what.
+/// The open questions, and for each proposal the recordings to make, the questions that it may decide and the
+/// probability that it does.
 [[nodiscard]] std::string plan_to_text(const investigate::CampaignPlan& plan);
 
 }  // namespace driftlab

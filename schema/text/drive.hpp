@@ -1,5 +1,5 @@
 #pragma once
-/// A recorded drive for people: what its files show, and what the filter does in its outages.
+/// A recorded drive as text for people: the facts of its files, and the filter's errors in its outages.
 #include "core/analysis/drive.hpp"
 
 #include <string>
@@ -27,7 +27,7 @@ namespace driftlab {
 /// The drive in a line: name, vehicle, duration, length, highest speed.
 [[nodiscard]] std::string header_of_drive(const drive::Drive& drive);
 
-/// What is true of a drive, a line each; empty where there is nothing.
+/// The facts of a drive, one line each; empty if there are none.
 [[nodiscard]] std::string notes_of_drive(const std::vector<std::string>& notes);
 
 /// The rows of a table of durations: n, rms with interval, median, NEES, coverage.
