@@ -34,9 +34,9 @@ struct GrowingRecording {
 /// `time_s` and `values` of one channel, equally long; NaN is taken for missing. O(N log N).
 [[nodiscard]] GrowingRecording look_at_growth(std::span<const double> time_s, std::span<const double> values);
 
-/// Whether the last three seconds are those of a sensor that nobody moves: the standard deviation of an angular rate
-/// stays below 0.02 rad/s, that of a specific force below 0.3 m/s^2, ten times the noise of a phone. Nothing for other
-/// units, and below ten samples.
+/// Whether the sensor lay still in the last three seconds: the standard deviation is below 0.02 rad/s for an angular
+/// rate and below 0.3 m/s^2 for a specific force, ten times the noise of a phone. Nothing for other units and for fewer
+/// than ten samples.
 [[nodiscard]] std::optional<bool> lies_still(std::span<const double> time_s, std::span<const double> values,
                                              const Unit& unit);
 

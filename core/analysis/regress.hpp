@@ -22,7 +22,7 @@ inline constexpr int kRegressionVersion = 2;
 struct Look {
   std::size_t number = 1;
   std::size_t of = 3;    ///< 3, or 1: the first run spends all of alpha
-  bool counted = false;  ///< somebody remembers the runs before
+  bool counted = false;  ///< the earlier runs are known, so that looks are counted
 };
 
 struct RegressRequest {
@@ -30,7 +30,7 @@ struct RegressRequest {
   Look look;
   /// The label before the candidate's, where it is not the baseline: compared as information.
   std::optional<regression::Recordings> previous;
-  std::set<std::string> stated = {};              ///< names of settings that somebody asked for
+  std::set<std::string> stated = {};              ///< names of the settings that the request states
   std::optional<regression::Settings> kept = {};  ///< those that the baseline's anchor keeps
 };
 

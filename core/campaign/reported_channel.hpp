@@ -53,7 +53,7 @@ struct ReportedFit {
   std::string intervals;
   bool plausible = false;
   std::optional<JTest> j_test;
-  std::string verdict;            ///< `accepted`, `described`, `not_described`, `untested`; empty: nobody asked
+  std::string verdict;            ///< `accepted`, `described`, `not_described`, `untested`; empty: not stored
   double described_within = 0.0;  ///< relative error of the variances that the model leaves
   std::string status;
   std::vector<std::string> warnings;
@@ -80,7 +80,7 @@ struct ReportedChannel {
   std::size_t missing = 0;
   double dt_s = 0.0;
   ReportedHaar haar;
-  std::string contamination;      ///< verdict: `clean`, `contaminated`, `undecided`; empty where nobody looked
+  std::string contamination;      ///< verdict: `clean`, `contaminated`, `undecided`; empty: not tested
   ReportedValues allan;           ///< N B K Q R of IEEE Std 952
   double discrepancy = 0.0;       ///< of the curve from every candidate; 0 where one is accepted
   double from_tau_s = 0.0;        ///< models were fitted to the scales of tau from here on

@@ -43,7 +43,7 @@ struct NoiseFigure {
 
 /// One axis of one sensor.
 struct AxisNoise {
-  std::string axis;           ///< x, y, z; empty where nobody named it
+  std::string axis;           ///< x, y, z; empty: not stated
   std::string channel;        ///< column name in the first recording
   double rate_hz = 0.0;       ///< of the recording
   double duration_s = 0.0;    ///< of the longest recording

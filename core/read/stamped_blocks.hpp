@@ -45,7 +45,7 @@ class StampedBlocks {
  private:
   [[nodiscard]] double count() const { return static_cast<double>(waiting_.size()) / static_cast<double>(width_); }
 
-  /// The waiting block, of which it is now known when the next one starts.
+  /// Delivers the waiting block, now that the start of the next one is known.
   [[nodiscard]] Status deliver(double next_s) {
     if (waiting_.empty()) {
       return {};

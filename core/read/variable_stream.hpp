@@ -20,7 +20,7 @@
 
 namespace driftlab {
 
-/// Writes the records to a file descriptor. False once a write has failed: nobody listens any more.
+/// Writes the records to a file descriptor. False once a write has failed, as when the reader has closed the stream.
 class VariableWriter {
  public:
   explicit VariableWriter(int fd) : fd_(fd) {}

@@ -17,9 +17,9 @@ struct TimeGuess {
   double rate_hz = 0.0;  ///< by the median step
 };
 
-/// The first column without a role, or of a time without a unit, that rises throughout by steps of which nine tenths
-/// lie within a half of their median; a number of the row is none. Nothing where a column is the time. `column(i)`
-/// gives the samples of column i; the first 10,000 are looked at.
+/// The first column without a role, or of a time without a unit, that rises throughout and nine tenths of whose steps
+/// differ from the median step by at most half of it; a column of row numbers does not qualify. Nothing if a column is
+/// already the time. `column(i)` gives the samples of column i; the first 10,000 are looked at.
 [[nodiscard]] std::optional<TimeGuess> guess_time(const ColumnNames& names,
                                                   std::span<const std::optional<ColumnRole>> roles,
                                                   const std::function<std::span<const double>(std::size_t)>& column);

@@ -16,7 +16,7 @@ struct KeptRows {
 };
 
 /// Rows [first, end) of `rows` rows `dt_s` [s] apart. A sample at exactly the trim stays; a slack of a millionth of a
-/// step absorbs the rounding of seconds over steps. A negative trim is none.
+/// step absorbs the rounding of seconds over steps. A negative trim counts as 0.
 [[nodiscard]] inline KeptRows kept_rows(const Trim& trim, double dt_s, std::size_t rows) {
   const auto rows_in = [&](double seconds) {
     constexpr double kSlack = 1e-6;

@@ -22,8 +22,8 @@ struct MeasuredTemperature {
 };
 
 /// Of the rows that `view` analyses; `column(i)` gives column i of the file in its own unit, as for view_recording.
-/// Nothing where there is no temperature column, where nobody states its unit (a count has no temperature), and where
-/// it holds no number. At most about 65,536 rows, evenly spread, are looked at, in as much memory.
+/// Nothing if there is no temperature column, if its unit is not stated (a count has no temperature), or if it holds no
+/// number. At most about 65,536 rows, evenly spread, are looked at, in as much memory.
 [[nodiscard]] std::optional<MeasuredTemperature> measured_temperature(
     const RecordingSpec& spec, const ColumnNames& names, const RecordingView& view,
     const std::function<std::span<const double>(std::size_t)>& column);

@@ -11,7 +11,7 @@
 namespace driftlab {
 
 enum class Quantity {
-  Unspecified,  ///< nobody said; analysed as it is, in unit `1`
+  Unspecified,  ///< not stated; analysed as it is, in unit `1`
   Time,
   AngularRate,
   SpecificForce,

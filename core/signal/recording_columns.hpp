@@ -8,7 +8,7 @@
 /// frozen sensor out; a study puts them on a grid, and names the freeze.
 ///
 /// A drive has several files, each on a clock of its own, and quantities that no device has (fixes, a course, an
-/// accuracy): core/navigate/drive/table.hpp reads them. Both find the column that somebody names by find_column.hpp.
+/// accuracy): core/navigate/drive/table.hpp reads them. Both find a named column by find_column.hpp.
 #include "core/signal/channel_survey.hpp"
 #include "core/signal/guess_time.hpp"
 #include "core/signal/recording.hpp"
@@ -50,7 +50,7 @@ class RecordingColumns {
 
   [[nodiscard]] std::size_t count() const { return names_.size(); }
   [[nodiscard]] const std::string& name(std::size_t index) const { return names_[index]; }
-  /// Nothing for a column that nobody named.
+  /// Nothing for a column that was not named.
   [[nodiscard]] const std::optional<ColumnRole>& role(std::size_t index) const { return roles_[index]; }
   [[nodiscard]] std::span<const double> samples(std::size_t index) const { return column_(index); }
   /// The stated unit of a column, else `otherwise`.
@@ -60,7 +60,7 @@ class RecordingColumns {
 
   /// The first column of a quantity along an axis (empty: a quantity without axes).
   [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, std::string_view axis = "") const;
-  /// The time column. One that was only guessed from its name and holds text is none.
+  /// The time column. A column that was only guessed from its name and holds text does not count.
   [[nodiscard]] std::optional<std::size_t> time() const;
   /// A column that is a time by its numbers, where none is by its name.
   [[nodiscard]] std::optional<TimeGuess> guessed_time() const { return guess_time(names_, roles_, column_); }
@@ -90,7 +90,7 @@ class RecordingColumns {
   std::vector<std::optional<ColumnRole>> roles_;
   Samples column_;
   bool guessed_;      ///< the roles come from names
-  bool time_stated_;  ///< somebody said which column is the time
+  bool time_stated_;  ///< the time column is stated, not guessed
 };
 
 /// The rate about `axis` [rad/s] that a condition states at `time_s` after the first sample of the file: the constant

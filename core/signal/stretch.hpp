@@ -36,7 +36,7 @@ struct Stretch {
   [[nodiscard]] std::size_t missing() const;  ///< between the runs
   /// The gaps of the series formed by the runs laid end to end; rows are counted from its first.
   [[nodiscard]] std::vector<Gap> gaps() const;
-  /// The run with the most rows, the earliest of equals; empty without runs.
+  /// The run with the most rows, the earliest if several tie; empty without runs.
   [[nodiscard]] RowRun longest() const;
 };
 

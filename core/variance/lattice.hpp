@@ -20,7 +20,7 @@
 
 namespace driftlab {
 
-/// The lattice step: the number of which at least 98 % of the differences between successive samples are multiples.
+/// The lattice step: at least 98 % of the differences between successive samples are multiples of it.
 /// Nothing if there is none, or if it does not show because most differences are more than a few steps. O(N).
 [[nodiscard]] std::optional<double> lattice_step(std::span<const double> samples);
 

@@ -47,8 +47,8 @@ struct FullScales {
   std::optional<double> accelerometer;  ///< [m/s^2]
 };
 
-/// The rate that somebody stated: that of the time stamps over its ratio to it, or without stamps the one that is used.
-/// Nothing where there are stamps alone. Zero: not known.
+/// The stated sampling rate [Hz]: the rate of the time stamps divided by its ratio to the stated one, or the rate used
+/// if there are no stamps. Nothing if there are stamps and no stated rate. An argument of zero is not known.
 [[nodiscard]] inline std::optional<double> stated_rate_hz(double measured_hz, double clock_ratio, double used_hz) {
   if (!(measured_hz > 0.0)) {
     return used_hz;
@@ -63,26 +63,26 @@ struct ComparedRecording {
   std::string condition;          ///< compact form, `static`
   double duration_s = 0.0;
   double rate_hz = 0.0;               ///< 1/dt of the analysed samples
-  std::optional<double> declared_hz;  ///< as somebody stated it
+  std::optional<double> declared_hz;  ///< as stated
   double jitter_s = 0.0;
   std::size_t samples = 0;
   std::size_t missing = 0;  ///< samples that the time column says are missing
   std::optional<double> temperature_degc;
   FullScales full_scale = {};
-  bool investigated = false;        ///< somebody looked for causes
+  bool investigated = false;        ///< an investigation looked for causes
   std::vector<std::string> causes;  ///< identified ones
   std::vector<ComparedChannel> channels;
 
   /// Sets rate and duration by the grid of the first channel, of which samples may be missing. Needs a channel.
   void time_by_channels();
-  /// Takes over what the quality says of the whole file: samples, gaps, jitter, and the rate that somebody declared.
+  /// Copies the figures of the whole file from the quality: samples, gaps, jitter and the declared rate.
   /// Needs `rate_hz`.
   void tell(const Quality& quality);
 };
 
 /// An arm, or an earlier release.
 struct Recordings {
-  std::string label;  ///< `firmware=1.5.0`; empty: nobody gave one
+  std::string label;  ///< `firmware=1.5.0`; empty: not stated
   std::vector<ComparedRecording> recordings;
 };
 

@@ -26,14 +26,14 @@ struct FullRate {
   const ChannelGroup* group = nullptr;
   bool given = false;  ///< the baseline is given: its scale is not free
   double dt_s = 0.0;
-  double white_share = 1.0;        ///< of the innovations' variance that the white part drives
-  double innovation_sd = 1.0;      ///< of one innovation [SI]
-  double lattice_step = 0.0;       ///< step of the file's lattice [SI], 0: none seen
-  double quantization = 0.0;       ///< Q^2 of a given baseline [SI^2 s^2]
-  std::vector<double> raised;      ///< per member, white density that is none of the sensor's, or of findings taken out
-  SlowModel model;                 ///< of the samples
-  std::vector<Series> residual;    ///< per member, over its analysed part
-  std::vector<Series> innovation;  ///< likewise; numbers of their own
+  double white_share = 1.0;                      ///< of the innovations' variance that the white part drives
+  double innovation_sd = 1.0;                    ///< of one innovation [SI]
+  double lattice_step = 0.0;                     ///< step of the file's lattice [SI], 0: none seen
+  double quantization = 0.0;                     ///< Q^2 of a given baseline [SI^2 s^2]
+  std::vector<double> raised;                    ///< per member, white density of other origin or of findings taken out
+  SlowModel model;                               ///< of the samples
+  std::vector<Series> residual;                  ///< per member, over its analysed part
+  std::vector<Series> innovation;                ///< likewise; numbers of their own
   std::vector<std::vector<unsigned char>> used;  ///< innovation is meaningful
   std::vector<Spectrum> spectrum;                ///< of the residuals; empty where more than 0.5 % is missing
   std::vector<std::vector<double>> slow;         ///< expected periodogram of the slow part, per bin

@@ -39,12 +39,12 @@ namespace driftlab::investigate {
 /// Takes drifts and mean effects off `error[r]`, over the grid of member r.
 void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<Series>& error);
 
-/// True where the baseline says what was found: an effect of the same cause in a recording of the finding, or a process
-/// that no law takes out (a sinusoid) and is what the cause adds, every value within its interval.
+/// True if the baseline already contains the finding: an effect of the same cause in a recording of the finding, or a
+/// process that no law takes out (a sinusoid) and that the cause adds, with every value within its interval.
 [[nodiscard]] bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence);
 
 /// The processes of a channel's noise: as they were given, or as they were fitted in `base`, one of the model's own.
-/// Constant offsets are none of them.
+/// Constant offsets are left out.
 [[nodiscard]] Model noise_processes(const ChannelModel& model, const ChannelBase& base);
 
 }  // namespace driftlab::investigate

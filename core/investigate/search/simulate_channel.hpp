@@ -2,8 +2,8 @@
 /// One channel simulated from a model: its processes, its deterministic part and its effects (spec/causes.md).
 ///
 /// reading = reference + white + slow + mean, then the steps of the output stage (clipping, rounding, stuck runs), then
-/// samples that are absent and stamps that are wrong. An effect that cannot act (it needs a temperature nobody gave, or
-/// belongs to other recordings) is named as left out. Same seed, same bits.
+/// samples that are absent and stamps that are wrong. An effect that cannot act (it needs a temperature that is not
+/// stated, or belongs to other recordings) is listed as left out. Same seed, same bits.
 #include "core/investigate/study/study.hpp"
 
 #include <cstdint>

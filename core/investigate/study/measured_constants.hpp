@@ -31,9 +31,9 @@ inline constexpr double kLargestPart = 0.3;
 /// run.
 inline constexpr double kLooseStamps = 1.5;
 
-/// A low-pass whose stop band is filled by a larger share of the density is none; another shape has been approximated.
-/// ADIS16405, nine axes: 0.46 to 0.51 of the density of 2 to 10 Hz is left at 45 to 50 Hz, where the low-pass of 26 Hz
-/// that was once named there leaves less than 0.001.
+/// If more than this share of the density remains in the stop band, the found low-pass is rejected: it only
+/// approximates a spectrum of another shape. ADIS16405, nine axes: 0.46 to 0.51 of the density of 2 to 10 Hz is left at
+/// 45 to 50 Hz, where the low-pass of 26 Hz that was once named there leaves less than 0.001.
 inline constexpr double kFilled = 0.2;
 
 }  // namespace driftlab::investigate
