@@ -20,11 +20,11 @@ class Readiness {
   /// A sentence that names state and cause, without paths of files; empty where the daemon can take work.
   [[nodiscard]] std::string why_not() const;
 
-  /// The same for nobody in particular, now and then: whether a row can be written is tried only while something is
-  /// wrong, for a daemon that has nothing to do leaves the disk alone.
+  /// The same checks, to be run periodically without a request. A row is written as a test only while something is
+  /// wrong, so that an idle daemon does not use the disk.
   void look_after() const;
 
-  /// Less than 5 % and less than 10 GiB of the disk are free, or nobody can say.
+  /// Less than 5 % and less than 10 GiB of the disk are free, or the free space is unknown.
   [[nodiscard]] bool is_nearly_full() const;
 
  private:

@@ -13,11 +13,11 @@ class ServiceManager {
  public:
   /// From NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. Call before threads start.
   ServiceManager();
-  /// `socket`: a path, or an abstract name behind `@`; empty: nobody listens. `watchdog` 0: none is set.
+  /// `socket`: a path, or an abstract name behind `@`; empty: there is no service manager. `watchdog` 0: none is set.
   ServiceManager(std::string socket, std::chrono::microseconds watchdog)
       : socket_(std::move(socket)), watchdog_(watchdog) {}
 
-  /// One datagram of assignments, `READY=1`. What cannot be sent is lost: nobody waits for it.
+  /// One datagram of assignments, `READY=1`. A datagram that cannot be sent is dropped; the call never waits.
   void tell(std::string_view words) const;
 
   /// Tells twice in each time of the watchdog that the process is alive, as long as `is_alive` says so. `is_alive` gets

@@ -10,7 +10,7 @@ namespace driftlab {
 /// driftlab has not written.
 [[nodiscard]] Result<regression::ComparedChannel> compared_channel_from_json(const Json& channel, const Json& quality);
 
-/// Adds what `quality` says of the whole file: samples, gaps, jitter, and the rate that somebody declared. Needs
+/// Adds the figures of the whole file from `quality`: samples, gaps, jitter and the declared rate. Needs
 /// `rate_hz`.
 void tell_quality(const Json& quality, regression::ComparedRecording& recording);
 

@@ -3,7 +3,7 @@
 ///
 /// Authentication is on once there ever was a token, or where the daemon was told to require one; before that everybody
 /// who reaches the daemon may do everything, and the daemon listens on loopback alone. It never switches itself off:
-/// with every token revoked nobody is admitted.
+/// with every token revoked, every request that needs one is refused.
 ///
 /// Tokens and sessions are held in memory, so that the check costs a hash and no disk: it runs on I/O threads. Changes
 /// are written to the store first. Thread safe.

@@ -3,8 +3,8 @@
 /// there, in lists, counts and by name alike, and the answer is that of an object that does not exist.
 ///
 /// Handlers use this store and no other. It implements every method of `Store`, so that a method added there does not
-/// compile until it says here what a caller limited to devices sees of it. Callers without a limit, and threads that
-/// act for nobody, pass through.
+/// compile until it says here what a caller limited to devices sees of it. Callers without a limit, and threads without
+/// a caller, see every row.
 #include "server/store/store.hpp"
 
 #include <memory>

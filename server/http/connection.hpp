@@ -130,7 +130,7 @@ class HttpConnection {
   boost::beast::flat_buffer buffer_;
   ConnectionShared& shared_;
   std::string address_;  ///< of whoever connected
-  std::string client_;   ///< of whom the request at hand is: somebody else behind a listed proxy
+  std::string client_;   ///< the client of the present request: another address than the peer's behind a listed proxy
   std::vector<std::byte> chunk_;
   std::string route_;
   std::uint64_t bytes_in_ = 0;

@@ -45,7 +45,7 @@ struct AccessRecord {
   double seconds = 0.0;
   std::string request_id;
   std::string address;
-  std::string token;                            ///< public id; empty where nobody was asked for one
+  std::string token;                            ///< public id; empty if no token was required
   std::optional<Error> failure = std::nullopt;  ///< of the daemon itself
 };
 

@@ -26,7 +26,8 @@ class RegressionMemory {
   [[nodiscard]] static Result<RegressionMemory> of(Store& store, const Device& device);
 
   [[nodiscard]] const RegressionHistory& history() const { return history_; }
-  /// The label that was made the baseline last; until somebody does, the first baseline that had one. Empty: none.
+  /// The label that was last accepted as the baseline; before that, the label of the first baseline that had one.
+  /// Empty: none.
   [[nodiscard]] Result<std::string> anchor() const;
   /// What goes with the anchor of the settings: those that were kept when it was moved, else those of the run that made
   /// the first baseline. Nothing where neither is known.

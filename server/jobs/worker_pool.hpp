@@ -23,7 +23,7 @@ struct WorkerOptions {
   int computing = 0;
   std::int64_t lease_micros = 60'000'000;
   std::int64_t renew_micros = 15'000'000;
-  /// How long an idle worker sleeps when nobody wakes it.
+  /// The longest time that an idle worker sleeps before it looks for a job again.
   std::int64_t idle_micros = 1'000'000;
   /// How long `stop` waits for running jobs before it hands them back.
   std::int64_t grace_micros = 20'000'000;

@@ -13,8 +13,8 @@ namespace driftlab::server {
 /// Starts the log. Level: debug, info, warning, error. `file` empty: standard error. Call once, before threads start.
 /// Error: Io, where the file cannot be opened.
 [[nodiscard]] Status start_log(std::string_view level, const std::string& file);
-/// Opens the file again, after somebody has moved it away. Without a file: nothing. Where it cannot be opened the log
-/// goes on in the old one. Error: Io.
+/// Opens the log file again after it was moved away; does nothing without a file. If it cannot be opened, the log
+/// continues in the old file. Error: Io.
 [[nodiscard]] Status reopen_log();
 /// Lines dropped since the start.
 [[nodiscard]] std::uint64_t dropped_log_lines();

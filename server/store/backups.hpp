@@ -28,7 +28,7 @@ enum class BackupState {
   Running,
   Complete,  ///< and sound: all of it was read back
   Damaged,   ///< complete, but of a store in which something is damaged
-  Failed,    ///< there is none
+  Failed,    ///< no backup was made
 };
 
 [[nodiscard]] std::string_view name_of(BackupState state);

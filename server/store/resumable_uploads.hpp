@@ -5,8 +5,8 @@
 ///   <directory>/upl_….part   the bytes so far; its size is the offset
 ///
 /// The offset advances after the bytes are flushed to disk, so what was acknowledged survives power loss. An upload
-/// that nobody touched for a day is forgotten. An upload is there for the token that began it and for admins; for
-/// another there is none. Thread safe; one writer at a time for each upload.
+/// without a new piece for a day is removed. An upload is visible to the token that began it and to admins; for other
+/// tokens it does not exist. Thread safe; one writer at a time for each upload.
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 
@@ -42,7 +42,7 @@ class ResumableUploads {
   [[nodiscard]] Result<ResumableUpload> find(std::string_view id);
   [[nodiscard]] Status remove(std::string_view id);
   [[nodiscard]] std::filesystem::path bytes_path(std::string_view id) const;
-  /// Removes what nobody touched for a day.
+  /// Removes uploads without a new piece for a day.
   void forget_expired();
 
   /// Bytes at the end of one upload. Destroyed without `finish`: what came is kept, or, of a piece whose checksum is

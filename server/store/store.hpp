@@ -173,7 +173,8 @@ class Store {
   /// Of the jobs that ended at this time or later; likewise.
   [[nodiscard]] virtual Result<EndedCounts> ended_since(UtcMicros since,
                                                         const std::optional<Visibility>& visible = std::nullopt) = 0;
-  /// Whether somebody limited to devices may know of a job: it asked for it, or it names devices and only its own.
+  /// Whether a caller limited to devices may see a job: the caller asked for it, or the job names devices and only the
+  /// caller's.
   [[nodiscard]] virtual Result<bool> sees_job(std::string_view job, const Visibility& visible) = 0;
   /// Whether that token asked for the object.
   [[nodiscard]] virtual Result<bool> is_owner(std::string_view object, std::string_view token) = 0;
@@ -285,7 +286,7 @@ class Store {
   [[nodiscard]] virtual Result<std::vector<Study>> studies(const std::optional<std::string>& device_id,
                                                            const Page& page) = 0;
 
-  /// Removes a study of which there is no investigation. NotFound; Conflict, as of a device.
+  /// Removes a study that has no investigation. NotFound; Conflict, as of a device.
   [[nodiscard]] virtual Status remove_study(std::string_view id) = 0;
 
   // ---- drives

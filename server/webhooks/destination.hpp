@@ -1,5 +1,5 @@
 #pragma once
-/// Where the daemon may send a message that somebody asked for: an address of the public Internet, by HTTPS.
+/// The destinations to which the daemon may send webhook messages: addresses of the public Internet, by HTTPS.
 ///
 /// Whoever may make webhooks could otherwise have the daemon speak with what only the daemon can reach: other services
 /// of its machine, the cloud's metadata, printers (server-side request forgery). So every address is judged after the

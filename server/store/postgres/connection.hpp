@@ -30,7 +30,7 @@ class PostgresConnection final : public Connection {
  public:
   /// Connects to `uri`, postgresql://USER@HOST:PORT/DATABASE?... of libpq. Defaults for what `uri` does not set: 5 s to
   /// connect, 15 s until a silent peer counts as gone, 30 s for a statement, 10 s for a lock, 60 s for a transaction in
-  /// which nothing happens. Errors, each in one sentence: Io (nobody answers, no right to log in), Conflict (a server
+  /// which nothing happens. Errors, each in one sentence: Io (no answer, no right to log in), Conflict (a server
   /// before version 15, another encoding than UTF-8), InvalidArgument (no connection string).
   [[nodiscard]] static Result<std::unique_ptr<PostgresConnection>> open(const std::string& uri,
                                                                         const std::string& application);

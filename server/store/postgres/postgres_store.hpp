@@ -65,7 +65,7 @@ class PostgresStore final : public SqlStore {
   const Clock& clock_;
   PostgresFacts facts_;
   std::vector<Migration> migrations_;
-  std::unique_ptr<DaemonLock> lock_;  ///< nullptr: nobody is kept out
+  std::unique_ptr<DaemonLock> lock_;  ///< nullptr: no lock, other daemons are not kept out
   std::unique_ptr<Coordination> coordination_;
 };
 

@@ -79,7 +79,7 @@ class FilteredQuery {
   void made_since(std::string_view prefix, const std::optional<UtcMicros>& since) {
     where("id >= ?", since ? std::optional(first_id(prefix, *since)) : std::nullopt);
   }
-  /// Rows of which the texts of `columns` hold a text, in any case of its ASCII letters.
+  /// Keeps rows whose `columns` contain a text, in upper or lower case of ASCII letters.
   void holds(std::string_view columns, const std::optional<std::string>& text) {
     where("instr(lower(" + std::string(columns) + "), lower(?)) > 0", text);
   }
@@ -87,8 +87,8 @@ class FilteredQuery {
     sql_.append(first_ ? " WHERE " : " AND ").append(condition);
     first_ = false;
   }
-  /// Leaves rows to somebody limited to devices (Page::visible) that belong to one of them. `column` holds the device's
-  /// id. A page for such a caller is read only once this, or what stands for it, was said.
+  /// For a caller limited to devices (Page::visible), keeps the rows that belong to one of them. `column` holds the
+  /// device's id. A page for such a caller is read only after this call or one of its variants below.
   FilteredQuery& visible(const Page& page, std::string_view column) {
     if (page.visible) {
       where(std::string(column) + " IN (SELECT id FROM devices WHERE name IN (SELECT value FROM json_each(?)))",
