@@ -4,6 +4,7 @@
 #include "clients/cli/local_files.hpp"
 #include "clients/cli/progress.hpp"
 #include "core/analysis/characterise.hpp"
+#include "core/analysis/compared_recording.hpp"
 #include "schema/json/characterise.hpp"
 
 #include <filesystem>
@@ -39,7 +40,7 @@ Result<WrittenArm> arm_of(const std::vector<std::string>& files, const std::stri
   return arm;
 }
 
-Result<std::vector<Json>> results_in(const WrittenRecording& written) {
+Result<std::vector<StoredRecording>> results_in(const WrittenRecording& written) {
   auto document = read_json_file(written.result, "what `driftlab characterise --json` wrote");
   if (!document) {
     return fail(document.error());
@@ -48,14 +49,16 @@ Result<std::vector<Json>> results_in(const WrittenRecording& written) {
     return fail(ErrorCode::ParseError,
                 "The file " + written.result + " is not what `driftlab characterise --json` writes.");
   }
-  std::vector<Json> documents;
-  for (const Json& recording : (*document)["recordings"]) {
+  std::vector<StoredRecording> results;
+  for (Json& recording : (*document)["recordings"]) {
     if (!recording.is_object() || !recording.contains("id") || !recording["id"].is_string()) {
       return fail(ErrorCode::ParseError, "A recording in " + written.result + " has no id.");
     }
-    documents.push_back(recording);
+    StoredRecording& result = results.emplace_back();
+    result.id = recording["id"].get<std::string>();
+    result.document = std::move(recording);
   }
-  return documents;
+  return results;
 }
 
 }  // namespace
@@ -131,24 +134,27 @@ Result<WrittenRegression> written_run(const RegressFlags& flags) {
   return run;
 }
 
-ResultReader::ResultReader(std::vector<std::string> models, FileFlags lines, std::string device)
-    : models_(std::move(models)), lines_(std::move(lines)), device_(std::move(device)) {}
+ResultReader::ResultReader(std::vector<std::string> models, FileFlags lines, std::string device, bool kept)
+    : models_(std::move(models)), lines_(std::move(lines)), device_(std::move(device)), kept_(kept) {}
 
 Result<std::vector<StoredRecording>> ResultReader::read(const WrittenArm& arm) {
   std::vector<StoredRecording> stored;
   for (const WrittenRecording& written : arm.recordings) {
-    auto documents = written.result.empty() ? characterised(written) : results_in(written);
-    if (!documents) {
-      return fail(documents.error());
+    auto results = written.result.empty() ? characterised(written) : results_in(written);
+    if (!results) {
+      return fail(results.error());
     }
-    for (Json& document : *documents) {
-      stored.push_back({std::move(document), written.session, written.recorded_at, written.stated});
+    for (StoredRecording& result : *results) {
+      result.session = written.session;
+      result.recorded_at = written.recorded_at;
+      result.stated = written.stated;
+      stored.push_back(std::move(result));
     }
   }
   return stored;
 }
 
-Result<std::vector<Json>> ResultReader::characterised(const WrittenRecording& written) {
+Result<std::vector<StoredRecording>> ResultReader::characterised(const WrittenRecording& written) {
   if (written.file.empty()) {
     return fail(ErrorCode::InvalidArgument,
                 "The recording " + written.recording + " is one of a server: name it with --server.");
@@ -174,11 +180,14 @@ Result<std::vector<Json>> ResultReader::characterised(const WrittenRecording& wr
   if (!found) {
     return fail(found.error());
   }
-  std::vector<Json> documents;
+  std::vector<StoredRecording> results;
   for (const CharacterisedRecording& recording : *found) {
-    documents.push_back(to_json(recording));
+    StoredRecording& result = results.emplace_back();
+    result.id = recording.spec.id;
+    result.compared = compared_recording(recording);
+    result.document = kept_ ? to_json(recording) : Json(nullptr);
   }
-  return documents;
+  return results;
 }
 
 }  // namespace driftlab::cli

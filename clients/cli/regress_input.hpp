@@ -17,18 +17,20 @@ namespace driftlab::cli {
 /// Characterises the files of an arm, one after the other, and reads the results that files hold already.
 class ResultReader {
  public:
-  /// `models`: candidates of the fits; empty: the usual ones. `lines`: which lines of a text are left out.
-  ResultReader(std::vector<std::string> models, FileFlags lines, std::string device);
+  /// `models`: candidates of the fits; empty: the usual ones. `lines`: which lines of a text are left out. `kept`: a
+  /// state keeps what is read, which needs the documents of what is characterised here.
+  ResultReader(std::vector<std::string> models, FileFlags lines, std::string device, bool kept);
 
   /// Errors: those of reading and characterising a file; Cancelled.
   [[nodiscard]] Result<std::vector<StoredRecording>> read(const WrittenArm& arm);
 
  private:
-  [[nodiscard]] Result<std::vector<Json>> characterised(const WrittenRecording& written);
+  [[nodiscard]] Result<std::vector<StoredRecording>> characterised(const WrittenRecording& written);
 
   std::vector<std::string> models_;
   FileFlags lines_;
   std::string device_;
+  bool kept_;
 };
 
 }  // namespace driftlab::cli

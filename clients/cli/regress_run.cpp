@@ -19,7 +19,8 @@ Result<regression::Recordings> compared(const std::string& label, const std::vec
                                         const std::vector<regression::Exclusion>& excluded) {
   regression::Recordings arm{label, {}};
   for (const StoredRecording& one : stored) {
-    auto recording = compared_recording_from_json(one.document);
+    auto recording = one.compared ? Result<regression::ComparedRecording>(*one.compared)
+                                  : compared_recording_from_json(one.document);
     if (!recording) {
       return fail(recording.error());
     }
@@ -46,7 +47,7 @@ Result<regression::Recordings> compared(const std::string& label, const std::vec
 std::vector<std::string> ids_of(const std::vector<StoredRecording>& stored) {
   std::vector<std::string> ids;
   for (const StoredRecording& one : stored) {
-    ids.push_back(one.document.value("id", ""));
+    ids.push_back(one.id);
   }
   return ids;
 }
@@ -251,7 +252,7 @@ Exit run_regress(const RegressFlags& flags) {
   if (!state) {
     return complain(state.error());
   }
-  ResultReader reader(flags.models, flags.file, run->device);
+  ResultReader reader(flags.models, flags.file, run->device, state->kept());
   auto prepared = prepare(*run, *state, reader);
   if (!prepared) {
     return complain_of_work(prepared.error());

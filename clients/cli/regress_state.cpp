@@ -133,6 +133,10 @@ std::vector<StoredRecording> RegressState::recordings(const std::string& label) 
     for (const Json& stored : known->value("recordings", Json::array())) {
       StoredRecording recording;
       recording.document = stored.value("result", Json::object());
+      recording.id = recording.document.value("id", "");
+      if (const auto here = compared_.find({label, recording.id}); here != compared_.end()) {
+        recording.compared = here->second;
+      }
       recording.session = stored.value("session", "");
       recording.recorded_at = stored.value("recorded_at", "");
       recording.stated = stated_facts_of(stored);
@@ -152,9 +156,12 @@ void RegressState::add(const std::string& label, const std::vector<StoredRecordi
   }
   Json& list = (*known)["recordings"];
   for (const StoredRecording& recording : recordings) {
-    const auto same = [&](const Json& each) { return each["result"]["id"] == recording.document["id"]; };
+    const auto same = [&](const Json& each) { return each["result"]["id"] == recording.id; };
     if (std::none_of(list.begin(), list.end(), same)) {
       list.push_back(to_json(recording));
+      if (recording.compared) {
+        compared_.insert_or_assign({label, recording.id}, *recording.compared);
+      }
     }
   }
 }

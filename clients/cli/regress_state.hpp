@@ -4,15 +4,20 @@
 #include "core/analysis/regression_history.hpp"
 #include "schema/json/regression.hpp"
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace driftlab::cli {
 
 /// A recording as the state holds it: a member of a characterisation with what was said of it beside.
 struct StoredRecording {
-  Json document;  ///< of the characterisation
+  std::string id;
+  /// What a run reads of it, where it was characterised in this process; else it is read of `document`.
+  std::optional<regression::ComparedRecording> compared;
+  Json document;  ///< of the characterisation; null where it was characterised here and no state keeps it
   std::string session;
   std::string recorded_at;
   StatedFacts stated;
@@ -32,7 +37,7 @@ class RegressState {
   /// Labels in the order in which they came, and the runs made of them.
   [[nodiscard]] RegressionHistory history() const;
   [[nodiscard]] std::vector<StoredRecording> recordings(const std::string& label) const;
-  /// Adds recordings to a label; those whose id it has already stay as they are.
+  /// Adds recordings, with their documents, to a label; those whose id it has already stay as they are.
   void add(const std::string& label, const std::vector<StoredRecording>& recordings);
   /// The last label with a run that passed; empty: none.
   [[nodiscard]] std::string last_pass() const;
@@ -48,6 +53,8 @@ class RegressState {
  private:
   std::string path_;
   Json document_;
+  /// Of those added that were characterised in this process, by label and id.
+  std::map<std::pair<std::string, std::string>, regression::ComparedRecording> compared_;
 };
 
 }  // namespace driftlab::cli

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace driftlab {
 namespace {
 
 std::optional<double> finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
+
+/// As a document has it, which knows no infinity.
+double finite_or_nan(double value) { return finite(value).value_or(std::numeric_limits<double>::quiet_NaN()); }
 
 ReportedValue told(const std::optional<Estimate>& estimate, const ParameterUnit& unit, const std::string& reason) {
   ReportedValue value;
@@ -15,6 +19,9 @@ ReportedValue told(const std::optional<Estimate>& estimate, const ParameterUnit&
     return value;
   }
   value.value = finite(estimate->value * unit.per_si);
+  if (!value.value) {
+    return value;  // a document keeps no unit and no ends of what has no value
+  }
   value.low = finite(estimate->ci95.low * unit.per_si);
   value.high = finite(estimate->ci95.high * unit.per_si);
   value.unit = unit.symbol;
@@ -60,15 +67,17 @@ ReportedFit reported(const ModelFit& fit, const Unit& unit) {
     }
     told_fit.processes.push_back(std::move(told_process));
   }
-  told_fit.objective = fit.objective;
-  told_fit.wic = fit.wic;
-  told_fit.equation_8 = fit.eq8;
-  told_fit.optimism = fit.optimism;
-  told_fit.condition_number = fit.condition_number;
+  told_fit.objective = finite_or_nan(fit.objective);
+  told_fit.wic = finite_or_nan(fit.wic);
+  told_fit.equation_8 = finite_or_nan(fit.eq8);
+  told_fit.optimism = finite_or_nan(fit.optimism);
+  told_fit.condition_number = finite_or_nan(fit.condition_number);
   told_fit.bounds_active = fit.bounds_active;
   told_fit.intervals = fit.intervals;
   told_fit.plausible = fit.plausible;
-  told_fit.j_test = fit.j_test;
+  if (const auto& test = fit.j_test) {
+    told_fit.j_test = JTest{finite_or_nan(test->statistic), finite_or_nan(test->dof), finite_or_nan(test->p)};
+  }
   told_fit.verdict = fit.verdict;
   told_fit.described_within = fit.described_within;
   told_fit.status = fit.status;
@@ -96,7 +105,7 @@ ReportedChannel reported(const std::string& column, const ColumnRole& role, cons
   result.dt_s = channel.dt_s;
   result.haar = told(channel.haar, 1.0 / unit.factor);
   result.contamination = channel.contamination.verdict;
-  result.discrepancy = channel.discrepancy;
+  result.discrepancy = finite(channel.discrepancy).value_or(0.0);
   result.from_tau_s = channel.from_tau_s;
   result.allan = reported(channel.allan_parameters, unit.dimension);
   for (const ModelFit& fit : channel.fits) {
