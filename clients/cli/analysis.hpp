@@ -48,7 +48,4 @@ struct TabledCampaign {
 [[nodiscard]] std::string tables_of(const TabledCampaign& campaign, const std::string& device,
                                     const std::vector<std::string>& hardware);
 
-/// The curves asked for with --taus, --total, --theo1 and --psd, as text: one line per tau, density or spectral line.
-[[nodiscard]] std::string further_to_text(const Json& document);
-
 }  // namespace driftlab::cli

@@ -1,6 +1,7 @@
 #include "clients/cli/analysis.hpp"
 #include "clients/cli/plot_file.hpp"
-#include "schema/json/report_page.hpp"
+#include "schema/json/told_characterisation.hpp"
+#include "schema/text/characterisation.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -25,18 +26,28 @@ struct CharacteriseFlags {
   std::string plot;
 };
 
-/// What was found, as a document and as what its tables are made of.
+/// What was found, as its document, where it is printed, drawn or came from a daemon, and as what its text is made of.
 struct Found {
   Json document;
   TabledCampaign campaign;
+  std::vector<ToldRecording> told;
 };
 
-tl::expected<Found, Failure> here(const Inputs& inputs, const CharacteriseOptions& options) {
+tl::expected<Found, Failure> here(const Inputs& inputs, const CharacteriseOptions& options,
+                                  const CharacteriseFlags& flags) {
   const auto campaign = characterise_here(inputs, options);
   if (!campaign) {
     return tl::unexpected(campaign.error());
   }
-  return Found{as_document(*campaign, inputs), tabled(*campaign)};
+  Found found;
+  if (flags.json || !flags.plot.empty()) {
+    found.document = as_document(*campaign, inputs);
+  }
+  if (!flags.json) {
+    found.campaign = tabled(*campaign);
+    found.told = told_of(campaign->recordings);
+  }
+  return found;
 }
 
 tl::expected<Found, Failure> there(const Inputs& inputs, const CharacteriseOptions& options,
@@ -46,14 +57,18 @@ tl::expected<Found, Failure> there(const Inputs& inputs, const CharacteriseOptio
     return tl::unexpected(document.error());
   }
   if (flags.json) {
-    return Found{std::move(*document), {}};
+    return Found{std::move(*document), {}, {}};
   }
   *document = named_as_here(std::move(*document), inputs);
   auto campaign = tabled_from_json(*document);
   if (!campaign) {
     return tl::unexpected(Failure{campaign.error(), Exit::BadInput});
   }
-  return Found{std::move(*document), std::move(*campaign)};
+  auto told = told_from_json(*document);
+  if (!told) {
+    return tl::unexpected(Failure{told.error(), Exit::BadInput});
+  }
+  return Found{std::move(*document), std::move(*campaign), std::move(*told)};
 }
 
 Exit run(const CharacteriseFlags& flags) {
@@ -74,11 +89,11 @@ Exit run(const CharacteriseFlags& flags) {
   if (!inputs) {
     return complain(inputs.error());
   }
-  auto found = flags.server.empty() ? here(*inputs, options) : there(*inputs, options, flags);
+  auto found = flags.server.empty() ? here(*inputs, options, flags) : there(*inputs, options, flags);
   if (!found) {
     return complain(found.error().error, found.error().exit);
   }
-  const auto& [document, campaign] = *found;
+  const auto& [document, campaign, told] = *found;
   if (!flags.plot.empty()) {
     if (auto drawn = write_plots(document, flags.plot); !drawn) {
       return complain(drawn.error());
@@ -86,8 +101,8 @@ Exit run(const CharacteriseFlags& flags) {
   }
   const std::string text = flags.json
                                ? document.dump(2) + "\n"
-                               : verdict_lines(document) + "\n" +
-                                     tables_of(campaign, inputs->device, inputs->hardware) + further_to_text(document);
+                               : verdicts_to_text(told) + "\n" + tables_of(campaign, inputs->device, inputs->hardware) +
+                                     further_to_text(told);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Exit::Success;
 }

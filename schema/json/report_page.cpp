@@ -1,7 +1,6 @@
 #include "schema/json/report_page.hpp"
 
 #include "core/fit/characterise.hpp"
-#include "schema/json/channel_summary.hpp"
 #include "schema/json/figures.hpp"
 #include "schema/json/report/bodies.hpp"
 #include "schema/json/report/html.hpp"
@@ -50,21 +49,6 @@ Result<std::string> report_page(const Json& document, const std::string& device,
   } catch (const Json::exception& error) {
     return fail(ErrorCode::Internal, std::string("The document is not as driftlab writes it: ") + error.what());
   }
-}
-
-std::string verdict_lines(const Json& characterisation) {
-  std::string text;
-  const bool several = characterisation.at("recordings").size() > 1;
-  for (const Json& recording : characterisation.at("recordings")) {
-    for (const Json& channel : recording.at("channels")) {
-      if (const auto summary = channel_summary(channel)) {
-        text += page::mark_of(summary->value("level", "")) + " " +
-                (several ? recording.at("id").get<std::string>() + ", " : "") +
-                channel.at("channel").get<std::string>() + ": " + summary->value("verdict", "") + "\n";
-      }
-    }
-  }
-  return text;
 }
 
 }  // namespace driftlab

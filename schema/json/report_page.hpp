@@ -13,7 +13,4 @@ namespace driftlab {
 [[nodiscard]] Result<std::string> report_page(const Json& document, const std::string& device,
                                               const std::string& tables);
 
-/// The sentence of each channel of a characterisation with its mark: a line each, for the terminal.
-[[nodiscard]] std::string verdict_lines(const Json& characterisation);
-
 }  // namespace driftlab
