@@ -5,6 +5,7 @@
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/print_answer.hpp"
 #include "core/analysis/compare_devices.hpp"
+#include "core/campaign/population_verdict.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/text/population.hpp"
 
@@ -54,7 +55,7 @@ Exit run_here(const PopulationFlags& flags) {
   const auto wanted = quantity_of_sensor(flags.sensor);
   const PopulationReport report = compare_devices(flags.model.empty() ? "these devices" : flags.model, devices,
                                                   wanted ? std::optional(*wanted) : std::nullopt);
-  return write_text("", flags.format == "json"       ? to_json(report).dump(2) + "\n"
+  return write_text("", flags.format == "json"       ? to_json(report, verdict_of(report)).dump(2) + "\n"
                         : flags.format == "csv"      ? populations_to_csv(report)
                         : flags.format == "markdown" ? populations_to_markdown(report)
                                                      : populations_to_text(report));

@@ -1,6 +1,5 @@
 #include "schema/json/population.hpp"
 
-#include "core/campaign/population_verdict.hpp"
 #include "schema/json/channel_summary.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/stored_member.hpp"
@@ -56,7 +55,7 @@ Json population_row_to_json(const PopulationRow& row) {
 
 }  // namespace
 
-Json to_json(const PopulationReport& report) {
+Json to_json(const PopulationReport& report, const Verdict& summary) {
   Json rows = Json::array();
   Json outlying = Json::array();
   for (const PopulationRow& row : report.rows) {
@@ -72,7 +71,7 @@ Json to_json(const PopulationReport& report) {
     }
   }
   return Json{{"model", report.model},
-              {"summary", to_json(verdict_of(report))},
+              {"summary", to_json(summary)},
               {"devices", report.devices},
               {"rows", std::move(rows)},
               {"outlying", std::move(outlying)}};

@@ -1,4 +1,5 @@
 // All devices of a model, parameter by parameter.
+#include "core/campaign/population_verdict.hpp"
 #include "schema/json/population.hpp"
 #include "schema/text/population.hpp"
 #include "server/api/api.hpp"
@@ -32,7 +33,7 @@ Result<Response> get_populations(ApiContext& context, const Request& request) {
   if (!report) {
     return fail(report.error());
   }
-  Response response = json_response(200, driftlab::to_json(*report));
+  Response response = json_response(200, driftlab::to_json(*report, verdict_of(*report)));
   if (*type == "text/csv") {
     response.content_type = "text/csv; charset=utf-8";
     response.body = populations_to_csv(*report);

@@ -61,7 +61,7 @@ FLOORS: dict[str, list[str]] = {
 # Its other headers are the arithmetic between.
 ABOVE_USE_CASES = ("server/jobs", "server/api", "server", "clients/cli")
 CAMPAIGN_DOORS = {"core/campaign/" + name for name in (
-    "glance.hpp", "parameter_table.hpp", "population_report.hpp", "sensor_sources.hpp",
+    "glance.hpp", "parameter_table.hpp", "population_report.hpp", "population_verdict.hpp", "sensor_sources.hpp",
     "regression/kept_settings.hpp", "regression/recordings.hpp")}
 # Of core/signal these: the types of a recording, errors, progress, and how a number or a sentence is written. How columns
 # are read, times laid on a grid and channels surveyed is for the use cases to ask.
