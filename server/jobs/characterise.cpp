@@ -163,7 +163,7 @@ class Characterise final : public JobKind {
     std::vector<Json> documents;
     for (std::size_t i = 0; i < found->recordings.size(); ++i) {
       documents.push_back(to_json(found->recordings[i]));
-      collect(recordings.row(i), documents.back(), options, context, named, results);
+      collect(recordings.row(i), found->recordings[i], documents.back(), options, context, named, results);
     }
     Json document = characterisation_document(std::move(documents));
     document["study"] = request["inputs"].value("study", Json());
@@ -173,29 +173,31 @@ class Characterise final : public JobKind {
   }
 
  private:
-  /// Rows for the store: one per channel and one per fit.
-  static void collect(const Recording& recording, const Json& document, const CharacteriseOptions& options,
-                      JobContext& context, const ResultName& named, JobResults& results) {
+  /// Rows for the store: one per channel and one per fit. `document`: that of `characterised`, whose parts are stored.
+  static void collect(const Recording& recording, const CharacterisedRecording& characterised, const Json& document,
+                      const CharacteriseOptions& options, JobContext& context, const ResultName& named,
+                      JobResults& results) {
     Json settings = to_json(options);
     settings["algorithm_version"] = kAlgorithmVersion;
     settings["instruction_set"] = instruction_set();
     settings["driftlab_version"] = DRIFTLAB_VERSION;
     const UtcMicros now = context.clock.now();
-    for (const Json& channel : document["channels"]) {
+    for (std::size_t c = 0; c < characterised.channels.size(); ++c) {
+      const CharacterisedChannel& channel = characterised.channels[c];
+      const Json& told = document["channels"][c];
       ChannelResult row;
       row.device_id = recording.device_id;
       row.recording_id = recording.id;
       row.recording_revision = recording.revision;
-      row.channel = channel["channel"].get<std::string>();
+      row.channel = channel.column;
       row.id = named(row.recording_id, row.channel);
-      row.quantity = channel["quantity"].get<std::string>();
-      row.axis = channel["axis"].is_string() ? channel["axis"].get<std::string>() : "";
+      row.quantity = driftlab::name_of(channel.role.quantity);
+      row.axis = channel.role.axis;
       row.condition = recording.condition;
-      row.document_json = to_text(channel);
+      row.document_json = to_text(told);
       row.settings_json = to_text(settings);
       row.created_at = now;
-      int rank = 0;
-      for (const Json& model : channel["fits"]) {
+      for (std::size_t rank = 0; rank < channel.result.fits.size(); ++rank) {
         Fit fit;
         fit.id = make_id("fit", now);
         fit.channel_result_id = row.id;
@@ -206,10 +208,10 @@ class Characterise final : public JobKind {
         fit.quantity = row.quantity;
         fit.axis = row.axis;
         fit.condition = row.condition;
-        fit.model = model["model"].get<std::string>();
-        fit.rank = rank++;
-        Json document_of_fit = model;
-        document_of_fit["density"] = channel["allan_parameters"]["N"];
+        fit.model = channel.result.fits[rank].model;
+        fit.rank = static_cast<int>(rank);
+        Json document_of_fit = told["fits"][rank];
+        document_of_fit["density"] = told["allan_parameters"]["N"];
         fit.document_json = to_text(document_of_fit);
         fit.created_at = now;
         results.fits.push_back(std::move(fit));
