@@ -107,17 +107,6 @@ Json gravest_summary(const Json& channels) {
   return summary;
 }
 
-Result<AxisGlance> axis_glance(const Json& fit) {
-  try {
-    const auto density = fit.find("density");
-    return glance_of(fits_from_json(Json::array({fit})).front(), density != fit.end()
-                                                                     ? std::optional(reported_value_from_json(*density))
-                                                                     : std::optional<ReportedValue>());
-  } catch (const Json::exception& fault) {
-    return fail(ErrorCode::Internal, "A stored fit cannot be read: " + std::string(fault.what()) + ".");
-  }
-}
-
 std::optional<Model> model_of(const Json& fit, Dimension dimension) {
   Faults faults;
   Model model = model_from_json(present(fit.at("processes")), dimension, "/processes", faults);

@@ -1,7 +1,6 @@
 #pragma once
 /// What stored results say and imply, as documents (GET /v1/recordings/{id}/characterisation, /v1/fits/{id}/implied).
 #include "core/analysis/implied_curves.hpp"
-#include "core/campaign/glance.hpp"
 #include "core/campaign/verdict.hpp"
 #include "core/process/model.hpp"
 #include "schema/json/json.hpp"
@@ -24,9 +23,6 @@ namespace driftlab {
 /// Of the summaries of all members of `channels` the one that says most against its channel, the first of these, with
 /// that `channel`; null without channels. Those that driftlab has not written are passed over.
 [[nodiscard]] Json gravest_summary(const Json& channels);
-
-/// A stored best fit at a glance. Error: Internal, for a document that driftlab has not written.
-[[nodiscard]] Result<AxisGlance> axis_glance(const Json& fit);
 
 /// The error model of a fit, without the processes that it has nothing of; nothing where it leaves a parameter open.
 [[nodiscard]] std::optional<Model> model_of(const Json& fit, Dimension dimension);

@@ -217,6 +217,18 @@ std::vector<ReportedProcess> processes_from_json(const Json& processes) {
   return read;
 }
 
+Result<StoredFit> stored_fit_from_json(const Json& document) {
+  try {
+    StoredFit stored{fit_from_json(document), std::nullopt};
+    if (const auto density = document.find("density"); density != document.end()) {
+      stored.density = reported_value_from_json(*density);
+    }
+    return stored;
+  } catch (const Json::exception& fault) {
+    return fail(ErrorCode::Internal, "A stored fit cannot be read: " + std::string(fault.what()) + ".");
+  }
+}
+
 Result<ReportedChannel> reported_channel_from_json(const Json& document) {
   try {
     return channel_from_json(document);

@@ -4,6 +4,10 @@
 #include "core/campaign/reported_channel.hpp"
 #include "schema/json/json.hpp"
 
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace driftlab {
 
 /// One member of `fits`.
@@ -22,6 +26,16 @@ namespace driftlab {
 
 /// N, B, ... with null where there is no value; the reasons for it are added to `reasons`.
 [[nodiscard]] Json to_json(const ReportedValues& values, Json& reasons);
+
+/// A fit as it is stored by itself, with the density N of its channel; nothing where it was stored before that was
+/// kept.
+struct StoredFit {
+  ReportedFit fit;
+  std::optional<ReportedValue> density;
+};
+
+/// Error: Internal, for a document that driftlab has not written.
+[[nodiscard]] Result<StoredFit> stored_fit_from_json(const Json& document);
 
 /// One member of `channels`. Members that a combination of recordings does not need are ignored. Error: Internal, for a
 /// document that driftlab has not written.

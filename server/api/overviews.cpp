@@ -3,7 +3,6 @@
 
 #include "core/campaign/glance.hpp"
 #include "core/signal/condition.hpp"
-#include "schema/json/channel_summary.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
 #include "schema/json/stored_member.hpp"
@@ -146,11 +145,11 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
   std::map<std::pair<std::string, std::string>, AxisResult> axes;
   const Fit* newest = nullptr;
   for (const Fit& fit : *fits) {
-    auto glance = axis_glance(stored(fit.document_json));
-    if (!glance) {
-      return fail(glance.error());
+    const auto read = stored_fit_from_json(stored(fit.document_json));
+    if (!read) {
+      return fail(read.error());
     }
-    AxisResult found{&fit, std::move(*glance)};
+    AxisResult found{&fit, glance_of(read->fit, read->density)};
     AxisResult& shown = axes[{fit.quantity, fit.axis}];
     if (shown.fit == nullptr || tells_more(found.candidate(), shown.candidate())) {
       shown = std::move(found);
