@@ -89,7 +89,7 @@ JSON_DOORS: dict[str, set[str]] = {
         "drive/document", "drive/outage_map", "imu_simulator", "look_ahead", "outage_evaluation", "paper_scenario", "recorded_motion")},
     "core/analysis": {f"core/analysis/{name}.hpp" for name in (
         "calibrate", "channel_look", "characterise", "draw_trace", "drawn_values", "drive", "evaluate_outages", "growing_recording",
-        "implied_curves", "preview_recording", "regress", "survey_recording")},
+        "implied_curves", "preview_recording", "regress", "survey_recording", "told_characterisation")},
 }
 # Module -> of these modules below it, the headers that it may include; of the others, all.
 DOORS = {**{module: {"core/campaign": CAMPAIGN_DOORS, "core/signal": SIGNAL_DOORS} for module in ABOVE_USE_CASES}, "schema/json": JSON_DOORS}
