@@ -47,10 +47,10 @@ std::vector<std::vector<DriveFinding>> names_of(std::size_t count, const Make& m
 }
 
 /// Standard error of the injected parameter on a drive whose document is right, SI; 0 for a cause that no profile of
-/// the likelihood shows, or whose size is a ratio of variances.
+/// the likelihood shows, or that is a share.
 double standard_error(const DriveInjection& one) {
   const drive::Knob* const knob = drive::find_knob(one.cause, one.parameter);
-  if (knob == nullptr || knob->ratio || knob->magnitude) {
+  if (knob == nullptr || knob->share || knob->magnitude) {
     return 0.0;
   }
   const Drive unhidden = one.drive(4000, one.nothing, kLaps);
@@ -61,8 +61,7 @@ double standard_error(const DriveInjection& one) {
   }
   const RunControl control;
   const drive::Profile profile(unhidden, {true, true}, control);
-  const double at = profile.values({options}).front();
-  return profile.estimates(options, at, {knob}, profile.scale(options)).front().se;
+  return profile.estimates(options, {knob}).knobs.front().se;
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ TEST(Accuracy, CausesOfSimulatedDrivesAreNamed) {
   section.print(
       "\n## Causes of drives\n\nDrives of %d s with 4 Hz fixes of 2 cm and 5 cm/s through the whole explanation; "
       "`tests/unit/navigate/drive_injections.hpp` puts one cause into each. Sizes are standard errors of the "
-      "likelihood's profile as the search states them (sqrt(3 c) times those of the information), or shares of the "
+      "likelihood's profile as the search states them (from the scatter over blocks of time), or shares of the "
       "size "
       "that the unit tests hide. A cause is named from a score of 5 on, which is 3.16 standard errors. First: the "
       "right "

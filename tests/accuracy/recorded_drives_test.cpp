@@ -270,8 +270,7 @@ TEST(Accuracy, TheArmOfADriveAlongTheRecordedPathIsFound) {
     const RunControl control;
     const drive::Profile profile(simulated, {true, true}, control);
     options = profile.refitted(options, knobs, 6);
-    const double scale = profile.scale(options);
-    const auto last = profile.estimates(options, profile.values({options}).front(), knobs, scale);
+    const auto last = profile.estimates(options, knobs).knobs;
     section.print("| %s | %.3f | %.3f | %.4f | %.4f |\n", one.name, options.lever_arm_m.x(), last[1].se,
                   options.imu_offset_s, last[0].se);
     if (one.must_find) {

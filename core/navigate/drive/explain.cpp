@@ -148,7 +148,7 @@ std::vector<DriveFinding> findings_of_levels(const Drive& drive, const FilterOpt
       finding.value = factor;
       finding.evidence = "innovations";
       finding.told_apart = level.told_apart;
-      finding.score = std::max((sums[0] - sums[1]) / profile.scale(options), 0.0);
+      finding.score = std::max((sums[0] - sums[1]) / kLeastDivisor, 0.0);
       if (finding.score >= kLevelNamed) {
         findings.push_back(std::move(finding));
       }

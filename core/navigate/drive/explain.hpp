@@ -1,12 +1,14 @@
 #pragma once
 /// Why a simulation of a drive is too optimistic, by profile likelihood (spec/drives.md, section 6).
 ///
-/// The search starts from the level of white noise at which the innovations fit best, because at another level the
-/// scores have no scale. Every knob (causes/cause.hpp) is then turned by -h and +h and the parabola through the three
-/// log likelihoods gives estimate, uncertainty and score; where the likelihood still rises the step is doubled until it
-/// falls. The knob with the best score is set, those found before and the noise level are fitted again, and the search
-/// goes on until no knob has a score of 5 at three standard errors. Two whose scores differ by less than 2 are reported
-/// as a pair.
+/// The search starts from the level of white noise at which the innovations fit best: before that, scores mean nothing.
+/// Every knob (causes/cause.hpp) is then turned by -h and +h and the parabola through the three log likelihoods gives
+/// estimate, uncertainty and score (profile_parabola.hpp: the score allows for what the innovations share over tens of
+/// seconds); where the likelihood still rises the step is doubled until it falls. Of the knobs with a score of 5 at
+/// three standard errors the one that raises the likelihood most is set, those found before and the noise level are
+/// fitted again, and the search goes on until none is left. Two whose gains differ by a score of less than 2 are
+/// reported as a pair. What is below three standard errors at the end, beside all the others, is taken out again: until
+/// the last cause is set, its effect stands in the errors and values of those before it.
 ///
 /// Causes that the files show without a filter (velocities older than positions) are found first.
 ///

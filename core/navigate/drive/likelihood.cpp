@@ -11,23 +11,34 @@ constexpr double kBegins = 10.0;  ///< [s] after the start
 
 }  // namespace
 
+std::size_t block_at(double time_s) {
+  return static_cast<std::size_t>(std::max(std::floor(time_s / kBlockLength), 0.0));
+}
+
+std::size_t fold_of_block(std::size_t block) { return block / kFoldBlocks % LogLikelihood::kFolds; }
+
 double LogLikelihood::over(const std::array<bool, kFolds>& used) const {
-  return (used[0] ? sum[0] : 0.0) + (used[1] ? sum[1] : 0.0);
+  double sum = 0.0;
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    sum += used[fold_of_block(block)] ? blocks[block].log_likelihood : 0.0;
+  }
+  return sum;
 }
 
 double LogLikelihood::mean_square(const std::array<bool, kFolds>& used) const {
-  const double squared = (used[0] ? squares[0] : 0.0) + (used[1] ? squares[1] : 0.0);
-  const double many = (used[0] ? count[0] : 0.0) + (used[1] ? count[1] : 0.0);
+  double squared = 0.0;
+  double many = 0.0;
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    squared += used[fold_of_block(block)] ? blocks[block].squares : 0.0;
+    many += used[fold_of_block(block)] ? blocks[block].count : 0.0;
+  }
   return many > 0.0 ? squared / many : 1.0;
 }
 
-std::size_t fold_at(double time_s) {
-  return static_cast<std::size_t>(std::max(std::floor(time_s / kFoldLength), 0.0)) % LogLikelihood::kFolds;
-}
-
 std::optional<std::size_t> fold_of(const Outage& outage) {
-  const bool whole = std::floor(outage.start_s / kFoldLength) == std::floor(outage.end_s() / kFoldLength);
-  return whole ? std::optional(fold_at(outage.start_s)) : std::nullopt;
+  const std::size_t from = block_at(outage.start_s) / kFoldBlocks;
+  const std::size_t to = block_at(outage.end_s()) / kFoldBlocks;
+  return from == to ? std::optional(fold_of_block(block_at(outage.start_s))) : std::nullopt;
 }
 
 Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& options) {
@@ -44,13 +55,15 @@ Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& op
       if (!innovation.accepted || innovation.time_s < prepared->start(part).time_s + kBegins) {
         continue;
       }
-      const std::size_t fold = fold_at(innovation.time_s);
+      const std::size_t block = block_at(innovation.time_s);
+      result.blocks.resize(std::max(result.blocks.size(), block + 1));
+      LogLikelihood::Sums& sums = result.blocks[block];
       for (int k = 0; k < innovation.count; ++k) {
         const ScalarInnovation& scalar = innovation.scalar[static_cast<std::size_t>(k)];
         const double square = std::min(scalar.value * scalar.value / scalar.variance, kCap);
-        result.sum[fold] -= 0.5 * (std::log(scalar.variance) + square);
-        result.squares[fold] += square;
-        result.count[fold] += 1.0;
+        sums.log_likelihood -= 0.5 * (std::log(scalar.variance) + square);
+        sums.squares += square;
+        sums.count += 1.0;
       }
     }
   }

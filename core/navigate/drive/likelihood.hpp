@@ -3,28 +3,37 @@
 ///
 /// The log likelihood of a run is the sum over scalar innovations z of variance S of -(ln S + min(z^2/S, 9))/2; the cap
 /// keeps a few wild ones from deciding. A filter's model is never quite right, so innovations are neither white nor of
-/// their stated size: with c the mean capped normalised square, uncertainties are those of a log likelihood divided by
-/// 3 c. Innovations of the first ten seconds are left out.
+/// their stated size, and what the sum says of a parameter's uncertainty is not its curvature alone: the sums are kept
+/// apart for blocks of time, from which profile_parabola.hpp states it. Innovations of the first ten seconds are left
+/// out.
 #include "core/navigate/drive/evaluation.hpp"
 
 namespace driftlab::drive {
 
-/// Sums of a run, apart for the folds of a held-out study.
+/// Blocks of this length [s]: several times what an innovation remembers of an error of the model, and short enough
+/// that a drive of ten minutes has thirty.
+inline constexpr double kBlockLength = 20.0;
+/// Stretches of so many blocks belong to the two folds of a held-out study in turn.
+inline constexpr std::size_t kFoldBlocks = 5;
+
+[[nodiscard]] std::size_t block_at(double time_s);
+[[nodiscard]] std::size_t fold_of_block(std::size_t block);
+
+/// Sums of a run, apart for blocks of the innovations' moments.
 struct LogLikelihood {
   static constexpr std::size_t kFolds = 2;
-  std::array<double, kFolds> sum{};      ///< by fold of the innovation's moment
-  std::array<double, kFolds> squares{};  ///< capped normalised squares
-  std::array<double, kFolds> count{};
+  struct Sums {
+    double log_likelihood = 0.0;
+    double squares = 0.0;  ///< capped normalised squares
+    double count = 0.0;
+  };
+  std::vector<Sums> blocks;  ///< by block_at
 
-  [[nodiscard]] double total() const { return sum[0] + sum[1]; }
   /// Of the folds that `used` marks.
   [[nodiscard]] double over(const std::array<bool, kFolds>& used) const;
   [[nodiscard]] double mean_square(const std::array<bool, kFolds>& used) const;
 };
 
-/// Stretches of this length [s] belong to the two folds in turn.
-inline constexpr double kFoldLength = 100.0;
-[[nodiscard]] std::size_t fold_at(double time_s);
 /// The fold in which an outage lies whole; nothing for one across a border.
 [[nodiscard]] std::optional<std::size_t> fold_of(const Outage& outage);
 

@@ -1,17 +1,15 @@
 #pragma once
 /// Profiles of the log likelihood of a drive's innovations along the knobs of causes. Internal to the explanation.
 #include "core/navigate/drive/explain.hpp"
+#include "core/navigate/drive/profile_parabola.hpp"
 
 namespace driftlab::drive {
 
-/// Where a profile has its top, relative to the present value, SI.
-struct ProfileEstimate {
-  bool sound = false;  ///< the profile is concave there
-  double value = 0.0;
-  double se = 0.0;
-  double top = 0.0;  ///< log likelihood
-  double score = 0.0;
-  [[nodiscard]] double gain_to(double at) const { return sound ? top - at : 0.0; }
+/// Profiles of several parameters from the same options.
+struct ProfileEstimates {
+  double at = 0.0;  ///< log likelihood of the options
+  double mean_square = 1.0;
+  std::vector<ProfileEstimate> knobs;
 };
 
 class Profile {
@@ -22,11 +20,8 @@ class Profile {
 
   /// Log likelihood of each trial; minus infinity for options that no filter can have.
   [[nodiscard]] std::vector<double> values(const std::vector<FilterOptions>& trials) const;
-  /// 3 c of the options.
-  [[nodiscard]] double scale(const FilterOptions& options) const;
-  /// One estimate for each knob, from the options whose log likelihood is `at`.
-  [[nodiscard]] std::vector<ProfileEstimate> estimates(const FilterOptions& options, double at,
-                                                       const std::vector<const Knob*>& knobs, double scale) const;
+  /// One estimate for each knob, from the options.
+  [[nodiscard]] ProfileEstimates estimates(const FilterOptions& options, const std::vector<const Knob*>& knobs) const;
   /// The factors of the white noise, gyroscope and accelerometer, at the top of the likelihood; steps begin at
   /// `first_factor`.
   [[nodiscard]] FilterOptions with_noise_fitted(FilterOptions options, double first_factor) const;
@@ -40,12 +35,18 @@ class Profile {
   [[nodiscard]] static FilterOptions turned(const FilterOptions& options, const Knob& knob, double by);
 
  private:
-  struct Bracket {
-    double low, middle, high;
-    double low_value, middle_value, high_value;
-  };
-  [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;
-  [[nodiscard]] static ProfileEstimate parabola(const Bracket& bracket, double scale);
+  /// How far a knob may be turned from the options, down and up.
+  [[nodiscard]] std::array<double, 2> range(const FilterOptions& options, const Knob& knob) const;
+  /// By rising value of the knob.
+  using Bracket = std::array<ProfilePoint, 3>;
+  [[nodiscard]] std::vector<std::optional<LogLikelihood>> runs(const std::vector<FilterOptions>& trials) const;
+  /// `blocks`: of the whole drive, those of other folds too.
+  [[nodiscard]] ProfilePoint point(double at, const std::optional<LogLikelihood>& run, std::size_t blocks) const;
+  /// The best share of a bracket, judged against none of it.
+  void settle_share(const FilterOptions& options, const Knob& knob, const Bracket& bracket, std::size_t blocks,
+                    ProfileEstimate& estimate) const;
+  [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket,
+                               std::size_t blocks) const;
 
   const Drive& drive_;
   std::array<bool, LogLikelihood::kFolds> used_;

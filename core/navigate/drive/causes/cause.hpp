@@ -30,7 +30,7 @@ struct DriveFinding {
   double value = 0.0;  ///< in `unit`
   double se = 0.0;
   double score = 0.0;
-  std::string pair;      ///< a cause whose score was within 2 of this one's when it was named; empty: none
+  std::string pair;      ///< a cause whose gain was within a score of 2 of this one's when it was named; empty: none
   std::string evidence;  ///< what showed it: the file, the fixes alone, the innovations
   std::string told_apart;
   bool from_files = false;  ///< the files showed it, no filter
@@ -54,9 +54,8 @@ struct Knob {
   double (*value)(const FilterOptions& options) = nullptr;                      ///< what the options hold, SI
   bool (*applies)(const Drive& drive, const FilterOptions& options) = nullptr;  ///< null: always
   std::string_view told_apart;  ///< the measurement that separates it from its rivals
-  /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the
-  /// effect is (at most sqrt(dof / 2)); what the likelihood loses without it decides alone.
-  bool ratio = false;
+  /// A share of a whole: it has its own ends, 0 and `most`, and is what it is called at either of them.
+  bool share = false;
   /// A further error of the estimate beside its standard error, SI; it is included in the stated error. Null: none.
   double (*systematic)(const Drive& drive, const FilterOptions& options) = nullptr;
   /// The sign says nothing: findings have none.
