@@ -73,8 +73,8 @@ Vector3 arm_of(const Drive& drive, const OutageMoment& at) {
 
 }  // namespace
 
-std::optional<Vector3> antenna_error(const Drive& drive, const FilterOptions& options, const OutageMoment& at) {
-  const auto truth = reference_at(drive.reference, at.time_s + options.imu_offset_s);
+std::optional<Vector3> antenna_error(const Drive& drive, const OutageMoment& at) {
+  const auto truth = reference_at(drive.reference, at.time_s);
   if (!truth) {
     return std::nullopt;
   }
@@ -84,10 +84,10 @@ std::optional<Vector3> antenna_error(const Drive& drive, const FilterOptions& op
 
 std::optional<DriveOutage> score_outage(const Drive& drive, const FilterOptions& options, const Outage& outage,
                                         const OutageStart& start, const OutageEnd& end) {
-  const double end_s = end.at.time_s + options.imu_offset_s;
+  const double end_s = end.at.time_s;
   const auto truth = reference_at(drive.reference, end_s);
-  const auto at_start = reference_at(drive.reference, start.time_s + options.imu_offset_s);
-  const auto error = antenna_error(drive, options, end.at);
+  const auto at_start = reference_at(drive.reference, start.time_s);
+  const auto error = antenna_error(drive, end.at);
   if (!truth || !at_start || !error) {
     return std::nullopt;
   }

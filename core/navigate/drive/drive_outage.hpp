@@ -42,14 +42,14 @@ struct DriveOutage {
 
 /// The state of a filter at the start of an outage, and the growth of its error since.
 struct OutageStart {
-  double time_s = 0.0;  ///< on the unit's clock
+  double time_s = 0.0;  ///< on the drive's clock
   NavigationState state;
   std::vector<double> growth_m = {};  ///< as of DriveOutage, without the end
 };
 
 /// A filter's estimate of the pose at a moment of an outage.
 struct OutageMoment {
-  double time_s = 0.0;  ///< on the unit's clock
+  double time_s = 0.0;  ///< on the drive's clock
   NavigationState state;
   Matrix3 attitude = Matrix3::Identity();  ///< body to ECEF
   Vector3 lever_arm_m = Vector3::Zero();   ///< as the filter has it
@@ -63,8 +63,7 @@ struct OutageEnd {
 };
 
 /// The antenna's estimate minus the reference, north, east, down [m]; nothing where there is no reference.
-[[nodiscard]] std::optional<Vector3> antenna_error(const Drive& drive, const FilterOptions& options,
-                                                   const OutageMoment& at);
+[[nodiscard]] std::optional<Vector3> antenna_error(const Drive& drive, const OutageMoment& at);
 
 /// The outage scored against the drive's reference; nothing where there is none at its start or end.
 [[nodiscard]] std::optional<DriveOutage> score_outage(const Drive& drive, const FilterOptions& options,

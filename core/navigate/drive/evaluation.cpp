@@ -158,7 +158,7 @@ Result<PreparedDrive> PreparedDrive::make(const Drive& drive, const FilterOption
       continue;
     }
     turn_heading(start->state, options.initial_heading_rad);
-    auto design = make_design(drive.document, drive.runs[run].dt_s, *start, options);
+    auto design = make_design(drive.document, reading_times(drive, run, options).dt_s, *start, options);
     if (!design) {
       return fail(design.error());
     }

@@ -63,6 +63,13 @@ void add_vibration_noise(const Vibration& vibration, const FilterOptions& option
   }
 }
 
+ReadingTimes reading_times(const Drive& drive, std::size_t run, const FilterOptions& options) {
+  const UniformRun& own = drive.runs[run];
+  const double middle = 0.5 * (drive.runs.front().start_s + drive.end_s());
+  return {own.start_s + options.imu_offset_s + options.imu_rate * (own.start_s - middle),
+          own.dt_s * (1.0 + options.imu_rate)};
+}
+
 std::vector<ImuSample> corrected_readings(const UniformRun& run, const ReadingErrors& errors) {
   std::vector<ImuSample> readings = run.readings;
   if (errors.none()) {

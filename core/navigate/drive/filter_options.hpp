@@ -50,6 +50,7 @@ struct ColouredFixes {
 
 struct FilterOptions {
   double imu_offset_s = 0.0;        ///< added to the unit's stamps
+  double imu_rate = 0.0;            ///< seconds that the unit's clock loses in one, about the middle of the readings
   double position_latency_s = 0.0;  ///< stamp minus the moment that a position describes
   double velocity_latency_s = 0.0;
   Vector3 lever_arm_m = Vector3::Zero();
@@ -99,6 +100,15 @@ void add_vibration_noise(const Vibration& vibration, const FilterOptions& option
 
 /// Factors of the white noise of an axis that do not follow the vibration.
 [[nodiscard]] double even_noise_factor(const FilterOptions& options, std::size_t channel);
+
+/// When the readings of a run are of, on the drive's clock: reading i ends at start_s + (i + 1) dt_s.
+struct ReadingTimes {
+  double start_s = 0.0, dt_s = 0.0;
+};
+
+/// moment = stamp + offset + rate (stamp - middle), the middle that of all the drive's readings: so offset and rate are
+/// told apart.
+[[nodiscard]] ReadingTimes reading_times(const Drive& drive, std::size_t run, const FilterOptions& options);
 
 [[nodiscard]] std::vector<ImuSample> corrected_readings(const UniformRun& run, const ReadingErrors& errors);
 

@@ -21,7 +21,7 @@ constexpr double kHeadingKnown = 1.0 * kDegree;
 
 enum class Step { Score, Begin, Along, Position, Velocity, Odometer };  // in this order at one moment
 struct FilterEvent {
-  double time_s = 0.0;  ///< on the unit's clock
+  double time_s = 0.0;  ///< on the drive's clock
   Step step = Step::Position;
   std::size_t index = 0;
 };
@@ -32,7 +32,7 @@ class Driver {
   Driver(const Drive& drive, const Start& start, std::span<const ImuSample> readings, const FilterDesign& design,
          const FilterOptions& options, const FilterTask& task)
       : drive_(drive),
-        run_(drive.runs[start.run]),
+        times_(reading_times(drive, start.run, options)),
         readings_(readings),
         options_(options),
         task_(task),
@@ -52,15 +52,15 @@ class Driver {
     constraint_step_ =
         options.constraint
             ? std::max<std::size_t>(
-                  1, static_cast<std::size_t>(std::lround(1.0 / (options.constraint->rate_hz * run_.dt_s))))
+                  1, static_cast<std::size_t>(std::lround(1.0 / (options.constraint->rate_hz * times_.dt_s))))
             : 0;
-    turn_window_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTurnWindow / run_.dt_s)));
-    rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(1.0 / run_.dt_s)));
+    turn_window_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTurnWindow / times_.dt_s)));
+    rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(1.0 / times_.dt_s)));
   }
 
-  FilterRun go(double from_s) {
-    for (const FilterEvent& event : events(from_s)) {
-      const double local = (event.time_s - run_.start_s) / run_.dt_s;
+  FilterRun go() {
+    for (const FilterEvent& event : events(now())) {
+      const double local = (event.time_s - times_.start_s) / times_.dt_s;
       const auto reading = static_cast<std::size_t>(std::max(std::ceil(local - 1e-9), 0.0));
       if (reading > readings_.size()) {
         break;
@@ -72,9 +72,7 @@ class Driver {
   }
 
  private:
-  [[nodiscard]] double now() const { return run_.start_s + static_cast<double>(done_) * run_.dt_s; }
-  /// From the drive's clock to the unit's.
-  [[nodiscard]] double own(double time_s) const { return time_s - options_.imu_offset_s; }
+  [[nodiscard]] double now() const { return times_.start_s + static_cast<double>(done_) * times_.dt_s; }
   [[nodiscard]] bool withheld(double stamp_s, double described_s) const {
     return std::any_of(task_.outages.begin(), task_.outages.end(),
                        [&](const Outage& outage) { return outage.covers(stamp_s) || outage.covers(described_s); });
@@ -93,10 +91,10 @@ class Driver {
       const double of_position = fix.time_s - options_.position_latency_s;
       const double of_velocity = fix.time_s - options_.velocity_latency_s;
       if (!withheld(fix.time_s, of_position)) {
-        add(own(of_position), Step::Position, i);
+        add(of_position, Step::Position, i);
       }
       if (fix.velocity_ned_m_s && !withheld(fix.time_s, of_velocity)) {
-        add(own(of_velocity), Step::Velocity, i);
+        add(of_velocity, Step::Velocity, i);
       }
     }
     for (std::size_t i = 0; options_.odometer && i < drive_.odometer.size(); ++i) {
@@ -104,16 +102,16 @@ class Driver {
       const bool slips = std::any_of(options_.slips.begin(), options_.slips.end(),
                                      [&](const auto& slip) { return at_s >= slip[0] && at_s <= slip[1]; });
       if (!slips) {
-        add(own(at_s), Step::Odometer, i);
+        add(at_s, Step::Odometer, i);
       }
     }
     for (std::size_t i = 0; i < task_.outages.size(); ++i) {
-      add(own(task_.outages[i].start_s), Step::Begin, i);
+      add(task_.outages[i].start_s, Step::Begin, i);
       for (std::size_t k = 1; k < kGrowthPoints; ++k) {
         const double share = static_cast<double>(k) / static_cast<double>(kGrowthPoints);
-        add(own(task_.outages[i].start_s + share * task_.outages[i].duration_s), Step::Along, i);
+        add(task_.outages[i].start_s + share * task_.outages[i].duration_s, Step::Along, i);
       }
-      add(own(task_.outages[i].end_s()), Step::Score, i);
+      add(task_.outages[i].end_s(), Step::Score, i);
     }
     std::sort(list.begin(), list.end(), [](const FilterEvent& a, const FilterEvent& b) {
       return a.time_s != b.time_s ? a.time_s < b.time_s : a.step != b.step ? a.step < b.step : a.index < b.index;
@@ -247,7 +245,7 @@ class Driver {
     if (moves_along_its_nose(drive_.document.vehicle)) {  // an aircraft or a boat at rest may turn with the wind
       const double mean = 0.5 * (rate[0].z() + rate[1].z());
       apply(MeasurementKind::ZeroTurn, now(),
-            no_turn_equations(moment(), design_, mean, 2.0 * static_cast<double>(half) * run_.dt_s));
+            no_turn_equations(moment(), design_, mean, 2.0 * static_cast<double>(half) * times_.dt_s));
     }
   }
 
@@ -255,7 +253,7 @@ class Driver {
   void apply(MeasurementKind kind, double time_s, std::span<const WideMeasurement> measurements,
              FixGate* gate = nullptr) {
     Innovation record;
-    record.time_s = time_s + options_.imu_offset_s;
+    record.time_s = time_s;
     record.kind = kind;
     record.count = static_cast<int>(measurements.size());
     if (gate != nullptr && options_.gate > 0.0) {
@@ -308,7 +306,7 @@ class Driver {
 
   /// Of the state alone: asked for its covariance, the filter would end a step here.
   void note_error() {
-    const auto error = antenna_error(drive_, options_, outage_moment());
+    const auto error = antenna_error(drive_, outage_moment());
     begun_.growth_m.push_back(error ? error->head<2>().norm() : std::numeric_limits<double>::quiet_NaN());
   }
 
@@ -321,7 +319,7 @@ class Driver {
   }
 
   const Drive& drive_;
-  const UniformRun& run_;
+  ReadingTimes times_;
   std::span<const ImuSample> readings_;
   const FilterOptions& options_;
   const FilterTask& task_;
@@ -358,7 +356,7 @@ Result<FilterDesign> make_design(const Document& document, double dt_s, const St
 
 FilterRun run_filter(const Drive& drive, const Start& start, std::span<const ImuSample> readings,
                      const FilterDesign& design, const FilterOptions& options, const FilterTask& task) {
-  return Driver(drive, start, readings, design, options, task).go(start.time_s);
+  return Driver(drive, start, readings, design, options, task).go();
 }
 
 }  // namespace driftlab::drive

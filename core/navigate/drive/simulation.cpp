@@ -114,7 +114,7 @@ Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::
   if (run.poses.size() < 8) {
     return fail(ErrorCode::TooFewSamples, "The drive has too few fixes to follow its trajectory.");
   }
-  const double dt = drive.runs[world.start_.run].dt_s;
+  const auto [first_s, dt] = reading_times(drive, world.start_.run, prepared.options());
   world.start_s_ = run.poses.front().time_s;
   auto motion = make_recorded_motion(to_geodetic(world.start_.state.position_ecef_m), run.poses);
   if (!motion) {
@@ -134,12 +134,13 @@ Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::
     scale_white_noise(world.model_.axes[c], even_noise_factor(world.options_, c));
   }
   world.options_.imu_offset_s = 0.0;
+  world.options_.imu_rate = 0.0;
   world.options_.position_latency_s = 0.0;
   world.options_.velocity_latency_s = 0.0;
   world.options_.errors = {};
   world.options_.date_to_sample = false;
   world.options_.initial_heading_rad = 0.0;
-  const double ahead = (world.start_s_ - drive.runs[world.start_.run].start_s) / dt;
+  const double ahead = (world.start_s_ - first_s) / dt;
   world.vibration_ = prepared.vibration(part).from(static_cast<std::size_t>(std::max(std::lround(ahead), 0L)));
   return world;
 }

@@ -30,7 +30,7 @@ struct SimulatedDuration {
   ErrorGrowth growth;
 };
 
-/// A drive simulated once: as load_drive would give it. `poses` on the unit's clock. Errors: those of
+/// A drive simulated once: as load_drive would give it. `poses` on the drive's clock. Errors: those of
 /// make_recorded_motion and make_trajectory.
 class SimulatedWorld {
  public:

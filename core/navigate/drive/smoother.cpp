@@ -106,7 +106,6 @@ std::vector<FilterTape::Point> smoothed_path(const PreparedDrive& prepared) {
       if (Eigen::LLT<Eigen::Matrix<double, 9, 9>>(point.covariance).info() != Eigen::Success) {
         continue;
       }
-      point.time_s += prepared.options().imu_offset_s;
       path.push_back(std::move(point));
     }
   }

@@ -28,7 +28,7 @@ class FilterTape {
   [[nodiscard]] double last_point_s() const;
 
   struct Point {
-    double time_s = 0.0;  ///< on the unit's clock
+    double time_s = 0.0;  ///< on the drive's clock
     NavigationState state;
     Eigen::Matrix<double, 9, 9> covariance;  ///< position, velocity, attitude errors in e
   };

@@ -13,6 +13,7 @@ namespace driftlab::drive {
 /// What is put into the simulated drive and the filter is not told.
 struct Hidden {
   double imu_offset_s = 0.0;  ///< the unit's stamps must be shifted by this
+  double imu_rate = 0.0;      ///< seconds that the unit's clock loses in one
   double velocity_latency_s = 0.0;
   Vector3 lever_arm_m = Vector3::Zero();
   ReadingErrors errors = {};
@@ -97,7 +98,9 @@ inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int 
       0.0, truth->dt_s,
       simulate_imu(ideal, truth->dt_s, unit_model(hidden.noise_factor, hidden.force_noise_factor), {}, seed, 0)
           .readings};
-  run.start_s = -hidden.imu_offset_s;
+  const double middle = 0.5 * run.end_s();
+  run.start_s = middle - middle / (1.0 + hidden.imu_rate) - hidden.imu_offset_s;
+  run.dt_s /= 1.0 + hidden.imu_rate;
   drive.runs.push_back(std::move(run));
   Random noise(seed, 77);
   const auto at = [&](double time_s) {

@@ -133,6 +133,8 @@ inline std::vector<DriveInjection> drive_injections() {
       {"sample_clock", "rate_hz", 97.9, 97.9, 0.02, false, "imu_time_offset", polled_drive, 100.0},
       {"imu_time_offset", "delta_s", 0.05, 0.05, 0.01, false, "",
        hide([](Hidden& h, double size) { h.imu_offset_s = size; })},
+      {"imu_time_offset", "rate", 4e-4, 400.0, 40.0, false, "",
+       hide([](Hidden& h, double size) { h.imu_rate = size; })},
       {"gnss_velocity_latency", "delay_s", 0.1, 0.1, 0.02, false, "",
        hide([](Hidden& h, double size) { h.velocity_latency_s = size; })},
       {"gnss_lever_arm", "x", 0.8, 0.8, 0.1, false, "", hide([](Hidden& h, double size) { h.lever_arm_m.x() = size; })},
