@@ -2,21 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 namespace driftlab::drive {
+namespace {
+
+constexpr std::ptrdiff_t kRemembered = 64;
+
+}  // namespace
 
 std::vector<std::optional<LogLikelihood>> Profile::runs(const std::vector<FilterOptions>& trials) const {
-  std::vector<std::optional<LogLikelihood>> all(trials.size());
+  const auto known = [&](const FilterOptions& options) {
+    return std::find_if(known_.begin(), known_.end(), [&](const Known& one) { return one.options == options; });
+  };
+  std::vector<Known> fresh;
+  for (const FilterOptions& trial : trials) {
+    const bool asked = std::any_of(fresh.begin(), fresh.end(), [&](const Known& one) { return one.options == trial; });
+    if (!asked && known(trial) == known_.end()) {
+      fresh.push_back({trial, std::nullopt});
+    }
+  }
   parallel_for(
-      control_.threads, trials.size(),
+      control_.threads, fresh.size(),
       [&](std::size_t i) {
-        if (auto found = log_likelihood(drive_, trials[i])) {
-          all[i] = std::move(*found);
+        if (auto found = log_likelihood(drive_, fresh[i].options)) {
+          fresh[i].run = std::move(*found);
         }
       },
       control_.stop);
+  std::move(fresh.begin(), fresh.end(), std::back_inserter(known_));
+  std::vector<std::optional<LogLikelihood>> all;
+  for (const FilterOptions& trial : trials) {
+    all.push_back(known(trial)->run);
+  }
+  const auto many = static_cast<std::ptrdiff_t>(known_.size());
+  known_.erase(known_.begin(), known_.begin() + std::max(many - kRemembered, std::ptrdiff_t{0}));
   return all;
 }
 

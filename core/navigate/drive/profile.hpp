@@ -12,6 +12,7 @@ struct ProfileEstimates {
   std::vector<ProfileEstimate> knobs;
 };
 
+/// One thread may call it: what it asks of others it asks by itself.
 class Profile {
  public:
   /// `drive` and `control` must outlive it. Only innovations of the folds that `used` marks count.
@@ -52,6 +53,12 @@ class Profile {
   std::array<bool, LogLikelihood::kFolds> used_;
   const RunControl& control_;
   FilterOptions stated_;  ///< by the document
+  /// The newest runs, oldest first: a search asks again for the options that it stands at.
+  struct Known {
+    FilterOptions options;
+    std::optional<LogLikelihood> run;
+  };
+  mutable std::vector<Known> known_;
 };
 
 }  // namespace driftlab::drive
