@@ -1,7 +1,11 @@
 #include "core/navigate/drive/likelihood.hpp"
 
+#include "core/navigate/drive/profile_parabola.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace driftlab::drive {
 namespace {
@@ -70,10 +74,37 @@ Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& op
   return result;
 }
 
+namespace {
+
+/// From one fix to the next: change of velocity, and displacement less integrated velocity.
+struct StepOfFixes {
+  double time_s;
+  double change_along, change_across, gap_along, gap_across;
+  /// Sum of squares of what a delay leaves of the gaps.
+  [[nodiscard]] double square(double delay_s) const {
+    const double along = gap_along - delay_s * change_along;
+    const double across = gap_across - delay_s * change_across;
+    return along * along + across * across;
+  }
+};
+
+/// What the scatter of the steps over blocks of time says of the error of the delay that fits them best.
+ProfileEstimate error_of_delay(const std::vector<StepOfFixes>& steps, double delay_s, double variance) {
+  std::array<ProfilePoint, 3> points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ProfilePoint& point = points[i];
+    point.at = static_cast<double>(i) - 1.0;  // the likelihood is a parabola: any distance will do
+    for (const StepOfFixes& step : steps) {
+      point.blocks.resize(std::max(point.blocks.size(), block_at(step.time_s) + 1), 0.0);
+      point.blocks[block_at(step.time_s)] -= 0.5 * step.square(delay_s + point.at) / variance;
+    }
+  }
+  return parabola_through(points);
+}
+
+}  // namespace
+
 std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
-  struct StepOfFixes {
-    double change_along, change_across, gap_along, gap_across;
-  };
   std::vector<StepOfFixes> steps;
   for (std::size_t i = 1; i < fixes.size(); ++i) {
     const Fix& a = fixes[i - 1];
@@ -92,8 +123,8 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
     }
     const double x = way.x() / length;
     const double y = way.y() / length;
-    steps.push_back({x * change.x() + y * change.y(), x * change.y() - y * change.x(), x * gap.x() + y * gap.y(),
-                     x * gap.y() - y * gap.x()});
+    steps.push_back({b.time_s, x * change.x() + y * change.y(), x * change.y() - y * change.x(),
+                     x * gap.x() + y * gap.y(), x * gap.y() - y * gap.x()});
   }
   if (steps.size() < 50) {
     return std::nullopt;
@@ -107,7 +138,7 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
     double cc = 0.0;
     double cg = 0.0;
     double gg = 0.0;
-    double count = 0.0;
+    std::vector<StepOfFixes> kept;
     for (const StepOfFixes& s : steps) {
       if (std::abs(s.gap_along - delay.delay_s * s.change_along) > limit ||
           std::abs(s.gap_across - delay.delay_s * s.change_across) > limit) {
@@ -118,7 +149,7 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
       cc += s.change_across * s.change_across;
       cg += s.change_across * s.gap_across;
       gg += s.gap_along * s.gap_along + s.gap_across * s.gap_across;
-      count += 2.0;
+      kept.push_back(s);
     }
     if (!(ll > 0.0 && cc > 0.0)) {
       return std::nullopt;
@@ -127,10 +158,10 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
     delay.across_s = cg / cc;
     delay.delay_s = (lg + cg) / (ll + cc);
     const double rest = std::max(gg - delay.delay_s * (lg + cg), 1e-12);
-    const double variance = rest / count;
-    delay.se_s = std::sqrt(3.0 * variance / (ll + cc));  // as innovations: their correlation triples the variance
+    const double variance = rest / static_cast<double>(2 * kept.size());
+    delay.se_s = error_of_delay(kept, delay.delay_s, variance).se;
     delay.score = 0.5 * delay.delay_s * delay.delay_s / (delay.se_s * delay.se_s);
-    delay.steps = static_cast<std::size_t>(count / 2.0);
+    delay.steps = kept.size();
     limit = 4.0 * std::sqrt(variance);
   }
   return delay;
