@@ -38,7 +38,7 @@ struct EstimatedConstants {
   std::optional<double> lever_arm_sd_m;
   std::optional<double> mounting_sd_rad;  ///< yaw and pitch of the constraint
   std::optional<double> axle_sd_m;
-  std::optional<double> odometer_scale_sd;
+  std::optional<double> wheel_scale_sd;
   bool operator==(const EstimatedConstants&) const = default;
 };
 
@@ -68,7 +68,7 @@ struct FilterOptions {
   std::optional<Constraint> constraint;
   bool zero_velocity = false;
   bool odometer = false;
-  double odometer_scale = 0.0;                    ///< odometer = (1 + scale) speed
+  double wheel_scale = 0.0;                       ///< a wheel reads (1 + scale) speed
   std::vector<std::array<double, 2>> slips = {};  ///< from, to [s]: the wheel slips, and its readings are not used
   EstimatedConstants constants;
   double gate = 0.0;     ///< a fix whose normalised squared innovation is above is rejected; 0: none

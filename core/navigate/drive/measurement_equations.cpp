@@ -29,7 +29,7 @@ Constants constants_of(const FilterOptions& options, ConstantLayout& layout, int
   add(constants.lever_arm_sd_m, 3, layout.arm);
   add(constants.mounting_sd_rad, 2, layout.yaw);
   add(constants.axle_sd_m, 1, layout.axle);
-  add(constants.odometer_scale_sd, 1, layout.odometer);
+  add(constants.wheel_scale_sd, 1, layout.odometer);
   all.tau_s.assign(all.sd.size(), 0.0);
   if (!options.coloured.none()) {
     layout.fixes = first + static_cast<int>(all.sd.size());
@@ -165,7 +165,7 @@ std::array<WideMeasurement, 1> odometer_equations(const FilterMoment& at, const 
   const Vector3 v = at.filter.state().velocity_ecef_m_s;
   const Vector3 arm_velocity = at.body_rate.cross(source.lever_arm_m);
   const double speed = (attitude.transpose() * v).x() + arm_velocity.x();
-  const double scale = 1.0 + at.options.odometer_scale + at.constant(at.layout.odometer);
+  const double scale = 1.0 + at.options.wheel_scale + at.constant(at.layout.odometer);
   std::array<WideMeasurement, 1> measurement;
   WideMeasurement& m = measurement[0];
   const Vector3 forward = scale * attitude.col(0);

@@ -12,8 +12,8 @@ Cause odometer_scale() {
                      .per_si = 100.0,
                      .step = 0.005,
                      .most = 0.5,
-                     .turn = [](FilterOptions& o, double by) { o.odometer_scale += by; },
-                     .value = [](const FilterOptions& o) { return o.odometer_scale; },
+                     .turn = [](FilterOptions& o, double by) { o.wheel_scale += by; },
+                     .value = [](const FilterOptions& o) { return o.wheel_scale; },
                      .applies = [](const Drive&, const FilterOptions& o) { return o.odometer; },
                      .told_apart = "a constant ratio to the speed; slip comes in bursts"}}};
 }
