@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kFormat = "driftlab-regress-state/1";
 
-Json to_json(const StoredRecording& recording) {
+Json kept_json(const StoredRecording& recording) {
   Json stored{{"result", recording.document}, {"session", recording.session}, {"recorded_at", recording.recorded_at}};
   add_stated_facts(recording.stated, stored);
   return stored;
@@ -158,7 +158,7 @@ void RegressState::add(const std::string& label, const std::vector<StoredRecordi
   for (const StoredRecording& recording : recordings) {
     const auto same = [&](const Json& each) { return each["result"]["id"] == recording.id; };
     if (std::none_of(list.begin(), list.end(), same)) {
-      list.push_back(to_json(recording));
+      list.push_back(kept_json(recording));
       if (recording.compared) {
         compared_.insert_or_assign({label, recording.id}, *recording.compared);
       }
