@@ -31,7 +31,7 @@ Result<std::optional<double>> real_parameter(const Request& request, std::string
     return fail(ErrorCode::InvalidArgument, "The parameter " + std::string(name) + " is a number of seconds.",
                 {{"parameter", std::string(name)}});
   }
-  return std::optional(*value);
+  return value;
 }
 
 Result<std::size_t> points_of(const Request& request) {
