@@ -65,7 +65,7 @@ class Floors(Planted):
                     ("schema/json/a.cpp", "core/fit/gmwm.hpp"), ("schema/json/a.cpp", "core/variance/allan_variance.hpp"),
                     ("schema/json/a.cpp", "core/signal/channel_survey.hpp"), ("schema/json/a.cpp", "core/process/decimation.hpp"),
                     ("schema/json/a.cpp", "core/campaign/population_verdict.hpp"), ("schema/json/a.cpp", "core/campaign/glance.hpp"),
-                    ("schema/json/a.cpp", "core/analysis/simulate.hpp"), ("schema/json/a.cpp", "core/navigate/outage_runs.hpp"),
+                    ("schema/json/a.cpp", "core/navigate/outage_runs.hpp"),
                     ("schema/json/a.cpp", "core/calibrate/triad.hpp"),
                     ("server/api/a.cpp", "core/signal/channel_survey.hpp"),
                     ("server/jobs/a.cpp", "core/campaign/replicates.hpp"), ("clients/cli/a.cpp", "core/campaign/structure.hpp"),
