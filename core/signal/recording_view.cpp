@@ -1,6 +1,7 @@
 #include "core/signal/recording_view.hpp"
 
 #include "core/signal/channel_survey.hpp"
+#include "core/signal/left_out.hpp"
 #include "core/signal/no_rate.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/repeated_rows.hpp"
@@ -232,7 +233,7 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
   std::vector<std::vector<double>> distinct(names.size());
   const auto column_without = [&](std::size_t i) -> std::span<const double> {
     if (distinct[i].empty()) {
-      distinct[i] = without_repeats(column(i), repeated);
+      distinct[i] = without(column(i), std::span<const std::size_t>(repeated));
     }
     return distinct[i];
   };

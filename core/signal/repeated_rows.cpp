@@ -53,18 +53,4 @@ std::vector<std::size_t> repeated_rows(std::span<const double> stamps, std::size
   return rows;
 }
 
-std::vector<double> without_repeats(std::span<const double> values, std::span<const std::size_t> repeated) {
-  std::vector<double> rest;
-  rest.reserve(values.size() - repeated.size());
-  auto next = repeated.begin();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (next != repeated.end() && *next == i) {
-      ++next;
-    } else {
-      rest.push_back(values[i]);
-    }
-  }
-  return rest;
-}
-
 }  // namespace driftlab

@@ -17,8 +17,4 @@ namespace driftlab {
 [[nodiscard]] std::vector<std::size_t> repeated_rows(std::span<const double> stamps, std::size_t columns,
                                                      const std::function<std::span<const double>(std::size_t)>& column);
 
-/// `values` without the rows `repeated` (ascending).
-[[nodiscard]] std::vector<double> without_repeats(std::span<const double> values,
-                                                  std::span<const std::size_t> repeated);
-
 }  // namespace driftlab

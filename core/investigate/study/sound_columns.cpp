@@ -1,6 +1,6 @@
 #include "core/investigate/study/sound_columns.hpp"
 
-#include "core/signal/repeated_rows.hpp"
+#include "core/signal/left_out.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
@@ -98,7 +98,8 @@ Result<SoundColumns> sound_columns(const RecordingSpec& spec, const ColumnNames&
       memory[i] = filled(sound.columns.samples(i));
     }
     if (!sound.left_out.empty()) {
-      memory[i] = without_repeats(fill ? memory[i] : sound.columns.samples(i), sound.left_out);
+      const std::span<const double> all = fill ? std::span<const double>(memory[i]) : sound.columns.samples(i);
+      memory[i] = without(all, std::span<const std::size_t>(sound.left_out));
     }
   }
   if (!sound.left_out.empty()) {

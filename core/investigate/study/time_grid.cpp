@@ -1,11 +1,12 @@
 #include "core/investigate/study/time_grid.hpp"
 
 #include "core/signal/gappy_samples.hpp"
+#include "core/signal/left_out.hpp"
 #include "core/signal/spacing.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 namespace driftlab::investigate {
 namespace {
@@ -129,17 +130,11 @@ void TimeGrid::leave_out(std::span<const std::size_t> left_out, std::size_t rows
   if (left_out.empty()) {
     return;
   }
-  std::vector<std::size_t> kept;
-  kept.reserve(rows - left_out.size());
-  auto next = left_out.begin();
-  for (std::size_t row = 0; row < rows; ++row) {
-    if (next != left_out.end() && *next == row) {
-      ++next;
-    } else {
-      kept.push_back(place_of(row));
-    }
+  if (place.empty()) {
+    place.resize(rows);
+    std::iota(place.begin(), place.end(), std::size_t{0});
   }
-  place = std::move(kept);
+  place = without(std::span<const std::size_t>(place), left_out);
 }
 
 Result<TimeGrid> fit_time_grid(std::span<const double> stamps_s, std::optional<double> rate_hz) {
