@@ -1,4 +1,5 @@
 #include "core/navigate/drive/drive.hpp"
+#include "core/signal/channel_survey.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,24 +8,33 @@
 namespace driftlab::drive {
 namespace {
 
+/// One sentence about a channel of the unit that is frozen, at full scale, or holds numbers that stand for none; empty
+/// where it does not. Cells that are missing are counted by whole rows (SamplingFacts).
+std::string unusual(ChannelQuality quality, std::size_t rows) {
+  if (quality.implausible + quality.frozen + quality.saturated == 0) {
+    return {};
+  }
+  quality.missing = 0;
+  quality.distinct.reset();
+  quality.analysed = rows;
+  return describe(quality, rows);
+}
+
 /// The three axes of a sensor at the stamped rows.
 Result<std::vector<Vector3>> triad_of(const Table& table, const Source& source, Quantity quantity,
-                                      const StampedRows& stamped) {
+                                      const StampedRows& stamped, FileFacts& facts) {
   std::vector<Vector3> values(stamped.row.size());
   for (Eigen::Index k = 0; k < 3; ++k) {
     const std::string axis(1, "xyz"[k]);
-    const auto found = find_quantity(table, source, quantity, axis);
+    const auto found = find_unit_channel(table, source, quantity, axis);
     if (!found) {
       return fail(found.error());
     }
-    const auto& column = *found;
-    if (!column) {
-      return fail(ErrorCode::UnknownColumn,
-                  "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + axis + ".",
-                  {{"parameter", "imu.columns"}});
+    if (std::string told = unusual(found->quality, table.rows()); !told.empty()) {
+      facts.notes.push_back(source.file + ": " + told);
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i](k) = (*column)[stamped.row[i]];
+      values[i](k) = found->values[stamped.row[i]];
     }
   }
   return values;
@@ -42,14 +52,14 @@ Result<Log> sensor_log(const Document& document, const Tables& tables, FileFacts
     return fail(stamped.error());
   }
   facts.imu_stamps = stamped->facts;
-  auto rate = triad_of(tables.imu, imu.source, Quantity::AngularRate, *stamped);
+  auto rate = triad_of(tables.imu, imu.source, Quantity::AngularRate, *stamped, facts);
   if (!rate) {
     return fail(rate.error());
   }
   Log log;
   log.absolute = stamped->absolute;
   if (!imu.force) {
-    auto force = triad_of(tables.imu, imu.source, Quantity::SpecificForce, *stamped);
+    auto force = triad_of(tables.imu, imu.source, Quantity::SpecificForce, *stamped, facts);
     if (!force) {
       return fail(force.error());
     }
@@ -69,7 +79,7 @@ Result<Log> sensor_log(const Document& document, const Tables& tables, FileFacts
   if (!force_rows) {
     return fail(force_rows.error());
   }
-  auto force = triad_of(*tables.force, *imu.force, Quantity::SpecificForce, *force_rows);
+  auto force = triad_of(*tables.force, *imu.force, Quantity::SpecificForce, *force_rows, facts);
   if (!force) {
     return fail(force.error());
   }

@@ -1,11 +1,13 @@
 #include "core/navigate/drive/table.hpp"
 
+#include "core/signal/channel_survey.hpp"
 #include "core/signal/find_column.hpp"
 #include "core/signal/missing.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace driftlab::drive {
@@ -21,6 +23,24 @@ constexpr std::array<std::pair<double, double>, 6> kLeaps{{{915148800.0, 13.0},
                                                            {1435708800.0, 17.0},
                                                            {1483228800.0, 18.0}}};
 
+/// A column of a table.
+struct ColumnPlace {
+  std::size_t index = 0;
+  double factor = 1.0;  ///< SI units in one of its unit
+};
+
+/// The column with that quantity; nothing where the source states none. Error: UnknownColumn.
+Result<std::optional<ColumnPlace>> place_of(const Table& table, const Source& source, Quantity quantity,
+                                            std::string_view axis) {
+  for (const auto& [name, meaning] : source.columns) {
+    if (meaning.quantity == quantity && meaning.axis == axis) {
+      const auto index = find_column(table.names, name);
+      return index ? Result<std::optional<ColumnPlace>>(ColumnPlace{*index, meaning.factor}) : fail(index.error());
+    }
+  }
+  return std::optional<ColumnPlace>();
+}
+
 }  // namespace
 
 double leap_seconds_at(double unix_s) {
@@ -33,21 +53,49 @@ double leap_seconds_at(double unix_s) {
 
 Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source, Quantity quantity,
                                                          std::string_view axis) {
-  for (const auto& [name, meaning] : source.columns) {
-    if (meaning.quantity != quantity || meaning.axis != axis) {
-      continue;
-    }
-    const auto index = find_column(table.names, name);
-    if (!index) {
-      return fail(index.error());
-    }
-    std::vector<double> values = table.columns[*index];
-    for (double& value : values) {
-      value *= meaning.factor;
-    }
-    return std::optional(std::move(values));
+  const auto found = place_of(table, source, quantity, axis);
+  if (!found) {
+    return fail(found.error());
   }
-  return std::optional<std::vector<double>>();
+  if (!*found) {
+    return std::optional<std::vector<double>>();
+  }
+  std::vector<double> values = table.columns[(*found)->index];
+  for (double& value : values) {
+    value *= (*found)->factor;
+  }
+  return std::optional(std::move(values));
+}
+
+Result<UnitChannel> find_unit_channel(const Table& table, const Source& source, Quantity quantity,
+                                      std::string_view axis) {
+  const auto found = place_of(table, source, quantity, axis);
+  if (!found) {
+    return fail(found.error());
+  }
+  if (!*found) {
+    return fail(
+        ErrorCode::UnknownColumn,
+        "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + std::string(axis) + ".",
+        {{"parameter", "imu.columns"}});
+  }
+  const std::string& name = table.names[(*found)->index];
+  const std::vector<double>& cells = table.columns[(*found)->index];
+  const bool empty = std::none_of(cells.begin(), cells.end(), [](double cell) { return std::isfinite(cell); });
+  if (const Status holds = empty ? check_holes(name, cells) : Status(); !holds) {
+    Error error = holds.error();
+    error.message = source.file + ": " + error.message;
+    return fail(std::move(error).with("file", source.file));
+  }
+  const ChannelSurvey survey = survey_channel(name, cells);
+  UnitChannel channel{cells, survey.quality};
+  for (double& value : channel.values) {
+    value *= (*found)->factor;
+  }
+  for (const std::size_t row : survey.unsound) {
+    channel.values[row] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return channel;
 }
 
 Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {

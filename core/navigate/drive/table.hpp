@@ -43,6 +43,19 @@ struct StampedRows {
 [[nodiscard]] Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source,
                                                                        Quantity quantity, std::string_view axis = "");
 
+/// A channel of the inertial unit.
+struct UnitChannel {
+  std::vector<double>
+      values;              ///< SI; NaN where the cell is empty or holds a number that stands for none, such as -9999
+  ChannelQuality quality;  ///< by the survey that every recording has (core/signal/channel_survey.hpp)
+};
+
+/// The same for a sensor of the inertial unit. A cell without a number makes its row incomplete and is no fault, unless
+/// all are such. Errors: UnknownColumn, where no column has the quantity along the axis; those of check_holes, of a
+/// column that holds no number.
+[[nodiscard]] Result<UnitChannel> find_unit_channel(const Table& table, const Source& source, Quantity quantity,
+                                                    std::string_view axis);
+
 /// Rows in the order of time. A counter of seconds of the week that starts again goes on; rows without a stamp or with
 /// one before the row before are left out and counted. Errors: UnknownColumn; TooFewSamples; NonMonotonicTime (more
 /// than one row in a hundred steps back); InvalidArgument (no rate for rows without a clock).

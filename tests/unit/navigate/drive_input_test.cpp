@@ -150,6 +150,19 @@ TEST(DriveInput, OneFileOfSeveralStreamsIsTheDriveOfAFileForEach) {
   EXPECT_EQ(b->facts.gnss_stamps.without_stamp, 0U) << "rows behind the last fix are no rows without a stamp";
 }
 
+TEST(DriveInput, ANumberThatStandsForNoneIsARowLeftOutAndNoReading) {
+  // -9999 rad/s on one axis for one sample would turn the vehicle by a hundred radians.
+  Files gap = town();
+  Files sentinel = town();
+  gap.imu("gz")[500] = kNothing;
+  sentinel.imu("gz")[500] = -9999.0;
+  const auto a = load_drive(gap.document, gap.tables);
+  const auto b = load_drive(sentinel.document, sentinel.tables);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->runs.front().readings, b->runs.front().readings);
+  EXPECT_EQ(b->facts.sampling.incomplete, 1U);
+}
+
 struct Case {
   const char* name;
   std::function<void(Files&)> spoil;
@@ -206,6 +219,19 @@ TEST(DriveInput, IsRefusedOrSurvivedWithItsSentence) {
        "rows whose stamp steps back"},
       {"a torn first row of the unit", [](Files& f) { f.imu("ay")[0] = f.imu("az")[0] = kNothing; }, false,
        "rows of the unit are incomplete"},
+      {"a reading of -9999, which is no measurement", [](Files& f) { f.imu("gz")[500] = f.imu("gz")[501] = -9999.0; },
+       false, "'gz': 2 samples are no measurements (such as -9999) and are left out"},
+      {"an axis that is frozen for a while", [](Files& f) { std::fill_n(f.imu("ax").begin() + 9000, 900, 0.25); },
+       false, "'ax': the sensor is frozen for 900 samples from sample 9001"},
+      {"an axis that is all text",
+       [](Files& f) {
+         for (std::size_t row = 0; row < f.imu("gx").size(); ++row) {
+           f.imu("gx")[row] = missing_sample(Missing::Text, row + 1);
+         }
+       },
+       true, "imu.csv: Row 1, column 'gx' holds text"},
+      {"a torn row of text", [](Files& f) { f.imu("az").back() = missing_sample(Missing::Text, f.imu("az").size()); },
+       false, "rows of the unit are incomplete"},
       {"a first row without its time", [](Files& f) { f.gnss("t")[0] = kNothing; }, false, "rows have no time"},
       {"a torn last row of the fixes", [](Files& f) { f.gnss("lat").back() = kNothing; }, false, "have no position"},
       {"an arm whose uncertainty is stated", [](Files& f) { f.document.gnss.lever_arm_sd_m = 1.0; }, false,
