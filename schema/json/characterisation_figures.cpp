@@ -1,13 +1,12 @@
 #include "schema/json/characterisation_figures.hpp"
 
-#include "core/analysis/drawn_values.hpp"
+#include "core/analysis/drawn_allan.hpp"
 #include "core/fit/characterise.hpp"
-#include "core/signal/unit.hpp"
 #include "schema/figure/axes.hpp"
 #include "schema/figure/layout.hpp"
-#include "schema/json/channel_summary.hpp"
 #include "schema/json/figure_values.hpp"
 #include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_channel.hpp"
 
 #include <map>
 #include <optional>
@@ -22,70 +21,6 @@ using figure::Note;
 using figure::Plot;
 using figure::ScaleKind;
 using figure::Series;
-
-/// What a fit implies, in the unit drawn.
-struct DrawnModel {
-  DrawnCurve whole;
-  DrawnCurve at_measured;
-  std::vector<std::pair<std::string, DrawnCurve>> components;  ///< by process
-};
-
-/// What the document says of a channel, in the unit drawn.
-struct DrawnChannel {
-  DrawnUnit unit;
-  DrawnCurve classical;
-  std::optional<DrawnCurve> robust;  ///< where one scale differs from the classical
-  std::optional<DrawnModel> model;   ///< of the best fit
-};
-
-DrawnCurve curve_of(const std::vector<double>& x, const std::vector<double>& y, double factor) {
-  return scaled(DrawnCurve{x, Values(y.begin(), y.end()), {}, {}}, factor);
-}
-
-DrawnModel drawn(const ImpliedBeside& implied, double factor) {
-  const ImpliedCurves& curves = implied.curves;
-  DrawnModel model{curve_of(curves.tau_s, curves.deviation, factor),
-                   curve_of(implied.at_measured.tau_s, implied.at_measured.deviation, factor),
-                   {}};
-  for (const ImpliedComponent& component : curves.components) {
-    model.components.emplace_back(component.process, curve_of(curves.tau_s, component.deviation, factor));
-  }
-  return model;
-}
-
-std::optional<DrawnCurve> robust_of(const Json& channel, double factor) {
-  const Json& haar = channel.at("haar");
-  const auto contamination = contamination_from_json(channel);
-  if (!contamination || !robust_differs(*contamination) || !haar.contains("robust") || !haar["robust"].is_object()) {
-    return std::nullopt;
-  }
-  const Json& robust = haar["robust"];
-  return deviations_of_wavelets(
-      haar.at("scale").get<std::vector<std::size_t>>(), channel.at("dt_s").get<double>(), factor,
-      DrawnCurve{{}, values_of(robust.at("variance")), ends_of(robust.at("ci95"), 0), ends_of(robust.at("ci95"), 1)});
-}
-
-/// The best fit, or null.
-Json best_fit(const Json& channel) {
-  const Json& fits = channel.at("fits");
-  if (fits.empty()) {
-    return nullptr;
-  }
-  return fits[channel.value("best", Json(0)).is_number() ? channel["best"].get<std::size_t>() : 0];
-}
-
-DrawnChannel drawn(const Json& channel, const Json& fit) {
-  DrawnChannel told;
-  told.unit = drawn_unit(channel.at("unit").get<std::string>());
-  const MeasuredDeviation measured = deviation_from_json(channel.at("allan"));
-  told.classical =
-      scaled(DrawnCurve{measured.tau_s, measured.deviation, measured.low, measured.high}, told.unit.factor);
-  told.robust = robust_of(channel, told.unit.factor);
-  if (const auto implied = fit.is_object() ? implied_from_json(fit, channel) : std::nullopt) {
-    told.model = drawn(*implied, told.unit.factor);
-  }
-  return told;
-}
 
 Series series_of(std::string name, DrawnCurve curve) {
   Series series{.name = std::move(name), .x = std::move(curve.x), .y = std::move(curve.y)};
@@ -104,11 +39,11 @@ Series classical_series(const DrawnCurve& curve) {
   return series;
 }
 
-Series robust_series(const Json& channel, const DrawnCurve& curve) {
-  const std::size_t disjoint = channel.at("contamination").at("disjoint_scales").size();
+Series robust_series(const StoredChannel& channel, const DrawnCurve& curve) {
+  const std::size_t disjoint = channel.contamination ? channel.contamination->disjoint_scales.size() : 0;
   Series series = series_of("robust", curve);
-  series.detail = disjoint > 0 ? std::to_string(disjoint) + " of " +
-                                     std::to_string(channel.at("haar").at("scale").size()) + " scales differ"
+  series.detail = disjoint > 0 ? std::to_string(disjoint) + " of " + std::to_string(channel.told.haar.scale.size()) +
+                                     " scales differ"
                                : "agrees";
   series.mark = Mark::Diamond;
   series.colour = figure::palette::kRobust;
@@ -138,13 +73,13 @@ ComponentStyle style_of(const std::string& process, int nth) {
 }
 
 /// The processes of the model, each by itself; none of a model of one.
-std::vector<Series> component_series(const DrawnChannel& channel) {
+std::vector<Series> component_series(const DrawnAllan& drawn) {
   std::vector<Series> components;
-  if (!channel.model || channel.model->components.size() < 2) {
+  if (!drawn.model || drawn.model->components.size() < 2) {
     return components;
   }
   std::map<std::string, int> seen;
-  for (const auto& [process, curve] : channel.model->components) {
+  for (const auto& [process, curve] : drawn.model->components) {
     const int nth = seen[process]++;
     const ComponentStyle style = style_of(process, nth);
     const std::string name = *style.name != '\0' ? style.name : replaced(process, "_", " ");
@@ -157,89 +92,77 @@ std::vector<Series> component_series(const DrawnChannel& channel) {
 }
 
 /// N at 1 s, K at 3 s, B as a line at 0.664 B; each only where the data identify it.
-std::vector<Note> notes_of(const Json& channel, const Json& fit, const DrawnChannel& drawn,
-                           const std::vector<Series>& components) {
+std::vector<Note> notes_of(const DrawnAllan& drawn, const std::vector<Series>& components) {
   std::vector<Note> notes;
-  const std::vector<double>& tau = drawn.classical.x;
-  for (std::size_t i = 0; fit.is_object() && i < fit.at("processes").size() && i < components.size(); ++i) {
-    const Json& process = fit.at("processes")[i];
-    const auto place = level_place(process.at("process").get<std::string>(),
-                                   DrawnCurve{components[i].x, components[i].y, {}, {}}, tau);
-    if (!place || process.at("params").empty()) {
-      continue;
-    }
-    const auto level = process.at("params").items().begin();
-    if (level.value().is_object() && level.value().at("value").is_number()) {
-      notes.push_back({place->tau_s, place->deviation, level.key() + " = " + quantity_text(level.value()),
-                       "read at τ = " + figure::tick_text(place->tau_s) + " s", components[i].colour, false});
-    }
+  for (const DrawnLevel& level : drawn.levels) {
+    notes.push_back({level.place.tau_s, level.place.deviation, level.name + " = " + quantity_text(to_json(level.value)),
+                     "read at τ = " + figure::tick_text(level.place.tau_s) + " s", components[level.component].colour,
+                     false});
   }
-  const Json bias = channel.at("allan_parameters").value("B", Json(nullptr));
-  const auto unit = parse_unit(channel.at("unit").get<std::string>());
-  if (bias.is_object() && bias.value("value", Json(nullptr)).is_number() && unit && unit->dimension != Dimension::One) {
-    notes.push_back({tau.back(), bias_floor(bias.at("value").get<double>(), *unit, drawn.unit),
-                     "B = " + quantity_text(bias), "line at 0.664 B", figure::palette::kInk, true});
+  if (drawn.bias) {
+    notes.push_back({drawn.classical.x.back(), drawn.bias->deviation,
+                     "B = " + quantity_text(to_json(drawn.bias->value)), "line at 0.664 B", figure::palette::kInk,
+                     true});
   }
   return notes;
 }
 
 /// Measured over model, on a scale on which misfit shows.
-Plot ratio_plot(const DrawnModel& model, const Series& classical, const std::optional<Series>& robust) {
-  const auto relative = [&](const Series& shown) {
-    Series one = series_of(shown.name + " ÷ model", relative_to(DrawnCurve{shown.x, shown.y, shown.low, shown.high},
-                                                                model.at_measured, model.whole));
+Plot ratio_plot(const DrawnAllan& drawn, const Series& classical, const std::optional<Series>& robust) {
+  const DrawnRatios ratios = ratios_of(drawn);
+  const auto relative = [](const Series& shown, const DrawnCurve& ratio) {
+    Series one = series_of(shown.name + " ÷ model", ratio);
     one.mark = shown.mark;
     one.colour = shown.colour;
     one.line = false;
     one.key = false;
     return one;
   };
-  Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .series = {relative(classical)}};
-  const double limit = end_of_ratios(farthest_log(plot.series.front().y, 0.25), 1.25, 8.0);
-  plot.y = figure::ratio_axis("measured ÷ model", limit);
-  plot.y.ticks = figure::ratio_ticks(limit);
+  Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .series = {relative(classical, ratios.classical)}};
+  plot.y = figure::ratio_axis("measured ÷ model", ratios.end);
+  plot.y.ticks = figure::ratio_ticks(ratios.end);
   plot.height = 96.0;
   plot.rules = {1.0};
-  if (robust) {
-    plot.series.push_back(relative(*robust));
+  if (robust && ratios.robust) {
+    plot.series.push_back(relative(*robust, *ratios.robust));
   }
   return plot;
 }
 
 }  // namespace
 
-Figure allan_figure(const Json& channel, const std::string& recording) {
-  const Json fit = best_fit(channel);
-  const DrawnChannel told = drawn(channel, fit);
-  const Series classical = classical_series(told.classical);
-  const std::optional<Series> robust = told.robust ? std::optional(robust_series(channel, *told.robust)) : std::nullopt;
-  std::vector<Series> components = component_series(told);
-  const auto name = channel.at("channel").get<std::string>();
+Figure allan_figure(const StoredChannel& channel, const std::string& recording) {
+  const ReportedFit* const fit = channel.best_fit();
+  const DrawnAllan drawn = drawn_allan(channel);
+  const Series classical = classical_series(drawn.classical);
+  const std::optional<Series> robust =
+      drawn.robust ? std::optional(robust_series(channel, *drawn.robust)) : std::nullopt;
+  std::vector<Series> components = component_series(drawn);
   Figure figure{
-      .title = recording + ", " + name + ": Allan deviation",
+      .title = recording + ", " + channel.told.channel + ": Allan deviation",
       .sentence = "Allan deviation against averaging time, log-log with equal decades, points with 95 % intervals" +
-                  (fit.is_object() ? ", fitted model " + fit.at("model").get<std::string>() + "." : std::string(".")),
+                  (fit != nullptr ? ", fitted model " + fit->model + "." : std::string(".")),
       .source = "driftlab " DRIFTLAB_VERSION ", " + recording + ", algorithm " + std::to_string(kAlgorithmVersion)};
-  Plot main{.x = {ScaleKind::Log, told.model ? "" : "averaging time τ, s"},
-            .y = {ScaleKind::Log, "Allan deviation, " + printed_unit(told.unit.symbol)},
+  Plot main{.x = {ScaleKind::Log, drawn.model ? "" : "averaging time τ, s"},
+            .y = {ScaleKind::Log, "Allan deviation, " + printed_unit(drawn.unit.symbol)},
             .series = {classical}};
   main.equal_units = true;
   main.guides = {{-1.0, "−1"}, {-0.5, "−½"}, {0.5, "+½"}};
-  main.notes = notes_of(channel, fit, told, components);
+  main.notes = notes_of(drawn, components);
   if (robust) {
     main.series.push_back(*robust);
   }
-  if (told.model) {
-    Series model = series_of(fit.at("model").get<std::string>(), told.model->whole);
-    model.detail = fit.value("robust", false) ? "fitted to robust" : "fitted";
+  if (drawn.model) {
+    Series model = series_of(fit->model, drawn.model->whole);
+    model.detail = fit->robust ? "fitted to robust" : "fitted";
     model.colour = figure::palette::kModel;
     model.width = 2.0;
     main.series.push_back(std::move(model));
   }
   main.series.insert(main.series.end(), components.begin(), components.end());
   figure.plots.push_back(std::move(main));
-  if (told.model) {
-    figure.plots.push_back(ratio_plot(*told.model, classical, robust));
+  if (drawn.model) {
+    figure.plots.push_back(ratio_plot(drawn, classical, robust));
   }
   return figure;
 }
@@ -249,9 +172,9 @@ std::vector<NamedFigure> figures_of_characterisation(const Json& document, const
   const bool several = document.at("recordings").size() > 1;
   for (const Json& recording : document.at("recordings")) {
     const auto id = recording.at("id").get<std::string>();
-    for (const Json& one : recording.at("channels")) {
-      const auto name = one.at("channel").get<std::string>();
-      if ((channel.empty() || name == channel) && !one.at("allan").at("tau_s").empty()) {
+    for (const StoredChannel& one : stored_channels_from_json(recording.at("channels"))) {
+      const std::string& name = one.told.channel;
+      if ((channel.empty() || name == channel) && !one.allan.tau_s.empty()) {
         std::string of_all = id;
         of_all.append("-").append(name);
         figures.push_back({word(several ? of_all : name), allan_figure(one, id)});

@@ -3,7 +3,7 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/figures.hpp"
 #include "core/investigate/report/order.hpp"
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/simulation_model.hpp"
 
 namespace driftlab {

@@ -1,7 +1,7 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "core/signal/angle.hpp"
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/outage_scenario.hpp"
 #include "schema/json/rounded.hpp"
 

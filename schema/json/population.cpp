@@ -1,6 +1,6 @@
 #include "schema/json/population.hpp"
 
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/stored_member.hpp"
 

@@ -1,6 +1,6 @@
 #include "schema/json/told_characterisation.hpp"
 
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/stored_member.hpp"
 
 #include <limits>
@@ -50,8 +50,8 @@ ToldChannel told_channel(const Json& channel) {
   ToldChannel told;
   told.channel = channel.at("channel").get<std::string>();
   told.unit = channel.at("unit").get<std::string>();
-  if (auto verdict = verdict_from_json(channel)) {
-    told.verdict = std::move(*verdict);
+  if (const auto stored = stored_channel_from_json(channel)) {
+    told.verdict = verdict_of(*stored);
   }
   told.allan = told_deviation(channel, "allan_fine");
   told.total = told_deviation(channel, "total");

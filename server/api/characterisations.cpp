@@ -1,5 +1,6 @@
 // The newest result of one recording, and what its fits imply.
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/reported_channel.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/http/problem.hpp"
@@ -65,9 +66,9 @@ Result<Characterised> result_of(ApiContext& context, const std::string& job_id, 
 
 /// One channel with the ids of its fits, what it says and what its best fit implies.
 Result<Json> channel_document(const Json& channel, const std::vector<Fit>& fits) {
-  auto summary = channel_summary(channel);
-  if (!summary) {
-    return fail(summary.error());
+  const auto told = stored_channel_from_json(channel);
+  if (!told) {
+    return fail(told.error());
   }
   std::vector<std::string> ids(channel.at("fits").size());
   for (const Fit& fit : fits) {
@@ -75,8 +76,11 @@ Result<Json> channel_document(const Json& channel, const std::vector<Fit>& fits)
       ids[static_cast<std::size_t>(fit.rank)] = fit.id;
     }
   }
-  const Json implied = ids.empty() ? Json(nullptr) : implied_by(channel.at("fits").at(0), channel);
-  return Json{{"summary", std::move(*summary)}, {"fit_ids", ids}, {"implied", implied}, {"result", channel}};
+  const auto implied = ids.empty() ? std::nullopt : implied_by(told->told.fits.front(), *told);
+  return Json{{"summary", driftlab::to_json(verdict_of(*told))},
+              {"fit_ids", ids},
+              {"implied", implied ? driftlab::to_json(*implied, told->told.parsed_unit().symbol) : Json(nullptr)},
+              {"result", channel}};
 }
 
 Result<Response> get_characterisation(ApiContext& context, const Request& request) {
@@ -140,11 +144,18 @@ Result<Response> get_implied(ApiContext& context, const Request& request) {
   }
   for (const Json& channel : found->recording.at("channels")) {
     if (channel.at("channel") == fit->channel) {
-      Json implied = implied_by(stored(fit->document_json), channel);
-      if (implied.is_null()) {
+      const auto told = stored_channel_from_json(channel);
+      const auto asked = stored_fit_from_json(stored(fit->document_json));
+      if (!told || !asked) {
+        return fail(!told ? told.error() : asked.error());
+      }
+      const auto implied = implied_by(asked->fit, *told);
+      if (!implied) {
         return fail(ErrorCode::NotFound, "The fit " + fit->id + " leaves a parameter open: it implies no curve.");
       }
-      return json_response(200, Json{{"fit", fit->id}, {"model", fit->model}, {"implied", std::move(implied)}});
+      return json_response(200, Json{{"fit", fit->id},
+                                     {"model", fit->model},
+                                     {"implied", driftlab::to_json(*implied, told->told.parsed_unit().symbol)}});
     }
   }
   return fail(ErrorCode::Internal,

@@ -1,5 +1,5 @@
 // GET /v1/events: everything that a page may want to show at once, in one stream for each tab.
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 
@@ -25,14 +25,13 @@ Json sentence_of(const Json& document) {
   if (const auto own = document.find("summary"); own != document.end() && own->is_object()) {
     return own->value("verdict", Json(nullptr));
   }
-  Json channels = Json::array();
+  std::vector<StoredChannel> channels;
   for (const Json& recording : document.value("recordings", Json::array())) {
-    for (const Json& channel : recording.value("channels", Json::array())) {
-      channels.push_back(channel);
-    }
+    std::ranges::move(stored_channels_from_json(recording.value("channels", Json::array())),
+                      std::back_inserter(channels));
   }
-  const Json gravest = gravest_summary(channels);
-  return gravest.is_null() ? Json(nullptr) : gravest.at("verdict");
+  const auto gravest = gravest_channel(channels);
+  return gravest ? Json(gravest->verdict.sentence) : Json(nullptr);
 }
 
 void announce_result(ApiContext& context, const Job& job) {

@@ -1,6 +1,7 @@
 // One channel of a recording as a person looks at it: spectrum, histogram, spectrogram.
+#include "core/analysis/stored_channel.hpp"
 #include "schema/json/channel_look.hpp"
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/reported_channel.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 #include "server/jobs/stored_recordings.hpp"
@@ -80,7 +81,11 @@ Result<std::optional<driftlab::Model>> model_asked(ApiContext& context, const Re
     return fail(ErrorCode::InvalidArgument, "The fit " + fit->id + " is one of another channel.",
                 {{"parameter", "fit"}});
   }
-  auto model = model_of(stored(fit->document_json), look.unit().dimension);
+  const auto told = stored_fit_from_json(stored(fit->document_json));
+  if (!told) {
+    return fail(told.error());
+  }
+  auto model = model_of(told->fit, look.unit().dimension);
   if (!model) {
     return fail(ErrorCode::InvalidArgument, "The fit " + fit->id + " leaves a parameter open: it implies no density.",
                 {{"parameter", "fit"}});

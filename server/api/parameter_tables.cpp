@@ -1,4 +1,4 @@
-#include "schema/json/channel_summary.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/parameter_table.hpp"
 #include "schema/json/trend_table.hpp"
 #include "schema/text/parameter_table.hpp"

@@ -81,9 +81,8 @@ JSON_DOORS: dict[str, set[str]] = {
     "core/investigate/causes": {"core/investigate/causes/cause.hpp"},
     "core/investigate/search": {"core/investigate/search/given_model.hpp"},
     "core/read": {"core/read/text_shape.hpp"},
-    # Not yet types alone: channels and figures still ask verdict, absent_process and regression/ratios.
     "core/campaign": {f"core/campaign/{name}.hpp" for name in (
-        "absent_process", "campaign_summary", "parameter_table", "pooled_sensor", "population_report", "regression/ratios",
+        "campaign_summary", "parameter_table", "pooled_sensor", "population_report", "regression/ratios",
         "regression/recordings", "reported_channel", "trend_table", "verdict")},
     "core/calibrate": {f"core/calibrate/{name}.hpp" for name in ("multi_position", "sensor_calibration", "six_position")},
     "core/navigate": {f"core/navigate/{name}.hpp" for name in (
