@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kFewestInRun = 16;
 constexpr double kGap = 1.5;
 constexpr double kStillSeconds = 3.0;
-constexpr double kStillRate = 0.02;
-constexpr double kStillForce = 0.3;
+constexpr double kStillRate = 0.02;  // rad/s
+constexpr double kStillForce = 0.3;  // m/s^2
 constexpr double kReadAt = 1.0;
 constexpr double kSlopeTolerance = 0.12;
 
@@ -106,10 +106,12 @@ GrowingRecording look_at_growth(std::span<const double> time_s, std::span<const 
   return look;
 }
 
+double still_deviation(Dimension dimension) {
+  return dimension == Dimension::AngularRate ? kStillRate : dimension == Dimension::SpecificForce ? kStillForce : 0.0;
+}
+
 std::optional<bool> lies_still(std::span<const double> time_s, std::span<const double> values, const Unit& unit) {
-  const double limit = unit.dimension == Dimension::AngularRate     ? kStillRate
-                       : unit.dimension == Dimension::SpecificForce ? kStillForce
-                                                                    : 0.0;
+  const double limit = still_deviation(unit.dimension);
   std::size_t first = time_s.size();
   while (first > 0 && time_s[first - 1] > time_s.back() - kStillSeconds) {
     --first;

@@ -34,9 +34,12 @@ struct GrowingRecording {
 /// `time_s` and `values` of one channel, equally long; NaN is taken for missing. O(N log N).
 [[nodiscard]] GrowingRecording look_at_growth(std::span<const double> time_s, std::span<const double> values);
 
-/// Whether the sensor lay still in the last three seconds: the standard deviation is below 0.02 rad/s for an angular
-/// rate and below 0.3 m/s^2 for a specific force, ten times the noise of a phone. Nothing for other units and for fewer
-/// than ten samples.
+/// The standard deviation below which a sensor lies still, ten times the noise of a phone: 0.02 rad/s of an angular
+/// rate, 0.3 m/s^2 of a specific force; 0 for another dimension.
+[[nodiscard]] double still_deviation(Dimension dimension);
+
+/// Whether the sensor lay still in the last three seconds, by its standard deviation. Nothing for other units and for
+/// fewer than ten samples.
 [[nodiscard]] std::optional<bool> lies_still(std::span<const double> time_s, std::span<const double> values,
                                              const Unit& unit);
 

@@ -1,5 +1,6 @@
 #include "core/analysis/preview_recording.hpp"
 
+#include "core/analysis/growing_recording.hpp"
 #include "core/datasheet/plausible_units.hpp"
 #include "core/signal/angle.hpp"
 #include "core/signal/number.hpp"
@@ -21,8 +22,6 @@ constexpr std::size_t kFewest = 20;  ///< rows from which a mean says something
 
 constexpr double kTurns = 1.0 * kDegree;  ///< [rad/s]; a slower mean is a bias
 constexpr double kSteady = 0.2;           ///< deviation over mean of a rate that is constant
-constexpr double kStillRate = 0.02;       ///< [rad/s], as in growing_recording.cpp
-constexpr double kStillForce = 0.3;       ///< [m/s^2]
 
 struct Moments {
   double mean = 0.0;
@@ -80,7 +79,7 @@ std::optional<ConditionGuess> guess_condition(const RecordingPreview& preview) {
       continue;
     }
     seen = true;
-    still = still && moments->deviation < (rate ? kStillRate : kStillForce);
+    still = still && moments->deviation < still_deviation(rate ? Dimension::AngularRate : Dimension::SpecificForce);
     if (rate && !role->axis.empty() && (fastest == nullptr || std::abs(moments->mean) > std::abs(turning.mean))) {
       fastest = &preview.columns[i];
       turning = *moments;
