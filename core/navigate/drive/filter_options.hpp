@@ -22,6 +22,7 @@ struct Constraint {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
   double axle_m = 0.0;  ///< forward of the unit; of a rear axle mostly negative
+  bool operator==(const Constraint&) const = default;
 };
 
 /// Errors of the readings that are taken off before the filter: reading = (I + M) truth, in body axes.
@@ -29,6 +30,7 @@ struct ReadingErrors {
   Matrix3 gyroscope = Matrix3::Zero();
   Matrix3 accelerometer = Matrix3::Zero();
   [[nodiscard]] bool none() const { return gyroscope.isZero(0.0) && accelerometer.isZero(0.0); }
+  bool operator==(const ReadingErrors&) const = default;
 };
 
 /// Constants that a filter estimates beside everything else: their standard deviations; nothing: they are known.
@@ -37,6 +39,7 @@ struct EstimatedConstants {
   std::optional<double> mounting_sd_rad;  ///< yaw and pitch of the constraint
   std::optional<double> axle_sd_m;
   std::optional<double> odometer_scale_sd;
+  bool operator==(const EstimatedConstants&) const = default;
 };
 
 /// Errors of a receiver's positions that last: a Gauss-Markov process in north, east and, one and a half times as
@@ -46,6 +49,7 @@ struct ColouredFixes {
   double tau_s = 10.0;
   [[nodiscard]] bool none() const { return std::abs(sigma_m) < 1e-4; }
   [[nodiscard]] Vector3 sd_m() const { return std::abs(sigma_m) * Vector3(1.0, 1.0, 1.5); }
+  bool operator==(const ColouredFixes&) const = default;
 };
 
 struct FilterOptions {
@@ -70,6 +74,7 @@ struct FilterOptions {
   int gate_memory = 60;  ///< disagreeing fixes that are remembered once the receiver is believed again (fix_gate.hpp)
   bool date_to_sample =
       false;  ///< fixes count as of the end of their sample: what a filter does that ignores their dates
+  bool operator==(const FilterOptions&) const = default;
 };
 
 /// The options that the document states: lever arm and latencies.

@@ -2,6 +2,10 @@
 /// Profiles of the log likelihood of a drive's innovations along the knobs of causes. Internal to the explanation.
 #include "core/navigate/drive/explain.hpp"
 
+#include <array>
+#include <optional>
+#include <vector>
+
 namespace driftlab::drive {
 
 /// Where a profile has its top, relative to the present value, SI.
@@ -14,6 +18,7 @@ struct ProfileEstimate {
   [[nodiscard]] double gain_to(double at) const { return sound ? top - at : 0.0; }
 };
 
+/// One thread may ask it: it remembers what it has run.
 class Profile {
  public:
   /// `drive` and `control` must outlive it. Only innovations of the folds that `used` marks count.
@@ -44,6 +49,8 @@ class Profile {
     double low, middle, high;
     double low_value, middle_value, high_value;
   };
+  /// The likelihood of each trial; nothing for options that no filter can have.
+  [[nodiscard]] std::vector<std::optional<LogLikelihood>> runs(const std::vector<FilterOptions>& trials) const;
   [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;
   [[nodiscard]] static ProfileEstimate parabola(const Bracket& bracket, double scale);
 
@@ -51,6 +58,12 @@ class Profile {
   std::array<bool, LogLikelihood::kFolds> used_;
   const RunControl& control_;
   FilterOptions stated_;  ///< by the document
+  struct Run {
+    FilterOptions options;
+    std::optional<LogLikelihood> likelihood;
+  };
+  /// The newest runs, oldest first: a search asks again for the options that it stands at.
+  mutable std::vector<Run> known_;
 };
 
 }  // namespace driftlab::drive

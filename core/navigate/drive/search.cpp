@@ -11,19 +11,42 @@ constexpr double kSure = 3.0;   ///< standard errors
 constexpr double kPair = 2.0;   ///< scores that differ by less are a pair
 constexpr int kRefits = 2;
 constexpr double kBound = 0.9;  ///< of the most that is sought: nearer to it an estimate is at its bound
+constexpr std::size_t kRemembered = 64;
 
 }  // namespace
 
-std::vector<double> Profile::values(const std::vector<FilterOptions>& trials) const {
-  std::vector<double> sums(trials.size(), -std::numeric_limits<double>::infinity());
+std::vector<std::optional<LogLikelihood>> Profile::runs(const std::vector<FilterOptions>& trials) const {
+  std::vector<std::size_t> place;
+  const std::size_t before = known_.size();
+  for (const FilterOptions& trial : trials) {
+    const auto same = [&](const Run& run) { return run.options == trial; };
+    const auto found = std::find_if(known_.begin(), known_.end(), same);
+    place.push_back(static_cast<std::size_t>(found - known_.begin()));
+    if (found == known_.end()) {
+      known_.push_back({trial, std::nullopt});
+    }
+  }
   parallel_for(
-      control_.threads, trials.size(),
+      control_.threads, known_.size() - before,
       [&](std::size_t i) {
-        if (const auto found = log_likelihood(drive_, trials[i])) {
-          sums[i] = found->over(used_);
+        Run& run = known_[before + i];
+        if (auto found = log_likelihood(drive_, run.options)) {
+          run.likelihood = *std::move(found);
         }
       },
       control_.stop);
+  std::vector<std::optional<LogLikelihood>> found(trials.size());
+  std::transform(place.begin(), place.end(), found.begin(), [&](std::size_t i) { return known_[i].likelihood; });
+  const std::size_t oldest = known_.size() - std::min(known_.size(), kRemembered);
+  known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(oldest));
+  return found;
+}
+
+std::vector<double> Profile::values(const std::vector<FilterOptions>& trials) const {
+  std::vector<double> sums;
+  for (const std::optional<LogLikelihood>& found : runs(trials)) {
+    sums.push_back(found ? found->over(used_) : -std::numeric_limits<double>::infinity());
+  }
   return sums;
 }
 
@@ -34,7 +57,7 @@ FilterOptions Profile::turned(const FilterOptions& options, const Knob& knob, do
 }
 
 double Profile::scale(const FilterOptions& options) const {
-  const auto found = log_likelihood(drive_, options);
+  const std::optional<LogLikelihood> found = runs({options}).front();
   return found ? 3.0 * std::max(found->mean_square(used_), 0.1) : 3.0;
 }
 
