@@ -6,6 +6,7 @@
 #include "clients/cli/plot_file.hpp"
 #include "clients/cli/progress.hpp"
 #include "clients/cli/table_file.hpp"
+#include "schema/json/drive_draft.hpp"
 #include "schema/json/drive_request.hpp"
 #include "schema/text/drive.hpp"
 
@@ -30,7 +31,46 @@ struct DriveFlags {
   DriveServer server;
 };
 
+struct DraftFlags {
+  std::string unit;
+  std::string receiver;
+  std::string vehicle = "road";
+  double rate_hz = 0.0;
+};
+
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+/// What the document's beginning says, with what it takes for granted on the standard error.
+Exit draft_files(const DraftFlags& flags) {
+  RunControl control;
+  control.stop = interrupt_token();
+  DraftRequest request;
+  request.vehicle = drive::parse_vehicle(flags.vehicle).value_or(drive::Vehicle::Road);
+  auto unit = read_draft_file(flags.unit, control);
+  if (!unit) {
+    return complain_of_work(unit.error());
+  }
+  request.unit = *std::move(unit);
+  if (flags.rate_hz > 0.0) {
+    request.unit.spec.rate_hz = flags.rate_hz;
+  }
+  if (!flags.receiver.empty()) {
+    auto receiver = read_draft_file(flags.receiver, control);
+    if (!receiver) {
+      return complain_of_work(receiver.error());
+    }
+    request.receiver = *std::move(receiver);
+  }
+  const auto draft = draft_drive(request);
+  if (!draft) {
+    return complain(draft.error());
+  }
+  print(to_json(*draft).dump(2) + "\n");
+  for (const std::string& note : draft->notes) {
+    std::fprintf(stderr, "%s\n", note.c_str());
+  }
+  return Exit::Success;
+}
 
 Exit check_files(const DriveFlags& flags) {
   RunControl control;
@@ -127,6 +167,20 @@ Exit smooth_files(const DriveFlags& flags) {
   return written ? Exit::Success : complain(written.error());
 }
 
+void add_draft(CLI::App& drive, Command& chosen) {
+  const auto flags = std::make_shared<DraftFlags>();
+  CLI::App* const command = drive.add_subcommand("draft", "Draw up drive.json from the names of a log's columns");
+  command->add_option("LOG", flags->unit, "The unit's readings; a flight log or a bag holds the fixes as well")
+      ->required();
+  command->add_option("--gnss", flags->receiver, "The receiver's fixes, where they are in a file of their own");
+  command->add_option("--vehicle", flags->vehicle, "road, rail, rover, air, foot or boat")
+      ->check(CLI::IsMember({"road", "rail", "rover", "air", "foot", "boat"}))
+      ->capture_default_str();
+  command->add_option("--rate-hz", flags->rate_hz, "Sampling rate of readings without times")
+      ->check(CLI::PositiveNumber);
+  command->callback([flags, &chosen] { chosen = [flags] { return draft_files(*flags); }; });
+}
+
 void add_files(CLI::App& command, DriveFlags& flags) {
   command.add_option("DRIVE", flags.document, "drive.json; its files lie beside it")->required();
   command.add_flag("--json", flags.json, "Print the result document instead of tables");
@@ -180,6 +234,7 @@ void add_drive(CLI::App& app, Command& chosen) {
   CLI::App* const drive =
       app.add_subcommand("drive", "Measured GNSS outages of a recorded drive, and what simulations of them get wrong");
   drive->require_subcommand(1);
+  add_draft(*drive, chosen);
   const auto flags = std::make_shared<DriveFlags>();
   CLI::App* const check = drive->add_subcommand("check", "What the files of a drive show, without a filter");
   add_files(*check, *flags);

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 namespace driftlab::cli {
+
 Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunControl& control) {
   auto decoded = decode_file(folder_ / source.file, workspace_.file(), {}, control);
   if (!decoded) {
@@ -28,6 +29,18 @@ Result<drive::Table> DriveFiles::open(const drive::Source& source, const RunCont
     table.tag = drive::TimeTag{tag->first_s, tag->last_s};
   }
   return table;
+}
+
+Result<DraftFile> read_draft_file(const std::string& path, const RunControl& control) {
+  const auto workspace = Workspace::make();
+  if (!workspace) {
+    return fail(workspace.error());
+  }
+  const auto decoded = decode_file(path, workspace->file(), {}, control);
+  if (!decoded) {
+    return fail(in_file(path, decoded.error()));
+  }
+  return DraftFile{path, decoded->format, decoded->names, {}};
 }
 
 Result<Json> read_drive_json(const std::string& path, const std::string& model_path) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The files of a drive document on this machine.
 #include "clients/cli/workspace.hpp"
+#include "core/analysis/draft_drive.hpp"
 #include "core/analysis/drive.hpp"
 #include "schema/json/json.hpp"
 
@@ -18,6 +19,9 @@ class DriveFiles final : public DriveSource {
   std::filesystem::path folder_;
   Workspace workspace_;
 };
+
+/// The columns of a log by their names, for a draft that lies in the same folder.
+[[nodiscard]] Result<DraftFile> read_draft_file(const std::string& path, const RunControl& control);
 
 /// The JSON text at `path`; `model_path`, where not empty, takes the place of its model.
 [[nodiscard]] Result<Json> read_drive_json(const std::string& path, const std::string& model_path);

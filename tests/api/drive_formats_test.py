@@ -8,13 +8,14 @@ import io
 import json
 import math
 import struct
+import subprocess
 import unittest
 from pathlib import Path
 from typing import Any, Callable
 
 import drive_documents
 import samples
-from drives_test import Folder, SHARED
+from drives_test import Folder, PROGRAM, SHARED
 
 NAV = SHARED.parent / "nav"
 GPS_EPOCH = 315964800.0
@@ -147,6 +148,25 @@ class SameDrive(MadeUpDrive):
         asked = self.expect(202, self.daemon.post("/v1/drive-evaluations", {"drive": kept, "question": "run"}))
         self.assertEqual(self.daemon.finished(asked.json["id"])["state"], "succeeded")
         self.assertEqual(self.expect(200, self.daemon.get(asked.headers["location"])).json["evaluation"]["durations"], found)
+
+    def test_a_draft_of_a_log_is_its_document_but_for_what_only_people_know(self) -> None:
+        (self.folder / "flight.ulg").write_bytes(ulog(self.readings, self.fixes))
+        done = subprocess.run([PROGRAM, "drive", "draft", "flight.ulg"], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("state gnss.lever_arm_m", done.stderr)
+        draft = json.loads(done.stdout)
+        self.drive(0, "check", draft)
+        wanted = self.of_one_log("flight.ulg", velocity=True)
+        draft["imu"]["mounting_deg"] = [0, 0, 0]
+        draft["gnss"] |= {name: wanted["gnss"][name] for name in ("position_sd_m", "velocity_sd_m_s")}
+        draft |= {name: wanted[name] for name in ("model", "outages")}
+        self.assertEqual(self.found(draft), self.found(wanted))
+        done = subprocess.run([PROGRAM, "drive", "draft", "gnss.csv"], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.as_csv()
+        done = subprocess.run([PROGRAM, "drive", "draft", "gnss.csv"], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("No column of gnss.csv is the angular rate along x", done.stderr)
 
     def test_one_ros_bag(self) -> None:
         (self.folder / "drive.bag").write_bytes(bag(self.readings, self.fixes))

@@ -1,0 +1,257 @@
+#include "core/analysis/draft_drive.hpp"
+
+#include "core/signal/recording_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace driftlab {
+namespace {
+
+using drive::Quantity;
+
+/// A name without what stands before it in a log and without its unit: `latitude` and `deg` of `gnss_latitude (deg)`.
+struct ReadName {
+  std::string stream;  ///< `gnss`, `gnss2`; empty: none
+  std::string word;    ///< in small letters, without blanks and underscores
+  std::string unit;
+};
+
+ReadName read_name(std::string_view name) {
+  ReadName read;
+  if (const auto open = name.find_first_of("([");
+      open != std::string_view::npos && name.find_last_of(")]") == name.size() - 1) {
+    read.unit = name.substr(open + 1, name.size() - open - 2);
+    name = name.substr(0, open);
+  }
+  if (const auto line = name.find('_'); name.starts_with("gnss") && line != std::string_view::npos) {
+    read.stream = name.substr(0, line);
+    name.remove_prefix(line + 1);
+  }
+  for (const char c : name) {
+    if (c != ' ' && c != '_') {
+      read.word += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    }
+  }
+  return read;
+}
+
+/// What a column of a receiver is called by the readers of driftlab and in tables of fixes.
+struct FixWord {
+  std::string_view word;
+  Quantity quantity;
+  std::string_view axis;
+  std::string_view unit;  ///< where the name states none
+};
+
+constexpr std::array kFixWords{FixWord{"latitude", Quantity::GnssPosition, "lat", "deg"},
+                               FixWord{"lat", Quantity::GnssPosition, "lat", "deg"},
+                               FixWord{"longitude", Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"lon", Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"lng", Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"height", Quantity::GnssPosition, "height", "m"},
+                               FixWord{"velocitynorth", Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"veln", Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"vn", Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"velocityeast", Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"vele", Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"ve", Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"velocitydown", Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"veld", Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"vd", Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"vu", Quantity::GnssVelocity, "up", "m/s"},
+                               FixWord{"speed", Quantity::GnssSpeed, "", "m/s"},
+                               FixWord{"gspeed", Quantity::GnssSpeed, "", "m/s"},
+                               FixWord{"course", Quantity::GnssCourse, "", "deg"},
+                               FixWord{"headmot", Quantity::GnssCourse, "", "deg"},
+                               FixWord{"sdnorth", Quantity::GnssAccuracy, "north", "m"},
+                               FixWord{"sdn", Quantity::GnssAccuracy, "north", "m"},
+                               FixWord{"sdeast", Quantity::GnssAccuracy, "east", "m"},
+                               FixWord{"sde", Quantity::GnssAccuracy, "east", "m"},
+                               FixWord{"sdup", Quantity::GnssAccuracy, "down", "m"},
+                               FixWord{"sdu", Quantity::GnssAccuracy, "down", "m"},
+                               FixWord{"sdhorizontal", Quantity::GnssAccuracy, "horizontal", "m"},
+                               FixWord{"hacc", Quantity::GnssAccuracy, "horizontal", "m"},
+                               FixWord{"sdvertical", Quantity::GnssAccuracy, "vertical", "m"},
+                               FixWord{"vacc", Quantity::GnssAccuracy, "vertical", "m"},
+                               FixWord{"sdspeed", Quantity::GnssAccuracy, "speed", "m/s"},
+                               FixWord{"sacc", Quantity::GnssAccuracy, "speed", "m/s"},
+                               FixWord{"fixtype", Quantity::FixType, "", ""},
+                               FixWord{"q", Quantity::FixType, "", ""},
+                               FixWord{"quality", Quantity::FixType, "", ""},
+                               FixWord{"status", Quantity::FixType, "", ""},
+                               FixWord{"satellites", Quantity::Satellites, "", ""},
+                               FixWord{"numsv", Quantity::Satellites, "", ""},
+                               FixWord{"ns", Quantity::Satellites, "", ""}};
+
+const DraftColumn* find(const DraftSource& source, Quantity quantity, std::string_view axis) {
+  const auto found = std::find_if(source.columns.begin(), source.columns.end(), [&](const DraftColumn& column) {
+    return column.quantity == quantity && column.axis == axis;
+  });
+  return found == source.columns.end() ? nullptr : &*found;
+}
+
+Error no_column(const std::string& file, const std::string& what) {
+  return {ErrorCode::UnknownColumn,
+          "No column of " + file + " is " + what + " by its name; write the document by hand, or rename the column.",
+          {{"file", file}}};
+}
+
+Result<DraftSource> unit_of(const DraftFile& file) {
+  const auto roles = assign_roles(file.spec, file.names);
+  if (!roles) {
+    return fail(roles.error());
+  }
+  DraftSource source{file.file, {}, "", "s", drive::TimeScale::Boot, std::nullopt};
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    const std::optional<ColumnRole>& role = (*roles)[i];
+    if (!role || !read_name(file.names[i]).stream.empty()) {
+      continue;
+    }
+    const bool rate = role->quantity == driftlab::Quantity::AngularRate;
+    const bool force = role->quantity == driftlab::Quantity::SpecificForce;
+    if (role->quantity == driftlab::Quantity::Time && source.time_column.empty()) {
+      source.time_column = file.names[i];
+      source.time_unit = role->unit ? role->unit->symbol : "s";
+    } else if ((rate || force) && axis_index(role->axis)) {
+      DraftColumn column{file.names[i], rate ? Quantity::AngularRate : Quantity::SpecificForce, role->axis,
+                         role->unit ? role->unit->symbol
+                         : rate     ? "rad/s"
+                                    : "m/s^2"};
+      if (find(source, column.quantity, column.axis) == nullptr) {
+        source.columns.push_back(std::move(column));
+      }
+    }
+  }
+  for (const Quantity quantity : {Quantity::AngularRate, Quantity::SpecificForce}) {
+    for (const char* const axis : {"x", "y", "z"}) {
+      if (find(source, quantity, axis) == nullptr) {
+        const std::string what = quantity == Quantity::AngularRate ? "the angular rate" : "the specific force";
+        return fail(no_column(file.file, what + " along " + axis));
+      }
+    }
+  }
+  if (source.time_column.empty()) {
+    if (!file.spec.rate_hz) {
+      return fail(ErrorCode::InvalidArgument, file.file + " has no column of times: state the rate of its rows.",
+                  {{"parameter", "rate_hz"}});
+    }
+    source.scale = drive::TimeScale::Row;
+    source.rate_hz = file.spec.rate_hz;
+  }
+  return source;
+}
+
+/// The scale of a receiver's file by its format: what the readers of fixes say of their times.
+drive::TimeScale scale_of(const std::string& format) {
+  return format == "nmea"                            ? drive::TimeScale::Utc
+         : format == "rtklib_pos" || format == "ubx" ? drive::TimeScale::Gps
+                                                     : drive::TimeScale::Boot;
+}
+
+/// The first stream of fixes among the columns; `beside`: the unit's own columns stand among them.
+Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& draft) {
+  DraftSource source{file.file, {}, "", "s", beside ? drive::TimeScale::Boot : scale_of(file.format), std::nullopt};
+  const auto roles = assign_roles(file.spec, file.names);
+  if (!roles) {
+    return fail(roles.error());
+  }
+  std::string stream;
+  std::string altitude;
+  std::string altitude_unit = "m";
+  for (std::size_t i = 0; i < file.names.size(); ++i) {
+    const std::string& name = file.names[i];
+    const ReadName read = read_name(name);
+    if (beside && read.stream.empty()) {
+      continue;
+    }
+    stream = stream.empty() ? read.stream : stream;
+    if (read.stream != stream) {
+      draft.notes.push_back("Fixes are those of " + stream + "; " + read.stream + " is another receiver's.");
+      break;
+    }
+    const std::optional<ColumnRole>& role = (*roles)[i];
+    const bool time = read.word == "time" || (!beside && role && role->quantity == driftlab::Quantity::Time);
+    if (time && source.time_column.empty()) {
+      source.time_column = name;
+      source.time_unit = role && role->unit && role->unit->dimension == Dimension::Time ? role->unit->symbol
+                         : read.unit.empty()                                            ? "s"
+                                                                                        : read.unit;
+      continue;
+    }
+    if (read.word == "altitude" || read.word == "hmsl" || read.word == "alt") {
+      altitude = name;
+      altitude_unit = read.unit.empty() ? altitude_unit : read.unit;
+      continue;
+    }
+    const auto known =
+        std::find_if(kFixWords.begin(), kFixWords.end(), [&](const FixWord& word) { return word.word == read.word; });
+    if (known != kFixWords.end() && find(source, known->quantity, known->axis) == nullptr) {
+      source.columns.push_back({name, known->quantity, std::string(known->axis),
+                                known->unit.empty() || read.unit.empty() ? std::string(known->unit) : read.unit});
+    }
+  }
+  if (find(source, Quantity::GnssPosition, "height") == nullptr && !altitude.empty()) {
+    source.columns.push_back({altitude, Quantity::GnssPosition, "height", altitude_unit});
+    draft.geoid = true;
+  }
+  for (const auto& [axis, what] : {std::pair{"lat", "the latitude of the fixes"}, {"lon", "their longitude"}}) {
+    if (find(source, Quantity::GnssPosition, axis) == nullptr) {
+      return fail(no_column(file.file, what));
+    }
+  }
+  if (source.time_column.empty()) {
+    return fail(no_column(file.file, "the time of the fixes"));
+  }
+  if (find(source, Quantity::GnssVelocity, "north") != nullptr) {  // what speed and course say again
+    std::erase_if(source.columns, [](const DraftColumn& column) {
+      return column.quantity == Quantity::GnssSpeed || column.quantity == Quantity::GnssCourse;
+    });
+  }
+  return source;
+}
+
+std::string id_of(const std::string& file) {
+  const auto slash = file.find_last_of("/\\");
+  std::string id = slash == std::string::npos ? file : file.substr(slash + 1);
+  return id.substr(0, std::max<std::size_t>(id.find('.'), 1));
+}
+
+void write_notes(const DraftRequest& request, DriveDraft& draft) {
+  if (draft.mounting_unknown) {
+    draft.notes.emplace_back("The mounting is found from the drive; state mounting_deg where you know it.");
+  } else {
+    draft.notes.emplace_back(
+        "The unit's axes are taken for the vehicle's, forward, right, down: state mounting_deg where they are not.");
+  }
+  draft.notes.emplace_back("The antenna is taken to be at the unit: state gnss.lever_arm_m.");
+  draft.notes.emplace_back(
+      "The model is that of an ordinary unit of a phone or a car; characterise a recording at rest, or give --model.");
+  if (request.receiver && draft.receiver.scale != draft.unit.scale) {
+    draft.notes.emplace_back("The unit's clock and that of the fixes differ: state the unit's time.scale, or a tag.");
+  }
+}
+
+}  // namespace
+
+Result<DriveDraft> draft_drive(const DraftRequest& request) {
+  DriveDraft draft;
+  draft.id = id_of(request.unit.file);
+  draft.vehicle = request.vehicle;
+  auto unit = unit_of(request.unit);
+  if (!unit) {
+    return fail(unit.error());
+  }
+  draft.unit = *std::move(unit);
+  auto receiver = receiver_of(request.receiver.value_or(request.unit), !request.receiver, draft);
+  if (!receiver) {
+    return fail(receiver.error());
+  }
+  draft.receiver = *std::move(receiver);
+  draft.mounting_unknown = drive::moves_along_its_nose(request.vehicle);
+  write_notes(request, draft);
+  return draft;
+}
+
+}  // namespace driftlab
