@@ -31,13 +31,7 @@ struct StoredChannel {
 
 [[nodiscard]] Verdict verdict_of(const StoredChannel& channel);
 
-/// The channel that a person should look at first, by its verdict.
-struct GravestChannel {
-  std::string channel;  ///< the file's column
-  Verdict verdict;
-};
-
-/// The first of those of the worst level; nothing without channels.
+/// The channel that a person should look at first: the first of those of the worst level. Nothing without channels.
 [[nodiscard]] std::optional<GravestChannel> gravest_channel(std::span<const StoredChannel> channels);
 
 /// The processes of a fit without those that it has nothing of.

@@ -2,6 +2,8 @@
 
 #include "core/variance/deviation.hpp"
 
+#include <utility>
+
 namespace driftlab {
 namespace {
 
@@ -37,13 +39,17 @@ std::optional<ToldSpectrum> told_spectrum(const std::optional<PowerSpectrum>& sp
   return told;
 }
 
+Verdict verdict_of(const CharacterisedChannel& channel, const ReportedChannel& told) {
+  return verdict_of(told, evidence_of(channel.result.contamination, told.haar.scale.size()));
+}
+
 ToldChannel told_channel(const CharacterisedChannel& channel) {
   const ChannelCharacterisation& result = channel.result;
   const ReportedChannel told = reported(channel.column, channel.role, result);
   const double factor = 1.0 / channel.role.unit.value_or(Unit{}).factor;
   return {channel.column,
           told.unit,
-          verdict_of(told, evidence_of(result.contamination, told.haar.scale.size())),
+          verdict_of(channel, told),
           told_curve(result.further.allan, factor),
           told_curve(result.further.total, factor),
           told_curve(result.further.theo1, factor),
@@ -51,6 +57,15 @@ ToldChannel told_channel(const CharacterisedChannel& channel) {
 }
 
 }  // namespace
+
+GravestChannel gravest_channel(const CharacterisedRecording& recording) {
+  std::vector<Verdict> verdicts;
+  for (const CharacterisedChannel& channel : recording.channels) {
+    verdicts.push_back(verdict_of(channel, reported(channel.column, channel.role, channel.result)));
+  }
+  const std::size_t gravest = gravest_of(verdicts).value_or(0);
+  return {recording.channels[gravest].column, std::move(verdicts[gravest])};
+}
 
 std::vector<ToldRecording> told_of(const std::vector<CharacterisedRecording>& recordings) {
   std::vector<ToldRecording> told;

@@ -48,6 +48,9 @@ struct ToldRecording {
   std::vector<ToldChannel> channels;
 };
 
+/// The channel that a person should look at first: the first of those of the worst level. Precondition: there is one.
+[[nodiscard]] GravestChannel gravest_channel(const CharacterisedRecording& recording);
+
 /// In the order of the recordings and of their channels.
 [[nodiscard]] std::vector<ToldRecording> told_of(const std::vector<CharacterisedRecording>& recordings);
 

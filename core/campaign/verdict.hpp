@@ -51,6 +51,12 @@ struct GrossErrorEvidence {
 /// Of one sensor axis over its conditions.
 [[nodiscard]] Verdict verdict_of(const ParameterTable& table);
 
+/// The channel that a person should look at first, by its verdict.
+struct GravestChannel {
+  std::string channel;  ///< the file's column
+  Verdict verdict;
+};
+
 /// The verdict that a person should look at first: the first of those of the worst level. Nothing of none.
 [[nodiscard]] std::optional<std::size_t> gravest_of(std::span<const Verdict> verdicts);
 

@@ -1,7 +1,6 @@
 #include "server/jobs/attempt.hpp"
 
 #include "schema/json/json.hpp"
-#include "server/jobs/attention.hpp"
 #include "server/jobs/fault_recorder.hpp"
 #include "server/store/crash_point.hpp"
 
@@ -31,7 +30,6 @@ void Attempt::run() {
   }
   Result<JobResults> results = work();
   if (results) {
-    note_attention(*results);
     finish(*results);
   } else {
     fail(results.error());

@@ -1,11 +1,15 @@
 #pragma once
-/// What of a job's results a person must read: the verdicts that are not fine.
+/// What of a job's results a person must read: the verdicts that are not fine. A job kind notes them as it makes its
+/// rows.
 #include "server/store/rows.hpp"
+
+#include <string>
+#include <string_view>
 
 namespace driftlab::server {
 
-/// Fills `attention` and `looked_at` from the rest: of each recording that was characterised the channel whose verdict
-/// is gravest, of any other result its own `summary`. O(length of the documents) time.
-void note_attention(JobResults& results);
+/// Adds a verdict to `results.attention` unless its level is `fine`. `about`: the device, the recording and the channel
+/// of which it speaks, each empty where it speaks of none.
+void note_attention(Attention about, std::string_view level, const std::string& verdict, JobResults& results);
 
 }  // namespace driftlab::server

@@ -6,8 +6,10 @@
 #include "schema/json/characterise.hpp"
 
 #include "core/analysis/characterise_campaign.hpp"
+#include "core/analysis/told_characterisation.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
+#include "server/jobs/attention.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
@@ -173,6 +175,20 @@ class Characterise final : public JobKind {
   }
 
  private:
+  /// The channel of the recording whose verdict a person should read first.
+  static void note(const Recording& recording, const CharacterisedRecording& characterised, JobResults& results) {
+    if (characterised.channels.empty()) {
+      return;
+    }
+    results.looked_at.push_back(recording.id);
+    const GravestChannel gravest = gravest_channel(characterised);
+    Attention about;
+    about.device_id = recording.device_id;
+    about.recording_id = recording.id;
+    about.channel = gravest.channel;
+    note_attention(std::move(about), driftlab::name_of(gravest.verdict.level), gravest.verdict.sentence, results);
+  }
+
   /// Rows for the store: one per channel and one per fit. `document`: that of `characterised`, whose parts are stored.
   static void collect(const Recording& recording, const CharacterisedRecording& characterised, const Json& document,
                       const CharacteriseOptions& options, JobContext& context, const ResultName& named,
@@ -182,6 +198,7 @@ class Characterise final : public JobKind {
     settings["instruction_set"] = instruction_set();
     settings["driftlab_version"] = DRIFTLAB_VERSION;
     const UtcMicros now = context.clock.now();
+    note(recording, characterised, results);
     for (std::size_t c = 0; c < characterised.channels.size(); ++c) {
       const CharacterisedChannel& channel = characterised.channels[c];
       const Json& told = document["channels"][c];

@@ -12,6 +12,7 @@
 #include "core/campaign/regression/kept_settings.hpp"
 #include "schema/json/regression.hpp"
 #include "schema/text/regression.hpp"
+#include "server/jobs/attention.hpp"
 #include "server/jobs/compared_recordings.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/pinned_arms.hpp"
@@ -182,6 +183,7 @@ class Regress final : public JobKind {
     JobResults made;
     made.document_json = to_text(driftlab::to_json(*report));
     made.artefacts = artefacts_of(*report);
+    note_attention({}, report->report.summary.level, report->report.summary.verdict, made);
     return made;
   }
 };
