@@ -8,11 +8,29 @@
 #include "server/store/digest.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace driftlab::server {
 namespace {
 
 constexpr char kBeside = '~';  ///< in an ETag: what follows is no state of the object
+
+/// Where the results of a kind of job are read.
+struct ResultPlace {
+  std::string_view kind;
+  std::string_view folder;        ///< of a resource of its own; empty: `/v1/jobs/{id}/result`
+  bool by_investigation = false;  ///< the objects of that resource have ids of investigations, not of jobs
+};
+
+/// One line per kind of server/jobs/job_kinds.cpp; tests/house/documents.py compares them.
+constexpr auto kResultPlaces = std::to_array<ResultPlace>({
+    {"characterise", ""},
+    {"pool", ""},
+    {"outage_evaluation", "/v1/outage-evaluations/"},
+    {"drive_evaluation", "/v1/drive-evaluations/"},
+    {"investigate", "/v1/investigations/", true},
+    {"regress", "/v1/regressions/"},
+});
 
 Json time_or_null(const std::optional<UtcMicros>& time) { return time ? Json(rfc3339(*time)) : Json(nullptr); }
 
@@ -82,16 +100,11 @@ Json to_json(const Fit& fit) {
 }
 
 std::string result_address(std::string_view kind, const std::string& job, const std::string& investigation) {
-  if (kind == "outage_evaluation") {
-    return "/v1/outage-evaluations/" + job;
+  const auto* const place = std::ranges::find(kResultPlaces, kind, &ResultPlace::kind);
+  if (place == kResultPlaces.end() || place->folder.empty() || (place->by_investigation && investigation.empty())) {
+    return "/v1/jobs/" + job + "/result";
   }
-  if (kind == "drive_evaluation") {
-    return "/v1/drive-evaluations/" + job;
-  }
-  if (kind == "regress") {
-    return "/v1/regressions/" + job;
-  }
-  return investigation.empty() ? "/v1/jobs/" + job + "/result" : "/v1/investigations/" + investigation;
+  return std::string(place->folder) + (place->by_investigation ? investigation : job);
 }
 
 std::string own_key(const Request& request, std::string_view key) {

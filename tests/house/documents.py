@@ -7,6 +7,7 @@
 - Every flag of driftlabd and of its subcommands stands in schema/docs/operations.md or security.md, those of driftlab in cli.md.
 - A path in `backticks` that begins with a top-level folder exists; <name> and * stand for anything.
 - A link between the pages leads somewhere.
+- The page of jobs offers the kinds that the server has, and the server knows for each where its results are read.
 """
 from __future__ import annotations
 
@@ -21,6 +22,11 @@ import tree
 
 BLOCK = re.compile(r"^```(?:sh|bash|console)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 TOPS = ("core", "schema", "server", "clients", "migrations", "tests", "deploy", ".ci")
+KINDS = "server/jobs/job_kinds.cpp"
+KIND = re.compile(r"^ +KIND\(make_(\w+)_kind\)", re.MULTILINE)
+# Who lists the kinds of job besides the registry: the file, its list, and a name within it.
+LISTS_OF_KINDS = (("clients/dashboard/src/pages/Jobs.tsx", re.compile(r"^const KINDS = \[(.*?)\];", re.MULTILINE | re.DOTALL), re.compile(r"'(\w+)'")),
+                  ("server/api/documents.cpp", re.compile(r"\bkResultPlaces = .*?\(\{\n(.*?)\n\}\);", re.DOTALL), re.compile(r'^ +\{"(\w+)"', re.MULTILINE)))
 LINK = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)")
 
 
@@ -126,12 +132,29 @@ def undocumented(root: Path, programs: Path) -> list[str]:
     return faults
 
 
+def job_kind_faults(root: Path) -> list[str]:
+    """Other lists of the kinds of job that are not the registry's. A tree without the registry has none."""
+    if not (root / KINDS).is_file():
+        return []
+    kinds = set(KIND.findall((root / KINDS).read_text()))
+    if not kinds:
+        return [f"{KINDS}: no line of the registry is understood"]
+    faults = []
+    for name, listing, item in LISTS_OF_KINDS:
+        found = listing.search((root / name).read_text())
+        said = set(item.findall(found.group(1))) if found else set()
+        faults += [f"{name}: does not know the job kind {kind} of {KINDS}" for kind in sorted(kinds - said)]
+        faults += [f"{name}: knows a job kind {kind}, which {KINDS} does not have" for kind in sorted(said - kinds)]
+    return faults
+
+
 def check(root: Path) -> list[str]:
     given = os.environ.get("DRIFTLAB_BIN")
     programs = Path(given).resolve() if given else None
     if programs is None:
         print("SKIPPED: flags of driftlab and driftlabd, for DRIFTLAB_BIN does not say where they are")
     faults: list[str] = undocumented(root, programs) if programs and (root / "schema/docs").is_dir() else []
+    faults += job_kind_faults(root)
     readme = root / "README.md"
     if not readme.is_file():
         faults.append("README.md: is missing")

@@ -299,6 +299,22 @@ class Documents(Planted):
         (self.root / "tests/run.sh").chmod(0o644)
         self.refused(documents.check(self.root), "not executable")
 
+    def test_a_list_of_job_kinds_that_is_not_the_registry_s_is_refused(self) -> None:
+        # The page of jobs offered a kind `calibrate` that no server had.
+        self.plant("server/jobs/job_kinds.cpp", "#define KINDS(KIND) \\\n  KIND(make_pool_kind) \\\n  KIND(make_regress_kind)\n")
+        pages, places = (name for name, _, _ in documents.LISTS_OF_KINDS)
+        self.plant(pages, "const KINDS = ['pool', 'regress'];\nconst OTHER = ['a'];\n")
+        self.plant(places, 'constexpr auto kResultPlaces = std::to_array<ResultPlace>({\n    {"pool", ""},\n    {"regress", "/v1/x/"},\n});\n')
+        self.assertEqual(documents.check(self.root), [])
+        self.plant(pages, "const KINDS = ['pool', 'regress',\n  'calibrate'];\n")
+        self.plant(places, 'constexpr auto kResultPlaces = std::to_array<ResultPlace>({\n    {"pool", ""},\n});\n')
+        faults = documents.check(self.root)
+        self.refused(faults, pages, "calibrate")
+        self.refused(faults, places, "regress")
+        self.assertEqual(len(faults), 2, faults)
+        self.plant(pages, "const KINDS = kinds();\n")
+        self.refused(documents.check(self.root), pages, "does not know the job kind pool")
+
     def test_flags_of_a_program_are_asked_of_the_subcommand(self) -> None:
         self.plant("bin/driftlab", '#!/bin/sh\n[ "$1" = table ] && echo "--axis A" || printf "Subcommands:\\n  table  x\\n"\n').chmod(0o755)
         os.environ["DRIFTLAB_BIN"] = str(self.root / "bin")

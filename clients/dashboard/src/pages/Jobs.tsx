@@ -12,7 +12,7 @@ import {Tabs} from '../shell/Tabs';
 import {useTitle} from '../shell/title';
 
 const STATES: Record<string, [string, string]> = {succeeded: ['✓', 'good'], failed: ['✗', 'bad'], dead: ['✗', 'bad'], cancelled: ['–', ''], running: ['●', ''], queued: ['○', '']};
-const KINDS = ['characterise', 'investigate', 'outage_evaluation', 'drive_evaluation', 'regress', 'calibrate', 'pool'];
+const KINDS = ['characterise', 'investigate', 'outage_evaluation', 'drive_evaluation', 'regress', 'pool'];
 const WIDTH = 520;
 const SURE_S = 5;
 
