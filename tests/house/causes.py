@@ -3,9 +3,10 @@
 
 A cause is one file of core/investigate/causes/, or of core/navigate/drive/causes/ for one that a drive shows, and one line of
 the registry there: the search, the report, documents, server and clients work from what it declares. Its name may stand in its
-own file, among the `rivals` of another cause, in the registry, in tests and in documentation. A name that is also a registered process's (core/process) may stand where processes
-are spoken of, but not where a cause is compared, looked up or written down; so may the check of a regression run of that name
-(core/campaign/regression), which compares facts of files and knows no causes.
+own file, among the `rivals` of another cause, in the registry, in tests and in documentation. A name that is also a registered
+process's (core/process) may stand where processes are spoken of, but not where a cause is compared, looked up or written down. So
+may the check of a regression run of that name, which compares facts of files and knows no causes: in core/campaign/regression, and
+in the Python client's types, which are made from the contract (ELSEWHERE).
 """
 from __future__ import annotations
 
@@ -15,12 +16,14 @@ from pathlib import Path
 import tree
 
 FOLDERS = ("core/investigate/causes", "core/navigate/drive/causes")
-CHECKS = "core/campaign/regression/"
+ELSEWHERE = ("core/campaign/regression/", "clients/python/driftlab/contract.py")
 LITERAL = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+# TypeScript and Python have other quotes too; a character of C++ holds no name.
+ANY_LITERAL = re.compile(r"""(?P<quote>["'`])((?:\\.|(?!(?P=quote))[^\\\n])*)(?P=quote)""")
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 RIVALS = re.compile(r"\.rivals\s*=\s*\{[^}]*\}")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[^\n]*', re.MULTILINE)
-WORD = re.compile(r"\w+")
+WORD = re.compile(r"\b(\w+)\b(?=(\.?)([\w${]?))")
 LINE = re.compile(r"\bCAUSE\((\w+)\)")
 NAME = re.compile(r'\.name\s*=\s*"(\w+)"')
 PROCESS = re.compile(r'\bkName\s*=\s*"(\w+)"')
@@ -45,8 +48,10 @@ def speaks_of_causes(text: str, start: int, end: int) -> bool:
 
 
 def said_in(literal: str, causes: dict[str, str]) -> set[str]:
-    """The causes a literal is the name of, or holds: "bias_step" in "bias_step.t0_s". Names of one word are words of sentences too."""
-    return {word for word in WORD.findall(literal) if word in causes and ("_" in word or word == literal)}
+    """The causes a literal is the name of, or holds: "bias_step" in "bias_step.t0_s". A name of one word is a word of sentences too:
+    there it is the cause's where a member follows its dot, as in "resonance.f_hz", or will be joined to it, as in "resonance."."""
+    return {name for name, dot, member in WORD.findall(literal)
+            if name in causes and ("_" in name or member or literal == name + dot)}
 
 
 def check(root: Path) -> list[str]:
@@ -76,11 +81,12 @@ def check(root: Path) -> list[str]:
         if name.startswith(tuple(f"{folder}/" for folder in FOLDERS)):
             code = blank(RIVALS, code)
         code = blank(INCLUDE, code)
-        for match in LITERAL.finditer(code):
-            for said in sorted(said_in(match.group(1), causes)):
+        literal = LITERAL if name.endswith((".cpp", ".hpp", ".h")) else ANY_LITERAL
+        for match in literal.finditer(code):
+            for said in sorted(said_in(match.group(match.lastindex or 0), causes)):
                 if causes[said] == name:
                     continue
-                if (said in processes or name.startswith(CHECKS)) and not speaks_of_causes(code, *match.span()):
+                if (said in processes or name.startswith(ELSEWHERE)) and not speaks_of_causes(code, *match.span()):
                     continue
                 line = code.count("\n", 0, match.start()) + 1
                 faults.append(f'{name}:{line}: knows the cause "{said}" by name; let {causes[said]} declare what is special about it')

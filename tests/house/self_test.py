@@ -163,12 +163,13 @@ class Causes(Planted):
         for name, rivals in (("bias_jump", '"slow_walk"'), ("slow_walk", '')):
             self.plant(f"{self.folder}/{name}.cpp",
                        f'Cause {name}() {{\n  return {{.name = "{name}", .title = "it",\n          .rivals = {{{rivals}}}}};\n}}\n')
-        self.plant(f"{self.folder}/registry.cpp", "#define DRIFTLAB_CAUSES(CAUSE) \\\n  CAUSE(bias_jump) \\\n  CAUSE(slow_walk)\n")
+        self.plant(f"{self.folder}/registry.cpp", "#define DRIFTLAB_CAUSES(CAUSE) \\\n  CAUSE(bias_jump) \\\n  CAUSE(slow_walk) \\\n  CAUSE(peak)\n")
+        self.plant(f"{self.folder}/peak.cpp", 'Cause peak() {\n  return {.name = "peak", .parameters = {"peak.f_hz"}};\n}\n')
         self.plant("core/process/slow_walk.hpp", 'static constexpr std::string_view kName = "slow_walk";\n')
 
     def test_names_in_their_places_are_clean(self) -> None:
         self.plant("tests/hidden/a.cpp", 'make_case("bias_jump");\n')
-        self.plant("core/investigate/search/a.cpp", '// unlike "bias_jump"\n#include "core/bias_jump.hpp"\nadd("slow_walk", {level});\n')
+        self.plant("core/investigate/search/a.cpp", '// unlike "bias_jump"\n#include "core/bias_jump.hpp"\nadd("slow_walk", {level});\nsay("A peak. The peak of 2.5 Hz is the peak.");\n')
         self.plant("schema/docs/analysis.md", 'the cause "bias_jump"\n')
         self.assertEqual(causes.check(self.root), [])
 
@@ -180,13 +181,20 @@ class Causes(Planted):
                             ("server/jobs/a.cpp", 'Json effect{{"cause", "slow_walk"}};'),
                             ("clients/dashboard/a.ts", 'if (name === "bias_jump") {'),
                             ("schema/text/b.cpp", 'auto at = parameters.find("bias_jump.t0_s");'),
+                            # A name of one word passed within a literal, and whatever stood between other quotes than C++ has.
+                            ("schema/text/c.cpp", 'auto at = parameters.find("peak.f_hz");'),
+                            ("schema/text/d.cpp", 'find("the peak.f_hz of it");'),
+                            ("schema/text/e.cpp", 'find("peak." + member);'),
+                            ("clients/dashboard/b.ts", "if (name === 'bias_jump') {"),
+                            ("clients/dashboard/c.tsx", "const key = `peak.${member}`;"),
+                            ("clients/python/a.py", "if name == 'bias_jump':"),
                             ("core/navigate/drive/explain.cpp", 'if (finding.cause == "late_fix") {'),
                             ("schema/text/drive.cpp", 'if (f.cause != "late_fix") {'),
                             (f"{self.of_drives}/draft.cpp", 'return knob_of("late_fix");'),
                             (f"{self.folder}/draft.cpp", 'if (name == "bias_jump") {')):
             with self.subTest(place=place):
                 path = self.plant(place, "int before;\n" + line + "\n")
-                said = next(name for name in ("slow_walk", "late_fix", "bias_jump") if name in line)
+                said = next(name for name in ("slow_walk", "late_fix", "bias_jump", "peak") if name in line)
                 self.refused(causes.check(self.root), place, said, "by name")
                 path.unlink()
 

@@ -1,10 +1,7 @@
 // Names of the field, in print: what the API writes in ASCII and snake_case never reaches a page.
 import {writeCount} from './number';
 
-const PROCESSES: Record<string, string> = {
-  white_noise: 'white noise', gauss_markov: 'Gauss-Markov', random_walk: 'random walk', linear_drift: 'drift',
-  quantization_noise: 'quantization', flicker_noise: 'flicker noise', constant_offset: 'constant offset', sinusoid: 'sinusoid',
-};
+const PROCESSES: Record<string, string> = {linear_drift: 'drift', quantization_noise: 'quantization'};
 const SYMBOLS: Record<string, string> = {sigma: 'σ', beta: 'β', omega: 'ω', tau: 'τ'};
 const CONVENTIONS: Record<string, string> = {
   ieee_952: 'IEEE 952', density_two_sided: 'density, two-sided', density_one_sided: 'density, one-sided', kalibr_noise_density: 'Kalibr',
@@ -12,7 +9,8 @@ const CONVENTIONS: Record<string, string> = {
 };
 
 export const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
-const spaced = (name: string): string => name.replace(/_/g, ' ');
+// Whatever a snake_case name names; people's names as people write them.
+export const spaced = (name: string): string => name.replace(/_/g, ' ').replace(/\bgauss markov\b/, 'Gauss-Markov');
 
 export const processName = (name: string): string => PROCESSES[name] ?? spaced(name);
 export const symbolOf = (parameter: string): string => SYMBOLS[parameter] ?? parameter;

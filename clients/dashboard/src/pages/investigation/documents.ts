@@ -1,4 +1,5 @@
 import type {Nullable, Quantity} from '../../api/documents';
+import {spaced} from '../../format/words';
 
 export interface Band { q025: Nullable; median: Nullable; q975: Nullable }
 export interface SeriesDocument {
@@ -27,7 +28,7 @@ export const keyOf = (finding: Finding, findings: readonly Finding[]): string =>
 // The frequency of a finding that is a line; null for any other.
 export const frequencyOf = (finding: Finding): number | null => Object.values(finding.parameters).find(quantity => quantity.unit === 'Hz')?.value ?? null;
 
-export const causeName = (cause: string): string => cause === 'gauss_markov' ? 'Gauss-Markov' : cause.replace(/_/g, ' ');
+export const causeName = (cause: string): string => spaced(cause);
 
 // The column of `rec_…/gyro_x (rad/s)`: what follows the id.
 export const columnOf = (channel: string): string => channel.replace(/^rec_[0-9A-Z]{26}\//, '');
