@@ -1,10 +1,15 @@
-"""The recipes of CONTRIBUTING.md, carried out: a toy of each growth axis costs the files that its recipe lists, and works.
+"""The recipes of CONTRIBUTING.md, carried out: a toy of each growth axis costs the files that its recipe lists, no more, and works.
 
 Each test copies the tree, adds the toy of tests/house/toys/<recipe>/ (whole new files, and the edits of existing ones as `FILE.edit`),
-builds what the recipe speaks of with the release preset, and runs it. Unchanged sources come out of ccache.
+runs what the recipe says to run, builds what it speaks of with the release preset, and tries it. Unchanged sources come out of ccache.
+At the end the copy differs from the tree in exactly the files that the recipe lists.
+
+A recipe lists a file where a numbered step quotes its path from the top; what stands in parentheses is only referred to. `<name>` is
+the toy's name there, `<resource>` that of its endpoint, `<group>` any word; a folder stands for files below it.
 """
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -15,9 +20,13 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import tree
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 TOYS = Path(__file__).resolve().parent / "toys"
 PATIENCE_S = 1500
+TOPS = ("core", "schema", "server", "clients", "migrations", "tests", "deploy")
+PLACES = {"<name>": "toy", "<resource>": "toys", "<group>": r"\w+"}
 
 
 def recipe(title: str) -> str:
@@ -26,6 +35,23 @@ def recipe(title: str) -> str:
     found = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
     assert found, f"CONTRIBUTING.md has no recipe '{title}'"
     return found.group(1)
+
+
+def listed(text: str) -> dict[str, re.Pattern[str]]:
+    """The files that a recipe costs, as it quotes them, each with the names that it allows."""
+    steps = "\n".join(re.findall(r"^\d+\. .*(?:\n {3}.*)*", text, re.MULTILINE))
+    quoted = re.findall(r"`([^`\s]+)`", re.sub(r"\([^()]*\)", "", steps))
+    patterns = {}
+    for name in quoted:
+        if "/" in name and name.split("/")[0] in TOPS:
+            pattern = re.sub(r"<\w+>", lambda place: PLACES[place.group(0)], name.replace(".", r"\."))
+            patterns[name] = re.compile(pattern + (".*" if name.endswith("/") else ""))
+    return patterns
+
+
+def state_of(folder: Path) -> dict[str, str]:
+    """Every file that no build made, with its hash."""
+    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest() for path in tree.files(folder)}
 
 
 def copy_of_the_tree(folder: Path) -> None:
@@ -53,21 +79,24 @@ class Recipe:
     title: str
     toy: str
     also: tuple[str, ...] = ()
+    commands: tuple[str, ...] = ()  # Python programs that the recipe says to run
+    left_out: tuple[str, ...] = ()  # what it lists and the toy does not do
 
     @classmethod
     def setUpClass(cls) -> None:
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-recipe-")))
+        cls.scratch = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="driftlab-recipe-")))
         copy_of_the_tree(cls.folder)
-        cls.touched: list[str] = []
+        cls.before = state_of(cls.folder)
         for path in sorted(p for p in (TOYS / cls.toy).rglob("*") if p.is_file()):
             name = path.relative_to(TOYS / cls.toy).as_posix()
             if name.endswith(".edit"):
-                name = name.removesuffix(".edit")
-                put_in(cls.folder / name, path.read_text())
+                put_in(cls.folder / name.removesuffix(".edit"), path.read_text())
             else:
                 (cls.folder / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(path, cls.folder / name)
-            cls.touched.append(name)
+        for command in cls.commands:
+            subprocess.run([sys.executable, "-B", command], cwd=cls.folder, check=True, timeout=PATIENCE_S)
 
     def build(self, *targets: str) -> Path:
         """Configures and builds as ./tests/run.sh does; the folder of the programs."""
@@ -87,16 +116,22 @@ class Recipe:
         for rule in ("floors.py", "causes.py", "licence.py"):
             self.run_here(sys.executable, "-B", f"tests/house/{rule}")
 
-    def test_the_recipe_lists_what_it_costs(self) -> None:
-        said = "".join(recipe(title) for title in (self.title, *self.also))
-        listed = [re.sub(r"<\w+>", r"\\w+", re.escape(quoted).replace(r"\<", "<").replace(r"\>", ">")) for quoted in re.findall(r"`([^`\n]+)`", said)]
-        for name in self.touched:
-            self.assertTrue(any(re.fullmatch(pattern, name) for pattern in listed), f"the recipe '{self.title}' does not list {name}")
+    def test_z_the_tree_differs_in_what_the_recipe_lists(self) -> None:
+        """The last of its class: what building and trying the toy leaves behind counts too."""
+        after = state_of(self.folder)
+        changed = sorted(name for name in self.before.keys() | after.keys() if self.before.get(name) != after.get(name))
+        costs = listed("".join(recipe(title) for title in (self.title, *self.also)))
+        for name in changed:
+            self.assertTrue(any(pattern.fullmatch(name) for pattern in costs.values()), f"the recipe '{self.title}' does not list {name}")
+        for name, pattern in costs.items():
+            found = any(pattern.fullmatch(change) for change in changed)
+            self.assertNotEqual(found, name in self.left_out, f"the recipe '{self.title}' lists {name}; the toy changed {changed}")
 
 
 class AddACause(Recipe, unittest.TestCase):
     title = "Add a cause"
     toy = "cause"
+    left_out = ("tests/corpus/golden/",)  # renewing it takes both programs and every investigation of the corpus, minutes
 
     def test_it_is_hidden_found_and_held_to_its_law(self) -> None:
         self.house_stands()
@@ -111,9 +146,9 @@ class AddAUseCase(Recipe, unittest.TestCase):
     title = "Add a use case"
     toy = "use_case"
     also = ("Add a job kind", "Add an endpoint")  # the recipe sends there
+    commands = ("clients/python/generate_contract.py",)
 
     def test_command_job_and_endpoint_give_one_answer(self) -> None:
-        self.run_here(sys.executable, "-B", "clients/python/generate_contract.py")
         self.house_stands()
         programs = self.build("driftlab", "driftlabd", "test_analysis")
         self.run_here(programs / "test_analysis", "--gtest_filter=Toy.*")
@@ -122,10 +157,10 @@ class AddAUseCase(Recipe, unittest.TestCase):
                 "PYTHONPATH": os.pathsep.join(str(self.folder / part) for part in ("tests/api", "clients/python"))}
         for suite in ("tests/api/contract_test.py", "tests/python/contract_test.py"):
             self.run_here(PYTHON, "-B", suite, **here)
-        (self.folder / "ask.py").write_text(ASK)
-        said = self.run_here(sys.executable, "-B", "ask.py", **here)
-        (self.folder / "gyro.csv").write_text(GYRO)
-        local = json.loads(self.run_here(programs / "driftlab", "toy", "gyro.csv", "--rate-hz", "10", "--columns", "gz=angular_rate:z:deg/s"))
+        (self.scratch / "ask.py").write_text(ASK)
+        said = self.run_here(PYTHON, "-B", self.scratch / "ask.py", **here)
+        (self.scratch / "gyro.csv").write_text(GYRO)
+        local = json.loads(self.run_here(programs / "driftlab", "toy", self.scratch / "gyro.csv", "--rate-hz", "10", "--columns", "gz=angular_rate:z:deg/s"))
         self.assertEqual([m["mean"] for m in json.loads(said)["means"]], [2.0])
         self.assertEqual([m["mean"] for m in local["means"]], [2.0])
 
@@ -133,13 +168,18 @@ class AddAUseCase(Recipe, unittest.TestCase):
 # The Python client's suites need NumPy, which Debian's Python has.
 PYTHON = "/usr/bin/python3" if Path("/usr/bin/python3").exists() else sys.executable
 GYRO = "gz\n" + "1.0\n2.0\n3.0\n2.0\n" * 16
+# The result is read where the server says that it is.
 ASK = f'''import json
 from daemon import Daemon
+from events_test import stream, until
 with Daemon() as daemon:
     recording = daemon.upload({GYRO!r}.encode(), rate_hz=10, columns="gz=angular_rate:z:deg/s").json["id"]
-    job = daemon.finished(daemon.post("/v1/jobs", {{"kind": "toy", "inputs": {{"recordings": [recording]}}}}).json["id"])
-    assert job["state"] == "succeeded", job
-    print(json.dumps(daemon.get("/v1/toys/" + job["id"]).json))
+    with stream(daemon, "?topics=results") as events:
+        job = daemon.finished(daemon.post("/v1/jobs", {{"kind": "toy", "inputs": {{"recordings": [recording]}}}}).json["id"])
+        assert job["state"] == "succeeded", job
+        told = until(events, "result.created")[-1][2]
+    assert told["href"] == "/v1/toys/" + job["id"], told
+    print(json.dumps(daemon.get(told["href"]).json))
 '''
 
 
