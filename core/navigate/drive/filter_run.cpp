@@ -12,12 +12,11 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kSteadyRestRate = 0.6 * kDegree;
-constexpr double kSteadyRestForce = 0.2;   ///< [m/s^2]
-constexpr double kTurnWindow = 0.05;       ///< [s] on each side
-constexpr std::size_t kTapedReadings = 9;  ///< the filter itself closes a step after ten
-constexpr double kTapedPoints = 0.08;      ///< [s]
-constexpr double kHeadingKnown = 1.0 * kDegree;
+constexpr double kHeadingKnown = 1.0 * kDegree;  // spec/drives.md, section 3
+constexpr double kRestSeconds = 1.0;             // the same
+constexpr double kTurnWindow = 0.05;             ///< [s] on each side; chosen, not measured
+constexpr std::size_t kTapedReadings = 9;        ///< the filter itself closes a step after ten
+constexpr double kTapedPoints = 0.08;            ///< [s] at least between two points; chosen, not measured
 
 enum class Step { Score, Begin, Along, Position, Velocity, Odometer };  // in this order at one moment
 struct FilterEvent {
@@ -55,7 +54,7 @@ class Driver {
                   1, static_cast<std::size_t>(std::lround(1.0 / (options.constraint->rate_hz * run_.dt_s))))
             : 0;
     turn_window_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTurnWindow / run_.dt_s)));
-    rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(1.0 / run_.dt_s)));
+    rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kRestSeconds / run_.dt_s)));
   }
 
   FilterRun go(double from_s) {
@@ -240,7 +239,7 @@ class Driver {
       rate[i / half] += Vector3(sample[0], sample[1], sample[2]) / static_cast<double>(half);
       force[i / half] += Vector3(sample[3], sample[4], sample[5]) / static_cast<double>(half);
     }
-    if ((rate[0] - rate[1]).norm() > kSteadyRestRate || (force[0] - force[1]).norm() > kSteadyRestForce) {
+    if (!steady(rate[0] - rate[1], force[0] - force[1])) {
       return;
     }
     apply(MeasurementKind::ZeroVelocity, now(), rest_equations(moment()));

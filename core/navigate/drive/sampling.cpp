@@ -6,10 +6,18 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kRepeatsOfAPoll = 0.001;  ///< share of single repeats from which the host polls faster
-constexpr double kGapSteps = 1.5;          ///< a step longer than this many samples misses one
-constexpr long kMostBridged = 3;
-constexpr double kShortestRun = 1.0;  ///< [s]
+constexpr long kMostBridged = 3;  ///< missing samples; spec/drives.md, section 2
+
+// Chosen, not measured. (rtk-car-0708 has 2.07 % single repeats; section 2.)
+constexpr double kRepeatsOfAPoll = 0.001;   ///< share of single repeats from which the host polls faster
+constexpr std::size_t kSinglesToStuck = 2;  ///< and they are more than this many times the rows that are stuck
+constexpr std::size_t kFewestRows = 16;     ///< complete ones, of a drive
+constexpr double kShortestRun = 1.0;        ///< [s]
+
+// Half way to a step that misses one sample: such a step is two samples long, and three polls where repeats are
+// dropped.
+constexpr double kGapSteps = 1.5;
+constexpr double kGapPolls = 2.5;
 
 double quantile_of(std::vector<double> values, double fraction) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
@@ -131,14 +139,14 @@ UniformRun run_of(const SensorLog& log, std::size_t first, std::size_t last, dou
 Result<std::vector<UniformRun>> uniform_readings(SensorLog log, const SamplingOptions& options, SamplingFacts& facts) {
   facts.rows = log.time_s.size();
   log = sound_rows(log, facts);
-  if (log.time_s.size() < 16) {
+  if (log.time_s.size() < kFewestRows) {
     return fail(ErrorCode::TooFewSamples, "The inertial unit has fewer than 16 complete rows.");
   }
   const double span = log.time_s.back() - log.time_s.front();
   facts.stamped_rate_hz = static_cast<double>(log.time_s.size() - 1) / span;
   const std::vector<bool> repeat = repeats_of(log, facts);
   const std::size_t alone = facts.repeated - facts.stuck;
-  facts.polled_faster = options.repair && alone > 2 * facts.stuck &&
+  facts.polled_faster = options.repair && alone > kSinglesToStuck * facts.stuck &&
                         static_cast<double>(alone) > kRepeatsOfAPoll * static_cast<double>(log.time_s.size());
   if (facts.polled_faster) {
     log = without(log, repeat);
@@ -153,8 +161,7 @@ Result<std::vector<UniformRun>> uniform_readings(SensorLog log, const SamplingOp
   if (!(usual > 0.0)) {
     return fail(ErrorCode::InconsistentSampling, "Half of the inertial unit's rows have the stamp of the row before.");
   }
-  // Dropped repeats leave steps of two polls, which are no gaps.
-  const double longest = facts.polled_faster ? 2.5 * usual : kGapSteps * usual;
+  const double longest = (facts.polled_faster ? kGapPolls : kGapSteps) * usual;
   const bool even = options.repair && (facts.polled_faster || options.clock != SensorClock::Sensor);
   // The mean of the steps between gaps is the sample interval, where the median is one of a lattice of stamps.
   double sum = 0.0;

@@ -1,5 +1,6 @@
 #include "core/navigate/drive/start.hpp"
 
+#include "core/navigate/drive/drive_outage.hpp"
 #include "core/navigate/earth.hpp"
 #include "core/signal/angle.hpp"
 
@@ -9,14 +10,25 @@
 namespace driftlab::drive {
 namespace {
 
-constexpr double kBlock = 0.5;         ///< [s]
-constexpr double kShortestRest = 2.0;  ///< [s]
-constexpr double kSteadyRate = 0.6 * kDegree;
-constexpr double kSteadyForce = 0.2;         ///< [m/s^2]
-constexpr double kStill = 0.5;               ///< [m/s]
-constexpr double kOldestRest = 60.0;         ///< [s] before the start
+// spec/drives.md, section 3.
+constexpr double kShortestRest = 2.0;        ///< [s]
 constexpr double kHeadingSpeed = 3.0;        ///< [m/s]
 constexpr double kMostTurn = 3.0 * kDegree;  ///< within a second
+
+// Chosen, not measured.
+constexpr double kBlock = 0.5;  ///< [s]
+constexpr double kSteadyRate = 0.6 * kDegree;
+constexpr double kSteadyForce = 0.2;  ///< [m/s^2]
+constexpr double kOldestRest = 60.0;  ///< [s] before the start
+
+// Standard deviations at the start. Section 3 gives those of the tilt in motion (2 to 3 deg) and of the heading.
+constexpr double kHeadingSd = 5.0 * kDegree;
+constexpr double kHeadingSdOfDrifting = 30.0 * kDegree;  ///< of what does not move along its nose
+constexpr double kTiltSdInMotion = 3.0 * kDegree;
+constexpr double kTiltSdFromRest = 1.0 * kDegree;  // chosen, not measured, as are the next three
+constexpr double kTiltSdStated = 2.0 * kDegree;    // the document has no place for its own
+constexpr double kBesidePositionVariance = 1.0;    ///< [m^2], beside what the fix states
+constexpr double kBesideVelocityVariance = 0.25;   ///< [m^2/s^2]
 
 std::size_t reading_at(const UniformRun& run, double time_s) {
   const double at = std::ceil((time_s - run.start_s) / run.dt_s - 1e-9);
@@ -86,6 +98,10 @@ EulerAngles Start::attitude() const {
   return to_euler(Quaternion(ned_axes(state.position_ecef_m)).conjugate() * state.attitude);
 }
 
+bool steady(const Vector3& rate_change, const Vector3& force_change) {
+  return rate_change.norm() < kSteadyRate && force_change.norm() < kSteadyForce;
+}
+
 std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
   const UniformRun& run = drive.runs[run_index];
   const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(kBlock / run.dt_s));
@@ -97,7 +113,7 @@ std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
   for (const Fix& fix : drive.fixes) {
     const double at = (fix.time_s - run.start_s) / (static_cast<double>(length) * run.dt_s);
     if (at >= 0.0 && at < static_cast<double>(moving.size()) && fix.velocity_ned_m_s && fix.has_course &&
-        fix.velocity_ned_m_s->head<2>().norm() >= kStill) {
+        fix.velocity_ned_m_s->head<2>().norm() >= kRestSpeed) {
       moving[static_cast<std::size_t>(at)] = true;
     }
   }
@@ -109,9 +125,7 @@ std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
     Rest rest;
     while (last < blocks.size() && !moving[last]) {
       const double many = static_cast<double>(last - first);
-      const bool steady = last == first || ((blocks[last].rate - rest.rate / many).norm() < kSteadyRate &&
-                                            (blocks[last].force - rest.force / many).norm() < kSteadyForce);
-      if (!steady) {
+      if (last != first && !steady(blocks[last].rate - rest.rate / many, blocks[last].force - rest.force / many)) {
         break;
       }
       rest.rate += blocks[last].rate;
@@ -156,24 +170,24 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
     angles.roll_rad = *stated.roll_rad;
     angles.pitch_rad = *stated.pitch_rad;
     start.tilt_from = TiltFrom::Stated;
-    start.uncertainty.tilt_sd_rad = 2.0 * kDegree;
+    start.uncertainty.tilt_sd_rad = kTiltSdStated;
   } else if (rest != nullptr) {
     angles = to_euler(carried(run, *rest, start.reading));
     start.tilt_from = TiltFrom::Rest;
-    start.uncertainty.tilt_sd_rad = 1.0 * kDegree;
+    start.uncertainty.tilt_sd_rad = kTiltSdFromRest;
   } else {
     const BlockMeans around = mean_of(run, reading_at(run, start.time_s - 0.5), reading_at(run, start.time_s + 0.5));
     angles.roll_rad = std::atan2(-around.force.y(), -around.force.z());
     angles.pitch_rad = std::atan2(around.force.x(), std::hypot(around.force.y(), around.force.z()));
-    start.uncertainty.tilt_sd_rad = 3.0 * kDegree;
+    start.uncertainty.tilt_sd_rad = kTiltSdInMotion;
   }
   const bool straight = moves_along_its_nose(drive.document.vehicle);
-  start.uncertainty.heading_sd_rad = (straight ? 5.0 : 30.0) * kDegree;
+  start.uncertainty.heading_sd_rad = straight ? kHeadingSd : kHeadingSdOfDrifting;
   const Vector3 velocity = stated.velocity_ned_m_s.value_or(fix->velocity_ned_m_s.value_or(Vector3::Zero()));
   if (stated.heading_rad) {
     angles.heading_rad = *stated.heading_rad;
     start.heading_from = HeadingFrom::Stated;
-    start.uncertainty.heading_sd_rad = 5.0 * kDegree;
+    start.uncertainty.heading_sd_rad = kHeadingSd;
   } else {
     angles.heading_rad = std::atan2(velocity.y(), velocity.x());
   }
@@ -183,8 +197,8 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
   start.state.velocity_ecef_m_s = axes * velocity;
   start.state.position_ecef_m = antenna - start.state.attitude * drive.document.gnss.lever_arm_m +
                                 (start.time_s - fix->time_s) * start.state.velocity_ecef_m_s;
-  start.uncertainty.position_sd_m = (fix->position_sd_m.cwiseAbs2().array() + 1.0).sqrt();
-  start.uncertainty.velocity_sd_m_s = (fix->velocity_sd_m_s.cwiseAbs2().array() + 0.25).sqrt();
+  start.uncertainty.position_sd_m = (fix->position_sd_m.cwiseAbs2().array() + kBesidePositionVariance).sqrt();
+  start.uncertainty.velocity_sd_m_s = (fix->velocity_sd_m_s.cwiseAbs2().array() + kBesideVelocityVariance).sqrt();
   return start;
 }
 

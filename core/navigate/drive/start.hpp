@@ -32,8 +32,12 @@ struct Rest {
   Vector3 force = Vector3::Zero();  ///< mean of the accelerometer
 };
 
-/// Stretches of two seconds and more in which half-second means of rate and force are steady to 0.6 deg/s and 0.2 m/s^2
-/// and no fix moves at 0.5 m/s or more. Means, because an engine shakes a unit at rest by many times its noise.
+/// Whether a unit rests whose means of rate and force over half a second differ by these: by less than 0.6 deg/s and
+/// 0.2 m/s^2. Means, because an engine shakes a unit at rest by many times its noise.
+[[nodiscard]] bool steady(const Vector3& rate_change, const Vector3& force_change);
+
+/// Stretches of two seconds and more in which the means of every half second are steady() about their common mean and
+/// no fix moves at kRestSpeed (drive_outage.hpp) or more.
 [[nodiscard]] std::vector<Rest> rests_of(const Drive& drive, std::size_t run);
 
 /// Error: InvalidArgument where no fix shows a heading and the document gives none.
