@@ -1,12 +1,14 @@
 #pragma once
-/// A part of the use case "evaluate outages": the errors that a simulation model, which an investigation left, gives
-/// one sensor of a scenario.
+/// A part of the use case "evaluate outages": the errors that one sensor of a scenario has by a simulation model which
+/// an investigation left.
 ///
-/// A model speaks of columns of a recording; a scenario of the axes of a gyroscope or an accelerometer. An axis takes
-/// the column that is named for the sensor; without a name gx, gy, gz of a gyroscope and fx, fy, fz of an
-/// accelerometer; else the only one there is; and where the model does not tell columns apart, what it says of all. A
-/// drift [SI/s] becomes the process `linear_drift`. A scenario has no place for effects of the motion or of the
-/// temperature, and a filter cannot know a bias: what is left out is named.
+/// The model speaks of the columns of a recording, the scenario of the axes of a gyroscope or an accelerometer. Where
+/// the caller names a column for the sensor, all of its axes take that one. Otherwise an axis takes the column with its
+/// usual name: gx, gy, gz of a gyroscope, fx, fy, fz of an accelerometer. Failing that it takes the only column that
+/// the model has, or, where the model does not tell columns apart, what it says of all.
+///
+/// A drift [SI/s] becomes the process `linear_drift`. Not everything can be carried over: a scenario has no place for
+/// effects of the motion or the temperature, and a filter is not told the bias. `left_out` names what was dropped.
 #include "core/investigate/study/study.hpp"
 
 #include <cstddef>

@@ -11,10 +11,11 @@
 /// Nothing but the wavelet variances, sample count and interval of each recording is needed: a stored result can be
 /// pooled without its samples.
 ///
-/// Agreement. Under one parameter vector the least L of the stack exceeds the sum of the least L of the recordings, all
-/// under the covariance of the joint fit, by a chi-square of (R - 1) p degrees of freedom, p the parameters of the
-/// components that the joint fit has (likelihood ratio of nested models; L is a quasi-likelihood with the right
-/// covariance). Measured size and power: tests/ACCURACY.md.
+/// Agreement. The recordings are compared by the ratio of two likelihoods: one parameter vector for all, or one for
+/// each. The least L of the stack exceeds the sum of the least L of the single recordings; both are taken under the
+/// covariances of the stack. If the recordings share their parameters, the excess is chi-square with (R - 1) p degrees
+/// of freedom, where p counts the parameters of the components that the joint fit has. (L is a quasi-likelihood with
+/// the right covariance, and the models are nested.) Measured size and power: tests/ACCURACY.md.
 #include "core/campaign/reported_channel.hpp"
 #include "core/fit/candidate.hpp"
 #include "core/fit/characterisation.hpp"

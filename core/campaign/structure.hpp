@@ -1,19 +1,23 @@
 #pragma once
-/// One structure for all conditions, or another one for each? The candidates ranked jointly, and the claim that the
-/// structure stays while its parameters move (Radi, Nassar and El-Sheimy 2017, section 5) put to the test.
+/// Does one structure of the error model describe a sensor under all conditions, or does each condition need its own?
+/// The candidates are ranked jointly, and the claim that the structure stays while its parameters move (Radi, Nassar
+/// and El-Sheimy 2017, section 5) is tested.
 ///
-/// Ranking. Parameters are free in every condition, so the joint criterion of a structure is the sum of its criteria
-/// over the conditions.
+/// Ranking. The parameters are free in every condition, so the joint criterion of a structure is the sum of its
+/// criteria over the conditions.
 ///
-/// The claim. Candidates are nested: a component that one condition shows and another does not may have, in the latter,
-/// a level too low for the record to resolve, which is a change of a parameter and not of the structure; a random walk
-/// is the limit of a Gauss-Markov process whose correlation time is beyond the record, and counts as a part of it. A
-/// structure therefore *serves* a condition if it or a part of it has a criterion within 6 of the best (a posterior
-/// ratio of 20; Kass and Raftery 1995: strong evidence begins there). `common` is the smallest candidate that serves
-/// every condition. The largest candidate always does, so the claim can fail only in this way: no condition shows
-/// `common` as a whole, that is, conditions want components that never occur together. `excess` is by how much the
-/// criterion of `common` exceeds the best in the condition that shows it best; above 6 the structure changes. `p` tests
-/// that `common` fits every condition: the sum of the least L, chi-square with the sum of their degrees of freedom.
+/// The claim. What one condition shows, another may hide: a component may be too weak there for the record to resolve.
+/// That is a change of a parameter, not of the structure. A structure is therefore said to *serve* a condition if it or
+/// a part of it has there a criterion within 6 of the best (a posterior ratio of 20, where strong evidence begins; Kass
+/// and Raftery 1995). A part is the structure without some of its components; a random walk also counts as a part of a
+/// Gauss-Markov process, of which it is the limit for correlation times beyond the record.
+///
+/// `common` is the smallest candidate that serves every condition. The candidates are nested, and the largest, which
+/// has all others as its parts, does so wherever it could be fitted. The claim fails in one way only: no condition
+/// shows `common` as a whole, because different conditions ask for components that never occur together. `excess`
+/// measures this. It is how much the criterion of `common` exceeds the best one, in the condition where it exceeds it
+/// least; above 6 the structure changes with the condition. `p` tests whether `common` fits at all: the sum over the
+/// conditions of its least distances L is chi-square, with the sum of their degrees of freedom.
 /// Measured: tests/ACCURACY.md.
 #include <cstddef>
 #include <string>

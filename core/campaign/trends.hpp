@@ -1,20 +1,24 @@
 #pragma once
-/// How one parameter moves with the dynamics: against |rate| or |angular acceleration|, over the conditions in which it
-/// was estimated.
+/// How one parameter of the error model depends on the dynamics: on |rate| or on |angular acceleration|, from its
+/// estimates under several conditions.
 ///
-/// Model: y_i = ln value_i = ln f(w_i) + u_i + e_i, e_i Gaussian with the standard deviation of the estimate's
-/// interval, u_i a spread between conditions that the relation does not explain (standard deviation tau, estimated).
-/// All error parameters are positive, so logarithms are their scale. Three questions, three answers:
+/// Model. Error parameters are positive, so their logarithms are their scale. With value_i the estimate under condition
+/// i and w_i the size of its rate or acceleration
+///    y_i = ln value_i = ln f(w_i) + u_i + e_i.
+/// e_i is the error of the estimate, Gaussian with the standard deviation that its interval states. u_i is what differs
+/// between conditions for reasons that w does not explain, with a standard deviation tau that is estimated. Three
+/// questions are asked:
 ///
-/// - Does it move at all? Cochran's Q over the weighted mean, chi-square(n - 1) (Cochran 1954), tau = 0 under the
-///   hypothesis.
-/// - Is there a monotone trend? Weighted regression of y on the rank of w, tau by Paule and Mandel (1982), t(n - 2)
-///   with the variance of Knapp and Hartung (2003), never below the one that the intervals imply: conditions that
-///   differ at random are no trend. With two or three conditions the spread cannot be told from a trend; the test is
-///   then the normal one of the estimates themselves, and `few` says so.
-/// - Which relation? constant f = a, linear f = a + b w, power f = a + b w^c, by the small-sample criterion AICc
-///   (Hurvich and Tsai 1989), tau a nuisance of all alike and not counted; below 4 points constant or linear, by the
-///   first test.
+/// - Do the conditions differ at all? Cochran's Q of the y_i about their weighted mean has, if they do not (and
+///   tau = 0), a chi-square law with n - 1 degrees of freedom (Cochran 1954).
+/// - Does the parameter rise or fall with w? y is regressed on the rank of w, with weights, tau by Paule and Mandel
+///   (1982). The slope is tested by Student's t with n - 2 degrees of freedom and the variance of Knapp and Hartung
+///   (2003), which is never taken below the one that the intervals imply. Conditions that merely differ at random are
+///   thereby no trend. Two or three conditions cannot tell such differences from a trend: the test is then the normal
+///   one of the estimates themselves, and `few` says so.
+/// - Which relation describes it? Constant f = a, linear f = a + b w, or power f = a + b w^c, whichever has the
+///   smallest AICc, the criterion for small samples of Hurvich and Tsai (1989). tau is fitted with each and counted
+///   with none. Below four points the choice is between constant and linear, and the first test makes it.
 ///
 /// Measured size, power and coverage: tests/ACCURACY.md.
 #include "core/process/distributions.hpp"

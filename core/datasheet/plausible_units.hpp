@@ -1,15 +1,18 @@
 #pragma once
-/// Whether readings are in the unit that is said of them.
+/// Are the readings of a sensor in the unit that they are said to be in?
 ///
-/// Two facts do not depend on who recorded: at rest an accelerometer reads one g, whichever way it lies, and a
-/// gyroscope shows about the white noise of its data sheet. A unit that is off makes the first wrong by 9.81, 1000 or
-/// the counts in one g, the second by 57.3, 1000 or the counts in one deg/s. Only such a factor is told: a sensor that
-/// vibrates is not at fault.
+/// Two facts hold whoever made the recording. At rest an accelerometer reads 1 g, whichever way it lies, and the white
+/// noise of a gyroscope is about that of its data sheet. A wrong unit spoils them by a known factor: 9.81, 1000 or the
+/// counts in 1 g for the accelerometer; 57.3, 1000 or the counts in 1 deg/s for the gyroscope. Only such a factor is
+/// reported. A sensor that is off by another one may vibrate: its unit is not blamed.
 ///
-/// Length: the median of |f| over samples spread over the series, against 1.0 g; another unit is named where it brings
-/// that within 10 %. Noise: N from the Allan deviation at about 0.5 s, by the median of the absolute differences of
-/// neighbouring means (a knock moves few of them; filters above some Hz do not matter), against the stated N; another
-/// unit is named where it brings a ratio beyond 8 within 2.5. Range: a reading beyond the largest full scale.
+/// - Gravity, at rest. The median of |f|, over samples spread evenly over the series, should be 1 g. If it is off by
+///   more than 10 %, the unit that brings it within 10 % is named.
+/// - Noise of a gyroscope, at rest. The density N is read off the Allan deviation at about 0.5 s, where filters above
+///   some Hz do not matter. The deviation is taken from the median of the absolute differences of neighbouring means,
+///   of which a knock moves few. If N is off the stated one by a factor of 8 or more, the unit that brings it within
+///   2.5 is named.
+/// - Range. No reading should exceed the largest full scale of the sensor by more than a quarter.
 ///
 /// Sources: the sensor's data sheet (core/datasheet/data_sheet.hpp), IEEE Std 952 for N = sigma(tau) sqrt(tau).
 #include "core/datasheet/data_sheet.hpp"

@@ -1,9 +1,16 @@
 #pragma once
-/// One peak in the spectra of some recordings: its density, its likelihood, and where it stands.
+/// One peak in the spectra of some recordings: the shape of its density, the likelihood of the spectra with it, and the
+/// place where it stands.
 ///
-/// The peak is that of a second-order Gauss-Markov process (core/process/resonance.hpp). Expected is what is known of
-/// each spectrum, a white level that is common and free where the baseline is automatic, a floor that is free behind a
-/// band limit, and the peak; levels are the best ones under Whittle's likelihood (whittle.hpp).
+/// The peak is that of a second-order Gauss-Markov process (core/process/resonance.hpp). The density that is expected
+/// of the spectra is a sum of four terms:
+/// - what is known of each recording: its slow noise, the noise of rounding, and the white noise where a baseline is
+///   given;
+/// - a white level, the same in all recordings, which is fitted where no baseline is given;
+/// - a floor, which is fitted where the white noise is limited in band, for something remains beyond the limit;
+/// - the peak.
+///
+/// The levels that are fitted are those of maximum Whittle likelihood (whittle.hpp).
 #include "core/investigate/fullrate/full_rate.hpp"
 #include "core/investigate/fullrate/whittle.hpp"
 

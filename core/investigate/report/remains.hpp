@@ -1,19 +1,26 @@
 #pragma once
-/// Departures from white noise that remain in the innovations after every finding has been taken out, with no cause
-/// assumed.
+/// What is left in the innovations after every finding has been taken out: departures from white noise, sought without
+/// an assumption about their cause.
 ///
-/// Under a right model innovations are white and of unit variance, so that any sum over them has a known law. They are
-/// first replaced by normal scores over all recordings of the channel, with uniform noise of one step added where the
-/// file is on a lattice: heavy tails, gross values and equal values then do not disturb the tests. The tests are
-///   - tiles: the mean power r of m ordinates in an interval of time and a band of frequency, against the rest of the
-///     recording in that band, for dyadic intervals and bands; m (r - 1 - ln r) / (1 - share) has a unit exponential
-///     tail, `share` the part of the recording in the interval;
-///   - the mean over dyadic intervals of time, S^2/2 of unit variance;
-///   - lines in the variance: the periodogram of the squared scores less one;
-///   - skewness, of the innovations themselves, cut at six;
-///   - between axes of a recording, |C|^2 of m ordinates in dyadic bands, m |C|^2.
-/// A place is paid for by the number of places (Bonferroni); places overlap, so that the probabilities are too large
-/// rather than too small. The smallest of a study is multiplied by the number of tests in it.
+/// Where the model is right, innovations are white and of unit variance, so that every sum over them has a known law.
+/// The tests look at normal scores, not at the innovations as they are: each value is replaced by the normal quantile
+/// of its rank among all recordings of the channel. Heavy tails and gross values then do not disturb them. Where the
+/// file is on a lattice many values are equal; noise that is uniform over one step is added before they are ranked.
+/// Each test gives an exponent x, and exp(-x) is the probability that noise alone would show as much at that place:
+/// - Tiles. The recording is cut into dyadic intervals of time and dyadic bands of frequency. A tile has m ordinates,
+///   and r is the mean of their powers, each divided by its mean over the recording. Then
+///   x = m (r - 1 - ln r) / (1 - share), where `share` is the part of the recording that the interval takes: the tile
+///   is in that mean itself.
+/// - Mean over time. In dyadic intervals x = S^2/2, where S is the mean of the scores in units of its standard
+///   deviation.
+/// - Lines in the variance. x is the periodogram of the squared scores less their mean, over its expectation.
+/// - Skewness. x = z^2/2 of the third moment of the innovations themselves, cut at six standard deviations.
+/// - Coherence. Between two axes of one recording x = m |C|^2 in dyadic bands of m ordinates, of innovations cut at
+///   four standard deviations.
+///
+/// A test looks at many places and reports the one with the largest x, so the probability is multiplied by the number
+/// of places (Bonferroni). Places overlap: the product is too large rather than too small. To say it of the whole study
+/// it is multiplied once more, by the number of tests in the study.
 #include "core/investigate/report/report.hpp"
 #include "core/investigate/search/group_search.hpp"
 

@@ -1,17 +1,22 @@
 #pragma once
-/// The smoothed trajectory of a drive, from the fixes before and after each moment. It serves as the reference for a
-/// filter's errors if a drive has none of its own.
+/// The smoothed trajectory of a drive: at each moment the best estimate from all fixes, those before it and those after
+/// it. Where a drive has no reference of its own, a filter's errors are measured against it.
 ///
-/// The filter runs once and keeps, in order, its transitions Phi and its scalar measurements (h, gain K, innovation z
-/// of variance s). Backward over these runs the smoother of Bierman (1973, "Fixed interval smoothing with discrete
-/// measurements"), which is that of Rauch, Tung and Striebel without an inverse of a covariance: from lambda = 0,
-/// Lambda = 0 at the end,
-///   over a measurement  lambda <- -h z/s + (I - K h^T)^T lambda,  Lambda <- h h^T/s + (I - K h^T)^T Lambda (I - K
-///   h^T), over a step         lambda <- Phi^T lambda,  Lambda <- Phi^T Lambda Phi,
-/// and at a point whose filtered covariance is P the error is -P lambda with covariance P - P Lambda P. The filter
-/// feeds its errors back, which is the same to first order in them.
+/// The filter runs once. On its way it keeps each of its transitions Phi and each of its scalar measurements: the row
+/// h, the gain K, the innovation z and its variance s. The smoother then goes back over them from the end, where
+/// lambda = 0 and Lambda = 0. Over a measurement
+///    lambda <- -h z/s + (I - K h^T)^T lambda,
+///    Lambda <- h h^T/s + (I - K h^T)^T Lambda (I - K h^T),
+/// and over a transition
+///    lambda <- Phi^T lambda,
+///    Lambda <- Phi^T Lambda Phi.
+/// At a point with the filtered covariance P the smoothed error is -P lambda, and its covariance is P - P Lambda P.
+/// This is the smoother of Bierman (1973, "Fixed interval smoothing with discrete measurements"); it gives what that of
+/// Rauch, Tung and Striebel gives, and inverts no covariance. The filter here corrects its trajectory by the errors as
+/// it estimates them, which changes the result only in second order of these errors.
 ///
-/// About 10 kB of memory a tenth of a second; time grows with the cube of the states, 2 s for ten minutes.
+/// It takes about 10 kB of memory for each tenth of a second of the drive. The time grows with the cube of the number
+/// of states and is 2 s for ten minutes.
 #include "core/navigate/drive/evaluation.hpp"
 
 namespace driftlab::drive {

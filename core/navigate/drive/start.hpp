@@ -1,10 +1,15 @@
 #pragma once
-/// Where a filter begins on a recorded drive (spec/drives.md, section 3).
+/// The state in which a filter begins on a recorded drive (spec/drives.md, section 3). What the document of the drive
+/// states of it is taken from there; the rest is found as follows.
 ///
-/// Tilt is the direction of the mean force over a rest, carried to the start by the gyroscope whose mean over that rest
-/// is taken off; without a rest in the minute before, that of the force over one second of even motion. Heading is the
-/// course of the first fix above 3 m/s whose second sees less than 3 deg of turn. A vehicle that does not move along
-/// its nose has no such heading: it is taken from the document, else from the course with 30 deg.
+/// Tilt. The vehicle's last rest, if it ended within the minute before the start, shows the tilt by the direction of
+/// the mean force. The gyroscope carries it from there to the start, less its own mean over the rest. Without such a
+/// rest, the tilt is that of the mean force over one second around the start.
+///
+/// Heading. It is the course of the first fix that is faster than 3 m/s and around which the vehicle turns by less than
+/// 3 deg in a second. The filter begins at that fix, or, where the heading is stated, at the first of all. An aircraft
+/// or a boat need not point where it moves: its heading should be stated, and where it is not, the course is taken with
+/// a standard deviation of 30 deg.
 #include "core/navigate/attitude.hpp"
 #include "core/navigate/drive/drive.hpp"
 
