@@ -17,9 +17,8 @@ namespace driftlab::cli {
 void add_plot_flag(CLI::App& command, std::string& path);
 
 /// Writes the figures of a document: to `path` by its ending (.svg, .png), each to a file of its own where there are
-/// several
-/// (`plot-gx.svg`), or in characters to standard output where `path` is `-`. Errors: InvalidArgument (another ending;
-/// nothing to draw), Io.
+/// several (`plot-gx.svg`), or in characters to standard output where `path` is `-`. Errors: InvalidArgument (another
+/// ending; nothing to draw), Io.
 [[nodiscard]] Status write_plots(const Json& document, const std::string& path, const std::string& channel = "");
 
 }  // namespace driftlab::cli

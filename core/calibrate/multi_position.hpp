@@ -11,8 +11,7 @@
 /// The estimate minimises the sum of squares of |x_k| - g over the positions k with equal weights (Levenberg-Marquardt,
 /// started from the middle and half width of the readings). Intervals are linearised, with the scatter of the residuals
 /// and Student's t with n - 9 degrees of freedom; a number that the positions do not determine at all has an open
-/// interval. A constant error of g acts as a common scale of A and cannot be
-/// detected.
+/// interval. A constant error of g acts as a common scale of A and cannot be detected.
 #include "core/calibrate/triad.hpp"
 
 #include <string>

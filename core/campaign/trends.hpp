@@ -4,7 +4,7 @@
 ///
 /// Model. Error parameters are positive, so their logarithms are their scale. With value_i the estimate under condition
 /// i and w_i the size of its rate or acceleration
-///    y_i = ln value_i = ln f(w_i) + u_i + e_i.
+///   y_i = ln value_i = ln f(w_i) + u_i + e_i.
 /// e_i is the error of the estimate, Gaussian with the standard deviation that its interval states. u_i is what differs
 /// between conditions for reasons that w does not explain, with a standard deviation tau that is estimated. Three
 /// questions are asked:

@@ -2,14 +2,13 @@
 /// The noise of an inertial sensor in the few numbers that filters and simulators of other projects ask for.
 ///
 /// Every such program holds one of two models, and each is fitted here as what it is, not read off a richer one:
-///   - white noise and a bias that walks (`WN+RW`): N and K, two numbers for each axis. Kalibr, VINS, ORB-SLAM3,
-///   OpenVINS,
-///     GTSAM and the estimators of PX4 and ArduPilot mean this one;
-///   - white noise and a bias that forgets (`WN+GM`, first-order Gauss-Markov): N, the standard deviation of the bias
-///   and its
-///     correlation time. KF-GINS, NaveGo, gnss-ins-sim and Gazebo mean this one.
-/// Both are joint GMWM fits to the Haar wavelet variances of all recordings of the axis (core/campaign/replicates.hpp),
-/// the robust ones where gross errors move the classical.
+/// - White noise and a bias that walks (`WN+RW`): two numbers for each axis, N and K. Kalibr, VINS, ORB-SLAM3,
+///   OpenVINS, GTSAM and the estimators of PX4 and ArduPilot mean this one.
+/// - White noise and a bias that forgets (`WN+GM`, first-order Gauss-Markov): N, the standard deviation of the bias and
+///   its correlation time. KF-GINS, NaveGo, gnss-ins-sim and Gazebo mean this one.
+///
+/// Both are joint GMWM fits to the Haar wavelet variances of all recordings of the axis (core/campaign/replicates.hpp):
+/// the robust variances where gross errors move the classical ones.
 ///
 /// N is the density at low frequencies, the coefficient N of IEEE Std 952 that a characterisation reports whatever its
 /// best model is (core/fit/ieee952_coefficients.hpp): what a filter integrates. Where that is refused, the N of the fit

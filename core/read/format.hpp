@@ -86,8 +86,7 @@ struct Decoded {
 /// decides. Errors: EmptyInput, UnsupportedFormat (with what it looks like), those of make_decompressor, those of the
 /// format:
 ///   csv  EmptyInput, NoSamples, RaggedRow, DuplicateColumn, LimitExceeded; where no cell is a number, what is wrong
-///   with the
-///        first: NotANumber, NonFinite, OutOfRange
+///        with the first: NotANumber, NonFinite, OutOfRange
 ///   npy  Truncated (fewer bytes than the header declares), ShapeMismatch (more bytes, or an impossible shape),
 ///        UnsupportedType, NoSamples, LimitExceeded
 /// and Io, Cancelled. Fields: `row` (in text the line of the file from 1, else the sample from 1), `column` (its name).

@@ -1,12 +1,12 @@
 #pragma once
 /// A recording from the files that a phone application exports, one per sensor. Internal to core/read.
 ///
-/// phyphox          `Gyroscope.csv`, `Accelerometer.csv` (with gravity), `Linear Accelerometer.csv` (without), headers
-///                  `"Time (s)","X (rad/s)",...`.
-/// Sensor Logger    `Gyroscope.csv`, `AccelerometerUncalibrated.csv` (with gravity; in g on iOS, which the size of its
-/// first
-///                  samples tells), `TotalAcceleration.csv` (with gravity), `Accelerometer.csv` (without), headers
-///                  `time,seconds_elapsed,z,y,x`: the axes by name, not by place; rad/s and m/s^2.
+/// phyphox         `Gyroscope.csv`, `Accelerometer.csv` (with gravity), `Linear Accelerometer.csv` (without); headers
+///                 `"Time (s)","X (rad/s)",...`.
+/// Sensor Logger   `Gyroscope.csv`, `AccelerometerUncalibrated.csv` (with gravity), `TotalAcceleration.csv` (with
+///                 gravity), `Accelerometer.csv` (without); headers `time,seconds_elapsed,z,y,x`: the axes by name,
+///                 not by place. In rad/s and m/s^2, but the uncalibrated accelerometer of iOS in g, which the size of
+///                 its first samples tells.
 ///
 /// Each sensor has a clock of its own rhythm. The gyroscope (else the first sensor) gives rows and time; the rows of a
 /// sensor of the same rate (within 1 %) are set beside them, shifted by whole samples to where its start time puts

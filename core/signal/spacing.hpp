@@ -1,12 +1,15 @@
 #pragma once
 /// The spacing of time stamps: where samples are missing, and how evenly the rest lie.
 ///
-/// The interpretations of the stamps are tried in this order. Samples at the stated rate, most of which are lost: the
-/// stated rate is a whole multiple of the rate that the median step shows. Samples of an even sampler, some of which
-/// are lost: steps are whole multiples of the interval (core/signal/sample_grid.hpp). Stamps on arrival, in bursts:
-/// more than 2 % of the steps look like gaps, though no grid fits; the samples are then evenly spaced by their mean
-/// step, and only a step far longer than all others is a gap. Otherwise every step is judged by itself: it is a gap if
-/// it exceeds 1.5 intervals, and what it lacks follows from the rows on both sides (core/signal/gap_sizes.hpp).
+/// Stamps can be read in four ways, which are tried in this order:
+/// - Samples at the stated rate, most of which are lost: the stated rate is a whole multiple of the rate that the
+///   median step shows.
+/// - Samples of an even sampler, some of which are lost: the steps are whole multiples of its interval
+///   (core/signal/sample_grid.hpp).
+/// - Stamps on arrival, in bursts: more than 2 % of the steps look like gaps, though no grid fits. The samples are then
+///   evenly spaced by their mean step, and only a step far longer than all others is a gap.
+/// - Otherwise every step is judged by itself. It is a gap if it exceeds 1.5 intervals, and what it lacks follows from
+///   the rows on both sides (core/signal/gap_sizes.hpp).
 #include "core/signal/gappy_samples.hpp"
 
 #include <cstddef>

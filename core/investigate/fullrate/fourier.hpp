@@ -1,11 +1,12 @@
 #pragma once
 /// Discrete Fourier transforms of whole recordings, in little more memory than their results take.
 ///
-/// A transform of n values by a library keeps them, as many complex factors and half as many results again: of a day at
-/// 100 Hz a third of a gigabyte, padded to a power of two a whole one. Here the values are asked for one by one, and a
-/// long transform is divided into four of a quarter of its length (decimation in time, Cooley and Tukey 1965), each of
-/// the next into four, until a library's factors for the rest are small. The factors of the joins are worked out where
-/// they are used. Every value is that of Eigen's transform to the bit, for the joins are its own, in its order.
+/// A library's transform of n values holds the values, as many complex factors, and half as many complex results at
+/// once. For a day at 100 Hz that is a third of a gigabyte, and a whole one if the series is padded to a power of two.
+/// Here the values are asked for one by one. A long transform is divided into four of a quarter of its length
+/// (decimation in time, Cooley and Tukey 1965), each of these into four again, until the rest is short enough for a
+/// library to hold its factors; the factors that join the parts are worked out where they are used. The joins are those
+/// of Eigen's transform, in its order, so that every value is equal to Eigen's to the bit.
 #include <complex>
 #include <cstddef>
 #include <functional>

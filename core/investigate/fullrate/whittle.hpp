@@ -4,10 +4,10 @@
 
 namespace driftlab::investigate {
 
-/// Densities linear in unknown levels: E = fixed + sum_k level_k shape_k, levels >= 0 where `positive`.
+/// Spectra and what is expected of them: the density E = fixed + sum_k level_k shape_k, every level_k >= 0.
 struct LinearDensity {
-  Eigen::VectorXd power, weight, fixed;
-  Eigen::MatrixXd shape;  ///< bins x levels
+  Eigen::VectorXd power, weight, fixed;  ///< by bin: mean of the ordinates P, their number m, what is known of E
+  Eigen::MatrixXd shape;                 ///< bins x levels
 };
 struct LevelFit {
   Eigen::VectorXd level;
@@ -17,7 +17,7 @@ struct LevelFit {
 /// Maximum Whittle likelihood by Fisher scoring (weighted least squares with weights m/E^2), levels kept >= 0.
 [[nodiscard]] LevelFit fit_levels(const LinearDensity& density, const Eigen::VectorXd& start);
 
-/// - sum m [ln E + P/E].
+/// The log likelihood of a density: - sum m [ln E + P/E] (Whittle 1953; spectrum.hpp).
 [[nodiscard]] double whittle(const Eigen::VectorXd& power, const Eigen::VectorXd& weight,
                              const Eigen::VectorXd& density);
 

@@ -2,9 +2,10 @@
 /// How the error of position grows while fixes are withheld: statistics over the outages of one duration at even times
 /// of them.
 ///
-/// In a filter whose errors are white noise of the rate, the error of position grows with the power 5/2 of the time, a
-/// constant error of the gyroscope with the power 3, one of the accelerometer with 2 and one of velocity with 1 (Groves
-/// 2013, section 5.7): the slope of the curve says which error rules an outage, which its end alone does not.
+/// The slope of the curve says which error rules an outage, which the error at its end alone does not. While fixes are
+/// withheld, the error of position grows with a power of the time: 5/2 under white noise of the rate, 3 under a
+/// constant error of the gyroscope, 2 under one of the accelerometer, and 1 under an error of velocity at the start
+/// (Groves 2013, section 5.7).
 #include "core/navigate/drive/drive_outage.hpp"
 
 #include <span>

@@ -10,10 +10,10 @@
 ///
 /// Causes that the files show without a filter (velocities older than positions) are found first.
 ///
-/// A cause that was found need not improve the filter. Its values are fitted once more on every second stretch of 100
-/// s, and the gain of the mended model is measured on the outages that lie entirely in the other stretches. A parameter
-/// stays in the extended model if the held-out outages are then described better (Gaussian log score, in which error
-/// and coverage both count).
+/// A cause that was found need not improve the filter. Its values are fitted once more on every second stretch of
+/// 100 s, and the gain of the mended model is measured on the outages that lie entirely in the other stretches. A
+/// parameter stays in the extended model if the held-out outages are then described better (Gaussian log score, in
+/// which error and coverage both count).
 ///
 /// Runs are tasks of the executor; results do not depend on the number of threads.
 #include "core/navigate/drive/causes/cause.hpp"

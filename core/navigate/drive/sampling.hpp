@@ -4,19 +4,18 @@
 /// A filter wants readings[i] to be the mean over an interval of constant length. Rows come with stamps that jitter,
 /// and a computer that asks faster than the sensor samples writes some samples twice.
 ///
-///   - Repeats. A row equal to the one before in all six channels is no new data. Where such rows stand alone and are
-///   at
-///     least one in a thousand, the sensor samples more slowly than it is asked: they are dropped and the others get
-///     equal spacing between the first and the last stamp. Longer runs of equal rows are a sensor that is stuck; they
-///     are counted and kept.
-///   - Stamps of the sensor itself are true. Each reading is the mean since the stamp before; the piecewise constant
-///     signal is integrated and differenced on the even grid, so that no angle is lost. Stamps of a host or of arrival
-///     are not true; between two gaps their readings get equal spacing.
-///   - Gaps. Up to three missing samples are bridged by the reading after them. A longer gap ends the run, and the
-///     filter begins another.
+/// - Repeats. A row equal to the one before in all six channels is no new data. Where such rows stand alone, are more
+///   than one in a thousand and more than twice as many as those of longer runs, the sensor samples more slowly than it
+///   is asked: they are dropped, and the others get equal spacing between the first and the last stamp. Longer runs of
+///   equal rows are a sensor that is stuck; they are counted and kept.
+/// - Stamps. Those of the sensor itself are true: each reading is the mean since the stamp before, and the piecewise
+///   constant signal is integrated and differenced on the even grid, so that no angle is lost. Those of a host or of
+///   arrival are not true: between two gaps their readings get equal spacing, until a gap of the file has been bridged.
+/// - Gaps. Up to three missing samples are bridged by the reading after them. A longer gap ends the run, and the filter
+///   begins another.
 ///
-/// On a car with a consumer unit polled at 100 Hz that samples at 97.9 Hz, dropping the repeats alone took errors after
-/// 30 s from 55 to 39 m.
+/// On a car with a consumer unit that is polled at 100 Hz and samples at 97.9 Hz, dropping the repeats alone took
+/// errors after 30 s from 55 to 39 m.
 #include "core/navigate/drive/document.hpp"
 
 #include <vector>

@@ -5,11 +5,11 @@
 /// The filter runs once. On its way it keeps each of its transitions Phi and each of its scalar measurements: the row
 /// h, the gain K, the innovation z and its variance s. The smoother then goes back over them from the end, where
 /// lambda = 0 and Lambda = 0. Over a measurement
-///    lambda <- -h z/s + (I - K h^T)^T lambda,
-///    Lambda <- h h^T/s + (I - K h^T)^T Lambda (I - K h^T),
+///   lambda <- -h z/s + (I - K h^T)^T lambda,
+///   Lambda <- h h^T/s + (I - K h^T)^T Lambda (I - K h^T),
 /// and over a transition
-///    lambda <- Phi^T lambda,
-///    Lambda <- Phi^T Lambda Phi.
+///   lambda <- Phi^T lambda,
+///   Lambda <- Phi^T Lambda Phi.
 /// At a point with the filtered covariance P the smoothed error is -P lambda, and its covariance is P - P Lambda P.
 /// This is the smoother of Bierman (1973, "Fixed interval smoothing with discrete measurements"); it gives what that of
 /// Rauch, Tung and Striebel gives, and inverts no covariance. The filter here corrects its trajectory by the errors as
