@@ -101,6 +101,15 @@ SensorLog sound_rows(const SensorLog& log, SamplingFacts& facts) {
   return without(log, left_out);
 }
 
+/// Gives the stamps of rows [first, last) equal spacing between the first and the last.
+void space_evenly(std::vector<double>& time_s, std::size_t first, std::size_t last) {
+  const double from = time_s[first];
+  const double step = last - first > 1 ? (time_s[last - 1] - from) / static_cast<double>(last - first - 1) : 0.0;
+  for (std::size_t i = first + 1; i + 1 < last; ++i) {
+    time_s[i] = from + step * static_cast<double>(i - first);
+  }
+}
+
 /// Rows [first, last) as one run. `even`: the stamps between the ends carry nothing.
 UniformRun run_of(const SensorLog& log, std::size_t first, std::size_t last, double step_s, bool even) {
   UniformRun run;
@@ -172,7 +181,8 @@ Result<std::vector<UniformRun>> uniform_readings(SensorLog log, const SamplingOp
   }
   const double interval = sum / many;
   std::vector<UniformRun> runs;
-  std::size_t first = 0;
+  std::size_t first = 0;   // of the run
+  std::size_t behind = 0;  // of its rows, the first behind the last gap
   for (std::size_t i = 0; i <= steps.size(); ++i) {
     if (i < steps.size()) {
       facts.longest_gap_s = std::max(facts.longest_gap_s, steps[i] > longest ? steps[i] : 0.0);
@@ -183,14 +193,23 @@ Result<std::vector<UniformRun>> uniform_readings(SensorLog log, const SamplingOp
       if (missing <= kMostBridged) {
         ++facts.gaps_bridged;
         facts.samples_bridged += static_cast<std::size_t>(std::max(missing, 1L));
+        if (even) {
+          space_evenly(log.time_s, behind, i + 1);
+        }
+        behind = i + 1;
         continue;
       }
       ++facts.gaps_splitting;
     }
+    const bool whole = behind == first;
+    if (even && !whole) {
+      space_evenly(log.time_s, behind, i + 1);
+    }
     if (log.time_s[i] - log.time_s[first] >= kShortestRun) {
-      runs.push_back(run_of(log, first, i + 1, interval, even && facts.samples_bridged == 0));
+      runs.push_back(run_of(log, first, i + 1, interval, even && whole));
     }
     first = i + 1;
+    behind = first;
   }
   if (runs.empty()) {
     return fail(ErrorCode::TooFewSamples, "No part of the inertial unit's rows is longer than a second without a gap.");

@@ -10,7 +10,7 @@
 ///   equal rows are a sensor that is stuck; they are counted and kept.
 /// - Stamps. Those of the sensor itself are true: each reading is the mean since the stamp before, and the piecewise
 ///   constant signal is integrated and differenced on the even grid, so that no angle is lost. Those of a host or of
-///   arrival are not true: between two gaps their readings get equal spacing, until a gap of the file has been bridged.
+///   arrival are not true: between two gaps, bridged ones too, their readings get equal spacing.
 /// - Gaps. Up to three missing samples are bridged by the reading after them. A longer gap ends the run, and the filter
 ///   begins another.
 ///

@@ -279,6 +279,33 @@ TEST(DriveInput, StampsOfArrivalGetEqualSpacing) {
   EXPECT_EQ(drive->runs.front().readings[1001][2], files.imu("gz")[1001]) << "each reading is one of the file";
 }
 
+TEST(DriveInput, StampsOfArrivalGetEqualSpacingBesideAGapThatIsBridged) {
+  // Every second reading arrives a millisecond late, but for the first, and one of the late ones is lost. Taken at
+  // their stamps, readings would be mixed with their neighbours by a tenth of the difference.
+  Files files = town();
+  std::vector<double>& t = files.imu("t");
+  for (std::size_t i = 2; i < t.size(); i += 2) {
+    t[i] += 0.001;
+  }
+  const std::size_t lost = 20000;
+  files.imu("gz")[lost] = kNothing;
+  files.document.imu.source.time.arrival = true;
+  const auto drive = load_drive(files.document, files.tables);
+  ASSERT_TRUE(drive) << drive.error().message;
+  ASSERT_EQ(drive->runs.size(), 1U);
+  EXPECT_EQ(drive->facts.sampling.samples_bridged, 1U);
+  const std::vector<ImuSample>& readings = drive->runs.front().readings;
+  ASSERT_EQ(readings.size(), t.size());
+  double mixed = 0.0;
+  double changes = 0.0;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    const bool near = i >= lost - 2 && i <= lost + 2;
+    mixed += near ? 0.0 : std::abs(readings[i][2] - files.imu("gz")[i]);
+    changes += near ? 0.0 : std::abs(files.imu("gz")[i] - files.imu("gz")[i - 1]);
+  }
+  EXPECT_LT(mixed, 1e-3 * changes);
+}
+
 TEST(DriveInput, SpeedAndCourseOfZeroIsRestAndNoHeading) {
   Files files = town();
   by_course(files);
