@@ -29,7 +29,7 @@ AxisGlance glance_of(const ReportedFit& fit, const std::optional<ReportedValue>&
     glance.reason = "too few scales to test whether the best model fits";
     return glance;
   }
-  glance.fits = fit.j_test->p >= kRejected;
+  glance.fits = fit.fits();
   if (*glance.fits) {
     glance.level = VerdictLevel::Fine;
   } else {

@@ -1,6 +1,5 @@
 #include "core/campaign/parameter_table.hpp"
 
-#include "core/fit/j_test.hpp"
 #include "core/process/distributions.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -98,7 +97,7 @@ std::vector<OpenRow> group_rows(const std::vector<TableSource>& sources, TableMe
       shown.j_test_p = p_of(*fit);
       shown.robust = shown.robust || fit->robust;
       note_warnings(shown, *fit);
-      if (!fit->j_test || !(fit->j_test->p > kRejected)) {
+      if (!fit->fits()) {
         row->descriptions.push_back(source.channel.description);
       }
     }

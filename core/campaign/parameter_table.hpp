@@ -79,6 +79,11 @@ struct TableRow {
   /// The density N of rate at low frequencies, whatever the model: the averaged coefficients N of the recordings.
   TableCell density;
   std::vector<TableCell> cells;  ///< one per column
+
+  /// Whether the one fit shown stands; nothing where no test says so.
+  [[nodiscard]] std::optional<bool> fits() const {
+    return j_test_p ? std::optional(stands_at(*j_test_p)) : std::nullopt;
+  }
 };
 
 struct ParameterTable {

@@ -57,6 +57,9 @@ struct ReportedFit {
   double described_within = 0.0;  ///< relative error of the variances that the model leaves
   std::string status;
   std::vector<std::string> warnings;
+
+  /// Whether it was tested and stands.
+  [[nodiscard]] bool fits() const { return j_test && stands_at(j_test->p); }
 };
 
 /// The Haar wavelet variances of a channel [channel unit^2].

@@ -65,8 +65,6 @@ std::string phrase_of(const ReportedProcess& process) {
          written(*level);
 }
 
-bool fits(const ReportedFit& fit) { return fit.j_test && fit.j_test->p >= kRejected; }
-
 std::string figures_of(const ReportedFit& fit) {
   std::vector<std::string> phrases;
   for (const ReportedProcess& process : fit.processes) {
@@ -104,13 +102,13 @@ void say_fit(const ReportedChannel& channel, Verdict& verdict) {
     return;
   }
   const std::string p = p_text(best.j_test->p);
-  if (fits(best)) {
+  if (best.fits()) {
     verdict.sentence =
         best.model + " describes this recording (J test " + p + ")" + (figures.empty() ? "" : ": " + figures) + ".";
     return;
   }
   raise(verdict, VerdictLevel::Look);
-  const auto other = std::find_if(channel.fits.begin(), channel.fits.end(), fits);
+  const auto other = std::ranges::find_if(channel.fits, &ReportedFit::fits);
   const auto accepted = other != channel.fits.end() ? other->j_test : std::nullopt;
   if (accepted) {
     verdict.sentence = best.model + ", ranked first by the criterion, does not fit (J test " + p + "); " +

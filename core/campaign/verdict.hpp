@@ -8,7 +8,6 @@
 /// that its interval lets stand (core/signal/significant.hpp).
 #include "core/campaign/parameter_table.hpp"
 #include "core/campaign/reported_channel.hpp"
-#include "core/fit/j_test.hpp"
 
 #include <optional>
 #include <span>

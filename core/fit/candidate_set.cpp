@@ -38,7 +38,7 @@ const Candidate* largest_testable(const CandidateSet& set) {
 bool any_accepted(const CandidateSet& set) {
   return std::any_of(set.candidates.begin(), set.candidates.end(), [](const Candidate& candidate) {
     const std::optional<JTest> test = j_test(candidate);
-    return test && test->p >= kRejected;
+    return test && stands_at(test->p);
   });
 }
 
@@ -117,7 +117,7 @@ Candidate fit_alone(const WaveletMoments& moments, const ModelStructure& structu
     return candidate;
   }
   const std::optional<JTest> test = j_test(candidate);
-  if (!test || test->p >= kRejected) {
+  if (!test || stands_at(test->p)) {
     return candidate;
   }
   const double delta = discrepancy_of_minimum(moments, candidate, exact->curve, kFirstGuess);

@@ -74,6 +74,12 @@ struct FittedProcess {
   std::vector<FittedParameter> parameters;  ///< as declared by kind->parameters
 };
 
+/// A model is rejected where its J test has a p below this.
+inline constexpr double kRejected = 0.01;
+
+/// Whether a model stands whose J test has this p: at kRejected it does, where p is not a number it does not.
+[[nodiscard]] constexpr bool stands_at(double p) { return p >= kRejected; }
+
 /// Over-identification test of a fit: statistic ~ chi-square(dof) where the model is right (Hansen 1982); dof is the
 /// number of scales less that of parameters, less up to 1.15 for what the longest scales scatter too little.
 struct JTest {

@@ -54,7 +54,7 @@ std::optional<JTest> j_test(const Candidate& candidate) {
 
 double own_discrepancy(const Candidate& candidate) {
   const std::optional<JTest> test = j_test(candidate);
-  if (!test || test->p >= kRejected) {
+  if (!test || stands_at(test->p)) {
     return 0.0;
   }
   const double common = candidate.log_fit->curve().delta;
@@ -69,7 +69,7 @@ std::string verdict_of(const std::optional<JTest>& test, double discrepancy) {
   if (!test) {
     return "untested";
   }
-  if (test->p >= kRejected) {
+  if (stands_at(test->p)) {
     return "accepted";
   }
   return discrepancy <= kDescribed ? "described" : "not_described";

@@ -8,8 +8,6 @@
 
 namespace driftlab {
 
-/// A model is rejected where its J test has a p below this.
-inline constexpr double kRejected = 0.01;
 /// A model that is wrong by no more than this share of the variances describes them.
 inline constexpr double kDescribed = 0.02;
 

@@ -1,6 +1,5 @@
 #include "schema/json/parameter_table.hpp"
 
-#include "core/fit/j_test.hpp"
 #include "schema/json/pooled_sensor.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/reported_channel.hpp"
@@ -41,13 +40,14 @@ Json row_to_json(const TableRow& row, const std::vector<TableColumn>& columns) {
     cells.emplace_back(columns[c].key, &row.cells[c]);
   }
   Cells told = cells_to_json(cells);
+  const std::optional<bool> fits = row.fits();
   Json density = cells_to_json({{"N", &row.density}}).values.at("N");
   return Json{{"condition", to_json(row.condition)},
               {"label", row.label},
               {"density", std::move(density)},
               {"recordings", row.recordings},
               {"duration_s", number(row.duration_s)},
-              {"fits", row.j_test_p ? Json(*row.j_test_p >= kRejected) : Json(nullptr)},
+              {"fits", fits ? Json(*fits) : Json(nullptr)},
               {"j_test_p", row.j_test_p ? number(*row.j_test_p) : Json(nullptr)},
               {"contamination", text_or_null(row.contamination)},
               {"pooling", name_of(row.pooling)},

@@ -76,7 +76,7 @@ JSON_DOORS: dict[str, set[str]] = {
     "core/signal": SIGNAL_DOORS | {f"core/signal/{name}.hpp" for name in ("estimate", "measured_temperature", "significant", "unit")},
     "core/process": {f"core/process/{name}.hpp" for name in ("model", "parameter_unit", "registry")},
     "core/variance": {"core/variance/deviation.hpp"},
-    "core/fit": {f"core/fit/{name}.hpp" for name in ("characterisation", "characterise", "j_test", "noise_equivalents", "robust_efficiency")},
+    "core/fit": {f"core/fit/{name}.hpp" for name in ("characterisation", "characterise", "noise_equivalents", "robust_efficiency")},
     "core/investigate/study": {"core/investigate/study/study.hpp"},
     "core/investigate/causes": {"core/investigate/causes/cause.hpp"},
     "core/investigate/search": {"core/investigate/search/given_model.hpp"},

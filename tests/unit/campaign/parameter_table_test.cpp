@@ -149,8 +149,10 @@ TEST(ParameterTable, SaysOfEachRowHowLongItIsAndWhetherItsOneFitStands) {
   const ParameterTable found = table(request(), {{"a", "static", one}, {"b", "drive", one}, {"c", "drive", one}});
   EXPECT_NEAR(found.rows[0].duration_s, 20.0, 1e-12);
   EXPECT_EQ(found.rows[0].j_test_p, 0.25);
+  EXPECT_EQ(found.rows[0].fits(), true);
   EXPECT_NEAR(found.rows[1].duration_s, 40.0, 1e-12);
   EXPECT_EQ(found.rows[1].j_test_p, std::nullopt) << "two fits averaged are no fit";
+  EXPECT_EQ(found.rows[1].fits(), std::nullopt);
   EXPECT_EQ(table(request(TableMethod::Av), {{"a", "static", one}}).rows[0].j_test_p, std::nullopt);
 }
 
@@ -252,6 +254,18 @@ TEST(ParameterTable, ShowsTheLowFrequencyDensityWhateverTheModel) {
   EXPECT_EQ(found.rows[1].warnings[1], other.description);
   other.fits[0].j_test = JTest{3.0, 5.0, 0.7};
   EXPECT_EQ(table(request(), {{"rec_b", "drive", other}}).rows[0].warnings.size(), 1U) << "an accepted model says it";
+}
+
+TEST(ParameterTable, WarnsOfARowExactlyWhereItSaysThatItsFitDoesNotStand) {
+  // Story: at p = 0.01 itself a row said that it fits, and described its curve as that of a rejected model.
+  ReportedChannel one = channel(cell(1.0, 0.9, 1.1), 1, 2);
+  one.description = "The curve shows a resonance at 20 Hz.";
+  for (const auto& [p, fits] : {std::pair(kRejected, true), std::pair(0.5 * kRejected, false)}) {
+    one.fits[0].j_test = JTest{3.0, 5.0, p};
+    const ParameterTable found = table(request(), {{"a", "static", one}});
+    EXPECT_EQ(found.rows[0].fits(), fits) << p;
+    EXPECT_EQ(found.rows[0].warnings.empty(), fits) << p;
+  }
 }
 
 }  // namespace
