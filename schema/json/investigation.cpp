@@ -3,8 +3,8 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/report/figures.hpp"
 #include "core/investigate/report/order.hpp"
-#include "schema/json/stored_channel.hpp"
 #include "schema/json/simulation_model.hpp"
+#include "schema/json/stored_channel.hpp"
 
 namespace driftlab {
 namespace {
@@ -126,27 +126,18 @@ Json outages_json(const std::optional<investigate::OutageGain>& outages) {
 }
 
 Json finding_json(const Finding& finding) {
-  Json alternatives = Json::array();
   Json rivals = Json::array();
   for (const Evidence& rival : finding.evidence.rivals) {
-    alternatives.push_back(std::string(rival.cause->name));
     rivals.push_back(Json{{"cause", std::string(rival.cause->name)},
                           {"title", std::string(rival.cause->title)},
                           {"score", number(rival.score)}});
-  }
-  if (!finding.evidence.doubt.empty()) {
-    constexpr std::size_t kMost = 5;
-    while (alternatives.size() >= kMost) {
-      alternatives.erase(alternatives.size() - 1);
-    }
-    alternatives.push_back("unnamed");
   }
   Json next = finding.next_measurement.empty() ? Json(nullptr) : Json(finding.next_measurement);
   return Json{{"cause", std::string(finding.evidence.cause->name)},
               {"title", std::string(finding.evidence.cause->title)},
               {"concern", std::string(name_of(concern_of(*finding.evidence.cause)))},
               {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
-              {"alternatives", std::move(alternatives)},
+              {"alternatives", alternatives_of(finding.evidence)},
               {"rivals", std::move(rivals)},
               {"channels", texts_of(finding.channels)},
               {"because", finding.because},

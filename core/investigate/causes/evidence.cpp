@@ -1,5 +1,6 @@
 #include "core/investigate/causes/evidence.hpp"
 
+#include "core/investigate/causes/cause.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
@@ -22,6 +23,20 @@ LabUnit level_unit(const Unit& channel, std::string_view suffix) {
   }
   unit.symbol.append(suffix);
   return unit;
+}
+
+std::vector<std::string> alternatives_of(const Evidence& evidence) {
+  std::vector<std::string> alternatives;
+  for (const Evidence& rival : evidence.rivals) {
+    alternatives.emplace_back(rival.cause->name);
+  }
+  if (!evidence.doubt.empty()) {
+    if (alternatives.size() >= kMostAlternatives) {
+      alternatives.resize(kMostAlternatives - 1);
+    }
+    alternatives.emplace_back("unnamed");
+  }
+  return alternatives;
 }
 
 double choice_penalty(double choices) { return 2.0 * std::log(std::max(1.0, choices)); }

@@ -30,8 +30,8 @@ void set_rivals(Evidence& winner, const std::vector<Evidence>& candidates) {
   }
   std::sort(winner.rivals.begin(), winner.rivals.end(),
             [](const Evidence& a, const Evidence& b) { return a.score > b.score; });
-  if (winner.rivals.size() > 5) {
-    winner.rivals.resize(5);
+  if (winner.rivals.size() > kMostAlternatives) {
+    winner.rivals.resize(kMostAlternatives);
   }
   winner.ambiguous = !winner.rivals.empty();
 }

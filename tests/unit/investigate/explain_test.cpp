@@ -121,5 +121,24 @@ TEST(Verdict, OneSentenceSaysWhatIsWrongAndWhatStillFails) {
   EXPECT_EQ(verdict.details.back(), "Something is left.");
 }
 
+TEST(Alternatives, AreTheRivalsAndLastAnUnnamedEffectWhereOneIsDoubted) {
+  const std::vector<Cause>& causes = cause_registry();
+  Evidence evidence;
+  EXPECT_TRUE(alternatives_of(evidence).empty());
+  for (std::size_t k = 0; k < kMostAlternatives; ++k) {
+    evidence.rivals.emplace_back().cause = &causes[k];
+  }
+  const std::vector<std::string> names = alternatives_of(evidence);
+  ASSERT_EQ(names.size(), kMostAlternatives);
+  EXPECT_EQ(names.front(), causes.front().name);
+  // With a doubt the list is no longer than without: the schema of an investigation allows five.
+  evidence.doubt = "The noise changes with the motion.";
+  std::vector<std::string> doubted = names;
+  doubted.back() = "unnamed";
+  EXPECT_EQ(alternatives_of(evidence), doubted);
+  evidence.rivals.clear();
+  EXPECT_EQ(alternatives_of(evidence), std::vector<std::string>{"unnamed"});
+}
+
 }  // namespace
 }  // namespace driftlab::investigate
