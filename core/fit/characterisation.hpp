@@ -118,6 +118,9 @@ struct ModelFit {
   std::string intervals = "profile";  ///< how the parameters' intervals were made: `profile`, `sandwich`, `bootstrap`
   std::string status;  ///< `converged`, `not_converged`, `collapsed` (a component vanished), `unidentifiable`
   std::vector<std::string> warnings;
+
+  /// Whether no fit of the channel is closer to the data.
+  [[nodiscard]] bool closest() const { return distance_2p == 0.0; }
 };
 
 /// Coefficients of IEEE Std 952, those of the composite models that describe the curve

@@ -218,7 +218,7 @@ Json to_json(const ChannelIdentity& identity, const ChannelCharacterisation& cha
     Json fit = to_json(reported(one, unit));
     if (one.distance_2p) {
       fit["distance_2p"] = number(*one.distance_2p);
-      fit["closest"] = *one.distance_2p == 0.0;
+      fit["closest"] = one.closest();
     }
     fits.push_back(std::move(fit));
   }

@@ -36,6 +36,7 @@ TEST(Closeness, IsWhatThePlausibleSetIsMadeOf) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
       ASSERT_TRUE(distances[i]);
       EXPECT_EQ(found->fits[i].distance_2p, distances[i]) << "a fit says its own";
+      EXPECT_EQ(found->fits[i].closest(), distances[i] && *distances[i] <= 0.0) << "none is closer than the least";
       EXPECT_EQ(*distances[i] <= 6.0, found->fits[i].plausible) << found->fits[i].model << " " << *distances[i];
     }
   }
