@@ -61,13 +61,9 @@ Json regression_trend_json(const regression::TrendReport& told) {
 
 Json regression_arm_json(const regression::ArmReport& arm) {
   Json sessions = Json::array();
-  Json merged = Json::array();
   for (const regression::ArmReport::Session& session : arm.sessions) {
     sessions.push_back(Json{
         {"session", session.name}, {"recordings", session.recordings}, {"duration_s", number(session.duration_s)}});
-    if (session.recordings.size() > 1) {
-      merged.push_back(session.name);
-    }
   }
   Json rates = Json::array();
   for (const double rate : arm.rates_hz) {
@@ -76,31 +72,13 @@ Json regression_arm_json(const regression::ArmReport& arm) {
   return Json{{"label", text_or_null(arm.label)},
               {"sessions", std::move(sessions)},
               {"rates_hz", std::move(rates)},
-              {"merged", std::move(merged)}};
+              {"merged", arm.merged()}};
 }
 
 /// A prior scatter between sessions, in per cent of the deviation.
 Json regression_of_sensors(const regression::Settings& settings, double regression::Tau0::* scatter) {
   return Json{{"gyroscope", number(100.0 * settings.tau0_gyroscope.*scatter)},
               {"accelerometer", number(100.0 * settings.tau0_accelerometer.*scatter)}};
-}
-
-/// Sessions of arms and releases that have more than one: what the factors are learnt from.
-Json regression_informing_json(const regression::Report& report) {
-  Json informing = Json::array();
-  const auto add = [&](const regression::ArmReport& arm) {
-    if (arm.sessions.size() > 1) {
-      for (const regression::ArmReport::Session& session : arm.sessions) {
-        informing.push_back(Json{{"label", text_or_null(arm.label)}, {"session", session.name}});
-      }
-    }
-  };
-  add(report.baseline);
-  add(report.candidate);
-  for (const regression::ArmReport& release : report.history) {
-    add(release);
-  }
-  return informing;
 }
 
 Json regression_between_json(const regression::Report& report) {
@@ -114,16 +92,16 @@ Json regression_between_json(const regression::Report& report) {
     }
     posterior.push_back(std::move(row));
   }
-  return Json{{"kL",
-               {{"value", number(factors.common)},
-                {"ci95", {number(scatter.quantile_common(0.025)), number(scatter.quantile_common(0.975))}}}},
-              {"kS",
-               {{"value", number(factors.local)},
-                {"ci95", {number(scatter.quantile_local(0.025)), number(scatter.quantile_local(0.975))}}}},
+  Json informing = Json::array();
+  for (const auto& [label, session] : report.informing_sessions()) {
+    informing.push_back(Json{{"label", text_or_null(label)}, {"session", session}});
+  }
+  return Json{{"kL", {{"value", number(factors.common.value)}, {"ci95", interval(factors.common.ci95)}}},
+              {"kS", {{"value", number(factors.local.value)}, {"ci95", interval(factors.local.ci95)}}},
               {"factors", regression::factor_grid()},
               {"posterior", std::move(posterior)},
               {"contrasts", scatter.contrasts},
-              {"sessions", regression_informing_json(report)},
+              {"sessions", std::move(informing)},
               {"t_d", regression_of_sensors(report.settings, &regression::Tau0::device)},
               {"t_a", regression_of_sensors(report.settings, &regression::Tau0::axis)},
               {"t_s", regression_of_sensors(report.settings, &regression::Tau0::scale)}};

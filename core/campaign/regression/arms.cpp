@@ -20,6 +20,16 @@ std::string rates_text(const std::vector<double>& rates_hz) {
 
 }  // namespace
 
+std::vector<std::string> ArmReport::merged() const {
+  std::vector<std::string> names;
+  for (const Session& session : sessions) {
+    if (session.recordings.size() > 1) {
+      names.push_back(session.name);
+    }
+  }
+  return names;
+}
+
 ArmReport arm_report(const Recordings& arm, const PowerUps& sessions) {
   ArmReport told;
   told.label = arm.label;

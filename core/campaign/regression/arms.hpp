@@ -16,6 +16,9 @@ struct ArmReport {
   };
   std::vector<Session> sessions;
   std::vector<double> rates_hz;  ///< of all recordings, each once, rising
+
+  /// Names of the sessions whose recordings are merged.
+  [[nodiscard]] std::vector<std::string> merged() const;
 };
 
 [[nodiscard]] ArmReport arm_report(const Recordings& arm, const PowerUps& sessions);

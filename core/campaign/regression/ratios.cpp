@@ -16,7 +16,8 @@ TrendRatios ratios_of(const ReleaseTrend& trend) {
 }
 
 ScatterFactors factors_of(const SessionScatter& scatter) {
-  return {std::sqrt(scatter.mean_square_common()), std::sqrt(scatter.mean_square_local())};
+  return {{std::sqrt(scatter.mean_square_common()), {scatter.quantile_common(0.025), scatter.quantile_common(0.975)}},
+          {std::sqrt(scatter.mean_square_local()), {scatter.quantile_local(0.025), scatter.quantile_local(0.975)}}};
 }
 
 }  // namespace driftlab::regression

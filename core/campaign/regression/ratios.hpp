@@ -25,10 +25,11 @@ struct TrendRatios {
 };
 [[nodiscard]] TrendRatios ratios_of(const ReleaseTrend& trend);
 
-/// By how much sessions of one sensor scatter: root mean squares of the factors of session_scatter.hpp.
+/// By how much sessions of one sensor scatter: root mean squares of the factors of session_scatter.hpp, with the grid
+/// points between which 95 % of their posterior lies.
 struct ScatterFactors {
-  double common = 0.0;
-  double local = 0.0;
+  Estimate common;
+  Estimate local;
 };
 [[nodiscard]] ScatterFactors factors_of(const SessionScatter& scatter);
 

@@ -191,4 +191,21 @@ Result<Report> run_regression(const Request& request, const RunControl& control)
   return report;
 }
 
+std::vector<Report::InformingSession> Report::informing_sessions() const {
+  std::vector<InformingSession> informing;
+  const auto add = [&](const ArmReport& arm) {
+    if (arm.sessions.size() > 1) {
+      for (const ArmReport::Session& session : arm.sessions) {
+        informing.push_back({arm.label, session.name});
+      }
+    }
+  };
+  add(baseline);
+  add(candidate);
+  for (const ArmReport& release : history) {
+    add(release);
+  }
+  return informing;
+}
+
 }  // namespace driftlab::regression

@@ -70,6 +70,14 @@ struct Report {
   std::vector<std::string> notes;
   std::optional<double> needed_length_s;
   std::string needs;  ///< the sentence on what would decide; empty for a verdict
+
+  /// The sessions that the scatter between sessions was learnt from (session_scatter.hpp): those of arms and releases
+  /// that have more than one.
+  struct InformingSession {
+    std::string label;  ///< of the arm or release
+    std::string session;
+  };
+  [[nodiscard]] std::vector<InformingSession> informing_sessions() const;
 };
 
 /// Errors: InvalidArgument (an arm without recordings; no channel that both arms can be compared in), each with the

@@ -88,7 +88,16 @@ TEST(RegressionReport, CountsPartsOfOnePowerUpOnce) {
   const auto report = run_regression(made);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->candidate.sessions.size(), 1U);
+  EXPECT_EQ(report->candidate.merged(), std::vector<std::string>{report->candidate.sessions[0].name});
   EXPECT_EQ(report->baseline.sessions.size(), 3U);
+  EXPECT_TRUE(report->baseline.merged().empty());
+  // One session says nothing of the scatter between sessions: the three of the baseline inform it.
+  const std::vector<Report::InformingSession> informing = report->informing_sessions();
+  ASSERT_EQ(informing.size(), 3U);
+  for (std::size_t i = 0; i < informing.size(); ++i) {
+    EXPECT_EQ(informing[i].label, "firmware=1.0");
+    EXPECT_EQ(informing[i].session, report->baseline.sessions[i].name);
+  }
   EXPECT_EQ(report->notes[1], "3 recordings are one session (1 Jan, 00:00-00:43) and count once.");
   made.candidate.recordings[2].began_s = 1e6;
   EXPECT_EQ(run_regression(made)->candidate.sessions.size(), 2U);

@@ -1,6 +1,7 @@
 // The claims of a regression run on simulated devices. The full figures are those of
 // tests/accuracy/regression_test.cpp; here the goals are held at sizes that take seconds. Seeds were fixed before
 // looking.
+#include "core/campaign/regression/ratios.hpp"
 #include "core/campaign/regression/verdict.hpp"
 #include "tests/accuracy/regression_rig.hpp"
 
@@ -77,6 +78,12 @@ TEST(RegressionVerdict, LearnsARestlessRigFromItsSessionsAndRestsOnThePriorWitho
   EXPECT_EQ(scatter(many).contrasts, 8U);
   EXPECT_LT(std::sqrt(scatter(one).mean_square_local()), 2.0);
   EXPECT_GT(std::sqrt(scatter(many).mean_square_local()), 2.0);
+  const regression::ScatterFactors told = regression::factors_of(scatter(many));
+  EXPECT_EQ(told.local.value, std::sqrt(scatter(many).mean_square_local()));
+  EXPECT_EQ(told.local.ci95.low, scatter(many).quantile_local(0.025));
+  EXPECT_EQ(told.local.ci95.high, scatter(many).quantile_local(0.975));
+  EXPECT_EQ(told.common.ci95.low, scatter(many).quantile_common(0.025));
+  EXPECT_EQ(told.common.ci95.high, scatter(many).quantile_common(0.975));
 }
 
 TEST(RegressionVerdict, AsksForMoreSessionsWhereTheseDecideNothing) {
