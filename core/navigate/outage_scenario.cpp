@@ -1,6 +1,7 @@
 #include "core/navigate/outage_scenario.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -12,6 +13,9 @@ tl::unexpected<Error> bad(std::string why, const char* parameter) {
 Status check_outages(const OutageScenario& scenario) {
   if (scenario.outages.empty()) {
     return bad("The scenario has no outage.", "outages");
+  }
+  if (scenario.outages.size() > kMostOutages) {
+    return bad("A scenario has at most 1000 outages.", "outages");
   }
   double before = 1.0 / scenario.gnss.rate_hz;
   for (const Outage& outage : scenario.outages) {
@@ -26,6 +30,21 @@ Status check_outages(const OutageScenario& scenario) {
 }
 
 }  // namespace
+
+OutageScenario completed(WrittenScenario written) {
+  OutageScenario scenario = std::move(written.scenario);
+  scenario.recorded = std::move(written.recorded.poses);
+  look_ahead(scenario.recorded, written.recorded.unknown);
+  if (scenario.drive.duration_s == 0.0 && !scenario.recorded.empty()) {
+    scenario.drive.duration_s = duration_of(scenario.recorded);
+  }
+  for (const Segment& segment : scenario.drive.segments) {
+    if (written.at_turns_s && segment.kind == SegmentKind::Turn) {
+      scenario.outages.push_back({segment.start_s, *written.at_turns_s});
+    }
+  }
+  return scenario;
+}
 
 Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario) {
   if (scenario.recorded.empty()) {

@@ -1,11 +1,14 @@
 #pragma once
 /// One simulated experiment: a drive, an inertial unit, a receiver with outages, and the filters that are compared.
 #include "core/navigate/imu_simulator.hpp"
+#include "core/navigate/look_ahead.hpp"
 #include "core/navigate/navigation_filter.hpp"
 #include "core/navigate/recorded_motion.hpp"
 #include "core/navigate/segment_motion.hpp"
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,13 +37,27 @@ struct OutageScenario {
   std::vector<FilterCandidate> filters;
 };
 
+inline constexpr std::size_t kMostOutages = 1000;
+
+/// A scenario as somebody wrote it: `scenario` with what else stands for its trajectory and outages.
+struct WrittenScenario {
+  OutageScenario scenario;  ///< a duration of 0: that of `recorded`
+  RecordedTrajectory recorded;
+  std::optional<double> at_turns_s;  ///< an outage of this duration over each turn of the drive, beside those listed
+};
+
+/// The scenario spelled out: a recorded vehicle looks where it goes (look_ahead.hpp), outages over turns begin with
+/// them, in the order of the segments.
+[[nodiscard]] OutageScenario completed(WrittenScenario written);
+
 /// The motion of the scenario. Errors: those of make_segment_motion and make_recorded_motion; InvalidArgument (the
 /// drive lasts longer than the poses).
 [[nodiscard]] Result<std::unique_ptr<Motion>> make_motion(const OutageScenario& scenario);
 
-/// Errors: InvalidArgument (no filter or two of one name, no outage, outages that overlap, begin before the first fix
-/// or end after the drive), LimitExceeded (more than 10 million samples), and those of the parts. An error of
-/// make_motion has the field "segment" if it concerns a segment; one of FilterDesign::check has the field "filter".
+/// Errors: InvalidArgument (no filter or two of one name, no outage or more than kMostOutages, outages that overlap,
+/// begin before the first fix or end after the drive), LimitExceeded (more than 10 million samples), and those of the
+/// parts. An error of make_motion has the field "segment" if it concerns a segment; one of FilterDesign::check has the
+/// field "filter".
 [[nodiscard]] Status check(const OutageScenario& scenario);
 
 }  // namespace driftlab

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -54,8 +56,8 @@ Segment read_segment(const Json& document, const std::string& pointer, Faults& f
   return segment;
 }
 
-void read_trajectory(const Json& document, const std::string& pointer, OutageScenario& scenario, Faults& faults) {
-  SegmentPlan& plan = scenario.drive;
+void read_trajectory(const Json& document, const std::string& pointer, WrittenScenario& written, Faults& faults) {
+  SegmentPlan& plan = written.scenario.drive;
   ObjectReader reader(document, pointer, faults);
   if (const Json* const start = reader.member("start")) {
     ObjectReader inner(*start, pointer + "/start", faults);
@@ -79,12 +81,9 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
   const Json* const segments = reader.member("segments_by_start_time");
   const Json* const recorded = reader.member("recorded");
   if (recorded != nullptr) {
-    scenario.recorded = recorded_from_json(*recorded, pointer + "/recorded", faults);
+    written.recorded = recorded_from_json(*recorded, pointer + "/recorded", faults);
     if (segments != nullptr) {
       faults.add(pointer + "/recorded", ErrorCode::InvalidArgument, "A trajectory is recorded or made of segments.");
-    }
-    if (plan.duration_s == 0.0 && !scenario.recorded.empty()) {
-      plan.duration_s = duration_of(scenario.recorded);
     }
   } else if (segments == nullptr || !segments->is_array() || segments->size() > 10000) {
     faults.add(pointer + "/segments_by_start_time", ErrorCode::InvalidArgument, "The segments are a list.");
@@ -97,8 +96,6 @@ void read_trajectory(const Json& document, const std::string& pointer, OutageSce
   reader.reject_unknown();
 }
 
-constexpr std::size_t kMostOutages = 1000;
-
 void check_duration(double duration_s, const std::string& pointer, Faults& faults) {
   if (!(duration_s > 0.0)) {
     faults.add(pointer + "/duration_s", ErrorCode::InvalidArgument, "An outage lasts longer than 0 s.");
@@ -106,7 +103,7 @@ void check_duration(double duration_s, const std::string& pointer, Faults& fault
 }
 
 /// A list, or {"start": "turn onset", "duration_s": 10}: one over each turn.
-void read_outages(const Json& document, const std::string& pointer, OutageScenario& scenario, Faults& faults) {
+void read_outages(const Json& document, const std::string& pointer, WrittenScenario& written, Faults& faults) {
   if (document.is_array()) {
     if (document.size() > kMostOutages) {
       faults.add(pointer, ErrorCode::InvalidArgument, "A scenario has at most 1000 outages.");
@@ -115,9 +112,10 @@ void read_outages(const Json& document, const std::string& pointer, OutageScenar
     for (std::size_t i = 0; i < document.size(); ++i) {
       const std::string where = pointer + "/" + std::to_string(i);
       ObjectReader reader(document[i], where, faults);
-      scenario.outages.push_back({reader.real("start_s").value_or(-1.0), reader.real("duration_s").value_or(0.0)});
+      const Outage outage{reader.real("start_s").value_or(-1.0), reader.real("duration_s").value_or(0.0)};
       reader.reject_unknown();
-      check_duration(scenario.outages.back().duration_s, where, faults);
+      check_duration(outage.duration_s, where, faults);
+      written.scenario.outages.push_back(outage);
     }
     return;
   }
@@ -131,14 +129,7 @@ void read_outages(const Json& document, const std::string& pointer, OutageScenar
     faults.add(pointer + "/start", ErrorCode::InvalidArgument,
                "Outages start at `turn onset`, or are listed one by one.");
   }
-  for (const Segment& segment : scenario.drive.segments) {
-    if (segment.kind == SegmentKind::Turn) {
-      scenario.outages.push_back({segment.start_s, duration});
-    }
-  }
-  if (scenario.outages.size() > kMostOutages) {
-    faults.add(pointer, ErrorCode::InvalidArgument, "A scenario has at most 1000 outages.");
-  }
+  written.at_turns_s = duration;
 }
 
 /// A member that documents state and that can only be true.
@@ -320,7 +311,8 @@ Json trajectory_to_json(const OutageScenario& scenario) {
 }  // namespace
 
 OutageScenario scenario_from_json(const Json& document, const std::string& pointer, Faults& faults) {
-  OutageScenario scenario;
+  WrittenScenario written;
+  OutageScenario& scenario = written.scenario;
   ObjectReader reader(document, pointer, faults);
   scenario.name = reader.text("name").value_or("");
   scenario.about = reader.text("about").value_or("");
@@ -335,8 +327,8 @@ OutageScenario scenario_from_json(const Json& document, const std::string& point
       faults.add(pointer + "/" + name, ErrorCode::InvalidArgument, std::string("The member ") + name + " is missing.");
     }
   };
-  part("trajectory", true, [&](const Json& d, const std::string& p) { read_trajectory(d, p, scenario, faults); });
-  part("outages", true, [&](const Json& d, const std::string& p) { read_outages(d, p, scenario, faults); });
+  part("trajectory", true, [&](const Json& d, const std::string& p) { read_trajectory(d, p, written, faults); });
+  part("outages", true, [&](const Json& d, const std::string& p) { read_outages(d, p, written, faults); });
   part("gnss", false, [&](const Json& d, const std::string& p) { read_gnss(d, p, scenario.gnss, faults); });
   Initial initial;
   part("initial", false, [&](const Json& d, const std::string& p) { initial = read_initial(d, p, faults); });
@@ -360,12 +352,13 @@ OutageScenario scenario_from_json(const Json& document, const std::string& point
   });
   (void)reader.member("variants");
   reader.reject_unknown();
+  OutageScenario whole = completed(std::move(written));
   if (faults.none()) {
-    if (auto status = check(scenario); !status) {
-      faults.add(pointer + place_of(status.error(), scenario), status.error());
+    if (auto status = check(whole); !status) {
+      faults.add(pointer + place_of(status.error(), whole), status.error());
     }
   }
-  return scenario;
+  return whole;
 }
 
 OutageScenario scenario_or_name(const Json& value, const std::string& pointer, Faults& faults) {

@@ -1,10 +1,10 @@
 #include "schema/json/recorded_trajectory.hpp"
 
-#include "core/navigate/look_ahead.hpp"
 #include "core/signal/angle.hpp"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -18,7 +18,7 @@ bool is_vector(const Json& value) {
 
 }  // namespace
 
-std::vector<RecordedPose> recorded_from_json(const Json& document, const std::string& pointer, Faults& faults) {
+RecordedTrajectory recorded_from_json(const Json& document, const std::string& pointer, Faults& faults) {
   ObjectReader reader(document, pointer, faults);
   const Json* const times = reader.member("time_s");
   const Json* const velocities = reader.member("velocity_ned_m_s");
@@ -57,8 +57,7 @@ std::vector<RecordedPose> recorded_from_json(const Json& document, const std::st
     poses[i].velocity_ned_m_s = {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
     poses[i].attitude = {angle(0), angle(1), angle(2)};
   }
-  look_ahead(poses, {.pitch = angles[1] == nullptr, .heading = angles[2] == nullptr});
-  return poses;
+  return {std::move(poses), {.pitch = angles[1] == nullptr, .heading = angles[2] == nullptr}};
 }
 
 Json recorded_to_json(const std::vector<RecordedPose>& poses) {

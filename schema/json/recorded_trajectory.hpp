@@ -4,14 +4,13 @@
 /// `{"time_s": [...], "velocity_ned_m_s": [[north, east, down], ...], "roll_deg": [...], "pitch_deg": [...],
 /// "heading_deg": [...]}`. Without angles the vehicle is taken to look where it goes: heading and pitch along the
 /// velocity, kept while it is slower than 0.5 m/s, roll 0.
-#include "core/navigate/recorded_motion.hpp"
+#include "core/navigate/outage_scenario.hpp"
 #include "schema/json/json.hpp"
 
 namespace driftlab {
 
 /// Faults are added at `pointer` and below.
-[[nodiscard]] std::vector<RecordedPose> recorded_from_json(const Json& document, const std::string& pointer,
-                                                           Faults& faults);
+[[nodiscard]] RecordedTrajectory recorded_from_json(const Json& document, const std::string& pointer, Faults& faults);
 
 [[nodiscard]] Json recorded_to_json(const std::vector<RecordedPose>& poses);
 

@@ -275,6 +275,8 @@ TEST(OutageScenario, RefusesWhatCannotBeEvaluated) {
   scenario = first_turn();
   scenario.outages.clear();
   EXPECT_EQ(check(scenario).error().code, ErrorCode::InvalidArgument);
+  scenario.outages.resize(kMostOutages + 1);
+  EXPECT_EQ(check(scenario).error().message, "A scenario has at most 1000 outages.");
   // What the parts would refuse later is found at once.
   scenario = first_turn();
   scenario.drive.segments[1].duration_s = 0.0;
@@ -287,6 +289,33 @@ TEST(OutageScenario, RefusesWhatCannotBeEvaluated) {
   scenario.drive.duration_s = 2000.0;
   scenario.imu_rate_hz = 10000.0;
   EXPECT_EQ(check(scenario).error().code, ErrorCode::LimitExceeded);
+}
+
+TEST(OutageScenario, IsCompletedByWhatStandsForItsTrajectoryAndOutages) {
+  WrittenScenario written;
+  written.scenario.drive.segments = {{.kind = SegmentKind::Turn, .start_s = 30.0},
+                                     {.kind = SegmentKind::Straight, .start_s = 40.0},
+                                     {.kind = SegmentKind::Turn, .start_s = 50.0}};
+  written.scenario.drive.duration_s = 60.0;
+  EXPECT_TRUE(completed(written).outages.empty());
+  written.at_turns_s = 5.0;
+  const OutageScenario turns = completed(written);
+  ASSERT_EQ(turns.outages.size(), 2U);
+  EXPECT_EQ(turns.outages[1].start_s, 50.0);
+  EXPECT_EQ(turns.outages[1].duration_s, 5.0);
+  EXPECT_EQ(turns.drive.duration_s, 60.0);
+
+  WrittenScenario recorded;
+  recorded.recorded.poses.resize(4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    recorded.recorded.poses[i].time_s = 100.0 + static_cast<double>(i);
+    recorded.recorded.poses[i].velocity_ned_m_s = {0.0, 10.0, 0.0};
+  }
+  EXPECT_EQ(completed(recorded).recorded[3].attitude.heading_rad, 0.0) << "it was recorded so";
+  recorded.recorded.unknown.heading = true;
+  const OutageScenario drive = completed(recorded);
+  EXPECT_EQ(drive.drive.duration_s, 3.0);
+  EXPECT_NEAR(drive.recorded[3].attitude.heading_rad, std::numbers::pi / 2.0, 1e-12);
 }
 
 }  // namespace
