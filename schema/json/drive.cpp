@@ -1,6 +1,6 @@
 #include "schema/json/drive.hpp"
 
-#include "core/navigate/drive/outage_map.hpp"
+#include "core/analysis/drawn_drive.hpp"
 #include "core/signal/angle.hpp"
 
 #include <array>
@@ -103,20 +103,19 @@ Json to_json(const DriveCheck& checked) {
 Json to_json(const drive::DurationSummary& d, const drive::Drive& drive) {
   Json outages = Json::array();
   for (const drive::DriveOutage& o : d.outages) {
-    const Vector3 place = drive.on_map(o.reference_ecef_m);
+    const drive::MappedOutage mapped = drive::mapped(o, drive);
     outages.push_back(Json{{"start_s", number(o.outage.start_s)},
                            {"phase", o.phase},
                            {"motion", name_of(o.outage_class)},
-                           {"north_m", number(o.error_ned_m.x())},
-                           {"east_m", number(o.error_ned_m.y())},
+                           {"north_m", number(mapped.error_m[1])},
+                           {"east_m", number(mapped.error_m[0])},
                            {"along_m", number(o.along_m)},
                            {"across_m", number(o.across_m)},
-                           {"covariance_m2", Json{number(o.covariance_ned(0, 0)), number(o.covariance_ned(0, 1)),
-                                                  number(o.covariance_ned(1, 1))}},
+                           {"covariance_m2", numbers(mapped.covariance_m2)},
                            {"nees", number(o.nees())},
                            {"start_error_m", number(o.start_error_m)},
                            {"straight_line_error_m", number(o.straight_line_error_m)},
-                           {"map_m", Json{number(place.x()), number(place.y())}}});
+                           {"map_m", Json{number(mapped.truth_m[1]), number(mapped.truth_m[0])}}});
   }
   Json classes = Json::array();
   for (const auto& c : d.classes) {

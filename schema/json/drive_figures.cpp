@@ -1,6 +1,6 @@
 #include "schema/json/drive_figures.hpp"
 
-#include "core/navigate/drive/outage_map.hpp"
+#include "core/analysis/drawn_drive.hpp"
 #include "core/signal/significant.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/figure/axes.hpp"
@@ -115,7 +115,7 @@ struct ClassStyle {
 constexpr std::array<ClassStyle, drive::kEllipseClasses> kClasses{
     {{"in 50 % ellipse", "#00785a"}, {"between 50 and 95 %", palette::kModel}, {"outside", palette::kRobust}}};
 
-drive::MappedOutage mapped(const Json& outage) {
+drive::MappedOutage mapped_from_json(const Json& outage) {
   const Json& covariance = outage.at("covariance_m2");
   return {
       .truth_m = {outage.at("map_m").at(1).get<double>(), outage.at("map_m").at(0).get<double>()},
@@ -156,7 +156,7 @@ Series strokes_of(const drive::MapClass& outages, const ClassStyle& style) {
 NamedFigure map_figure(const Json& document, const Json& duration) {
   std::vector<drive::MappedOutage> outages;
   for (const Json& outage : duration.at("outages")) {
-    outages.push_back(mapped(outage));
+    outages.push_back(mapped_from_json(outage));
   }
   const drive::OutageMap map = drive::map_of(outages);
   Plot plot{.x = {ScaleKind::Linear, "east, m"}, .y = {ScaleKind::Linear, "north, m"}};

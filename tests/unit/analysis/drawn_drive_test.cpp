@@ -1,5 +1,5 @@
 // Ends of outages on a map: in which ellipse of the filter they lie, and the strokes that show it.
-#include "core/navigate/drive/outage_map.hpp"
+#include "core/analysis/drawn_drive.hpp"
 
 #include "tests/unit/navigate/drive_fixture.hpp"
 
@@ -48,6 +48,22 @@ TEST(MapOf, SortsOutagesInTheirOrderAndDrawsErrorAndEllipseOfEach) {
   EXPECT_NEAR(east, 3.0 * std::sqrt(nees_of_share(0.95)), 1e-12);
   EXPECT_NEAR(north, 2.0 * std::sqrt(nees_of_share(0.95)), 1e-12);
   EXPECT_EQ(map_of({}).largest_error_m, 0.0);
+}
+
+TEST(MapOf, TakesAnOutageAsADocumentKeepsIt) {
+  const Drive drive = simulated_drive(51);
+  DriveOutage outage;
+  outage.reference_ecef_m = drive.reference.front().position_ecef_m;
+  outage.error_ned_m = {3.0, 4.0, 50.0};
+  outage.covariance_ned.diagonal() << 9.0, 4.0, 1.0;
+  outage.covariance_ned(0, 1) = outage.covariance_ned(1, 0) = 1.0;
+  const MappedOutage kept = mapped(outage, drive);
+  EXPECT_EQ(kept.truth_m, (MapPlace{0.0, 0.0})) << "the map begins where the reference does";
+  EXPECT_EQ(kept.error_m, (MapPlace{4.0, 3.0})) << "east and north";
+  EXPECT_EQ(kept.covariance_m2, (std::array<double, 3>{9.0, 1.0, 4.0}));
+  EXPECT_EQ(kept.nees, outage.nees());
+  outage.reference_ecef_m = drive.reference.back().position_ecef_m;
+  EXPECT_EQ(mapped(outage, drive).truth_m, way_of(drive).back());
 }
 
 TEST(WayOf, KeepsAtMostFiveHundredAndOnePointsAndTheLast) {

@@ -1,12 +1,12 @@
 #pragma once
-/// Where outages ended, for a map: the ellipse that a filter believes in, whether the truth lies in it, and how large
-/// an error is.
+/// What documents and figures draw of a drive on its map: its way, and where outages ended, with the ellipse that a
+/// filter believes in, whether the truth lies in it, and how large an error is.
 ///
 /// A filter that gives a covariance P of its horizontal error e says that e' P^-1 e (NEES) is chi-square distributed
 /// with two degrees of freedom, whose quantile of a share p is -2 ln(1 - p). Outages are told apart by the ellipses of
 /// 50 and 95 %: of many outages of a filter whose covariance is right, half lie in the first and one in twenty outside
 /// both.
-#include "core/navigate/drive/drive.hpp"
+#include "core/navigate/drive/drive_outage.hpp"
 
 #include <array>
 #include <cstddef>
@@ -38,13 +38,16 @@ inline constexpr std::size_t kEllipseClasses = 3;
 /// positive definite) lies outside.
 [[nodiscard]] EllipseClass ellipse_class(const std::optional<double>& nees);
 
-/// One outage as it is kept of a drive.
+/// One outage as a document keeps it of a drive.
 struct MappedOutage {
   MapPlace truth_m = {};                     ///< where it ended
   MapPlace error_m = {};                     ///< the filter's estimate minus that
   std::array<double, 3> covariance_m2 = {};  ///< {north, north-east, east} of the error, as the filter believes
   std::optional<double> nees;                ///< of the error under that covariance
 };
+
+/// On the map of `drive`, whose reference is not empty.
+[[nodiscard]] MappedOutage mapped(const DriveOutage& outage, const Drive& drive);
 
 /// The outages of one class.
 struct MapClass {

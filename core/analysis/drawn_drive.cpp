@@ -1,4 +1,4 @@
-#include "core/navigate/drive/outage_map.hpp"
+#include "core/analysis/drawn_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +39,15 @@ EllipseClass ellipse_class(const std::optional<double>& nees) {
     return EllipseClass::Outside;
   }
   return *nees <= kNees50 ? EllipseClass::Within50 : EllipseClass::Within95;
+}
+
+MappedOutage mapped(const DriveOutage& outage, const Drive& drive) {
+  const Vector3 place = drive.on_map(outage.reference_ecef_m);
+  const Matrix3& covariance = outage.covariance_ned;
+  return {.truth_m = {place.y(), place.x()},
+          .error_m = {outage.error_ned_m.y(), outage.error_ned_m.x()},
+          .covariance_m2 = {covariance(0, 0), covariance(0, 1), covariance(1, 1)},
+          .nees = outage.nees()};
 }
 
 OutageMap map_of(std::span<const MappedOutage> outages) {
