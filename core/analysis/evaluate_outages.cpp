@@ -30,4 +30,8 @@ ErrorEllipse error_ellipse(const PlaneCovariance& covariance, double fraction) {
           0.5 * std::atan2(covariance.north_east, half)};
 }
 
+std::array<ErrorEllipse, 2> error_ellipses(const PlaneCovariance& covariance) {
+  return {error_ellipse(covariance, 0.5), error_ellipse(covariance, 0.95)};
+}
+
 }  // namespace driftlab

@@ -6,6 +6,7 @@
 #include "core/navigate/outage_evaluation.hpp"
 #include "core/navigate/paper_scenario.hpp"
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -36,5 +37,8 @@ struct ErrorEllipse {
 /// `fraction` in (0, 1). In the plane the squared Mahalanobis distance is chi-square of two degrees of freedom, whose
 /// quantile is -2 ln(1 - fraction); the half axes are the roots of the eigenvalues times its root.
 [[nodiscard]] ErrorEllipse error_ellipse(const PlaneCovariance& covariance, double fraction);
+
+/// Those that are told and drawn: of 50 and of 95 %.
+[[nodiscard]] std::array<ErrorEllipse, 2> error_ellipses(const PlaneCovariance& covariance);
 
 }  // namespace driftlab

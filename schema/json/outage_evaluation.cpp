@@ -1,17 +1,16 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "core/signal/angle.hpp"
-#include "schema/json/stored_channel.hpp"
 #include "schema/json/outage_scenario.hpp"
 #include "schema/json/rounded.hpp"
+#include "schema/json/stored_channel.hpp"
 
 #include <algorithm>
 
 namespace driftlab {
 namespace {
 
-Json ellipse(const PlaneCovariance& p, double fraction) {
-  const ErrorEllipse axes = error_ellipse(p, fraction);
+Json ellipse(const ErrorEllipse& axes) {
   return Json{{"fraction", axes.fraction},
               {"semi_major_m", number(axes.semi_major_m)},
               {"semi_minor_m", number(axes.semi_minor_m)},
@@ -19,10 +18,11 @@ Json ellipse(const PlaneCovariance& p, double fraction) {
 }
 
 Json moments(const PlaneCovariance& p) {
+  const auto [half, most] = error_ellipses(p);
   return Json{{"north_m2", number(p.north)},
               {"east_m2", number(p.east)},
               {"north_east_m2", number(p.north_east)},
-              {"ellipses", Json{ellipse(p, 0.5), ellipse(p, 0.95)}}};
+              {"ellipses", Json{ellipse(half), ellipse(most)}}};
 }
 
 Json path_json(const OutagePath& path) {

@@ -20,7 +20,11 @@ TEST(ErrorEllipse, OfAKnownCovarianceHasItsAxesAndDirection) {
   EXPECT_NEAR(half.semi_major_m, 3.0 * radius, 1e-12);
   EXPECT_NEAR(half.semi_minor_m, radius, 1e-12);
   EXPECT_NEAR(half.azimuth_rad, a, 1e-12);
-  EXPECT_NEAR(error_ellipse(p, 0.95).semi_major_m, 3.0 * std::sqrt(-2.0 * std::log(0.05)), 1e-12);
+  const auto [told, most] = error_ellipses(p);
+  EXPECT_EQ(told.fraction, 0.5);
+  EXPECT_EQ(told.semi_major_m, half.semi_major_m);
+  EXPECT_EQ(most.fraction, 0.95);
+  EXPECT_NEAR(most.semi_major_m, 3.0 * std::sqrt(-2.0 * std::log(0.05)), 1e-12);
 }
 
 TEST(ErrorEllipse, OfARoundCloudIsACircle) {
