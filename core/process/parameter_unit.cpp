@@ -139,4 +139,11 @@ Result<double> parameter_factor(std::string_view symbol, Dimension channel, cons
   return unit->factor;
 }
 
+bool measures(const ParameterUnitValue& unit, Quantity quantity, int per_seconds) {
+  const int seconds = unit.second + 2 * per_seconds;  // exponents in halves
+  return quantity == Quantity::Unspecified ||
+         (quantity == Quantity::AngularRate ? unit.angle == 2 && unit.length == 0 && seconds == -2
+                                            : unit.angle == 0 && unit.length == 2 && seconds == -4);
+}
+
 }  // namespace driftlab

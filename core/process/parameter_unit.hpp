@@ -1,6 +1,7 @@
 #pragma once
 /// Units of model parameters as people write them: `deg/sqrt(h)`, `m/s^2`, `deg/s/sqrt(s)`, `1/s`.
 #include "core/process/parameter.hpp"
+#include "core/signal/quantity.hpp"
 #include "core/signal/result.hpp"
 #include "core/signal/unit.hpp"
 
@@ -25,5 +26,9 @@ struct ParameterUnitValue {
 /// ug/sqrt(Hz), 1/s. Errors: UnknownUnit, UnitMismatch (not of dimension (channel unit)^channel_power
 /// s^(second_power_halves/2)).
 [[nodiscard]] Result<double> parameter_factor(std::string_view symbol, Dimension channel, const ParameterSpec& spec);
+
+/// Whether a unit is that of a sensor's quantity over s^per_seconds: of an angular rate, or else of a specific force.
+/// Of an unspecified quantity every unit is.
+[[nodiscard]] bool measures(const ParameterUnitValue& unit, Quantity quantity, int per_seconds);
 
 }  // namespace driftlab

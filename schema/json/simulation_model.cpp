@@ -140,14 +140,6 @@ void read_effect(const Json& document, const std::string& pointer, Baseline& mod
   }
 }
 
-/// Is the unit that of the quantity, over s^`per_seconds`?
-bool measures(const ParameterUnitValue& unit, Quantity quantity, int per_seconds) {
-  const int seconds = unit.second + 2 * per_seconds;  // exponents in halves
-  return quantity == Quantity::Unspecified ||
-         (quantity == Quantity::AngularRate ? unit.angle == 2 && unit.length == 0 && seconds == -2
-                                            : unit.angle == 0 && unit.length == 2 && seconds == -4);
-}
-
 void read_deterministic(const Json& document, const std::string& pointer, Baseline& model, Faults& faults) {
   for (const auto& [column, terms] : document.items()) {
     for (const char* const name : {"bias", "drift"}) {

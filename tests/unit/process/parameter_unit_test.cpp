@@ -26,5 +26,16 @@ TEST(ParameterFactor, ReadsTheUnitsOfTheLab) {
   EXPECT_EQ(parameter_factor("furlong", Dimension::AngularRate, level).error().code, ErrorCode::UnknownUnit);
 }
 
+TEST(ParameterUnit, MeasuresASensorOrItsDrift) {
+  const auto unit = [](const char* symbol) { return *parse_parameter_unit(symbol); };
+  EXPECT_TRUE(measures(unit("deg/h"), Quantity::AngularRate, 0));
+  EXPECT_FALSE(measures(unit("deg/h"), Quantity::AngularRate, 1));
+  EXPECT_TRUE(measures(unit("deg/s/h"), Quantity::AngularRate, 1));
+  EXPECT_TRUE(measures(unit("mg"), Quantity::SpecificForce, 0));
+  EXPECT_TRUE(measures(unit("mg/s"), Quantity::SpecificForce, 1));
+  EXPECT_FALSE(measures(unit("mg"), Quantity::AngularRate, 0));
+  EXPECT_TRUE(measures(unit("s"), Quantity::Unspecified, 0));
+}
+
 }  // namespace
 }  // namespace driftlab
