@@ -27,4 +27,9 @@ std::size_t aligned_type_tenths(std::string_view text) {
   return std::clamp(kPaperAdvances / longest, kSmallest, kLargest);
 }
 
+std::string aligned_type_size(std::string_view text) {
+  const std::size_t tenths = aligned_type_tenths(text);
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "px";
+}
+
 }  // namespace driftlab::figure

@@ -1,6 +1,7 @@
 #pragma once
 /// Text of a fixed width on a printed page.
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace driftlab::figure {
@@ -9,5 +10,8 @@ namespace driftlab::figure {
 /// whole between the margins of a portrait A4 page: 11 px, down to 6 px for longer lines; a line longer still wraps.
 /// `text` is UTF-8; other lines are sentences, which may wrap.
 [[nodiscard]] std::size_t aligned_type_tenths(std::string_view text);
+
+/// The same as a style sheet has it: `9.5px`.
+[[nodiscard]] std::string aligned_type_size(std::string_view text);
 
 }  // namespace driftlab::figure

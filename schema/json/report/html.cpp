@@ -50,9 +50,7 @@ std::string list_html(const Json& sentences) {
 }
 
 std::string aligned_html(const std::string& text) {
-  const std::size_t tenths = figure::aligned_type_tenths(text);
-  return "<pre style=\"font-size:" + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "px\">" +
-         html(text) + "</pre>\n";
+  return "<pre style=\"font-size:" + figure::aligned_type_size(text) + "\">" + html(text) + "</pre>\n";
 }
 
 std::string figures_html(const Json& document) {

@@ -22,6 +22,7 @@ TEST(AlignedType, ShrinksUntilTheLongestRowFitsBetweenTheMargins) {
     EXPECT_GT(width_px(tenths + 1), 671.9) << characters;
   }
   EXPECT_EQ(aligned_type_tenths(row(400)), 60U) << "no smaller: it wraps";
+  EXPECT_EQ(aligned_type_size(row(400)), "6.0px");
 }
 
 TEST(AlignedType, CountsCharactersAndLetsSentencesWrap) {
