@@ -225,7 +225,7 @@ void read_drive_gnss(const Json& document, const std::string& pointer, std::stri
   const auto sd = [&](std::string_view name, Vector3& into) {
     if (const auto value = drive_vector(reader, name, faults)) {
       into = *value;
-      if (!(into.minCoeff() > 0.0)) {
+      if (!(into.array() > 0.0).all()) {
         faults.add(reader.pointer(name), ErrorCode::InvalidArgument, "Standard deviations are above 0.");
       }
     }
