@@ -97,7 +97,14 @@ class Floors(Planted):
                      "place = {truth[0] + error[0], north};", "auto d = number(static_cast<double>(window.count) * window.time.dt_s);",
                      "plan.duration_s = poses.back().time_s - poses.front().time_s;", "auto t = start_s + trim.start_s;",
                      "const std::size_t step = points.size() / kMost + 1;", "const double share = inside / all;", "sum *= weight;",
-                     "facts.missing = known.missing + known.implausible;", "d.push_back(number(deviation_of(variance)));"):
+                     "facts.missing = known.missing + known.implausible;", "d.push_back(number(deviation_of(variance)));",
+                     # Sums over members, a median and a trace passed where no operator of two operands stood between measured names.
+                     'total += row.at("rms_m").get<double>();', "double sum = 0.0; sum += one.value;", "way.length_m += step;",
+                     'auto both = a.get<double>() + b.get<double>();', "auto d = sqrt(v);", "auto l = -log10(level);", "auto f = (pow(x, y));",
+                     "auto f = floor(x);", "auto s = posterior.rowwise().sum();", "auto m = scatter->mean();", "if (!(sd.minCoeff() > 0.0)) {",
+                     "auto m = values.maxCoeff();", "std::sort(v.begin(), v.end()); auto m = number(v[v.size() / 2]);",
+                     "std::ranges::sort(v); auto m = number(v[n / 2]);", "auto y = 2 * v * 3;", "auto half = width / 2;",
+                     "auto n = std::count_if(v.begin(), v.end(), [](double x) { return x > kMost; });"):
             with self.subTest(line=line):
                 path = self.plant("schema/json/report/a.cpp", "int before;\n" + line + "\n")
                 self.refused(floors.check(self.root), "schema/json/report/a.cpp:2: schema/json")
@@ -107,7 +114,12 @@ class Floors(Planted):
                                         'auto a = angles.roll_rad / kDegree;\nauto b = 100.0 * tau0.device;\nauto c = *level * lab.per_si;\n'
                                         'auto d = 1.0 / unit.factor;\nauto e = variance[i] * factor * factor;\nauto f = row[i * columns + k];\n'
                                         'auto g = logs[cell * bands + band];\nauto h = "n " + std::to_string(i + 1) + end;\nauto k = text.size() - 1;\n'
-                                        'const Json* const list = &document;\nauto l = std::to_string(found - list.begin()) + name;\n')
+                                        'const Json* const list = &document;\nauto l = std::to_string(found - list.begin()) + name;\n'
+                                        'std::string text;\ntext += ", " + name;\ntext += metres(one.at("rms_m").get<double>()) + " m";\nsize_t n = 0;\n'
+                                        'n += list.size();\nn += 1;\nn -= 1;\nauto m = 2 * list.size();\nstd::sort(names.begin(), names.end());\n'
+                                        'auto o = std::count_if(list.begin(), list.end(), [](const Json& one) { return one.is_null(); });\n'
+                                        'auto p = channel.mean;\nauto q = figure::floor(plot);\nauto r = audit.log(line);\nconst double sum = document.sum;\n')
+        self.plant("schema/json/b.cpp", "void f() {\n  std::sort(names.begin(), names.end());\n}\nvoid g() {\n  cells.reserve(cells.size() / 2);\n}\n")
         self.plant("schema/json/mat_file.cpp", "bytes.resize((bytes.size() + 7) / eight * eight);\n")
         self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
         self.assertEqual(floors.check(self.root), [])
@@ -115,12 +127,14 @@ class Floors(Planted):
     def test_an_analysis_in_a_job_kind_an_endpoint_or_a_command_is_refused(self) -> None:
         for folder in ("server/jobs", "server/api", "clients/cli"):
             for line in ("auto s = std::sqrt(sum / n);", "auto r = std::log(a / b);", "std::nth_element(v.begin(), middle, v.end());",
-                         "auto s = std::accumulate(v.begin(), v.end(), 0.0);"):
+                         "auto s = std::accumulate(v.begin(), v.end(), 0.0);", "auto s = sqrt(sum / n);", "auto m = v.mean();", "auto m = v.maxCoeff();",
+                         "std::sort(v.begin(), v.end()); auto m = v[v.size() / 2];", "std::ranges::sort(v); return v.at((v.size() - 1) / 2);"):
                 with self.subTest(folder=folder, line=line):
                     path = self.plant(f"{folder}/a.cpp", "int before;\n" + line + "\n")
                     self.refused(floors.check(self.root), f"{folder}/a.cpp:2: {folder} analyses")
                     path.unlink()
-        self.plant("server/jobs/a.cpp", "auto cost = kBytesPerSample * size.rows;\nauto left = std::max(a, b) / threads;  // std::sqrt\n")
+        self.plant("server/jobs/a.cpp", "auto cost = kBytesPerSample * size.rows;\nauto left = std::max(a, b) / threads;  // std::sqrt\n"
+                                             "std::sort(ids.begin(), ids.end());\nauto all = figure.mean + 2 * cost;\n")
         self.assertEqual(floors.check(self.root), [])
 
     def test_a_thread_of_core_outside_its_executor_is_refused(self) -> None:
