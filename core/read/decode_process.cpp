@@ -21,7 +21,7 @@ namespace driftlab {
 namespace {
 
 constexpr std::uint64_t kLargest = std::uint64_t{2} << 30;
-constexpr int kInput = 3;           ///< the descriptor of the input in the child
+constexpr int kInput = 3;          ///< the descriptor of the input in the child
 constexpr int kLookEveryMs = 100;  ///< for a request to stop
 
 Error system_error_of(int number, const std::string& action) {

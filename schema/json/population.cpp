@@ -1,7 +1,7 @@
 #include "schema/json/population.hpp"
 
-#include "schema/json/stored_channel.hpp"
 #include "schema/json/recording_spec.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/stored_member.hpp"
 
 namespace driftlab {

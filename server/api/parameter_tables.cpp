@@ -1,5 +1,5 @@
-#include "schema/json/stored_channel.hpp"
 #include "schema/json/parameter_table.hpp"
+#include "schema/json/stored_channel.hpp"
 #include "schema/json/trend_table.hpp"
 #include "schema/text/parameter_table.hpp"
 #include "schema/text/trend_table.hpp"

@@ -38,7 +38,8 @@ bool prefers_html(const Request& request) {
 Pages::Pages(const std::vector<DashboardFile>& files) {
   for (const DashboardFile& file : files) {
     const bool packs = !file.content_type.starts_with("font/") && file.content.size() >= kSmallestCompressed;
-    files_.push_back({file, '"' + sha256_hex(file.content).substr(0, 32) + '"', packs ? gzip(file.content, kThorough) : ""});
+    files_.push_back(
+        {file, '"' + sha256_hex(file.content).substr(0, 32) + '"', packs ? gzip(file.content, kThorough) : ""});
   }
 }
 

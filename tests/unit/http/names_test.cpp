@@ -16,8 +16,8 @@ TEST(SameName, IsOneInAnyCaseOfItsLetters) {
   EXPECT_FALSE(same_name("\xc4", "\xe4"));
 }
 
-/// A name in another case that ends where its buffer ends: what Beast 1.81 compares reads one byte on, which the address
-/// sanitizer sees (`fuzz.http` did).
+/// A name in another case that ends where its buffer ends: what Beast 1.81 compares reads one byte on, which the
+/// address sanitizer sees (`fuzz.http` did).
 TEST(SameName, ReadsNoByteBehindANameThatEndsItsBuffer) {
   const std::vector<char> sent{'t', 'E', 'x', 't'};
   EXPECT_TRUE(same_name({sent.data(), sent.size()}, "text"));
