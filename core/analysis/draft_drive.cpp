@@ -9,8 +9,6 @@
 namespace driftlab {
 namespace {
 
-using drive::Quantity;
-
 /// A name without what stands before it in a log and without its unit: `latitude` and `deg` of `gnss_latitude (deg)`.
 struct ReadName {
   std::string stream;  ///< `gnss`, `gnss2`; empty: none
@@ -40,52 +38,52 @@ ReadName read_name(std::string_view name) {
 /// What a column of a receiver is called by the readers of driftlab and in tables of fixes.
 struct FixWord {
   std::string_view word;
-  Quantity quantity;
+  drive::Quantity quantity;
   std::string_view axis;
   std::string_view unit;  ///< where the name states none
 };
 
-constexpr std::array kFixWords{FixWord{"latitude", Quantity::GnssPosition, "lat", "deg"},
-                               FixWord{"lat", Quantity::GnssPosition, "lat", "deg"},
-                               FixWord{"longitude", Quantity::GnssPosition, "lon", "deg"},
-                               FixWord{"lon", Quantity::GnssPosition, "lon", "deg"},
-                               FixWord{"lng", Quantity::GnssPosition, "lon", "deg"},
-                               FixWord{"height", Quantity::GnssPosition, "height", "m"},
-                               FixWord{"velocitynorth", Quantity::GnssVelocity, "north", "m/s"},
-                               FixWord{"veln", Quantity::GnssVelocity, "north", "m/s"},
-                               FixWord{"vn", Quantity::GnssVelocity, "north", "m/s"},
-                               FixWord{"velocityeast", Quantity::GnssVelocity, "east", "m/s"},
-                               FixWord{"vele", Quantity::GnssVelocity, "east", "m/s"},
-                               FixWord{"ve", Quantity::GnssVelocity, "east", "m/s"},
-                               FixWord{"velocitydown", Quantity::GnssVelocity, "down", "m/s"},
-                               FixWord{"veld", Quantity::GnssVelocity, "down", "m/s"},
-                               FixWord{"vd", Quantity::GnssVelocity, "down", "m/s"},
-                               FixWord{"vu", Quantity::GnssVelocity, "up", "m/s"},
-                               FixWord{"speed", Quantity::GnssSpeed, "", "m/s"},
-                               FixWord{"gspeed", Quantity::GnssSpeed, "", "m/s"},
-                               FixWord{"course", Quantity::GnssCourse, "", "deg"},
-                               FixWord{"headmot", Quantity::GnssCourse, "", "deg"},
-                               FixWord{"sdnorth", Quantity::GnssAccuracy, "north", "m"},
-                               FixWord{"sdn", Quantity::GnssAccuracy, "north", "m"},
-                               FixWord{"sdeast", Quantity::GnssAccuracy, "east", "m"},
-                               FixWord{"sde", Quantity::GnssAccuracy, "east", "m"},
-                               FixWord{"sdup", Quantity::GnssAccuracy, "down", "m"},
-                               FixWord{"sdu", Quantity::GnssAccuracy, "down", "m"},
-                               FixWord{"sdhorizontal", Quantity::GnssAccuracy, "horizontal", "m"},
-                               FixWord{"hacc", Quantity::GnssAccuracy, "horizontal", "m"},
-                               FixWord{"sdvertical", Quantity::GnssAccuracy, "vertical", "m"},
-                               FixWord{"vacc", Quantity::GnssAccuracy, "vertical", "m"},
-                               FixWord{"sdspeed", Quantity::GnssAccuracy, "speed", "m/s"},
-                               FixWord{"sacc", Quantity::GnssAccuracy, "speed", "m/s"},
-                               FixWord{"fixtype", Quantity::FixType, "", ""},
-                               FixWord{"q", Quantity::FixType, "", ""},
-                               FixWord{"quality", Quantity::FixType, "", ""},
-                               FixWord{"status", Quantity::FixType, "", ""},
-                               FixWord{"satellites", Quantity::Satellites, "", ""},
-                               FixWord{"numsv", Quantity::Satellites, "", ""},
-                               FixWord{"ns", Quantity::Satellites, "", ""}};
+constexpr std::array kFixWords{FixWord{"latitude", drive::Quantity::GnssPosition, "lat", "deg"},
+                               FixWord{"lat", drive::Quantity::GnssPosition, "lat", "deg"},
+                               FixWord{"longitude", drive::Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"lon", drive::Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"lng", drive::Quantity::GnssPosition, "lon", "deg"},
+                               FixWord{"height", drive::Quantity::GnssPosition, "height", "m"},
+                               FixWord{"velocitynorth", drive::Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"veln", drive::Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"vn", drive::Quantity::GnssVelocity, "north", "m/s"},
+                               FixWord{"velocityeast", drive::Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"vele", drive::Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"ve", drive::Quantity::GnssVelocity, "east", "m/s"},
+                               FixWord{"velocitydown", drive::Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"veld", drive::Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"vd", drive::Quantity::GnssVelocity, "down", "m/s"},
+                               FixWord{"vu", drive::Quantity::GnssVelocity, "up", "m/s"},
+                               FixWord{"speed", drive::Quantity::GnssSpeed, "", "m/s"},
+                               FixWord{"gspeed", drive::Quantity::GnssSpeed, "", "m/s"},
+                               FixWord{"course", drive::Quantity::GnssCourse, "", "deg"},
+                               FixWord{"headmot", drive::Quantity::GnssCourse, "", "deg"},
+                               FixWord{"sdnorth", drive::Quantity::GnssAccuracy, "north", "m"},
+                               FixWord{"sdn", drive::Quantity::GnssAccuracy, "north", "m"},
+                               FixWord{"sdeast", drive::Quantity::GnssAccuracy, "east", "m"},
+                               FixWord{"sde", drive::Quantity::GnssAccuracy, "east", "m"},
+                               FixWord{"sdup", drive::Quantity::GnssAccuracy, "down", "m"},
+                               FixWord{"sdu", drive::Quantity::GnssAccuracy, "down", "m"},
+                               FixWord{"sdhorizontal", drive::Quantity::GnssAccuracy, "horizontal", "m"},
+                               FixWord{"hacc", drive::Quantity::GnssAccuracy, "horizontal", "m"},
+                               FixWord{"sdvertical", drive::Quantity::GnssAccuracy, "vertical", "m"},
+                               FixWord{"vacc", drive::Quantity::GnssAccuracy, "vertical", "m"},
+                               FixWord{"sdspeed", drive::Quantity::GnssAccuracy, "speed", "m/s"},
+                               FixWord{"sacc", drive::Quantity::GnssAccuracy, "speed", "m/s"},
+                               FixWord{"fixtype", drive::Quantity::FixType, "", ""},
+                               FixWord{"q", drive::Quantity::FixType, "", ""},
+                               FixWord{"quality", drive::Quantity::FixType, "", ""},
+                               FixWord{"status", drive::Quantity::FixType, "", ""},
+                               FixWord{"satellites", drive::Quantity::Satellites, "", ""},
+                               FixWord{"numsv", drive::Quantity::Satellites, "", ""},
+                               FixWord{"ns", drive::Quantity::Satellites, "", ""}};
 
-const DraftColumn* find(const DraftSource& source, Quantity quantity, std::string_view axis) {
+const DraftColumn* find(const DraftSource& source, drive::Quantity quantity, std::string_view axis) {
   const auto found = std::find_if(source.columns.begin(), source.columns.end(), [&](const DraftColumn& column) {
     return column.quantity == quantity && column.axis == axis;
   });
@@ -109,13 +107,14 @@ Result<DraftSource> unit_of(const DraftFile& file) {
     if (!role || !read_name(file.names[i]).stream.empty()) {
       continue;
     }
-    const bool rate = role->quantity == driftlab::Quantity::AngularRate;
-    const bool force = role->quantity == driftlab::Quantity::SpecificForce;
-    if (role->quantity == driftlab::Quantity::Time && source.time_column.empty()) {
+    const bool rate = role->quantity == Quantity::AngularRate;
+    const bool force = role->quantity == Quantity::SpecificForce;
+    if (role->quantity == Quantity::Time && source.time_column.empty()) {
       source.time_column = file.names[i];
       source.time_unit = role->unit ? role->unit->symbol : "s";
     } else if ((rate || force) && axis_index(role->axis)) {
-      DraftColumn column{file.names[i], rate ? Quantity::AngularRate : Quantity::SpecificForce, role->axis,
+      DraftColumn column{file.names[i], rate ? drive::Quantity::AngularRate : drive::Quantity::SpecificForce,
+                         role->axis,
                          role->unit ? role->unit->symbol
                          : rate     ? "rad/s"
                                     : "m/s^2"};
@@ -124,10 +123,10 @@ Result<DraftSource> unit_of(const DraftFile& file) {
       }
     }
   }
-  for (const Quantity quantity : {Quantity::AngularRate, Quantity::SpecificForce}) {
+  for (const drive::Quantity quantity : {drive::Quantity::AngularRate, drive::Quantity::SpecificForce}) {
     for (const char* const axis : {"x", "y", "z"}) {
       if (find(source, quantity, axis) == nullptr) {
-        const std::string what = quantity == Quantity::AngularRate ? "the angular rate" : "the specific force";
+        const std::string what = quantity == drive::Quantity::AngularRate ? "the angular rate" : "the specific force";
         return fail(no_column(file.file, what + " along " + axis));
       }
     }
@@ -172,7 +171,7 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
       break;
     }
     const std::optional<ColumnRole>& role = (*roles)[i];
-    const bool time = read.word == "time" || (!beside && role && role->quantity == driftlab::Quantity::Time);
+    const bool time = read.word == "time" || (!beside && role && role->quantity == Quantity::Time);
     if (time && source.time_column.empty()) {
       source.time_column = name;
       source.time_unit = role && role->unit && role->unit->dimension == Dimension::Time ? role->unit->symbol
@@ -192,21 +191,21 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
                                 known->unit.empty() || read.unit.empty() ? std::string(known->unit) : read.unit});
     }
   }
-  if (find(source, Quantity::GnssPosition, "height") == nullptr && !altitude.empty()) {
-    source.columns.push_back({altitude, Quantity::GnssPosition, "height", altitude_unit});
+  if (find(source, drive::Quantity::GnssPosition, "height") == nullptr && !altitude.empty()) {
+    source.columns.push_back({altitude, drive::Quantity::GnssPosition, "height", altitude_unit});
     draft.geoid = true;
   }
   for (const auto& [axis, what] : {std::pair{"lat", "the latitude of the fixes"}, {"lon", "their longitude"}}) {
-    if (find(source, Quantity::GnssPosition, axis) == nullptr) {
+    if (find(source, drive::Quantity::GnssPosition, axis) == nullptr) {
       return fail(no_column(file.file, what));
     }
   }
   if (source.time_column.empty()) {
     return fail(no_column(file.file, "the time of the fixes"));
   }
-  if (find(source, Quantity::GnssVelocity, "north") != nullptr) {  // what speed and course say again
+  if (find(source, drive::Quantity::GnssVelocity, "north") != nullptr) {  // what speed and course say again
     std::erase_if(source.columns, [](const DraftColumn& column) {
-      return column.quantity == Quantity::GnssSpeed || column.quantity == Quantity::GnssCourse;
+      return column.quantity == drive::Quantity::GnssSpeed || column.quantity == drive::Quantity::GnssCourse;
     });
   }
   return source;
