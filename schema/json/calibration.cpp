@@ -5,13 +5,13 @@
 namespace driftlab {
 namespace {
 
-Json numbers(const Triple& row) { return Json{number(row[0]), number(row[1]), number(row[2])}; }
+Json row_json(const Triple& row) { return Json{number(row[0]), number(row[1]), number(row[2])}; }
 
 Json to_json(const SensorCalibration& calibration) {
   return Json{{"reading_unit", calibration.reading.symbol},
-              {"bias", numbers(calibration.bias)},
-              {"correction", Json{numbers(calibration.correction[0]), numbers(calibration.correction[1]),
-                                  numbers(calibration.correction[2])}}};
+              {"bias", row_json(calibration.bias)},
+              {"correction", Json{row_json(calibration.correction[0]), row_json(calibration.correction[1]),
+                                  row_json(calibration.correction[2])}}};
 }
 
 /// Three numbers of an array; a fault otherwise.
@@ -77,8 +77,8 @@ Json to_json(const TriadCalibration& calibration, const Unit& si) {
     document["scale_factor"][axis] = quantity(calibration.scale_factor[i], 1e6, "ppm");
   }
   add_misalignment(calibration.misalignment, document);
-  document["matrix"] =
-      Json{numbers(calibration.law.matrix[0]), numbers(calibration.law.matrix[1]), numbers(calibration.law.matrix[2])};
+  document["matrix"] = Json{row_json(calibration.law.matrix[0]), row_json(calibration.law.matrix[1]),
+                            row_json(calibration.law.matrix[2])};
   document["readings"] = calibration.readings;
   document["chi_square_per_dof"] = number(calibration.chi_square_per_dof);
   document["residual_rms"] = Json{
