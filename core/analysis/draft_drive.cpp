@@ -213,7 +213,7 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
 
 std::string id_of(const std::string& file) {
   const auto slash = file.find_last_of("/\\");
-  std::string id = slash == std::string::npos ? file : file.substr(slash + 1);
+  const std::string id = slash == std::string::npos ? file : file.substr(slash + 1);
   return id.substr(0, std::max<std::size_t>(id.find('.'), 1));
 }
 

@@ -1,6 +1,5 @@
 #include "core/analysis/drawn_allan.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace driftlab {
@@ -49,12 +48,15 @@ std::vector<DrawnLevel> levels_of(const ReportedFit& fit, const DrawnModel& mode
 
 std::optional<DrawnBias> bias_of(const StoredChannel& channel, const DrawnUnit& drawn) {
   const auto unit = parse_unit(channel.told.unit);
-  const auto bias = std::find_if(channel.told.allan.begin(), channel.told.allan.end(),
-                                 [](const auto& named) { return named.first == "B"; });
-  if (bias == channel.told.allan.end() || !bias->second.value || !unit || unit->dimension == Dimension::One) {
+  if (!unit || unit->dimension == Dimension::One) {
     return std::nullopt;
   }
-  return DrawnBias{bias->second, bias_floor(*bias->second.value, *unit, drawn)};
+  for (const auto& [name, told] : channel.told.allan) {
+    if (name == "B" && told.value) {
+      return DrawnBias{told, bias_floor(*told.value, *unit, drawn)};
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace

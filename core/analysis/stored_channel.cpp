@@ -14,13 +14,13 @@ namespace {
 
 /// The SI value of a parameter as it is told; nothing where it was left open or its unit is not known.
 std::optional<double> si_value(const ReportedProcess& process, const ParameterSpec& spec, Dimension dimension) {
-  const auto told = std::find_if(process.parameters.begin(), process.parameters.end(),
-                                 [&](const auto& named) { return named.first == spec.name; });
-  if (told == process.parameters.end() || !told->second.value) {
-    return std::nullopt;
+  for (const auto& [name, told] : process.parameters) {
+    if (name == spec.name && told.value) {
+      const auto factor = parameter_factor(told.unit, dimension, spec);
+      return factor ? std::optional(*told.value * *factor) : std::nullopt;
+    }
   }
-  const auto factor = parameter_factor(told->second.unit, dimension, spec);
-  return factor ? std::optional(*told->second.value * *factor) : std::nullopt;
+  return std::nullopt;
 }
 
 std::optional<Process> process_of(const ReportedProcess& told, Dimension dimension) {

@@ -30,7 +30,7 @@ Result<std::vector<Vector3>> triad_of(const Table& table, const Source& source, 
     if (!found) {
       return fail(found.error());
     }
-    if (std::string told = unusual(found->quality, table.rows()); !told.empty()) {
+    if (const std::string told = unusual(found->quality, table.rows()); !told.empty()) {
       facts.notes.push_back(source.file + ": " + told);
     }
     for (std::size_t i = 0; i < values.size(); ++i) {

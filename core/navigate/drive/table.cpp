@@ -57,12 +57,13 @@ Result<std::optional<std::vector<double>>> find_quantity(const Table& table, con
   if (!found) {
     return fail(found.error());
   }
-  if (!*found) {
+  const std::optional<ColumnPlace>& place = *found;
+  if (!place) {
     return std::optional<std::vector<double>>();
   }
-  std::vector<double> values = table.columns[(*found)->index];
+  std::vector<double> values = table.columns[place->index];
   for (double& value : values) {
-    value *= (*found)->factor;
+    value *= place->factor;
   }
   return std::optional(std::move(values));
 }
@@ -73,14 +74,15 @@ Result<UnitChannel> find_unit_channel(const Table& table, const Source& source, 
   if (!found) {
     return fail(found.error());
   }
-  if (!*found) {
+  const std::optional<ColumnPlace>& place = *found;
+  if (!place) {
     return fail(
         ErrorCode::UnknownColumn,
         "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + std::string(axis) + ".",
         {{"parameter", "imu.columns"}});
   }
-  const std::string& name = table.names[(*found)->index];
-  const std::vector<double>& cells = table.columns[(*found)->index];
+  const std::string& name = table.names[place->index];
+  const std::vector<double>& cells = table.columns[place->index];
   const bool empty = std::none_of(cells.begin(), cells.end(), [](double cell) { return std::isfinite(cell); });
   if (const Status holds = empty ? check_holes(name, cells) : Status(); !holds) {
     Error error = holds.error();
@@ -90,7 +92,7 @@ Result<UnitChannel> find_unit_channel(const Table& table, const Source& source, 
   const ChannelSurvey survey = survey_channel(name, cells);
   UnitChannel channel{cells, survey.quality};
   for (double& value : channel.values) {
-    value *= (*found)->factor;
+    value *= place->factor;
   }
   for (const std::size_t row : survey.unsound) {
     channel.values[row] = std::numeric_limits<double>::quiet_NaN();
