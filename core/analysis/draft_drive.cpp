@@ -43,12 +43,17 @@ struct FixWord {
   std::string_view unit;  ///< where the name states none
 };
 
+constexpr std::string_view kAltitude = "altitude";  ///< above the geoid; a document knows heights alone
+
 constexpr std::array kFixWords{FixWord{"latitude", drive::Quantity::GnssPosition, "lat", "deg"},
                                FixWord{"lat", drive::Quantity::GnssPosition, "lat", "deg"},
                                FixWord{"longitude", drive::Quantity::GnssPosition, "lon", "deg"},
                                FixWord{"lon", drive::Quantity::GnssPosition, "lon", "deg"},
                                FixWord{"lng", drive::Quantity::GnssPosition, "lon", "deg"},
                                FixWord{"height", drive::Quantity::GnssPosition, "height", "m"},
+                               FixWord{"altitude", drive::Quantity::GnssPosition, kAltitude, "m"},
+                               FixWord{"hmsl", drive::Quantity::GnssPosition, kAltitude, "m"},
+                               FixWord{"alt", drive::Quantity::GnssPosition, kAltitude, "m"},
                                FixWord{"velocitynorth", drive::Quantity::GnssVelocity, "north", "m/s"},
                                FixWord{"veln", drive::Quantity::GnssVelocity, "north", "m/s"},
                                FixWord{"vn", drive::Quantity::GnssVelocity, "north", "m/s"},
@@ -149,6 +154,22 @@ drive::TimeScale scale_of(const std::string& format) {
                                                      : drive::TimeScale::Boot;
 }
 
+/// Takes the altitude for the height where there is no height, and leaves it out where there is. True: it was taken.
+bool take_altitude_for_height(DraftSource& source) {
+  const bool none = find(source, drive::Quantity::GnssPosition, "height") == nullptr;
+  const auto altitude = std::find_if(source.columns.begin(), source.columns.end(),
+                                     [](const DraftColumn& column) { return column.axis == kAltitude; });
+  if (altitude == source.columns.end()) {
+    return false;
+  }
+  if (none) {
+    altitude->axis = "height";
+  } else {
+    source.columns.erase(altitude);
+  }
+  return none;
+}
+
 /// The first stream of fixes among the columns; `beside`: the unit's own columns stand among them.
 Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& draft) {
   DraftSource source{file.file, {}, "", "s", beside ? drive::TimeScale::Boot : scale_of(file.format), std::nullopt};
@@ -157,8 +178,6 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
     return fail(roles.error());
   }
   std::string stream;
-  std::string altitude;
-  std::string altitude_unit = "m";
   for (std::size_t i = 0; i < file.names.size(); ++i) {
     const std::string& name = file.names[i];
     const ReadName read = read_name(name);
@@ -179,11 +198,6 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
                                                                                         : read.unit;
       continue;
     }
-    if (read.word == "altitude" || read.word == "hmsl" || read.word == "alt") {
-      altitude = name;
-      altitude_unit = read.unit.empty() ? altitude_unit : read.unit;
-      continue;
-    }
     const auto known =
         std::find_if(kFixWords.begin(), kFixWords.end(), [&](const FixWord& word) { return word.word == read.word; });
     if (known != kFixWords.end() && find(source, known->quantity, known->axis) == nullptr) {
@@ -191,10 +205,7 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
                                 known->unit.empty() || read.unit.empty() ? std::string(known->unit) : read.unit});
     }
   }
-  if (find(source, drive::Quantity::GnssPosition, "height") == nullptr && !altitude.empty()) {
-    source.columns.push_back({altitude, drive::Quantity::GnssPosition, "height", altitude_unit});
-    draft.geoid = true;
-  }
+  draft.geoid = take_altitude_for_height(source);
   for (const auto& [axis, what] : {std::pair{"lat", "the latitude of the fixes"}, {"lon", "their longitude"}}) {
     if (find(source, drive::Quantity::GnssPosition, axis) == nullptr) {
       return fail(no_column(file.file, what));
