@@ -22,11 +22,6 @@ std::string percent_of(const Estimate& share) {
   return text.data();
 }
 
-Error of_file(Error error, const std::string& file) {
-  error.message = file + ": " + error.message;
-  return std::move(error).with("file", file);
-}
-
 }  // namespace
 
 std::string_view name_of(DriveQuestion question) {
@@ -76,7 +71,7 @@ Result<drive::Tables> open_tables(const drive::Document& document, DriveSource& 
   const auto open = [&](const drive::Source& one) -> Result<drive::Table> {
     auto table = source.open(one, control);
     if (!table) {
-      return fail(of_file(table.error(), one.file));
+      return fail(drive::of_file(table.error(), one.file));
     }
     table->tag = one.time.dates ? one.time.dates : table->tag;
     return table;

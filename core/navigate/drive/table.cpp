@@ -41,6 +41,13 @@ Result<std::optional<ColumnPlace>> place_of(const Table& table, const Source& so
   return std::optional<ColumnPlace>();
 }
 
+std::vector<double> in_si(std::vector<double> values, double factor) {
+  for (double& value : values) {
+    value *= factor;
+  }
+  return values;
+}
+
 }  // namespace
 
 double leap_seconds_at(double unix_s) {
@@ -51,49 +58,37 @@ double leap_seconds_at(double unix_s) {
   return leap;
 }
 
+Error of_file(Error error, const std::string& file) {
+  error.message = file + ": " + error.message;
+  return std::move(error).with("file", file);
+}
+
 Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source, Quantity quantity,
                                                          std::string_view axis) {
-  const auto found = place_of(table, source, quantity, axis);
-  if (!found) {
-    return fail(found.error());
-  }
-  const std::optional<ColumnPlace>& place = *found;
-  if (!place) {
-    return std::optional<std::vector<double>>();
-  }
-  std::vector<double> values = table.columns[place->index];
-  for (double& value : values) {
-    value *= place->factor;
-  }
-  return std::optional(std::move(values));
+  return place_of(table, source, quantity, axis).map([&](const std::optional<ColumnPlace>& place) {
+    return place ? std::optional(in_si(table.columns[place->index], place->factor)) : std::nullopt;
+  });
 }
 
 Result<UnitChannel> find_unit_channel(const Table& table, const Source& source, Quantity quantity,
                                       std::string_view axis) {
   const auto found = place_of(table, source, quantity, axis);
-  if (!found) {
-    return fail(found.error());
-  }
-  const std::optional<ColumnPlace>& place = *found;
+  const std::optional<ColumnPlace> place = found ? *found : std::nullopt;
   if (!place) {
-    return fail(
-        ErrorCode::UnknownColumn,
-        "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " + std::string(axis) + ".",
-        {{"parameter", "imu.columns"}});
+    return fail(found ? Error{ErrorCode::UnknownColumn,
+                              "No column of " + source.file + " is " + std::string(name_of(quantity)) + " along " +
+                                  std::string(axis) + ".",
+                              {{"parameter", "imu.columns"}}}
+                      : found.error());
   }
   const std::string& name = table.names[place->index];
   const std::vector<double>& cells = table.columns[place->index];
   const bool empty = std::none_of(cells.begin(), cells.end(), [](double cell) { return std::isfinite(cell); });
   if (const Status holds = empty ? check_holes(name, cells) : Status(); !holds) {
-    Error error = holds.error();
-    error.message = source.file + ": " + error.message;
-    return fail(std::move(error).with("file", source.file));
+    return fail(of_file(holds.error(), source.file));
   }
   const ChannelSurvey survey = survey_channel(name, cells);
-  UnitChannel channel{cells, survey.quality};
-  for (double& value : channel.values) {
-    value *= place->factor;
-  }
+  UnitChannel channel{in_si(cells, place->factor), survey.quality};
   for (const std::size_t row : survey.unsound) {
     channel.values[row] = std::numeric_limits<double>::quiet_NaN();
   }

@@ -39,6 +39,9 @@ struct StampedRows {
 /// UTC is GPS time minus this many seconds at a moment in seconds since 1970 (IERS Bulletin C; 18 s since 2017).
 [[nodiscard]] double leap_seconds_at(double unix_s);
 
+/// The error with the file that it concerns, in its sentence and as the field "file".
+[[nodiscard]] Error of_file(Error error, const std::string& file);
+
 /// The column with a quantity along an axis in SI; nothing where the source has none. Error: UnknownColumn.
 [[nodiscard]] Result<std::optional<std::vector<double>>> find_quantity(const Table& table, const Source& source,
                                                                        Quantity quantity, std::string_view axis = "");
