@@ -6,8 +6,13 @@
 
 namespace driftlab::drive {
 
-double vibration_of(const FilterOptions& options, std::size_t channel) {
-  return std::max(channel < 3 ? options.gyro_vibration : options.force_vibration, 0.0);
+double shaken_share(const FilterOptions& options, std::size_t channel) {
+  return std::clamp(channel < 3 ? options.gyro_vibration : options.force_vibration, 0.0, kMostShaken);
+}
+
+double shaken_over_even(const FilterOptions& options, std::size_t channel) {
+  const double share = shaken_share(options, channel);
+  return share / (1.0 - share);
 }
 
 void scale_white_noise(AxisModel& axis, double factor) {
@@ -28,7 +33,7 @@ void scale_white_noise(AxisModel& axis, double factor) {
 }
 
 double even_noise_factor(const FilterOptions& options, std::size_t channel) {
-  return (channel < 3 ? options.gyro_noise : options.force_noise) / std::sqrt(1.0 + vibration_of(options, channel));
+  return (channel < 3 ? options.gyro_noise : options.force_noise) * std::sqrt(1.0 - shaken_share(options, channel));
 }
 
 double noise_after_correction(const ReadingErrors& errors, std::size_t channel) {
@@ -52,7 +57,7 @@ void add_vibration_noise(const Vibration& vibration, const FilterOptions& option
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const auto& relative = vibration.at(i);
     for (std::size_t c = 0; c < kImuChannels; ++c) {
-      const double variance = vibration_of(options, c) * white_square_of(model.axes[c]) * relative[c] / dt_s;
+      const double variance = shaken_over_even(options, c) * white_square_of(model.axes[c]) * relative[c] / dt_s;
       readings[i][c] += std::sqrt(variance) * random.normal();
     }
   }

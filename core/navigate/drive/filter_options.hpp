@@ -60,7 +60,7 @@ struct FilterOptions {
   ReadingErrors errors;
   double gyro_noise = 1.0;  ///< factor of the model's white noise
   double force_noise = 1.0;
-  double gyro_vibration = 0.0;  ///< mean noise that follows the vibration over that which does not (vibration.hpp)
+  double gyro_vibration = 0.0;  ///< share of the white noise's mean power that follows the vibration (vibration.hpp)
   double force_vibration = 0.0;
   ColouredFixes coloured;
   double initial_heading_rad = 0.0;  ///< added to the heading of the start
@@ -80,13 +80,19 @@ struct FilterOptions {
 /// The options that the document states: lever arm and latencies.
 [[nodiscard]] FilterOptions options_of(const Document& document);
 
-/// Ratio of a channel's mean noise that follows the vibration to its noise that does not.
-[[nodiscard]] double vibration_of(const FilterOptions& options, std::size_t channel);
+/// What follows the vibration at most: without any other noise a filter would believe readings in calm to be exact.
+inline constexpr double kMostShaken = 0.999;
+
+/// Share of the mean power of a channel's white noise that follows the vibration, from 0 to kMostShaken.
+[[nodiscard]] double shaken_share(const FilterOptions& options, std::size_t channel);
 
 /// Multiplies the white noise of an axis, at every rate.
 void scale_white_noise(AxisModel& axis, double factor);
 
-/// Adds the noise that follows the vibration, by the options' ratios, to readings simulated from `model`, the design's
+/// That share over the rest of the power.
+[[nodiscard]] double shaken_over_even(const FilterOptions& options, std::size_t channel);
+
+/// Adds the noise that follows the vibration, by the options' shares, to readings simulated from `model`, the design's
 /// model of the noise that does not follow it.
 void add_vibration_noise(const Vibration& vibration, const FilterOptions& options, const ImuModel& model, double dt_s,
                          Random& random, std::vector<ImuSample>& readings);

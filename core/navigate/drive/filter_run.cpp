@@ -45,7 +45,7 @@ class Driver {
       vibration_ = task.vibration;
       for (std::size_t c = 0; c < kImuChannels; ++c) {
         // The design holds what does not follow the vibration.
-        shaken_[c] = vibration_of(options, c) * white_square_of(design.settings().imu.axes[c]);
+        shaken_[c] = shaken_over_even(options, c) * white_square_of(design.settings().imu.axes[c]);
       }
     }
     constraint_step_ =

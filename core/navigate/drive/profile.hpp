@@ -51,7 +51,15 @@ class Profile {
   };
   /// The likelihood of each trial; nothing for options that no filter can have.
   [[nodiscard]] std::vector<std::optional<LogLikelihood>> runs(const std::vector<FilterOptions>& trials) const;
+  /// How far a knob may be turned from the options: down, up.
+  [[nodiscard]] std::array<double, 2> range(const FilterOptions& options, const Knob& knob) const;
   [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;
+  /// Value, top and error of a share, whose profile is no parabola and may have its top at an end.
+  void settle_share(const FilterOptions& options, const Knob& knob, const Bracket& bracket, double scale,
+                    ProfileEstimate& estimate) const;
+  /// Of a share whose log likelihood is `gain` above that of none: what is as many standard errors from none as a
+  /// parabola with that gain, x^2/(2 se^2) = gain/scale.
+  [[nodiscard]] static double se_against_none(double share, double gain, double scale);
   [[nodiscard]] static ProfileEstimate parabola(const Bracket& bracket, double scale);
 
   const Drive& drive_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace driftlab::drive {
 namespace {
@@ -72,14 +74,18 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
   std::vector<ProfileEstimate> estimates(knobs.size());
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const Knob& knob = *knobs[i];
-    const Bracket bracket{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
-    estimates[i] = parabola(stride(options, knob, bracket), scale);
-    const double set = change(options, knob);
-    const double within = std::clamp(estimates[i].value, -knob.most - set, knob.most - set);
+    const Bracket first{-knob.step, 0.0, knob.step, sums[2 * i], at, sums[2 * i + 1]};
+    const Bracket bracket = stride(options, knob, first);
+    estimates[i] = parabola(bracket, scale);
+    const auto [down, up] = range(options, knob);
+    const double within = std::clamp(estimates[i].value, down, up);
     if (within != estimates[i].value && estimates[i].se > 0.0) {
       const double beyond = (estimates[i].value - within) / estimates[i].se;
       estimates[i].top -= 0.5 * scale * beyond * beyond;
       estimates[i].value = within;
+    }
+    if (knob.share) {
+      settle_share(options, knob, bracket, scale, estimates[i]);
     }
     if (knob.systematic != nullptr) {
       estimates[i].se = std::hypot(estimates[i].se, knob.systematic(drive_, options));
@@ -89,14 +95,39 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
   return estimates;
 }
 
-Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
+void Profile::settle_share(const FilterOptions& options, const Knob& knob, const Bracket& bracket, double scale,
+                           ProfileEstimate& estimate) const {
+  const double present = knob.value(options);
+  if (!estimate.sound) {  // the likelihood of a share bends upwards where nearly all of the whole is of its kind
+    const std::array<std::pair<double, double>, 3> tried{
+        {{bracket.low_value, bracket.low}, {bracket.middle_value, bracket.middle}, {bracket.high_value, bracket.high}}};
+    const auto [value, at] = *std::max_element(tried.begin(), tried.end());
+    const auto [down, up] = range(options, knob);
+    estimate.value = std::clamp(at, down, up);
+    estimate.sound = std::isfinite(value);
+  }
+  const auto ends = values({turned(options, knob, estimate.value), turned(options, knob, -present)});
+  estimate.top = ends[0];
+  estimate.se = se_against_none(present + estimate.value, ends[0] - ends[1], scale);
+}
+
+double Profile::se_against_none(double share, double gain, double scale) {
+  return gain > 0.0 ? std::abs(share) / std::sqrt(2.0 * gain / scale) : std::numeric_limits<double>::infinity();
+}
+
+std::array<double, 2> Profile::range(const FilterOptions& options, const Knob& knob) const {
   const double set = change(options, knob);
+  return {knob.share ? -knob.value(options) : -knob.most - set, knob.most - set};
+}
+
+Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const {
+  const auto [least, most] = range(options, knob);
   while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
     const bool up = bracket.high_value > bracket.low_value;
     const double edge = up ? bracket.high : bracket.low;
-    const double next = edge + 2.0 * (edge - bracket.middle);
-    if (std::abs(set + next) > knob.most || control_.stop.stop_requested()) {
-      return bracket;
+    const double next = std::clamp(edge + 2.0 * (edge - bracket.middle), least, most);
+    if ((up ? next <= edge : next >= edge) || control_.stop.stop_requested()) {
+      return bracket;  // the end is an edge already
     }
     const double value = values({turned(options, knob, next)}).front();
     if (up) {
@@ -207,9 +238,7 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     std::size_t best = open.size();
     double second = 0.0;
     std::size_t second_at = open.size();
-    const auto is_clear = [&](std::size_t i) {
-      return open[i]->ratio || std::abs(estimates[i].value) >= kSure * estimates[i].se;
-    };
+    const auto is_clear = [&](std::size_t i) { return std::abs(estimates[i].value) >= kSure * estimates[i].se; };
     for (std::size_t i = 0; i < open.size(); ++i) {
       if (estimates[i].sound && estimates[i].score >= kNamed && is_clear(i) &&
           (best == open.size() || estimates[i].score > estimates[best].score)) {
@@ -259,7 +288,7 @@ Result<SearchResult> search_causes(const Drive& drive, const FilterOptions& opti
     result.findings[i].se = last[i].se * named[i]->per_si;
     const double change = profile.change(result.options, *named[i]);
     const double wanted = std::max(std::abs(change), std::abs(change + last[i].value));
-    result.findings[i].at_bound = wanted > kBound * named[i]->most;
+    result.findings[i].at_bound = !named[i]->share && wanted > kBound * named[i]->most;
     const double without = profile.values({Profile::turned(result.options, *named[i], -value)}).front();
     result.findings[i].score = std::max((at - without) / scale, 0.0);
   }

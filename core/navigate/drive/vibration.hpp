@@ -4,8 +4,9 @@
 /// The noise of a shaken unit grows: nonlinear scale factors rectify vibration, and vibration above the sensor's band
 /// is aliased into it. The power is the mean square of what a moving mean over a tenth of a second leaves of the
 /// readings (half at 4.4 Hz), in blocks of half a second. White noise
-///   N^2(t) = N^2 (1 + r P(t)/mean P) / (1 + r)
-/// has the same mean for every ratio r, so that r sets the distribution of the noise over time and N its mean level.
+///   N^2(t) = N^2 (1 - s + s P(t)/mean P)
+/// has the same mean for every share s, so that s says when there is noise and the level how much. Of the share, and
+/// not of s/(1 - s): where nearly all the noise follows the vibration that ratio has no upper end in the data.
 #include "core/navigate/imu_model.hpp"
 #include "core/navigate/motion.hpp"
 

@@ -54,9 +54,8 @@ struct Knob {
   double (*value)(const FilterOptions& options) = nullptr;                      ///< what the options hold, SI
   bool (*applies)(const Drive& drive, const FilterOptions& options) = nullptr;  ///< null: always
   std::string_view told_apart;  ///< the measurement that separates it from its rivals
-  /// A ratio of variances. Its standard error grows with it, so that their quotient stays small however large the
-  /// effect is (at most sqrt(dof / 2)); what the likelihood loses without it decides alone.
-  bool ratio = false;
+  /// A share of a whole: it has its own ends, 0 and `most`, and is what it is called at either of them.
+  bool share = false;
   /// A further error of the estimate beside its standard error, SI; it is included in the stated error. Null: none.
   double (*systematic)(const Drive& drive, const FilterOptions& options) = nullptr;
   /// The sign says nothing: findings have none.

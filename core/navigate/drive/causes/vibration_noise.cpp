@@ -4,19 +4,20 @@
 namespace driftlab::drive {
 namespace {
 
-template <double FilterOptions::* Ratio>
+template <double FilterOptions::* Share>
 constexpr Knob shaken_noise(std::string_view parameter, std::string_view title) {
   return {.parameter = parameter,
           .title = title,
-          .unit = "1",
-          .step = 0.25,
-          .most = 200.0,
-          .turn = [](FilterOptions& o, double by) { o.*Ratio += by; },
-          .value = [](const FilterOptions& o) { return o.*Ratio; },
+          .unit = "%",
+          .per_si = 100.0,
+          .step = 0.1,
+          .most = kMostShaken,
+          .turn = [](FilterOptions& o, double by) { o.*Share += by; },
+          .value = [](const FilterOptions& o) { return o.*Share; },
           .told_apart =
               "outages and innovations by the power of the gyroscope above 5 Hz: a noise level is the same "
               "in calm and shaken stretches",
-          .ratio = true};
+          .share = true};
 }
 
 }  // namespace
@@ -25,9 +26,9 @@ Cause vibration_noise() {
   return {.name = "vibration_noise",
           .words = "noise that follows the vibration",
           .knobs = {shaken_noise<&FilterOptions::gyro_vibration>(
-                        "gyroscope", "the gyroscope's noise that follows the vibration is the rest times"),
+                        "gyroscope", "of the gyroscope's white noise, what follows the vibration is"),
                     shaken_noise<&FilterOptions::force_vibration>(
-                        "accelerometer", "the accelerometer's noise that follows the vibration is the rest times")}};
+                        "accelerometer", "of the accelerometer's white noise, what follows the vibration is")}};
 }
 
 }  // namespace driftlab::drive
