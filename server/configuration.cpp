@@ -1,5 +1,7 @@
 #include "server/configuration.hpp"
 
+#include "core/signal/text.hpp"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -284,19 +286,13 @@ bool is_for_others(std::string_view variable) {
 
 Status take_from_environment(const Environment& environment, GivenValues& into) {
   constexpr std::string_view kBudget = "DRIFTLAB_BUDGET_";
-  const auto lower = [](std::string_view text) {
-    std::string result;
-    std::transform(text.begin(), text.end(), std::back_inserter(result),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
-  };
   for (const auto& [variable, value] : environment) {
     if (is_for_others(variable)) {
       continue;
     }
     const std::string origin = "variable " + variable;
     if (variable.starts_with(kBudget)) {
-      into.insert_or_assign("budgets." + lower(std::string_view(variable).substr(kBudget.size())),
+      into.insert_or_assign("budgets." + lower_case(std::string_view(variable).substr(kBudget.size())),
                             GivenValue{{value}, origin});
       continue;
     }

@@ -1,5 +1,7 @@
 #include "server/settings.hpp"
 
+#include "core/signal/text.hpp"
+
 #include <boost/asio/ip/address.hpp>
 
 #include <algorithm>
@@ -72,10 +74,8 @@ std::string without_password(const std::string& uri) {
 std::vector<std::string> allowed_hosts(const Settings& settings, const ListenAddress& address) {
   std::vector<std::string> hosts{"localhost", "127.0.0.1", "[::1]"};
   hosts.push_back(address.address.find(':') == std::string::npos ? address.address : "[" + address.address + "]");
-  for (std::string host : settings.allow_host) {
-    std::transform(host.begin(), host.end(), host.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    hosts.push_back(std::move(host));
+  for (const std::string& host : settings.allow_host) {
+    hosts.push_back(lower_case(host));
   }
   return hosts;
 }

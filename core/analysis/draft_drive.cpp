@@ -1,6 +1,7 @@
 #include "core/analysis/draft_drive.hpp"
 
 #include "core/signal/recording_columns.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +30,7 @@ ReadName read_name(std::string_view name) {
   }
   for (const char c : name) {
     if (c != ' ' && c != '_') {
-      read.word += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+      read.word += lower_case(c);
     }
   }
   return read;

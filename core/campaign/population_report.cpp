@@ -2,10 +2,10 @@
 
 #include "core/datasheet/data_sheet.hpp"
 #include "core/signal/sort_keeping_ties.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace driftlab {
 namespace {
@@ -54,14 +54,6 @@ bool stands_before(const OpenRow& a, const OpenRow& b) {
   return comes_before(a.row.condition, b.row.condition);
 }
 
-std::string folded(std::string_view text) {
-  std::string lower;
-  for (const char c : text) {
-    lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return lower;
-}
-
 }  // namespace
 
 PopulationReport describe_populations(const std::string& model, const std::vector<ParameterTable>& tables) {
@@ -99,7 +91,7 @@ PopulationReport describe_populations(const std::string& model, const std::vecto
 bool is_of_model(std::string_view model, std::span<const std::string> hardware) {
   const auto named = sheets_named_in(model);
   return std::any_of(hardware.begin(), hardware.end(), [&](const std::string& text) {
-    return folded(text) == folded(model) || (named.size() == 1 && sheets_named_in(text) == named);
+    return lower_case(text) == lower_case(model) || (named.size() == 1 && sheets_named_in(text) == named);
   });
 }
 

@@ -3,6 +3,7 @@
 #include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
 #include "core/signal/number.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +14,8 @@ namespace {
 
 bool is_counter(std::string_view name) {
   std::string letters;
-  for (const char c : name) {
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-    letters += lower >= 'a' && lower <= 'z' ? std::string(1, lower) : std::string();
+  for (const char c : lower_case(name)) {
+    letters += c >= 'a' && c <= 'z' ? std::string(1, c) : std::string();
   }
   constexpr std::array<std::string_view, 4> kNames{"counter", "packetcounter", "samplecounter", "packetcount"};
   return std::find(kNames.begin(), kNames.end(), letters) != kNames.end();

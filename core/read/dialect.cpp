@@ -3,6 +3,7 @@
 #include "core/read/text_shape.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording.hpp"
+#include "core/signal/text.hpp"
 #include "core/signal/unit.hpp"
 
 #include <algorithm>
@@ -266,9 +267,7 @@ std::vector<std::string> find_commented_names(const Head& head, const Reading& r
 
 /// A rate that a line such as `Sample rate: 50.0Hz` or `Fs,100` states.
 std::optional<double> stated_rate(std::string_view line) {
-  std::string lower(line.substr(0, 200));
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  const std::string lower = lower_case(line.substr(0, 200));
   constexpr std::array<std::string_view, 7> kNames{
       "sample rate", "sampling rate", "sample_rate", "sampling frequency", "sampling_rate", "update rate", "fs"};
   for (const std::string_view name : kNames) {

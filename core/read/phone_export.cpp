@@ -4,6 +4,7 @@
 #include "core/read/zip_entries.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
+#include "core/signal/text.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
@@ -17,10 +18,9 @@ namespace {
 
 std::string squashed(std::string_view text) {
   std::string letters;
-  for (const char c : text) {
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-    if (lower >= 'a' && lower <= 'z') {
-      letters += lower;
+  for (const char c : lower_case(text)) {
+    if (c >= 'a' && c <= 'z') {
+      letters += c;
     }
   }
   return letters;

@@ -1,6 +1,7 @@
 #include "core/read/text_shape.hpp"
 
 #include "core/read/decimal.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -127,7 +128,7 @@ bool is_non_finite_word(std::string_view text) {
   constexpr std::array<std::string_view, 3> kWords{"nan", "inf", "infinity"};
   return std::any_of(kWords.begin(), kWords.end(), [text](std::string_view word) {
     return std::equal(word.begin(), word.end(), text.begin(), text.end(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b); });
+                      [](char a, char b) { return a == lower_case(b); });
   });
 }
 

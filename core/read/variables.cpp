@@ -2,6 +2,7 @@
 
 #include "core/signal/infer_role.hpp"
 #include "core/signal/recording.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,12 +32,6 @@ void stand_up(Variable& variable) {
     }
   }
   variable.columns = std::move(turned);
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  return text;
 }
 
 bool is_rate_name(const std::string& name) {

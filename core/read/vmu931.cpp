@@ -6,6 +6,7 @@
 #include "core/read/formats.hpp"
 #include "core/read/phone_export.hpp"
 #include "core/read/text_shape.hpp"
+#include "core/signal/text.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ bool is_header(std::string_view line) {
   std::string squashed;
   for (const char c : line) {
     if (c != ' ' && c != '"' && c != '\r') {
-      squashed += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+      squashed += lower_case(c);
     }
   }
   return squashed == kHeader;

@@ -1,5 +1,7 @@
 #include "core/signal/infer_role.hpp"
 
+#include "core/signal/text.hpp"
+
 #include <algorithm>
 #include <array>
 #include <string>
@@ -100,10 +102,8 @@ std::string_view take_bracket(std::string_view& name) {
 /// Letters and digits only, in lower case: "Gyroscope x" -> "gyroscopex".
 std::string squash(std::string_view name) {
   std::string squashed;
-  for (const char c : name) {
-    if (c >= 'A' && c <= 'Z') {
-      squashed += static_cast<char>(c + ('a' - 'A'));
-    } else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+  for (const char c : lower_case(name)) {
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
       squashed += c;
     }
   }

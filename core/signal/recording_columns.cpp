@@ -1,6 +1,7 @@
 #include "core/signal/recording_columns.hpp"
 
 #include "core/signal/missing.hpp"
+#include "core/signal/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,7 @@ bool holds_text(std::span<const double> values) {
 
 /// Whether a name speaks of a gyroscope or an accelerometer, though not which axis: `gyro`, `acc_l_x`.
 bool sounds_inertial(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  const std::string lower = lower_case(name);
   const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
   return holds("gyr") || (holds("acc") && !holds("accuracy")) || holds("omega") || holds("angular");
 }

@@ -1,5 +1,7 @@
 #pragma once
-/// Two small operations on text: splitting and trimming.
+/// Small operations on text: splitting, trimming, lower case.
+#include <algorithm>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +30,17 @@ namespace driftlab {
     text.remove_suffix(1);
   }
   return text;
+}
+
+/// Of the letters A to Z; anything else stays, bytes of UTF-8 among it, whatever the locale.
+[[nodiscard]] constexpr char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+}
+
+[[nodiscard]] inline std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) { return lower_case(c); });
+  return lower;
 }
 
 }  // namespace driftlab

@@ -1,5 +1,6 @@
 // Finding by names, models, conditions and ids: what the find field of the pages asks.
 #include "core/signal/condition.hpp"
+#include "core/signal/text.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 
@@ -16,13 +17,6 @@ constexpr int kMostDevices = 1000;      ///< looked at for names that begin so
 constexpr std::size_t kLookedAt = 100;  ///< likewise of recordings, the first by name that hold the text
 constexpr std::array<std::string_view, 5> kIds{"dev_", "rec_", "job_", "mod_", "inv_"};
 
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return c < 128 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c); });
-  return lower;
-}
-
 Json hit(std::string_view kind, const std::string& id, const std::string& title, const std::string& subtitle,
          const std::string& href) {
   return Json{{"kind", kind}, {"id", id}, {"title", title}, {"subtitle", subtitle}, {"href", href}};
@@ -31,7 +25,7 @@ Json hit(std::string_view kind, const std::string& id, const std::string& title,
 /// `rec_01m8` -> `rec_01M8`, what an id begins with; nothing where no id begins so.
 std::optional<std::string> beginning_of_id(const std::string& text) {
   constexpr std::size_t kPrefix = 4;
-  std::string id = in_lower_case(text);
+  std::string id = lower_case(text);
   std::transform(id.begin() + static_cast<std::ptrdiff_t>(std::min(kPrefix, id.size())), id.end(),
                  id.begin() + static_cast<std::ptrdiff_t>(std::min(kPrefix, id.size())),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -95,7 +89,7 @@ class Hits {
     const std::string id = found.at("id").get<std::string>();
     if (std::find(seen_.begin(), seen_.end(), id) == seen_.end()) {
       seen_.push_back(id);
-      (in_lower_case(name).starts_with(wanted_) ? first_ : later_)[kind].push_back(std::move(found));
+      (lower_case(name).starts_with(wanted_) ? first_ : later_)[kind].push_back(std::move(found));
     }
   }
   /// At most `limit`, in the order of the kinds, each with its share where there are too many.
@@ -210,7 +204,7 @@ Result<Response> search(ApiContext& context, const Request& request) {
   if (Json exact = beginning ? by_id(context.store, *beginning) : Json(nullptr); !exact.is_null()) {
     return json_response(200, Json{{"items", Json::array({std::move(exact)})}});
   }
-  Hits hits(in_lower_case(text));
+  Hits hits(lower_case(text));
   if (auto named = add_named(context.store, text, limit, hits); !named) {
     return fail(named.error());
   }

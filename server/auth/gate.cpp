@@ -111,9 +111,7 @@ tl::expected<Principal, std::string> Gate::identify(const Credentials& credentia
   bool by_session = false;
   if (credentials.authorization) {
     constexpr std::string_view kBearer = "bearer ";
-    std::string scheme(credentials.authorization->substr(0, kBearer.size()));
-    std::transform(scheme.begin(), scheme.end(), scheme.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string scheme = lower_case(credentials.authorization->substr(0, kBearer.size()));
     const std::string_view secret =
         scheme == kBearer ? trimmed(credentials.authorization->substr(kBearer.size())) : std::string_view{};
     if (!is_secret(secret)) {

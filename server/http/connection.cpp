@@ -1,5 +1,6 @@
 #include "server/http/connection.hpp"
 
+#include "core/signal/text.hpp"
 #include "server/http/forwarded.hpp"
 
 #include <boost/beast/http/read.hpp>
@@ -28,10 +29,8 @@ HeadView head_of(const http::request<http::buffer_body>& message) {
   head.method = {message.method_string().data(), message.method_string().size()};
   head.target = {message.target().data(), message.target().size()};
   for (const auto& field : message) {
-    std::string name(field.name_string());
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    head.headers.emplace_back(std::move(name), std::string(field.value()));
+    const std::string_view name(field.name_string().data(), field.name_string().size());
+    head.headers.emplace_back(lower_case(name), std::string(field.value()));
   }
   return head;
 }

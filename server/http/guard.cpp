@@ -1,5 +1,6 @@
 #include "server/http/guard.hpp"
 
+#include "core/signal/text.hpp"
 #include "server/http/names.hpp"
 
 #include <algorithm>
@@ -15,16 +16,9 @@ std::string_view host_name(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 /// `scheme://host[:port]` in lower case without the scheme's own port; empty for `null` and whatever else is no origin.
 std::string whole_origin(std::string_view text) {
-  std::string origin = lower(text);
+  std::string origin = lower_case(text);
   const std::size_t slashes = origin.find("://");
   if (slashes == std::string::npos) {
     return "";
@@ -38,7 +32,7 @@ std::string whole_origin(std::string_view text) {
 }
 
 bool is_allowed(std::string_view host, const GuardLimits& limits) {
-  return std::find(limits.hosts.begin(), limits.hosts.end(), lower(host)) != limits.hosts.end();
+  return std::find(limits.hosts.begin(), limits.hosts.end(), lower_case(host)) != limits.hosts.end();
 }
 
 /// What a browser says about the page that asks.

@@ -1,5 +1,7 @@
 #include "server/webhooks/destination.hpp"
 
+#include "core/signal/text.hpp"
+
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
 
@@ -14,13 +16,6 @@ namespace ip = boost::asio::ip;
 namespace {
 
 constexpr std::size_t kLongestHost = 253;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 ip::address_v6 as_v6(const ip::address& address) {
   return address.is_v4() ? ip::make_address_v6(ip::v4_mapped, address.to_v4()) : address.to_v6();
@@ -110,8 +105,8 @@ Result<DestinationGuard> DestinationGuard::with(const std::vector<std::string>& 
     }
     if (sound && !error) {
       guard.networks_.push_back({as_v6(address), bits + (address.is_v4() ? 96U : 0U)});
-    } else if (sound && is_host_name(lower(entry))) {
-      guard.hosts_.push_back(lower(entry));
+    } else if (sound && is_host_name(lower_case(entry))) {
+      guard.hosts_.push_back(lower_case(entry));
     } else {
       return fail(
           ErrorCode::InvalidArgument,
@@ -146,7 +141,7 @@ Result<Destination> DestinationGuard::read(std::string_view url) const {
   }
   Destination found;
   found.secure = parsed->scheme() == "https";
-  found.host = lower(std::string(parsed->encoded_host()));
+  found.host = lower_case(std::string(parsed->encoded_host()));
   if (found.host.size() > 2 && found.host.front() == '[') {
     found.host = found.host.substr(1, found.host.size() - 2);
   }
