@@ -47,10 +47,10 @@ std::vector<std::vector<DriveFinding>> names_of(std::size_t count, const Make& m
 }
 
 /// Standard error of the injected parameter on a drive whose document is right, SI; 0 for a cause that no profile of
-/// the likelihood shows, or whose size is a ratio of variances.
+/// the likelihood shows, or whose size is a share or has no sign.
 double standard_error(const DriveInjection& one) {
   const drive::Knob* const knob = drive::find_knob(one.cause, one.parameter);
-  if (knob == nullptr || knob->ratio || knob->magnitude) {
+  if (knob == nullptr || knob->share || knob->magnitude) {
     return 0.0;
   }
   const Drive unhidden = one.drive(4000, one.nothing, kLaps);
