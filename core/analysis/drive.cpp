@@ -10,6 +10,10 @@
 namespace driftlab {
 namespace {
 
+// Where a vehicle's axle lies and how worn its tyres are no document says; what --estimate begins with.
+constexpr double kAxleSd = 1.5;  ///< [m] forward of the unit
+constexpr double kOdometerScaleSd = 0.05;
+
 /// A share with its interval: "97 % [95, 99]"; without an interval where there are too few blocks.
 std::string percent_of(const Estimate& share) {
   std::array<char, 64> text{};
@@ -52,6 +56,12 @@ drive::FilterOptions options_of(const DriveRequest& request, const drive::Docume
   }
   if (request.estimate && request.velocity_constraint && document.imu.mounting_sd_rad > 0.0) {
     options.constants.mounting_sd_rad = document.imu.mounting_sd_rad;
+  }
+  if (request.estimate && request.velocity_constraint) {
+    options.constants.axle_sd_m = kAxleSd;
+  }
+  if (request.estimate && request.odometer) {
+    options.constants.odometer_scale_sd = kOdometerScaleSd;
   }
   return options;
 }

@@ -3,7 +3,9 @@
 #include "core/process/random.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace driftlab::drive {
@@ -102,6 +104,34 @@ std::vector<InnovationSummary> summarise_innovations(const std::vector<Innovatio
   return summaries;
 }
 
+std::string seconds(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g s", value);
+  return text.data();
+}
+
+/// A sentence on stated starts of outages that were not scored; empty where all were.
+std::string left_out_of_plan(const PreparedDrive& prepared, const std::vector<DurationSummary>& durations) {
+  const OutagePlan& plan = prepared.drive().document.outages;
+  std::string list;
+  for (const double at : plan.at_s) {
+    for (const double duration : plan.duration_s) {
+      const bool scored = std::any_of(durations.begin(), durations.end(), [&](const DurationSummary& one) {
+        return one.duration_s == duration &&
+               std::any_of(one.outages.begin(), one.outages.end(),
+                           [&](const DriveOutage& outage) { return outage.outage.start_s == at; });
+      });
+      if (!scored) {
+        list += (list.empty() ? "" : ", ") + seconds(duration) + " from " + seconds(at);
+      }
+    }
+  }
+  return list.empty() ? list
+                      : "Not scored, for the filter has not begun there, an outage before it ends less than 20 s "
+                        "earlier, or no reference lies at an end: outages of " +
+                            list + ".";
+}
+
 }  // namespace
 
 std::vector<PlannedRun> plan_outages(const Drive& drive, const Start& start) {
@@ -155,6 +185,7 @@ Result<PreparedDrive> PreparedDrive::make(const Drive& drive, const FilterOption
     auto start = find_start(drive, run);
     if (!start) {
       refused = refused ? refused : start.error();
+      prepared.not_started_.push_back({run, start.error().message});
       continue;
     }
     turn_heading(start->state, options.initial_heading_rad);
@@ -354,6 +385,15 @@ Result<DriveEvaluation> evaluate_drive(const Drive& drive, const FilterOptions& 
                 "No outage of the plan fits the drive: it needs the time to settle, the outage and a reference at both "
                 "of its ends.",
                 {{"parameter", "outages"}});
+  }
+  if (const std::string told = left_out_of_plan(*prepared, evaluation.durations); !told.empty()) {
+    evaluation.notes.push_back(told);
+  }
+  for (const PreparedDrive::NotStarted& one : prepared->not_started()) {
+    const UniformRun& run = drive.runs[one.run];
+    evaluation.notes.push_back("The filter cannot begin in the readings from " +
+                               std::to_string(std::lround(run.start_s)) + " to " +
+                               std::to_string(std::lround(run.end_s())) + " s: " + one.reason);
   }
   for (std::size_t part = 0; part < prepared->parts(); ++part) {
     evaluation.starts.push_back(prepared->start(part));

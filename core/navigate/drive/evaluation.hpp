@@ -89,6 +89,12 @@ class PreparedDrive {
   [[nodiscard]] std::span<const ImuSample> readings(std::size_t part) const { return parts_[part].readings; }
   [[nodiscard]] const Vibration& vibration(std::size_t part) const { return parts_[part].vibration; }
   [[nodiscard]] FilterRun run(std::size_t part, const FilterTask& task) const;
+  /// Runs of readings that cannot be started, each with the reason: no fix behind a gap shows the heading, say.
+  struct NotStarted {
+    std::size_t run = 0;
+    std::string reason;
+  };
+  [[nodiscard]] const std::vector<NotStarted>& not_started() const { return not_started_; }
 
  private:
   struct Part {
@@ -100,6 +106,7 @@ class PreparedDrive {
   const Drive* drive_ = nullptr;
   FilterOptions options_;
   std::vector<Part> parts_;
+  std::vector<NotStarted> not_started_;
 };
 
 struct EvaluationOptions {

@@ -276,7 +276,8 @@ class Driver {
     if (task_.keep_innovations) {
       result_.innovations.push_back(record);
     }
-    if (kind == MeasurementKind::Velocity && !result_.heading_known_s) {
+    const bool of_fix = kind == MeasurementKind::Position || kind == MeasurementKind::Velocity;
+    if (of_fix && !result_.heading_known_s) {
       const double sd = heading_sd();
       if (sd < kHeadingKnown) {
         result_.heading_known_s = record.time_s;

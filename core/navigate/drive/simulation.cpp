@@ -15,6 +15,7 @@ constexpr std::uint64_t kStartStream = 9;
 constexpr std::uint64_t kSlipStream = 10;
 constexpr std::uint64_t kVibrationStream = 11;
 constexpr std::uint64_t kColourStream = 12;
+constexpr std::uint64_t kWheelStream = 13;
 
 /// The truth at a moment of its own clock: from the sample before with its velocity and the change of it.
 NavigationState truth_at(const Trajectory& truth, double time_s) {
@@ -172,6 +173,11 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
   Random noise(seed, 16 * run + kFixStream);
   LastingErrors lasting(options_.coloured, Random(seed, 16 * run + kColourStream));
   const double end = static_cast<double>(truth_.imu.size()) * truth_.dt_s;
+  const auto rate_at = [&](double own) -> Vector3 {  // of the body against the Earth
+    const auto sample = std::min(static_cast<std::size_t>(own / truth_.dt_s), truth_.imu.size() - 1);
+    const ImuSample& reading = truth_.imu[sample];
+    return Vector3(reading[0], reading[1], reading[2]) - truth_at(truth_, own).attitude.conjugate() * earth_rate();
+  };
   for (const Fix& recorded : recorded_->fixes) {
     const double own = recorded.time_s - start_s_;
     if (own <= 0.0 || own >= end) {
@@ -184,10 +190,7 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
                           axes * (drawn(recorded.position_sd_m, noise) + lasting.at(own));
     const Vector3 velocity_error = drawn(recorded.velocity_sd_m_s, noise);
     if (recorded.velocity_ned_m_s) {
-      const auto sample = std::min(static_cast<std::size_t>(own / truth_.dt_s), truth_.imu.size() - 1);
-      const ImuSample& reading = truth_.imu[sample];
-      const Vector3 rate = Vector3(reading[0], reading[1], reading[2]) - truth.attitude.conjugate() * earth_rate();
-      const Vector3 antenna = truth.velocity_ecef_m_s + truth.attitude * rate.cross(options_.lever_arm_m);
+      const Vector3 antenna = truth.velocity_ecef_m_s + truth.attitude * rate_at(own).cross(options_.lever_arm_m);
       fix.velocity_ned_m_s = axes.transpose() * antenna + velocity_error;
     }
     world.drive.fixes.push_back(fix);
@@ -203,6 +206,18 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
           {recorded_->reference[i].time_s,
            truth.position_ecef_m + truth.attitude * recorded_->document.reference.lever_arm_m +
                ned_axes(truth.position_ecef_m) * drawn(Vector3::Constant(recorded_->document.reference.sd_m), noise)});
+    }
+  }
+  Random wheel(seed, 16 * run + kWheelStream);
+  for (const OdometerReading& recorded : recorded_->odometer) {
+    const double own = recorded.time_s - start_s_;
+    if (own > 0.0 && own < end) {
+      const OdometerSource& source = *recorded_->document.odometer;
+      const NavigationState truth = truth_at(truth_, own);
+      const Vector3 body = truth.attitude.conjugate() * truth.velocity_ecef_m_s;
+      const double speed = (body + rate_at(own).cross(source.lever_arm_m)).x();
+      world.drive.odometer.push_back(
+          {recorded.time_s, (1.0 + options_.odometer_scale) * speed + source.sd_m_s * wheel.normal()});
     }
   }
   Random first(seed, 16 * run + kStartStream);

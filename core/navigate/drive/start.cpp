@@ -20,6 +20,8 @@ constexpr double kBlock = 0.5;  ///< [s]
 constexpr double kSteadyRate = 0.6 * kDegree;
 constexpr double kSteadyForce = 0.2;  ///< [m/s^2]
 constexpr double kOldestRest = 60.0;  ///< [s] before the start
+constexpr double kBeginning = 5.0;    ///< [s] of a drive: fixes within it are where the document says that it begins
+constexpr double kNeighbour = 1.5;    ///< [s]: fixes that tell the acceleration lie this near, and half as far at least
 
 // Standard deviations at the start. Section 3 gives those of the tilt in motion (2 to 3 deg) and of the heading.
 constexpr double kHeadingSd = 5.0 * kDegree;
@@ -63,6 +65,26 @@ Quaternion carried(const UniformRun& run, const Rest& rest, std::size_t to) {
     attitude = attitude * rotation((Vector3(sample[0], sample[1], sample[2]) - rest.rate) * run.dt_s);
   }
   return attitude.normalized();
+}
+
+/// The acceleration of the vehicle around a fix, by the velocities of its neighbours, forward and to the right of a
+/// heading; 0 where they have none within kNeighbour.
+Vector3 acceleration_around(const Drive& drive, const Fix& fix, double heading_rad) {
+  const Fix* before = nullptr;
+  const Fix* after = nullptr;
+  for (const Fix& other : drive.fixes) {
+    const bool near = other.velocity_ned_m_s && std::abs(other.time_s - fix.time_s) < kNeighbour;
+    before = near && other.time_s < fix.time_s - 0.5 * kNeighbour ? &other : before;
+    after = near && other.time_s > fix.time_s + 0.5 * kNeighbour && after == nullptr ? &other : after;
+  }
+  before = before != nullptr ? before : &fix;
+  after = after != nullptr ? after : &fix;
+  if (!before->velocity_ned_m_s || !after->velocity_ned_m_s || !(after->time_s > before->time_s)) {
+    return Vector3::Zero();
+  }
+  const Vector3 north_east_down =
+      (*after->velocity_ned_m_s - *before->velocity_ned_m_s) / (after->time_s - before->time_s);
+  return Eigen::AngleAxisd(-heading_rad, Vector3::UnitZ()) * north_east_down;
 }
 
 /// The gyroscope's turn about down within half a second on both sides.
@@ -146,8 +168,14 @@ std::vector<Rest> rests_of(const Drive& drive, std::size_t run_index) {
 
 Result<Start> find_start(const Drive& drive, std::size_t run_index) {
   const UniformRun& run = drive.runs[run_index];
-  const StartState& stated = drive.document.start;
+  const StartState stated = run_index == 0 ? drive.document.start : StartState{};  // nothing behind a gap
   const Fix* const fix = first_heading(drive, run, stated.heading_rad.has_value());
+  if (fix == nullptr && std::none_of(drive.fixes.begin(), drive.fixes.end(),
+                                     [](const Fix& one) { return one.velocity_ned_m_s.has_value(); })) {
+    return fail(ErrorCode::InvalidArgument,
+                "No fix has a velocity, so no course shows the heading; give start.heading_deg.",
+                {{"parameter", "start.heading_deg"}});
+  }
   if (fix == nullptr) {
     return fail(ErrorCode::InvalidArgument,
                 "No fix moves faster than 3 m/s in a straight line, so the heading is not observable; give "
@@ -158,6 +186,14 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
   start.run = run_index;
   start.reading = reading_at(run, fix->time_s);
   start.time_s = run.start_s + static_cast<double>(start.reading) * run.dt_s;
+  // What the document says is that of the beginning: by a later fix the vehicle is elsewhere.
+  const bool at_beginning = fix->time_s < run.start_s + kBeginning;
+  const Vector3 of_fix = fix->velocity_ned_m_s.value_or(Vector3::Zero());
+  const Vector3 velocity = at_beginning ? stated.velocity_ned_m_s.value_or(of_fix) : of_fix;
+  const bool straight = moves_along_its_nose(drive.document.vehicle);
+  start.uncertainty.heading_sd_rad = straight || stated.heading_rad ? kHeadingSd : kHeadingSdOfDrifting;
+  start.heading_from = stated.heading_rad ? HeadingFrom::Stated : HeadingFrom::Course;
+  const double heading_rad = stated.heading_rad.value_or(std::atan2(velocity.y(), velocity.x()));
   EulerAngles angles;
   const Rest* rest = nullptr;
   const std::vector<Rest> rests = rests_of(drive, run_index);
@@ -166,7 +202,7 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
       rest = &one;
     }
   }
-  if (stated.roll_rad && stated.pitch_rad) {
+  if (at_beginning && stated.roll_rad && stated.pitch_rad) {
     angles.roll_rad = *stated.roll_rad;
     angles.pitch_rad = *stated.pitch_rad;
     start.tilt_from = TiltFrom::Stated;
@@ -177,21 +213,13 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
     start.uncertainty.tilt_sd_rad = kTiltSdFromRest;
   } else {
     const BlockMeans around = mean_of(run, reading_at(run, start.time_s - 0.5), reading_at(run, start.time_s + 0.5));
-    angles.roll_rad = std::atan2(-around.force.y(), -around.force.z());
-    angles.pitch_rad = std::atan2(around.force.x(), std::hypot(around.force.y(), around.force.z()));
+    const Vector3 force = around.force - acceleration_around(drive, *fix, heading_rad);
+    angles.roll_rad = std::atan2(-force.y(), -force.z());
+    angles.pitch_rad = std::atan2(force.x(), std::hypot(force.y(), force.z()));
     start.uncertainty.tilt_sd_rad = kTiltSdInMotion;
   }
-  const bool straight = moves_along_its_nose(drive.document.vehicle);
-  start.uncertainty.heading_sd_rad = straight ? kHeadingSd : kHeadingSdOfDrifting;
-  const Vector3 velocity = stated.velocity_ned_m_s.value_or(fix->velocity_ned_m_s.value_or(Vector3::Zero()));
-  if (stated.heading_rad) {
-    angles.heading_rad = *stated.heading_rad;
-    start.heading_from = HeadingFrom::Stated;
-    start.uncertainty.heading_sd_rad = kHeadingSd;
-  } else {
-    angles.heading_rad = std::atan2(velocity.y(), velocity.x());
-  }
-  const Vector3 antenna = stated.position ? to_ecef(*stated.position) : fix->position_ecef_m;
+  angles.heading_rad = heading_rad;
+  const Vector3 antenna = at_beginning && stated.position ? to_ecef(*stated.position) : fix->position_ecef_m;
   const Matrix3 axes = ned_axes(antenna);
   start.state.attitude = Quaternion(axes) * from_euler(angles);
   start.state.velocity_ecef_m_s = axes * velocity;

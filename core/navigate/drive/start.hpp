@@ -1,10 +1,12 @@
 #pragma once
 /// The state in which a filter begins on a recorded drive (spec/drives.md, section 3). What the document of the drive
-/// states of it is taken from there; the rest is found as follows.
+/// states is taken from there, for the beginning of the drive: behind a gap of the readings, and position and velocity
+/// at a later start, they are found as all else is.
 ///
 /// Tilt. The vehicle's last rest, if it ended within the minute before the start, shows the tilt by the direction of
 /// the mean force. The gyroscope carries it from there to the start, less its own mean over the rest. Without such a
-/// rest, the tilt is that of the mean force over one second around the start.
+/// rest, the tilt is that of the mean force over one second around the start, less the acceleration that the velocities
+/// of the fixes show there: 2 m/s^2 would be taken for 12 deg.
 ///
 /// Heading. It is the course of the first fix that is faster than 3 m/s and around which the vehicle turns by less than
 /// 3 deg in a second. The filter begins at that fix, or, where the heading is stated, at the first of all. An aircraft

@@ -27,6 +27,10 @@ TEST(DriveUseCase, EstimatesWhatTheDocumentLeavesOpenAndNothingElse) {
   EXPECT_FALSE(options_of(request, document).constants.mounting_sd_rad) << "unobservable without the constraint";
   request.velocity_constraint = true;
   EXPECT_EQ(options_of(request, document).constants.mounting_sd_rad, 0.01);
+  EXPECT_GT(options_of(request, document).constants.axle_sd_m, 0.0) << "no document says where the axle is";
+  EXPECT_FALSE(options_of(request, document).constants.odometer_scale_sd) << "without an odometer";
+  request.odometer = true;
+  EXPECT_GT(options_of(request, document).constants.odometer_scale_sd, 0.0);
 }
 
 TEST(DriveUseCase, RefusesWhatTheVehicleOrTheDriveDoesNotHave) {

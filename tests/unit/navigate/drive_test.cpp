@@ -254,6 +254,56 @@ TEST(DriveOutages, AGapOfTheReferenceIsNoErrorOfZero) {
   EXPECT_LT(after->durations.back().growth.count[kGrowthPoints / 2 - 1], after->durations.back().growth.count.back());
 }
 
+TEST(DriveOutages, ThoseOfTheReceiverItselfAreListedAndNotScored) {
+  Drive drive = simulated_drive(28);
+  const auto whole = evaluate_drive(drive, {});
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(whole->natural.empty());
+  const auto lost = [](double time_s) { return time_s > 200.1 && time_s < 207.2; };
+  std::erase_if(drive.fixes, [&](const Fix& fix) { return lost(fix.time_s); });
+  std::erase_if(drive.reference, [&](const ReferencePoint& point) { return lost(point.time_s); });
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation);
+  ASSERT_EQ(evaluation->natural.size(), 1U);
+  EXPECT_NEAR(evaluation->natural.front().start_s, 200.0037, 1e-9);
+  EXPECT_NEAR(evaluation->natural.front().duration_s, 7.25, 1e-9);
+  const auto ends_in_it = [](const DriveOutage& one) {
+    return std::min(std::abs(one.outage.start_s - 203.6), std::abs(one.outage.end_s() - 203.6)) < 2.0;
+  };
+  for (const DurationSummary& one : evaluation->durations) {
+    EXPECT_EQ(std::count_if(one.outages.begin(), one.outages.end(), ends_in_it), 0) << "no reference lies at its end";
+  }
+}
+
+TEST(DriveOutages, StatedStartsThatAreNotScoredAreNamed) {
+  Drive drive = simulated_drive(29);
+  drive.document.outages.duration_s = {10.0};
+  drive.document.outages.at_s = {5.0, 100.0, 115.0, 200.0};
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation);
+  EXPECT_EQ(evaluation->durations.front().outages.size(), 2U);
+  ASSERT_FALSE(evaluation->notes.empty());
+  EXPECT_NE(evaluation->notes.front().find("outages of 10 s from 5 s, 10 s from 115 s."), std::string::npos)
+      << evaluation->notes.front();
+}
+
+TEST(DriveOutages, ClassesAreByTheMotionWithoutFixes) {
+  Drive drive = simulated_drive(30);
+  drive.document.outages.duration_s = {4.0};
+  drive.document.outages.at_s = {132.5, 213.0, 241.0};  // a turn of 12 deg/s; standing; straight on
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation);
+  const DurationSummary& summary = evaluation->durations.front();
+  ASSERT_EQ(summary.outages.size(), 3U);
+  EXPECT_EQ(summary.outages[0].outage_class, OutageClass::Turning);
+  EXPECT_EQ(summary.outages[1].outage_class, OutageClass::Rest);
+  EXPECT_EQ(summary.outages[2].outage_class, OutageClass::Straight);
+  ASSERT_EQ(summary.classes.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(summary.classes[i].count, 1U);
+  }
+}
+
 TEST(DriveOutages, TheSameForAnyNumberOfThreads) {
   const Drive drive = simulated_drive(16);
   Executor executor(2);
@@ -278,6 +328,83 @@ TEST(DriveStart, FindsRestTiltAndCourse) {
   EXPECT_EQ(start->tilt_from, TiltFrom::Rest);
   EXPECT_EQ(start->heading_from, HeadingFrom::Course);
   EXPECT_NEAR(start->time_s, 21.6, 0.6);
+}
+
+/// A drive whose readings begin where it gains speed by 2 m/s^2, so that no rest shows the tilt.
+Drive begun_in_motion(std::uint64_t seed) {
+  Drive drive = simulated_drive(seed);
+  UniformRun& run = drive.runs.front();
+  const auto first = static_cast<std::ptrdiff_t>(std::lround(21.0 / run.dt_s));
+  run.readings.erase(run.readings.begin(), run.readings.begin() + first);
+  run.start_s += static_cast<double>(first) * run.dt_s;
+  return drive;
+}
+
+TEST(DriveStart, ChangesOfSpeedAreNoTilt) {
+  // Over one second of 2 m/s^2 the mean force leans by 12 deg, stated as 3.
+  const Drive drive = begun_in_motion(25);
+  const auto start = find_start(drive, 0);
+  ASSERT_TRUE(start) << start.error().message;
+  EXPECT_EQ(start->tilt_from, TiltFrom::Motion);
+  EXPECT_NEAR(start->attitude().pitch_rad, 0.0, 2.0 * kDegree);
+  EXPECT_NEAR(start->attitude().roll_rad, 0.0, 2.0 * kDegree);
+  Drive silent = drive;
+  for (Fix& fix : silent.fixes) {
+    fix.has_course = false;
+    fix.velocity_ned_m_s.reset();
+  }
+  silent.document.start.heading_rad = 0.0;
+  const auto leaning = find_start(silent, 0);
+  ASSERT_TRUE(leaning);
+  EXPECT_GT(std::abs(leaning->attitude().pitch_rad), 8.0 * kDegree) << "else the test shows nothing";
+}
+
+TEST(DriveStart, WhatTheDocumentStatesIsTrueOfTheBeginningAlone) {
+  // A stated place was taken for that of the first fast fix, a minute later, and of every run behind a gap.
+  Drive drive = simulated_drive(26);
+  const Geodetic elsewhere{48.1 * kDegree, 9.0 * kDegree, 300.0};
+  drive.document.start.position = elsewhere;
+  const auto late = find_start(drive, 0);
+  ASSERT_TRUE(late);
+  EXPECT_GT((late->state.position_ecef_m - to_ecef(elsewhere)).norm(), 5000.0) << "it starts after 21 s";
+  drive.document.start.heading_rad = 0.3;
+  drive.document.start.velocity_ned_m_s = Vector3(0.5, 0.0, 0.0);
+  const auto first = find_start(drive, 0);
+  ASSERT_TRUE(first);
+  EXPECT_LT(first->time_s, 2.0);
+  EXPECT_LT((first->state.position_ecef_m - to_ecef(elsewhere)).norm(), 2.0);
+  EXPECT_NEAR(first->attitude().heading_rad, 0.3, 1e-9);
+  UniformRun& whole = drive.runs.front();
+  const auto half = static_cast<std::ptrdiff_t>(whole.readings.size() / 2);
+  UniformRun behind{whole.start_s + static_cast<double>(half + 200) * whole.dt_s,
+                    whole.dt_s,
+                    {whole.readings.begin() + half + 200, whole.readings.end()}};
+  whole.readings.resize(static_cast<std::size_t>(half));
+  drive.runs.push_back(std::move(behind));
+  const auto second = find_start(drive, 1);
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_EQ(second->heading_from, HeadingFrom::Course);
+  EXPECT_GT((second->state.position_ecef_m - to_ecef(elsewhere)).norm(), 5000.0);
+  EXPECT_GT(second->state.velocity_ecef_m_s.norm(), 3.0);
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation);
+  EXPECT_EQ(evaluation->starts.size(), 2U);
+}
+
+TEST(DriveStart, ARunThatCannotBeginIsNamedWithTheReason) {
+  Drive drive = simulated_drive(27);
+  UniformRun& whole = drive.runs.front();
+  const auto kept = static_cast<std::ptrdiff_t>(std::lround(300.0 / whole.dt_s));
+  UniformRun behind{whole.start_s + 410.0, whole.dt_s, {}};
+  behind.readings.assign(whole.readings.begin() + std::lround(410.0 / whole.dt_s), whole.readings.end());
+  whole.readings.resize(static_cast<std::size_t>(kept));
+  drive.runs.push_back(std::move(behind));  // the last ten seconds, at rest
+  const auto evaluation = evaluate_drive(drive, {});
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  ASSERT_FALSE(evaluation->notes.empty());
+  EXPECT_NE(evaluation->notes.back().find("The filter cannot begin in the readings from 410 to 420 s: No fix moves"),
+            std::string::npos)
+      << evaluation->notes.back();
 }
 
 TEST(DriveStart, SaysThatADriveAtRestHasNoHeading) {
@@ -312,6 +439,37 @@ TEST(DriveSimulation, CoversItselfWithAndWithoutAVelocityConstraint) {
       EXPECT_TRUE(one.coverage95.ci95.contains(0.95)) << one.coverage95.ci95.low << " to " << one.coverage95.ci95.high;
     }
   }
+}
+
+TEST(DriveSimulation, HasTheOdometerThatWasMeasuredWith) {
+  // Without readings of the wheel the simulated outages were those of fixes and unit alone, and measured ones with it
+  // looked better than their simulation.
+  Drive drive = simulated_drive(21);
+  OdometerSource& source = drive.document.odometer.emplace();
+  source.sd_m_s = 0.05;
+  Random random(21, 8);
+  for (const Fix& fix : drive.fixes) {
+    drive.odometer.push_back({fix.time_s, 1.02 * fix.velocity_ned_m_s->head<2>().norm() + 0.05 * random.normal()});
+  }
+  FilterOptions with;
+  with.odometer = true;
+  with.odometer_scale = 0.02;
+  FilterOptions without;
+  std::array<double, 2> rms{};
+  for (const bool wheel : {false, true}) {
+    const auto evaluation = evaluate_drive(drive, wheel ? with : without);
+    const auto prepared = PreparedDrive::make(drive, wheel ? with : without);
+    ASSERT_TRUE(evaluation && prepared);
+    const auto simulated = simulate_outages(*prepared, evaluation->durations, {.runs = 8, .seed = 2});
+    ASSERT_TRUE(simulated);
+    const SimulatedDuration& longest = simulated->back();
+    rms[wheel ? 1 : 0] = longest.rms_m;
+    EXPECT_NEAR(longest.nees.value, 2.0, 0.6) << wheel;
+    EXPECT_GT(longest.coverage95.value, 0.9) << wheel;
+    EXPECT_GT(longest.ratio.value, 0.75) << wheel;  // one measured drive has some ten such outages
+    EXPECT_LT(longest.ratio.value, 1.5) << wheel;
+  }
+  EXPECT_LT(rms[1], 0.7 * rms[0]) << "the speed along the way is known";
 }
 
 TEST(DriveSimulation, TheRatiosIntervalHoldsTheScatterOfTheSimulationToo) {
