@@ -37,6 +37,7 @@ struct FileFacts {
   std::size_t other_types = 0;              ///< rows of a fix type that is not to be used
   std::size_t incomplete = 0;               ///< rows without a position
   std::size_t far_away = 0;                 ///< placeholders before the first fix, and the like
+  std::size_t outside_readings = 0;         ///< a second and more before the first reading or after the last
   bool accuracy_constant = false;           ///< the position's; not used
   bool speed_accuracy_constant = false;     ///< not used
   bool vertical_accuracy_constant = false;  ///< not used
@@ -47,8 +48,8 @@ struct FileFacts {
   std::size_t reference_gaps = 0;           ///< of a reference of its own, too long to compare within
   double reference_gaps_s = 0.0;
   double fix_rate_hz = 0.0;
-  double highest_speed_m_s = 0.0;
-  double length_m = 0.0;
+  double highest_speed_m_s = 0.0;  ///< by the velocities of the fixes; where there are none, over 5 s of positions
+  double length_m = 0.0;           ///< likewise
   std::vector<std::string> notes;  ///< sentences: facts of the drive that were not repaired
 };
 

@@ -70,13 +70,71 @@ Result<FixColumns> columns_of_fixes(const GnssSource& source, const Table& table
   return columns;
 }
 
-/// True where the column says nothing: no values, not a positive number, or the same number throughout.
-bool says_nothing(const Column& column) {
-  if (!column) {
-    return false;
+constexpr std::size_t kEnoughToVary = 10;  ///< numbers: a column with more that are all the same says nothing
+
+/// The number that the column has in every row that has a time and a number; nothing where it varies.
+std::optional<double> constant_of(const Column& column, const StampedRows& stamped) {
+  std::optional<double> first;
+  std::size_t numbers = 0;
+  for (std::size_t k = 0; column && k < stamped.row.size(); ++k) {
+    const double value = (*column)[stamped.row[k]];
+    if (!std::isfinite(value)) {
+      continue;
+    }
+    if (first && value != *first) {
+      return std::nullopt;
+    }
+    first = value;
+    ++numbers;
   }
-  const double first = column->empty() ? 0.0 : column->front();
-  return column->size() > 10 && std::all_of(column->begin(), column->end(), [&](double v) { return v == first; });
+  return numbers > kEnoughToVary ? first : std::nullopt;
+}
+
+constexpr double kMovingOn = 1.0;        ///< [m/s] between two fixes: the vehicle has moved
+constexpr double kNextFix = 3.0;         ///< [s]: rows farther apart are not compared
+constexpr std::size_t kRowsToTell = 50;  ///< while it moves
+
+std::array<double, 3> position_at(const FixColumns& c, std::size_t row) {
+  const auto at = [row](const Column& column) { return column ? (*column)[row] : 0.0; };
+  return c.lat ? std::array{at(c.lat), at(c.lon), at(c.height)} : std::array{at(c.x), at(c.y), at(c.z)};
+}
+
+Vector3 place_of(const FixColumns& c, const std::array<double, 3>& numbers) {
+  return c.lat ? to_ecef({numbers[0], numbers[1], std::isfinite(numbers[2]) ? numbers[2] : 0.0})
+               : Vector3(numbers[0], numbers[1], numbers[2]);
+}
+
+bool holds_no_position(const std::array<double, 3>& numbers) {
+  return !std::isfinite(numbers[0]) || !std::isfinite(numbers[1]) || (numbers[0] == 0.0 && numbers[1] == 0.0);
+}
+
+/// Whether the file repeats each fix until the next one, as a table at the rate of the unit does, though the document
+/// does not say so: while the vehicle moves, at least every second row repeats position and velocity of the row before.
+/// A receiver at rest may give the same numbers again and again, and one with few digits the same position.
+bool repeats_until_the_next(const FixColumns& c, const StampedRows& stamped) {
+  const auto same = [&](std::size_t a, std::size_t b) {
+    const auto equal = [&](const Column& column) { return !column || (*column)[a] == (*column)[b]; };
+    return position_at(c, a) == position_at(c, b) && equal(c.north) && equal(c.east) && equal(c.speed) &&
+           equal(c.course);
+  };
+  std::size_t rows = 0;
+  std::size_t repeats = 0;
+  std::size_t last = 0;  // row at which the fix was new
+  for (std::size_t k = 1; k < stamped.row.size(); ++k) {
+    if (same(stamped.row[k], stamped.row[k - 1])) {
+      continue;
+    }
+    const auto before = position_at(c, stamped.row[last]);
+    const auto now = position_at(c, stamped.row[k]);
+    const double step = stamped.time_s[k] - stamped.time_s[last];
+    if (!holds_no_position(before) && !holds_no_position(now) && step < kNextFix &&
+        (place_of(c, now) - place_of(c, before)).norm() > kMovingOn * step) {
+      rows += k - last;
+      repeats += k - last - 1;
+    }
+    last = k;
+  }
+  return rows > kRowsToTell && 2 * repeats >= rows;
 }
 
 bool is_accuracy(double stated) { return std::isfinite(stated) && stated > 0.0; }
@@ -136,28 +194,28 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
     return fail(columns.error());
   }
   const FixColumns& c = *columns;
-  facts.accuracy_constant = says_nothing(c.sd_horizontal) || says_nothing(c.sd_north);
-  facts.speed_accuracy_constant = says_nothing(c.sd_speed);
-  facts.vertical_accuracy_constant = says_nothing(c.sd_vertical);
-  facts.height_zero = c.height && says_nothing(c.height) && c.height->front() == 0.0;
-  facts.course_constant = says_nothing(c.course);
+  const auto is_constant = [&](const Column& column) { return constant_of(column, stamped).has_value(); };
+  facts.accuracy_constant = is_constant(c.sd_horizontal) || is_constant(c.sd_north) || is_constant(c.sd_east);
+  facts.speed_accuracy_constant = is_constant(c.sd_speed);
+  facts.vertical_accuracy_constant = is_constant(c.sd_vertical) || is_constant(c.sd_down);
+  facts.height_zero = constant_of(c.height, stamped) == 0.0;
+  facts.course_constant = is_constant(c.course);
   if (facts.course_constant) {
     columns->course.reset();
   }
+  const bool hold = source.hold || repeats_until_the_next(c, stamped);
   std::vector<Fix> fixes;
   std::array<double, 3> before{};
   double before_s = 0.0;
   for (std::size_t k = 0; k < stamped.row.size(); ++k) {
     const std::size_t i = stamped.row[k];
-    const auto at = [i](const auto& column) { return column ? (*column)[i] : 0.0; };
-    const std::array<double, 3> numbers =
-        c.lat ? std::array{at(c.lat), at(c.lon), at(c.height)} : std::array{at(c.x), at(c.y), at(c.z)};
-    if (!std::isfinite(numbers[0]) || !std::isfinite(numbers[1]) || (numbers[0] == 0.0 && numbers[1] == 0.0)) {
+    const std::array<double, 3> numbers = position_at(c, i);
+    if (holds_no_position(numbers)) {
       ++facts.incomplete;
       continue;
     }
     const bool again = !fixes.empty() && stamped.time_s[k] <= before_s;
-    if (!fixes.empty() && (again || (source.hold && numbers == before))) {
+    if (!fixes.empty() && (again || (hold && numbers == before))) {
       ++facts.held;
       continue;
     }
@@ -175,23 +233,21 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
     before_s = stamped.time_s[k];
     Fix fix;
     fix.time_s = stamped.time_s[k];
-    if (c.lat) {
-      if (std::abs(numbers[0]) > 0.5 * std::numbers::pi || std::abs(numbers[1]) > 2.0 * std::numbers::pi) {
-        return fail(ErrorCode::InvalidArgument,
-                    "A latitude lies beyond 90 deg or a longitude beyond 360: latitude and longitude are swapped, or "
-                    "their unit is not the stated one.",
-                    {{"parameter", "gnss.columns"}});
-      }
-      fix.position_ecef_m = to_ecef({numbers[0], numbers[1], std::isfinite(numbers[2]) ? numbers[2] : 0.0});
-    } else {
-      fix.position_ecef_m = {numbers[0], numbers[1], numbers[2]};
+    if (c.lat && (std::abs(numbers[0]) > 0.5 * std::numbers::pi || std::abs(numbers[1]) > 2.0 * std::numbers::pi)) {
+      return fail(ErrorCode::InvalidArgument,
+                  "A latitude lies beyond 90 deg or a longitude beyond 360: latitude and longitude are swapped, or "
+                  "their unit is not the stated one.",
+                  {{"parameter", "gnss.columns"}});
     }
+    fix.position_ecef_m = place_of(c, numbers);
     fix.position_sd_m = source.position_sd_m;
     if (!facts.accuracy_constant) {
       if (c.sd_north && c.sd_east) {
-        fix.position_sd_m = {sd_at(c.sd_north, i, source.position_sd_m.x()),
-                             sd_at(c.sd_east, i, source.position_sd_m.y()),
-                             sd_at(c.sd_down, i, source.position_sd_m.z())};
+        fix.position_sd_m.x() = sd_at(c.sd_north, i, source.position_sd_m.x());
+        fix.position_sd_m.y() = sd_at(c.sd_east, i, source.position_sd_m.y());
+        if (!facts.vertical_accuracy_constant) {
+          fix.position_sd_m.z() = sd_at(c.sd_down, i, source.position_sd_m.z());
+        }
       } else if (c.sd_horizontal) {  // of both coordinates together, as phones state it
         const double sd = sd_at(c.sd_horizontal, i, source.position_sd_m.x());
         fix.position_sd_m = {sd, sd, 2.0 * sd};
@@ -227,7 +283,7 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
   const std::size_t all = fixes.size();
   std::erase_if(fixes, [&](const Fix& fix) { return (fix.position_ecef_m - middle).norm() > kFarAway; });
   facts.far_away = all - fixes.size();
-  if (source.hold && facts.far_away > 0 && fixes.size() > 1) {
+  if (hold && facts.far_away > 0 && fixes.size() > 1) {
     fixes.erase(fixes.begin());  // it may be as old as the file
   }
   return fixes;

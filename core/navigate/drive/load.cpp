@@ -8,6 +8,8 @@
 namespace driftlab::drive {
 namespace {
 
+constexpr double kLongestWithoutFixes = 10.0;  ///< [s] at the end, without a word
+
 /// One sentence about a channel of the unit that is frozen, at full scale, or holds numbers that stand for none; empty
 /// where it does not. Cells that are missing are counted by whole rows (SamplingFacts).
 std::string unusual(ChannelQuality quality, std::size_t rows) {
@@ -97,20 +99,64 @@ void turn_into_body(std::vector<UniformRun>& runs, const Matrix3& mounting) {
   }
 }
 
+/// Speed and length of a drive whose receiver states no velocity, from positions 5 s apart: metres of their noise are
+/// then a fraction of 1 m/s.
+void describe_motion_by_positions(Drive& drive) {
+  constexpr double kApart = 5.0;  // [s]
+  const Fix* from = &drive.fixes.front();
+  for (const Fix& fix : drive.fixes) {
+    if (fix.time_s - from->time_s >= kApart) {
+      const Vector3 moved = ned_axes(from->position_ecef_m).transpose() * (fix.position_ecef_m - from->position_ecef_m);
+      const double length = moved.head<2>().norm();
+      drive.facts.length_m += length;
+      drive.facts.highest_speed_m_s = std::max(drive.facts.highest_speed_m_s, length / (fix.time_s - from->time_s));
+      from = &fix;
+    }
+  }
+}
+
 void describe_motion(Drive& drive) {
   FileFacts& facts = drive.facts;
   facts.fixes = drive.fixes.size();
   facts.fix_rate_hz =
       static_cast<double>(drive.fixes.size() - 1) / (drive.fixes.back().time_s - drive.fixes.front().time_s);
+  bool has_velocity = false;
   for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
     const Fix& fix = drive.fixes[i];
     if (fix.velocity_ned_m_s) {
+      has_velocity = true;
       facts.highest_speed_m_s = std::max(facts.highest_speed_m_s, fix.velocity_ned_m_s->head<2>().norm());
       if (i > 0) {
         const double step = std::min(fix.time_s - drive.fixes[i - 1].time_s, 2.0);
         facts.length_m += fix.velocity_ned_m_s->head<2>().norm() * step;
       }
     }
+  }
+  if (!has_velocity) {
+    describe_motion_by_positions(drive);
+  }
+}
+
+/// What decoding said of the files, such as an end in the middle of a row.
+void write_notes_of_decoding(const Document& document, const Tables& tables, std::vector<std::string>& notes) {
+  const auto add = [&](const std::string& file, const Table& table) {
+    for (const std::string& said : table.notes) {
+      std::string note = file + ": " + said;
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) {  // several sources may be one file
+        notes.push_back(std::move(note));
+      }
+    }
+  };
+  add(document.imu.source.file, tables.imu);
+  if (document.imu.force && tables.force) {
+    add(document.imu.force->file, *tables.force);
+  }
+  add(document.gnss.source.file, tables.gnss);
+  if (document.reference.source && tables.reference) {
+    add(document.reference.source->file, *tables.reference);
+  }
+  if (document.odometer && tables.odometer) {
+    add(document.odometer->source.file, *tables.odometer);
   }
 }
 
@@ -174,16 +220,27 @@ void write_notes(Drive& drive) {
   note(facts.held > 0, count_text(facts.held, "rows of the fixes repeat the fix before; they are no new data."));
   note(facts.far_away > 0,
        count_text(facts.far_away, "fixes lie more than 200 km from the middle of the drive and are left out."));
+  note(facts.outside_readings > 0,
+       count_text(facts.outside_readings,
+                  "fixes lie before the first reading of the unit or after its last and are left out."));
+  const double without_fixes = drive.end_s() - drive.fixes.back().time_s;
+  note(without_fixes > kLongestWithoutFixes,
+       "The fixes end " + std::to_string(std::lround(without_fixes)) + " s before the readings do.");
   note(facts.incomplete > 0, count_text(facts.incomplete, "rows of the fixes have no position and are left out."));
   note(facts.other_types > 0, count_text(facts.other_types, "fixes of other types are left out."));
   note(facts.gnss_stamps.week_rollovers + facts.imu_stamps.week_rollovers > 0,
        "The seconds of the week start again within the drive; time goes on.");
   note(facts.gnss_stamps.leap_seconds > 0.0 || facts.imu_stamps.leap_seconds > 0.0,
        "Leap seconds were added once to bring UTC to GPS time.");
+  note(facts.gnss_stamps.leap_within || facts.imu_stamps.leap_within,
+       "A leap second falls within the drive: UTC counts it, GPS time goes on.");
   note(facts.imu_stamps.backward + facts.gnss_stamps.backward > 0,
        count_text(facts.imu_stamps.backward + facts.gnss_stamps.backward, "rows whose stamp steps back are left out."));
   note(facts.sampling.incomplete > 0,
        count_text(facts.sampling.incomplete, "rows of the unit are incomplete and are left out."));
+  note(
+      facts.sampling.repeated_stamps > 0,
+      count_text(facts.sampling.repeated_stamps, "rows of the unit have the time of the row before and are left out."));
   note(facts.sampling.stuck > 0,
        count_text(facts.sampling.stuck, "rows of the unit stand in runs of equal rows: the sensor was stuck there."));
   note(facts.sampling.gaps_splitting > 0,
@@ -194,6 +251,8 @@ void write_notes(Drive& drive) {
        "The reference is the withheld fixes: their own errors are part of every error given here.");
   note(facts.highest_speed_m_s < 3.0,
        "The vehicle never moves faster than 3 m/s: its heading cannot be observed from its course.");
+  note(std::none_of(drive.fixes.begin(), drive.fixes.end(), [](const Fix& fix) { return fix.velocity_ned_m_s; }),
+       "No fix has a velocity: the heading at the start cannot be observed from a course.");
 }
 
 Status load_reference(const Document& document, const Tables& tables, double epoch_s, bool absolute, Drive& drive) {
@@ -339,7 +398,8 @@ Result<Drive> load_drive(const Document& document, const Tables& tables, const L
     fix.time_s -= drive.epoch_s;
   }
   const double end = drive.end_s();
-  std::erase_if(*fixes, [&](const Fix& fix) { return fix.time_s < -1.0 || fix.time_s > end + 1.0; });
+  drive.facts.outside_readings =
+      std::erase_if(*fixes, [&](const Fix& fix) { return fix.time_s < -1.0 || fix.time_s > end + 1.0; });
   if (fixes->size() < 4) {
     return fail(ErrorCode::InconsistentSampling,
                 "Readings and fixes do not overlap in time; are their time scales and offsets right?");
@@ -362,6 +422,7 @@ Result<Drive> load_drive(const Document& document, const Tables& tables, const L
     return fail(status.error());
   }
   describe_motion(drive);
+  write_notes_of_decoding(document, tables, drive.facts.notes);
   write_notes(drive);
   if (auto status = check_plausible(drive); !status) {
     return fail(status.error());

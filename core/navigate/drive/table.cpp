@@ -14,6 +14,7 @@ namespace driftlab::drive {
 namespace {
 
 constexpr double kWeekSeconds = 604800.0;
+constexpr double kStepBack = 0.2;  ///< [s] and more, at a leap second
 
 /// Moments of UTC [s since 1970] from which GPS time has been ahead by so many seconds.
 constexpr std::array<std::pair<double, double>, 6> kLeaps{{{915148800.0, 13.0},
@@ -39,6 +40,33 @@ Result<std::optional<ColumnPlace>> place_of(const Table& table, const Source& so
     }
   }
   return std::optional<ColumnPlace>();
+}
+
+/// Brings UTC to GPS time. At a leap second a clock of UTC counts one second twice, 23:59:59 or the first of the new
+/// day: what follows the step back is behind it. A clock that does not step back is behind it from the new day on.
+void add_leap_seconds(std::vector<double>& stamps, StampFacts& facts) {
+  const auto first = std::find_if(stamps.begin(), stamps.end(), [](double stamp) { return std::isfinite(stamp); });
+  if (first == stamps.end()) {
+    return;
+  }
+  facts.leap_seconds = leap_seconds_at(*first);
+  const auto next = std::find_if(kLeaps.begin(), kLeaps.end(), [&](const auto& leap) { return leap.first > *first; });
+  auto behind = stamps.end();
+  if (next != kLeaps.end()) {
+    const double new_day = next->first;
+    behind = std::find_if(first, stamps.end(), [&](double stamp) { return stamp >= new_day; });
+    const auto near = [&](double stamp) { return std::abs(stamp - new_day) <= 1.0 + kStepBack; };
+    const auto steps_back = [&](double a, double b) {
+      return near(a) && near(b) && (a - b > kStepBack || (a == new_day && b == new_day));  // of rows once a second
+    };
+    if (const auto at = std::adjacent_find(first, stamps.end(), steps_back); at != stamps.end()) {
+      behind = at + 1;
+    }
+  }
+  facts.leap_within = behind != stamps.end();
+  const double later = facts.leap_within ? next->second : facts.leap_seconds;
+  std::for_each(first, behind, [&](double& stamp) { stamp += facts.leap_seconds; });
+  std::for_each(behind, stamps.end(), [&](double& stamp) { stamp += later; });
 }
 
 std::vector<double> in_si(std::vector<double> values, double factor) {
@@ -122,6 +150,10 @@ Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
                    [&](double value) { return value * meaning.unit_s; });
     stamped.facts.rows = stamps.size();
   }
+  if (meaning.scale == TimeScale::Utc || meaning.scale == TimeScale::Unix) {
+    add_leap_seconds(stamps, stamped.facts);
+    stamped.absolute = true;
+  }
   double rolled = 0.0;
   double before = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < stamps.size(); ++i) {
@@ -152,11 +184,7 @@ Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
   if (stamped.time_s.size() < 2) {
     return fail(ErrorCode::TooFewSamples, "The file has fewer than two rows with a time.");
   }
-  stamped.absolute = meaning.scale == TimeScale::Gps;
-  if (meaning.scale == TimeScale::Utc || meaning.scale == TimeScale::Unix) {
-    stamped.facts.leap_seconds = leap_seconds_at(stamped.time_s.front());
-    stamped.absolute = true;
-  }
+  stamped.absolute = stamped.absolute || meaning.scale == TimeScale::Gps;
   if (table.tag) {  // the file's own clock runs linearly from the first date to the last (RTKLIB time tag)
     const double first = stamped.time_s.front();
     const double scale = (table.tag->last_s - table.tag->first_s) / std::max(stamped.time_s.back() - first, 1e-9);
@@ -166,7 +194,7 @@ Result<StampedRows> stamp_rows(const Table& table, const TimeMeaning& meaning) {
     stamped.absolute = true;
   }
   for (double& time_s : stamped.time_s) {
-    time_s += meaning.offset_s + stamped.facts.leap_seconds;
+    time_s += meaning.offset_s;
   }
   return stamped;
 }

@@ -24,7 +24,8 @@ struct StampFacts {
   std::size_t without_stamp = 0;  ///< rows left out: no stamp
   std::size_t backward = 0;       ///< rows left out: their stamp lies before the one before
   std::size_t week_rollovers = 0;
-  double leap_seconds = 0.0;  ///< added once, for UTC
+  double leap_seconds = 0.0;  ///< added to the first row, for UTC
+  bool leap_within = false;   ///< one more was added to the rows behind a leap second
 };
 
 /// A row and its stamp [s]: on GPS time in seconds since 1970 for Gps, Utc, Unix and tagged files, else on the source's

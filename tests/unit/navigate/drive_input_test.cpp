@@ -163,6 +163,98 @@ TEST(DriveInput, ANumberThatStandsForNoneIsARowLeftOutAndNoReading) {
   EXPECT_EQ(b->facts.sampling.incomplete, 1U);
 }
 
+/// The rows of the fixes `times` times, as a table at the rate of the unit holds them.
+void hold_each(Files& files, std::size_t times) {
+  Table held = files.tables.gnss;
+  std::for_each(held.columns.begin(), held.columns.end(), [](auto& column) { column.clear(); });
+  for (std::size_t row = 0; row < files.tables.gnss.rows(); ++row) {
+    for (std::size_t again = 0; again < times; ++again) {
+      for (std::size_t c = 0; c < held.columns.size(); ++c) {
+        const double value = files.tables.gnss.columns[c][row];
+        held.columns[c].push_back(c == 0 ? value + 0.01 * static_cast<double>(again) : value);
+      }
+    }
+  }
+  files.tables.gnss = std::move(held);
+}
+
+TEST(DriveInput, AFileThatHoldsItsFixesIsTheDriveOfTheFixes) {
+  // Each fix five times, at the unit's rate, without a word of it in the document: taken as new data they would count
+  // five times, the last 40 ms too late.
+  const Files once = town();
+  Files held = town();
+  hold_each(held, 5);
+  const auto a = load_drive(once.document, once.tables);
+  const auto b = load_drive(held.document, held.tables);
+  ASSERT_TRUE(a && b);
+  ASSERT_EQ(a->fixes.size(), b->fixes.size());
+  for (std::size_t i = 0; i < a->fixes.size(); ++i) {
+    EXPECT_EQ(a->fixes[i].time_s, b->fixes[i].time_s);
+    EXPECT_EQ(a->fixes[i].position_ecef_m, b->fixes[i].position_ecef_m);
+  }
+  EXPECT_EQ(b->facts.held, 4 * a->fixes.size());
+}
+
+TEST(DriveInput, AReceiverAtRestThatRepeatsItselfHoldsNothing) {
+  Files files = town();
+  const std::size_t rows = files.tables.gnss.rows();
+  for (std::size_t row = 1; row < rows; ++row) {
+    const bool still = std::hypot(files.gnss("vn")[row], files.gnss("ve")[row]) < 0.5;
+    for (std::size_t c = 1; still && c < files.tables.gnss.columns.size(); ++c) {
+      files.tables.gnss.columns[c][row] = files.tables.gnss.columns[c][row - 1];
+    }
+  }
+  const auto drive = load_drive(files.document, files.tables);
+  ASSERT_TRUE(drive) << drive.error().message;
+  EXPECT_EQ(drive->facts.held, 0U);
+  EXPECT_EQ(drive->fixes.size(), rows);
+}
+
+TEST(DriveInput, PositionsAloneShowSpeedAndLengthOfTheDrive) {
+  // A receiver without velocities was said never to move faster than 3 m/s, over 0 m.
+  Files files = town();
+  for (const char* name : {"vn", "ve", "vd"}) {
+    files.document.gnss.source.columns.erase(name);
+  }
+  const auto whole = load_drive(town().document, town().tables);
+  const auto drive = load_drive(files.document, files.tables);
+  ASSERT_TRUE(whole && drive);
+  EXPECT_NEAR(drive->facts.length_m, whole->facts.length_m, 0.05 * whole->facts.length_m);
+  EXPECT_NEAR(drive->facts.highest_speed_m_s, whole->facts.highest_speed_m_s, 1.0);
+}
+
+TEST(DriveInput, AnOdometerIsReadBySpeedOrByTicks) {
+  Files files = town();
+  OdometerSource& odometer = files.document.odometer.emplace();
+  odometer.source.file = "wheel.csv";
+  odometer.source.time.column = "t";
+  odometer.source.columns = {{"v", {Quantity::OdometerSpeed, "", 1.0 / 3.6}}};
+  Table wheel{{"t", "v", "n"}, {{1.0, 1.5, 2.0}, {36.0, 72.0, kNothing}, {0.0, 100.0, 300.0}}, {}, {}};
+  files.tables.odometer = wheel;
+  const auto by_speed = load_drive(files.document, files.tables);
+  ASSERT_TRUE(by_speed) << by_speed.error().message;
+  const double zero = by_speed->epoch_s;
+  ASSERT_EQ(by_speed->odometer.size(), 2U) << "a row without a number is none";
+  EXPECT_NEAR(by_speed->odometer[0].speed_m_s, 10.0, 1e-12);
+  EXPECT_NEAR(by_speed->odometer[1].speed_m_s, 20.0, 1e-12);
+  EXPECT_NEAR(by_speed->odometer[1].time_s, 1.5 - zero, 1e-9);
+  odometer.source.columns = {{"n", {Quantity::OdometerTicks, "", 1.0}}};
+  const auto without_length = load_drive(files.document, files.tables);
+  ASSERT_FALSE(without_length);
+  EXPECT_NE(without_length.error().message.find("metres_per_tick"), std::string::npos);
+  odometer.metres_per_tick = 0.02;
+  const auto by_ticks = load_drive(files.document, files.tables);
+  ASSERT_TRUE(by_ticks);
+  ASSERT_EQ(by_ticks->odometer.size(), 2U);
+  EXPECT_NEAR(by_ticks->odometer[0].speed_m_s, 0.02 * 100.0 / 0.5, 1e-12);
+  EXPECT_NEAR(by_ticks->odometer[0].time_s, 1.25 - zero, 1e-9) << "the mean speed between two counts";
+  EXPECT_NEAR(by_ticks->odometer[1].speed_m_s, 0.02 * 200.0 / 0.5, 1e-12);
+}
+
+void negate(std::vector<double>& values) {
+  std::for_each(values.begin(), values.end(), [](double& value) { value = -value; });
+}
+
 struct Case {
   const char* name;
   std::function<void(Files&)> spoil;
@@ -177,9 +269,111 @@ TEST(DriveInput, IsRefusedOrSurvivedWithItsSentence) {
        true, "latitude and longitude are swapped"},
       {"up for down", [](Files& f) { f.document.gnss.source.columns["vd"].axis = "up"; }, true,
        "the vertical velocity is up"},
-      {"left-handed axes",
-       [](Files& f) { std::for_each(f.imu("gz").begin(), f.imu("gz").end(), [](double& v) { v = -v; }); }, true,
-       "left-handed"},
+      {"left-handed axes", [](Files& f) { negate(f.imu("gz")); }, true, "left-handed"},
+      {"x of the accelerometer mirrored", [](Files& f) { negate(f.imu("ax")); }, true,
+       "The accelerometer's x points back where the speed rises"},
+      {"y of the accelerometer mirrored", [](Files& f) { negate(f.imu("ay")); }, true,
+       "The accelerometer's y points left where the course turns right"},
+      {"x and y of the accelerometer exchanged", [](Files& f) { std::swap(f.imu("ax"), f.imu("ay")); }, true,
+       "x and y are exchanged"},
+      {"radians called degrees",
+       [](Files& f) {
+         for (const char* name : {"lat", "lon"}) {
+           f.document.gnss.source.columns[name].factor = std::numbers::pi / 180.0;
+         }
+       },
+       true, "latitude and longitude are in radians, not degrees"},
+      {"a constant accuracy to the north",
+       [](Files& f) {
+         f.document.gnss.source.columns["sd"] = {Quantity::GnssAccuracy, "north", 1.0};
+         f.document.gnss.source.columns["sdv"] = {Quantity::GnssAccuracy, "east", 1.0};
+         f.gnss("sdv").assign(f.gnss("sdv").size(), 3.0);
+       },
+       false, "The stated accuracy of the positions never varies"},
+      {"heights of 0 beside the unit's longer stream",
+       [](Files& f) {
+         f.gnss("h").assign(f.gnss("h").size(), 0.0);
+         in_one_file(f);
+       },
+       false, "Every height is 0"},
+      {"heights of 0 but for one that is missing",
+       [](Files& f) {
+         f.gnss("h").assign(f.gnss("h").size(), 0.0);
+         f.gnss("h")[30] = kNothing;
+       },
+       false, "Every height is 0"},
+      {"a constant accuracy beside the unit's longer stream",
+       [](Files& f) {
+         f.gnss("sdv").assign(f.gnss("sdv").size(), 3.0);
+         in_one_file(f);
+       },
+       false, "The stated vertical accuracy never varies"},
+      {"a constant course beside the unit's longer stream",
+       [](Files& f) {
+         by_course(f);
+         f.gnss("ve").assign(f.gnss("ve").size(), 1.0);
+         in_one_file(f);
+       },
+       false, "The course of the fixes never varies"},
+      {"a file that is torn, as its decoder says",
+       [](Files& f) { f.tables.imu.notes.emplace_back("the last row is torn and left out"); }, false,
+       "imu.csv: the last row is torn and left out"},
+      {"a unit that ends before the fixes do",
+       [](Files& f) {
+         for (auto& column : f.tables.imu.columns) {
+           column.resize(column.size() - 1000);
+         }
+       },
+       false, "fixes lie before the first reading of the unit or after its last"},
+      {"fixes that end before the unit does",
+       [](Files& f) {
+         for (auto& column : f.tables.gnss.columns) {
+           column.resize(column.size() - 80);
+         }
+       },
+       false, "The fixes end 21 s before the readings do"},
+      {"stamps of the unit that repeat", [](Files& f) { f.imu("t")[700] = f.imu("t")[701] = f.imu("t")[699]; }, false,
+       "2 rows of the unit have the time of the row before"},
+      {"fixes that are held at the unit's rate", [](Files& f) { hold_each(f, 5); }, false,
+       "rows of the fixes repeat the fix before"},
+      {"fixes without velocities",
+       [](Files& f) {
+         for (const char* name : {"vn", "ve", "vd"}) {
+           f.document.gnss.source.columns.erase(name);
+         }
+       },
+       false, "No fix has a velocity"},
+      {"a placeholder before the first fix",
+       [](Files& f) { std::fill_n(f.gnss("lat").begin(), 3, std::numbers::pi / 4.0); }, false,
+       "3 fixes lie more than 200 km from the middle of the drive"},
+      {"a position of 0, 0",
+       [](Files& f) {
+         std::fill_n(f.gnss("lat").begin(), 2, 0.0);
+         std::fill_n(f.gnss("lon").begin(), 2, 0.0);
+       },
+       false, "2 rows of the fixes have no position"},
+      {"fixes of a type that is not to be used",
+       [](Files& f) {
+         f.document.gnss.fix_types = {1};
+         std::fill_n(f.gnss("type").begin() + 50, 7, 5.0);
+       },
+       false, "7 fixes of other types are left out"},
+      {"seconds of the week that start again",
+       [](Files& f) {
+         for (std::vector<double>* t : {&f.imu("t"), &f.gnss("t")}) {
+           std::for_each(t->begin(), t->end(), [](double& s) { s = std::fmod(s + 604700.0, 604800.0); });
+         }
+         f.document.imu.source.time.scale = f.document.gnss.source.time.scale = TimeScale::Gps;
+       },
+       false, "The seconds of the week start again within the drive"},
+      {"a leap second",
+       [](Files& f) {
+         for (std::vector<double>* t : {&f.imu("t"), &f.gnss("t")}) {
+           std::for_each(t->begin(), t->end(), [](double& s) { s += 1483228800.0 - (s < 200.0 ? 199.0 : 200.0); });
+         }
+         f.document.imu.source.time.scale = f.document.gnss.source.time.scale = TimeScale::Utc;
+       },
+       false, "A leap second falls within the drive"},
       {"the filter's own input as reference", [](Files& f) { own_reference(f, 0.0); }, false, "the filter's own input"},
       {"a reference with gaps",
        [](Files& f) {

@@ -116,6 +116,30 @@ TEST(DriveTime, DatesUtcOnceAndGoesOnOverTheEndOfAWeek) {
   EXPECT_DOUBLE_EQ(week->time_s.back(), 604800.5);
 }
 
+TEST(DriveTime, GoesOnOverALeapSecond) {
+  // The last second of 2016 was counted twice. By the leap seconds of the first row alone, half a drive was 1 s off.
+  constexpr double kNewDay = 1483228800.0;
+  TimeMeaning meaning{"t", 1.0, false, TimeScale::Utc, 0.0, {}, ""};
+  const auto gps = [&](std::vector<double> utc) {
+    const auto stamped = stamp_rows(Table{{"t"}, {std::move(utc)}, {}, {}}, meaning);
+    EXPECT_TRUE(stamped && stamped->facts.leap_within);
+    std::vector<double> since;
+    for (const double time_s : stamped->time_s) {
+      since.push_back(time_s - kNewDay - 17.0);
+    }
+    return since;
+  };
+  const std::vector<double> truth{-1.0, -0.5, 0.0, 0.5, 1.0, 1.5};
+  EXPECT_EQ(gps({kNewDay - 1.0, kNewDay - 0.5, kNewDay, kNewDay + 0.5, kNewDay, kNewDay + 0.5}), truth)
+      << "the first second of the new day twice, as POSIX has it";
+  EXPECT_EQ(gps({kNewDay - 1.0, kNewDay - 0.5, kNewDay - 1.0, kNewDay - 0.5, kNewDay, kNewDay + 0.5}), truth)
+      << "the last second of the old day twice, as computers count";
+  EXPECT_EQ(gps({kNewDay - 1.0, kNewDay, kNewDay, kNewDay + 1.0}), (std::vector<double>{-1.0, 0.0, 1.0, 2.0}))
+      << "rows once a second";
+  EXPECT_EQ(gps({kNewDay - 1.0, kNewDay - 0.5, kNewDay + 0.5}), (std::vector<double>{-1.0, -0.5, 1.5}))
+      << "no row in the second";
+}
+
 /// The drive without the fixes that lie in an outage.
 Drive without_fixes_in(const Drive& drive, const std::vector<Outage>& outages) {
   Drive fewer = drive;
