@@ -209,8 +209,10 @@ void add_filter(CLI::App& command, DriveFlags& flags) {
   add_work(command, flags);
   command.add_flag("--zupt", flags.request.zero_velocity, "Zero velocity and no turn while the unit is at rest");
   command.add_flag("--odometer", flags.request.odometer, "Use the odometer");
-  command.add_flag("--estimate", flags.request.estimate,
-                   "Estimate the lever arm, and with --nhc the mounting, by the document's standard deviations");
+  command.add_flag(
+      "--estimate", flags.request.estimate,
+      "Estimate the lever arm, and with --nhc the mounting, by the document's standard deviations; with --nhc "
+      "also where the axle lies, with --odometer its scale");
 }
 
 void add_readings(CLI::App& command, DriveFlags& flags) {
