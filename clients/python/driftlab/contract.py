@@ -1817,8 +1817,8 @@ class JobRequestDriveQuestion(TypedDict):
     seed: NotRequired[int]
     # Simulated drives; of `simulate` and `explain`.
     runs: NotRequired[int]
-    # Estimate the lever arm, and with velocity constraints the mounting, by the document's standard deviations; not of
-    # `explain`.
+    # Estimate the lever arm, and with velocity constraints the mounting, by the document's standard deviations; with
+    # velocity constraints also where the axle lies, and with an odometer its scale; not of `explain`.
     estimate: NotRequired[bool]
     # Of `compare`: at least two; the first is what the others are compared with.
     models: NotRequired[list[JobRequestDriveQuestionModel]]
