@@ -128,12 +128,20 @@ std::string simulated_rows(const std::vector<drive::SimulatedDuration>& simulate
 
 }  // namespace
 
+std::string size_of_finding(const drive::DriveFinding& finding) {
+  std::string text = printed("%.4g", finding.value);
+  if (finding.se > 0.0) {
+    text += printed(" +- %.2g", finding.se);
+  }
+  return finding.unit.empty() || finding.unit == "1" ? text : text + " " + finding.unit;
+}
+
 std::string drive_explanation_to_text(const DriveExplanationReport& report) {
   const drive::DriveExplanation& e = report.explanation;
   std::string text = sentence_of(report) + "\n\n" + header_of_drive(report.drive) + "\nFound:\n";
   for (const drive::DriveFinding& f : e.findings) {
-    text += printed("  %s %s: %s %.4g +- %.2g %s (score %.0f, from %s)%s\n", f.cause.c_str(), f.parameter.c_str(),
-                    f.title.c_str(), f.value, f.se, f.unit.c_str(), f.score, f.evidence.c_str(),
+    text += printed("  %s %s: %s %s (score %.0f, from %s)%s\n", f.cause.c_str(), f.parameter.c_str(), f.title.c_str(),
+                    size_of_finding(f).c_str(), f.score, f.evidence.c_str(),
                     f.pair.empty() ? "" : (", not told apart from " + std::string(drive::words_of(f.pair))).c_str());
     if (f.at_bound) {
       text += "      the value lies where the search ends, beyond what this can be: something else looks like it\n";

@@ -12,6 +12,9 @@ namespace driftlab {
 /// One sentence, then a table of durations, classes, innovations and notes.
 [[nodiscard]] std::string drive_report_to_text(const DriveReport& report);
 
+/// "0.1265 +- 0.0009 s". A value that has no error is given without, and a ratio without a unit.
+[[nodiscard]] std::string size_of_finding(const drive::DriveFinding& finding);
+
 /// One sentence, then findings and the table of rungs.
 [[nodiscard]] std::string drive_explanation_to_text(const DriveExplanationReport& report);
 
