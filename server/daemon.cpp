@@ -16,6 +16,7 @@
 #include "server/scrubber.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/disk_reserve.hpp"
+#include "server/store/guarded_round.hpp"
 #include "server/store/sqlite/backup.hpp"
 #include "server/store_gauges.hpp"
 #include "server/take_over.hpp"
@@ -318,6 +319,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Settings& settings) {
     }
     tls = std::move(*loaded);
   }
+  tell_escapes_to(note_escape);
   auto machine = std::make_unique<SystemClock>();
   auto opened = open_store(settings, *machine, [](const AuditRow& row) { log_info("audit", to_json(row)); });
   if (!opened) {

@@ -32,6 +32,10 @@ void note_failure(BadStates& states, const Error& error, const Json& where) {
   }
 }
 
+void note_escape(std::string_view where, std::string_view what) {
+  log_error("exception", Json{{"where", where}, {"detail", what}});
+}
+
 void note_request(Metrics& metrics, BadStates& states, const AccessRecord& record) {
   if (record.failure) {
     note_failure(states, *record.failure, Json{{"request_id", record.request_id}, {"route", record.route}});

@@ -1,6 +1,7 @@
 #include "server/scrubber.hpp"
 
 #include "server/observe/log.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <chrono>
 #include <condition_variable>
@@ -98,29 +99,40 @@ void Scrubber::run(const std::stop_token& stop) {
                 std::chrono::duration<double>(static_cast<double>(bytes) / static_cast<double>(bytes_per_second_)));
   };
   while (rest(stop, 1s)) {
-    if (is_mine_ && !is_mine_()) {
-      continue;
-    }
-    const auto hashes = store_.blob_hashes();
-    for (const std::string& sha256 : hashes.value_or(std::vector<std::string>{})) {
-      const auto state = verify_blob(blobs_, sha256, limits_, pace);
-      if (stop.stop_requested()) {
-        return;
-      }
-      const auto row = store_.blob(sha256);
-      if (state && row && *row) {  // one that was removed meanwhile is no loss
-        note(sha256, *state);
-        if (*state == BlobState::Sound || *state == BlobState::Healed) {
-          (void)mend_pyramid(blobs_, sha256, pace);  // traces are slower without it, and right
-        }
-      }
-    }
-    {
-      const std::lock_guard<std::mutex> guard(mutex_);
-      ++findings_.passes;
-    }
-    if (!rest(stop, 60s)) {
+    bool mine = true;
+    (void)guarded_round("scrubber", [&] { mine = read_all(stop, pace); });
+    if (mine && !rest(stop, 60s)) {
       return;
+    }
+  }
+}
+
+bool Scrubber::read_all(const std::stop_token& stop, const ReadingPace& pace) {
+  if (is_mine_ && !is_mine_()) {
+    return false;
+  }
+  const auto hashes = store_.blob_hashes();
+  for (const std::string& sha256 : hashes.value_or(std::vector<std::string>{})) {
+    (void)guarded_round("scrubber", [&] { read_back(sha256, stop, pace); });
+    if (stop.stop_requested()) {
+      return true;
+    }
+  }
+  const std::lock_guard<std::mutex> guard(mutex_);
+  ++findings_.passes;
+  return true;
+}
+
+void Scrubber::read_back(const std::string& sha256, const std::stop_token& stop, const ReadingPace& pace) {
+  const auto state = verify_blob(blobs_, sha256, limits_, pace);
+  if (stop.stop_requested()) {
+    return;
+  }
+  const auto row = store_.blob(sha256);
+  if (state && row && *row) {  // one that was removed meanwhile is no loss
+    note(sha256, *state);
+    if (*state == BlobState::Sound || *state == BlobState::Healed) {
+      (void)mend_pyramid(blobs_, sha256, pace);  // traces are slower without it, and right
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// Reads back all stored files in a slow, endless loop, so that damage is found before a file is needed. Damaged
-/// columns are healed; damage that cannot be healed is logged once, counted and shown by /readyz.
+/// columns are healed; damage that cannot be healed is logged once, counted and shown by /readyz. An exception while
+/// one file is read leaves the others to be read (server/store/guarded_round.hpp).
 #include "core/read/byte_source.hpp"
 #include "server/api/stored_blob.hpp"
 #include "server/store/bad_states.hpp"
@@ -53,6 +54,9 @@ class Scrubber {
 
  private:
   void run(const std::stop_token& stop);
+  /// Reads everything that is stored, once, where this process does that. False: another one does.
+  [[nodiscard]] bool read_all(const std::stop_token& stop, const ReadingPace& pace);
+  void read_back(const std::string& sha256, const std::stop_token& stop, const ReadingPace& pace);
   void note(const std::string& sha256, BlobState state);
 
   Store& store_;

@@ -1,6 +1,7 @@
 #include "server/service_manager.hpp"
 
 #include "server/store/files.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -66,9 +67,11 @@ void ServiceManager::watch(std::function<bool(std::chrono::milliseconds)> is_ali
     std::unique_lock<std::mutex> lock(mutex);
     std::condition_variable_any resting;
     while (!stop.stop_requested()) {
-      if (is_alive(turn / 2)) {
-        tell("WATCHDOG=1");
-      }
+      (void)guarded_round("watchdog", [&] {
+        if (is_alive(turn / 2)) {
+          tell("WATCHDOG=1");
+        }
+      });
       (void)resting.wait_for(lock, stop, turn / 2, [] { return false; });
     }
   });

@@ -10,12 +10,14 @@
 #include "server/api/record_blob.hpp"
 #include "server/http/problem.hpp"
 #include "server/store/digest.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <condition_variable>
+#include <functional>
 #include <thread>
 
 namespace driftlab::server {
@@ -165,14 +167,18 @@ class Live {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, std::chrono::minutes(1), [this] { return stopping_; })) {
       lock.unlock();
-      const UtcMicros now = context_.clock.now();
-      for (const std::string& id : recordings_.untouched_since(now - kUnfinishedMicros)) {
-        (void)finish(id);
-      }
-      for (const std::string& id : recordings_.untouched_since(now - kTokenMicros)) {
-        (void)recordings_.remove(id);
-      }
+      (void)guarded_round("live recordings", [this] {
+        for_untouched(kUnfinishedMicros, [this](const std::string& id) { (void)finish(id); });
+        for_untouched(kTokenMicros, [this](const std::string& id) { (void)recordings_.remove(id); });
+      });
       lock.lock();
+    }
+  }
+
+  /// An exception over one recording leaves the others their turn.
+  void for_untouched(UtcMicros age, const std::function<void(const std::string& id)>& treat) {
+    for (const std::string& id : recordings_.untouched_since(context_.clock.now() - age)) {
+      (void)guarded_round("live recordings", [&] { treat(id); });
     }
   }
 

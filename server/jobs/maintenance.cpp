@@ -1,5 +1,7 @@
 #include "server/jobs/maintenance.hpp"
 
+#include "server/store/guarded_round.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -95,33 +97,37 @@ void Maintenance::stop() {
 }
 
 void Maintenance::run() {
-  auto tidied_at = std::chrono::steady_clock::now() - std::chrono::microseconds(options_.tidy_micros);
+  tidied_at_ = std::chrono::steady_clock::now() - std::chrono::microseconds(options_.tidy_micros);
   std::unique_lock<std::mutex> guard(mutex_);
   while (!stopping_) {
     guard.unlock();
-    const bool mine = !options_.is_mine || options_.is_mine();
-    if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
-      rescued_();
-    }
-    const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
-    if (full) {
-      (void)forget_old(store_, options_.budgets, clock_.now());
-      (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
-    }
-    if (mine && std::chrono::steady_clock::now() - tidied_at >= std::chrono::microseconds(options_.tidy_micros)) {
-      tidied_at = std::chrono::steady_clock::now();
-      (void)store_.forget_old_replies();
-      (void)forget_old(store_, options_.budgets, clock_.now());
-      (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
-      if (options_.each_tidy) {
-        options_.each_tidy();
-      }
-    }
-    if (options_.each_turn) {
-      options_.each_turn();
-    }
+    (void)guarded_round("maintenance", [this] { turn(); });
     guard.lock();
     stopped_.wait_for(guard, std::chrono::microseconds(options_.rescue_micros), [this] { return stopping_; });
+  }
+}
+
+void Maintenance::turn() {
+  const bool mine = !options_.is_mine || options_.is_mine();
+  if (mine && store_.rescue_expired().value_or(0) > 0 && rescued_) {
+    rescued_();
+  }
+  const bool full = mine && options_.is_nearly_full && options_.is_nearly_full();
+  if (full) {
+    (void)forget_old(store_, options_.budgets, clock_.now());
+    (void)sweep_blobs(store_, blobs_, std::chrono::minutes(1));
+  }
+  if (mine && std::chrono::steady_clock::now() - tidied_at_ >= std::chrono::microseconds(options_.tidy_micros)) {
+    tidied_at_ = std::chrono::steady_clock::now();
+    (void)store_.forget_old_replies();
+    (void)forget_old(store_, options_.budgets, clock_.now());
+    (void)sweep_blobs(store_, blobs_, std::chrono::hours(options_.budgets.orphan_hours));
+    if (options_.each_tidy) {
+      options_.each_tidy();
+    }
+  }
+  if (options_.each_turn) {
+    options_.each_turn();
   }
 }
 

@@ -5,6 +5,7 @@
 #include "server/store/budgets.hpp"
 #include "server/store/store.hpp"
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -32,7 +33,8 @@ struct MaintenanceOptions {
 /// moment keeps its file: `keep` makes a blob young again, and only old ones are removed. Errors: Io.
 [[nodiscard]] Result<int> sweep_blobs(Store& store, BlobStore& blobs, std::chrono::microseconds age);
 
-/// One thread. A task that fails is tried again at its next turn; the store's state says what is left to do.
+/// One thread. A task that fails is tried again at its next turn; the store's state says what is left to do. An
+/// exception ends the turn alone (server/store/guarded_round.hpp).
 class Maintenance {
  public:
   /// `rescued` is called when jobs went back to the queue. References must outlive this object.
@@ -47,6 +49,8 @@ class Maintenance {
 
  private:
   void run();
+  /// One look for expired leases, and what else is due.
+  void turn();
 
   Store& store_;
   BlobStore& blobs_;
@@ -56,6 +60,7 @@ class Maintenance {
   std::mutex mutex_;
   std::condition_variable stopped_;
   bool stopping_ = false;
+  std::chrono::steady_clock::time_point tidied_at_;
   std::thread thread_;
 };
 

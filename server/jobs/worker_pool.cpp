@@ -2,6 +2,7 @@
 
 #include "server/jobs/attempt.hpp"
 #include "server/jobs/maintenance.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +31,8 @@ struct WorkerPool::Implementation {
   void wake();
   void work();
   void beat();
+  /// What one beat does for one attempt; an exception there leaves the others theirs.
+  static void tend(Attempt& attempt, bool renew);
   [[nodiscard]] std::vector<std::shared_ptr<Attempt>> attempts();
   /// Runs the next job if one is due. False: none was, or the store did not answer.
   [[nodiscard]] bool run_next();
@@ -81,7 +84,8 @@ void WorkerPool::Implementation::work() {
   while (!stopping) {
     const std::uint64_t seen = wakes;
     guard.unlock();
-    const bool worked = run_next();
+    bool worked = false;
+    (void)guarded_round("worker", [&] { worked = run_next(); });
     guard.lock();
     if (!worked) {
       woken.wait_for(guard, std::chrono::microseconds(options.idle_micros),
@@ -110,13 +114,21 @@ bool WorkerPool::Implementation::run_next() {
   if (too_late) {
     attempt->ask_to_stop();
   }
-  attempt->run();
+  (void)guarded_round("worker", [&] { attempt->run(); });
   {
     const std::lock_guard<std::mutex> guard(mutex);
     running.erase(std::find(running.begin(), running.end(), attempt));
   }
   drained.notify_all();
   return true;
+}
+
+void WorkerPool::Implementation::tend(Attempt& attempt, bool renew) {
+  attempt.mind_deadline();
+  attempt.catch_up();
+  if (renew) {
+    attempt.renew();
+  }
 }
 
 void WorkerPool::Implementation::beat() {
@@ -136,13 +148,11 @@ void WorkerPool::Implementation::beat() {
       renew_at = now + renewing;
     }
     guard.unlock();
-    for (const auto& attempt : attempts()) {
-      attempt->mind_deadline();
-      attempt->catch_up();
-      if (renew) {
-        attempt->renew();
+    (void)guarded_round("heartbeat", [&] {
+      for (const auto& attempt : attempts()) {
+        (void)guarded_round("heartbeat", [&] { tend(*attempt, renew); });
       }
-    }
+    });
     guard.lock();
   }
 }
@@ -164,7 +174,7 @@ void WorkerPool::Implementation::stop() {
   drained.wait_for(guard, std::chrono::microseconds(options.grace_micros), [this] { return running.empty(); });
   guard.unlock();
   for (const auto& attempt : attempts()) {
-    attempt->hand_back();
+    (void)guarded_round("hand back", [&] { attempt->hand_back(); });
   }
   for (std::thread& worker : workers) {
     worker.join();

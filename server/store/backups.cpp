@@ -1,6 +1,7 @@
 #include "server/store/backups.hpp"
 
 #include "server/store/files.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <algorithm>
 #include <array>
@@ -161,28 +162,36 @@ bool Backups::is_due() const {
 
 void Backups::run(const std::stop_token& stop) {
   constexpr std::chrono::seconds kLook{5};
-  forget_unfinished();
+  (void)guarded_round("backups", [this] { forget_unfinished(); });
   while (!stop.stop_requested()) {
-    if (is_due()) {
-      (void)begin();
-    }
-    std::string name;
+    (void)guarded_round("backups", [this] {
+      if (is_due()) {
+        (void)begin();
+      }
+    });
+    bool wanted = false;
     {
       std::unique_lock<std::mutex> lock(mutex_);
       (void)asked_.wait_for(lock, stop, kLook, [this] { return wanted_; });
-      if (!std::exchange(wanted_, false)) {
-        continue;
-      }
-      name = own_.back().name;
+      wanted = std::exchange(wanted_, false);
     }
-    make(name, stop);
+    if (wanted) {
+      (void)guarded_round("backups", [&] { make(stop); });
+    }
   }
 }
 
-void Backups::make(const std::string& name, const std::stop_token& stop) {
-  Status ready = make_directories(options_.directory);
-  const Result<StoreReport> report =
-      ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
+void Backups::make(const std::stop_token& stop) {
+  std::string name;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    name = own_.back().name;
+  }
+  Result<StoreReport> report = fail(ErrorCode::Internal, "The backup broke off by an exception, which the log has.");
+  (void)guarded_round("backups", [&] {
+    const Status ready = make_directories(options_.directory);
+    report = ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
+  });
   Backup ended;
   {
     const std::lock_guard<std::mutex> guard(mutex_);

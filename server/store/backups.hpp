@@ -5,7 +5,8 @@
 /// Each is a folder `<directory>/<name>` as `driftlabd backup` makes it (server/store/sqlite/backup.hpp), named by the
 /// moment that it holds. A folder appears under that name only when its backup is complete; an unfinished one has
 /// another name and does not count as a backup. The newest backups are kept (`BackupOptions::keep`); older ones are
-/// removed after a backup that found no damage.
+/// removed after a backup that found no damage. An exception ends a backup as `Failed`, and the thread goes on
+/// (server/store/guarded_round.hpp).
 #include "core/signal/result.hpp"
 #include "server/store/clock.hpp"
 #include "server/store/store_report.hpp"
@@ -87,7 +88,8 @@ class Backups {
  private:
   [[nodiscard]] Result<std::vector<Backup>> complete() const;
   void run(const std::stop_token& stop);
-  void make(const std::string& name, const std::stop_token& stop);
+  /// Makes the backup that is under way.
+  void make(const std::stop_token& stop);
   void forget_old();
   void forget_unfinished();
   [[nodiscard]] bool is_due() const;

@@ -1,5 +1,6 @@
 #include "server/webhooks/deliverer.hpp"
 
+#include "server/store/guarded_round.hpp"
 #include "server/webhooks/pauses.hpp"
 #include "server/webhooks/signature.hpp"
 
@@ -63,12 +64,34 @@ void Deliverer::stop() {
 }
 
 void Deliverer::run() {
-  while (auto due = take()) {
-    deliver(*due);
+  bool more = true;
+  while (more) {
+    if (!guarded_round("webhooks", [&] { more = deliver_next(); })) {
+      pause();
+    }
+  }
+}
+
+bool Deliverer::deliver_next() {
+  const auto due = take();
+  if (!due) {
+    return false;
+  }
+  const bool carried_out = guarded_round("webhooks", [&] { deliver(*due); });
+  {
     const std::lock_guard<std::mutex> guard(mutex_);
     busy_.erase(std::find(busy_.begin(), busy_.end(), due->webhook.id));
-    changed_.notify_all();
   }
+  changed_.notify_all();
+  if (!carried_out) {  // it is still due
+    pause();
+  }
+  return true;
+}
+
+void Deliverer::pause() {
+  std::unique_lock<std::mutex> guard(mutex_);
+  changed_.wait_for(guard, kPoll, [this] { return stopping_; });
 }
 
 std::optional<DueDelivery> Deliverer::take() {
@@ -124,8 +147,7 @@ void Deliverer::deliver(const DueDelivery& due) {
     tell({due.webhook.id});
   }
   if (!disabled) {  // a full disk: it is still due, and the receiver shall not get it again and again
-    std::unique_lock<std::mutex> guard(mutex_);
-    changed_.wait_for(guard, kPoll, [this] { return stopping_; });
+    pause();
   }
 }
 

@@ -5,7 +5,8 @@
 /// receiver gets one message at a time, and a slow receiver does not delay the others. The outcome is written before
 /// the next is taken; a daemon that dies in between sends the message again, with the same id. Everything but 2xx is a
 /// failure and is tried again after a pause (pauses.hpp); 410 disables the webhook at once, and so do deliveries given
-/// up in a row (budgets webhook_attempts, webhook_give_ups).
+/// up in a row (budgets webhook_attempts, webhook_give_ups). After an exception a thread pauses and goes on
+/// (server/store/guarded_round.hpp).
 #include "server/store/budgets.hpp"
 #include "server/store/webhook_store.hpp"
 #include "server/webhooks/destination.hpp"
@@ -50,6 +51,9 @@ class Deliverer {
 
  private:
   void run();
+  /// Waits for the next delivery and carries it out. False: the end.
+  [[nodiscard]] bool deliver_next();
+  void pause();
   /// Waits for the next delivery; nothing: the end.
   [[nodiscard]] std::optional<DueDelivery> take();
   void deliver(const DueDelivery& due);

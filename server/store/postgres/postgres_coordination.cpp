@@ -1,5 +1,6 @@
 #include "server/store/postgres/postgres_coordination.hpp"
 
+#include "server/store/guarded_round.hpp"
 #include "server/store/postgres/advisory_locks.hpp"
 #include "server/store/silent_store.hpp"
 
@@ -135,12 +136,12 @@ void PostgresCoordination::hear(const std::stop_token& stop, const Hints& hints)
   std::unique_ptr<PostgresConnection> connection;
   auto access_at = std::chrono::steady_clock::now();
   bool heard_before = false;
-  while (!stop.stop_requested()) {
+  const auto listen_once = [&] {
     if (!connection) {
       auto opened = open_listener(open_);
       if (!opened) {
         rest(stop, kPause);
-        continue;
+        return;
       }
       connection = std::move(*opened);
       if (heard_before) {
@@ -151,7 +152,7 @@ void PostgresCoordination::hear(const std::stop_token& stop, const Hints& hints)
     const auto payloads = connection->notifications(kLook);
     if (!payloads) {
       connection.reset();
-      continue;
+      return;
     }
     for (const std::string& payload : *payloads) {
       pass_on(hints, payload);
@@ -159,6 +160,12 @@ void PostgresCoordination::hear(const std::stop_token& stop, const Hints& hints)
     if (const auto now = std::chrono::steady_clock::now(); now - access_at >= kAccessEvery) {
       access_at = now;
       hints.access();
+    }
+  };
+  while (!stop.stop_requested()) {
+    if (!guarded_round("hints of other daemons", listen_once)) {
+      connection.reset();  // what came with it may not have been passed on: the next connection says `lost`
+      rest(stop, kPause);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <new>
 #include <thread>
 
 namespace driftlab::server {
@@ -105,6 +106,24 @@ TEST(Maintenance, WhatIsTooOldGoesAtOnceWhereTheDiskIsNearlyFull) {
   EXPECT_EQ(world.store->recording(recording.id).error().code, ErrorCode::NotFound);
   EXPECT_FALSE(std::filesystem::exists(world.blobs->bytes_path(blob))) << "the space is free";
   EXPECT_FALSE(std::filesystem::exists(world.blobs->columns_path(blob)));
+  maintenance.stop();
+}
+
+TEST(Maintenance, AnExceptionEndsOneTurnAlone) {
+  ToyWorld world(nothing);
+  std::atomic<int> turns{0};
+  Gate again;
+  MaintenanceOptions options;
+  options.rescue_micros = 1000;
+  options.each_turn = [&] {
+    if (++turns == 1) {
+      throw std::bad_alloc();
+    }
+    again.open();
+  };
+  Maintenance maintenance(*world.store, *world.blobs, world.clock, options, [] {});
+  maintenance.start();
+  EXPECT_TRUE(again.pass());
   maintenance.stop();
 }
 
