@@ -3,6 +3,7 @@
 #include "schema/json/json.hpp"
 #include "server/jobs/fault_recorder.hpp"
 #include "server/store/crash_point.hpp"
+#include "server/store/guarded_round.hpp"
 
 #include <malloc.h>
 
@@ -23,19 +24,44 @@ Attempt::Attempt(Job job, const JobKind* kind, JobContext& context, Executor& ex
       options_(options),
       changed_(changed) {}
 
+template <class Part>
+auto Attempt::charged(const Part& part) -> decltype(part()) {
+  try {
+    return part();
+  } catch (const std::bad_alloc&) {
+    out_of_memory_ = true;
+    return driftlab::fail(ErrorCode::Internal, "There was not enough memory for the job.");
+  } catch (const std::exception& exception) {
+    return driftlab::fail(ErrorCode::Internal, std::string("The job broke off: ") + exception.what() + ".");
+  } catch (...) {
+    return driftlab::fail(ErrorCode::Internal, "The job broke off for an unknown reason.");
+  }
+}
+
 void Attempt::run() {
+  const FaultScope scope(lease_);
+  const Status carried_out = charged([this]() -> Status {
+    carry_out();
+    return {};
+  });
+  if (!carried_out) {
+    break_off(carried_out.error());
+  }
+  // Give the memory of a large job back to the system, for which the allocator would otherwise wait for its next use.
+  ::malloc_trim(0);
+}
+
+void Attempt::carry_out() {
   crash_point("job.claimed");
   if (changed_) {
     changed_(job_.id);
   }
-  Result<JobResults> results = work();
+  const Result<JobResults> results = charged([this] { return work(); });
   if (results) {
     finish(*results);
   } else {
     fail(results.error());
   }
-  // Give the memory of a large job back to the system, for which the allocator would otherwise wait for its next use.
-  ::malloc_trim(0);
 }
 
 Result<JobResults> Attempt::work() {
@@ -51,27 +77,17 @@ Result<JobResults> Attempt::work() {
     const FaultScope scope(lease_);
     helping();
   };
-  const FaultScope scope(lease_);
-  try {
-    const auto request = parse_json(job_.request_json);
-    if (!request) {
-      return driftlab::fail(request.error());
-    }
-    const MemoryGate::Share memory(memory_, kind_->cost(*request, context_).memory_bytes, control.stop,
-                                   [this] { report("wait for memory", 0.0); });
-    if (!memory.held()) {
-      return driftlab::fail(ErrorCode::Cancelled, "The job was stopped while it waited for memory.");
-    }
-    const Executor::Seat seat(executor_);
-    return kind_->run(*request, context_, control);
-  } catch (const std::bad_alloc&) {
-    out_of_memory_ = true;
-    return driftlab::fail(ErrorCode::Internal, "There was not enough memory for the job.");
-  } catch (const std::exception& exception) {
-    return driftlab::fail(ErrorCode::Internal, std::string("The job broke off: ") + exception.what() + ".");
-  } catch (...) {
-    return driftlab::fail(ErrorCode::Internal, "The job broke off for an unknown reason.");
+  const auto request = parse_json(job_.request_json);
+  if (!request) {
+    return driftlab::fail(request.error());
   }
+  const MemoryGate::Share memory(memory_, kind_->cost(*request, context_).memory_bytes, control.stop,
+                                 [this] { report("wait for memory", 0.0); });
+  if (!memory.held()) {
+    return driftlab::fail(ErrorCode::Cancelled, "The job was stopped while it waited for memory.");
+  }
+  const Executor::Seat seat(executor_);
+  return kind_->run(*request, context_, control);
 }
 
 bool Attempt::too_early() const {
@@ -94,6 +110,7 @@ void Attempt::report(std::string_view stage, double fraction) {
 }
 
 void Attempt::mind_deadline() {
+  const FaultScope scope(lease_);
   const auto most = std::chrono::seconds(context_.budgets.job_seconds);
   if (!too_long_ && std::chrono::steady_clock::now() - begun_ > most) {
     too_long_ = true;
@@ -102,6 +119,7 @@ void Attempt::mind_deadline() {
 }
 
 void Attempt::catch_up() {
+  const FaultScope scope(lease_);
   const std::lock_guard<std::mutex> guard(progress_mutex_);
   if (thinned_ && !too_early()) {
     tell(Progress(*thinned_));
@@ -133,6 +151,7 @@ void Attempt::learn(const LeaseStatus& status) {
 }
 
 void Attempt::renew() {
+  const FaultScope scope(lease_);
   // A renewal that the store could not write is tried again at the next beat; the lease spans four of them.
   const Result<LeaseStatus> renewed = context_.store.renew(lease_, options_.lease_micros);
   if (renewed) {
@@ -141,11 +160,13 @@ void Attempt::renew() {
 }
 
 void Attempt::ask_to_stop() {
+  const FaultScope scope(lease_);
   stopping_ = true;
   stop_.request_stop();
 }
 
 void Attempt::hand_back() {
+  const FaultScope scope(lease_);
   lost_ = true;
   stop_.request_stop();
   const Result<LeaseStatus> released = context_.store.release(lease_);
@@ -193,9 +214,29 @@ void Attempt::fail(const Error& error) {
              {}};
   }
   AttemptFailure failure;
-  failure.retryable = out_of_memory_ || error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull;
+  failure.retryable = is_retryable(error);
   failure.problem_json =
       options_.problem_document ? options_.problem_document(shown) : plain_problem(shown, failure.retryable);
+  store_failure(failure);
+}
+
+void Attempt::break_off(const Error& error) {
+  (void)guarded_round("attempt", [&] {
+    tell_escape("attempt at " + job_.id, error.message);
+    if (!settled_) {
+      AttemptFailure failure;
+      failure.retryable = is_retryable(error);
+      failure.problem_json = plain_problem(error, failure.retryable);
+      store_failure(failure);
+    }
+  });
+}
+
+bool Attempt::is_retryable(const Error& error) const {
+  return out_of_memory_ || error.code == ErrorCode::Io || error.code == ErrorCode::DiskFull;
+}
+
+void Attempt::store_failure(const AttemptFailure& failure) {
   // Where even this cannot be written, the lease runs out and the job is tried again.
   const Result<LeaseStatus> failed = context_.store.fail_attempt(lease_, failure);
   const bool dead = failed && failed->dead;
@@ -204,6 +245,7 @@ void Attempt::fail(const Error& error) {
 }
 
 void Attempt::ended(const Result<LeaseStatus>& written, std::string_view outcome) {
+  settled_ = true;
   if (options_.attempt_ended) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
     options_.attempt_ended(job_.kind, written && written->held ? outcome : "lost", seconds);

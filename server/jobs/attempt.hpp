@@ -3,6 +3,10 @@
 ///
 /// `run` belongs to a worker thread; other threads may call the other functions meanwhile. The store resolves every
 /// race between them: each write carries the attempt's number, and a late one changes nothing.
+///
+/// Whatever happens in these functions counts against this attempt: a fault signal that any of them raises, on
+/// whichever thread (fault_recorder.hpp), and an exception in `run`, which stores it as the attempt's failure and
+/// throws none.
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/worker_pool.hpp"
 
@@ -37,6 +41,10 @@ class Attempt {
   void hand_back();
 
  private:
+  /// What `part` returns, or as an error the exception that escaped from it.
+  template <class Part>
+  [[nodiscard]] auto charged(const Part& part) -> decltype(part());
+  void carry_out();
   [[nodiscard]] Result<JobResults> work();
   struct Progress {
     std::string stage;
@@ -49,6 +57,11 @@ class Attempt {
   void learn(const LeaseStatus& status);
   void finish(const JobResults& results);
   void fail(const Error& error);
+  /// An exception escaped from `carry_out`. The failure is stored as `plain_problem`, for the exception may be one of
+  /// what writes problems; where the end of the attempt was stored before, the exception is told only.
+  void break_off(const Error& error);
+  [[nodiscard]] bool is_retryable(const Error& error) const;
+  void store_failure(const AttemptFailure& failure);
   void announce(const Result<LeaseStatus>& written);
   /// The attempt has ended so, where the store took it; else its lease was lost.
   void ended(const Result<LeaseStatus>& written, std::string_view outcome);
@@ -68,8 +81,9 @@ class Attempt {
   std::atomic<bool> too_long_{false};
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   bool out_of_memory_ = false;
-  std::mutex progress_mutex_;        ///< also orders the writes of the worker and of the heartbeat
-  std::optional<Progress> thinned_;  ///< the last report that was not written
+  std::atomic<bool> settled_{false};  ///< the store was told how the attempt ended
+  std::mutex progress_mutex_;         ///< also orders the writes of the worker and of the heartbeat
+  std::optional<Progress> thinned_;   ///< the last report that was not written
   std::optional<std::chrono::steady_clock::time_point> reported_at_;
 };
 

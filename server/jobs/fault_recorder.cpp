@@ -20,12 +20,7 @@
 namespace driftlab::server {
 namespace {
 
-/// The line that the handler writes; ready-made, because a handler may neither format nor allocate.
-struct Line {
-  std::array<char, 96> text;
-  std::size_t size;
-};
-thread_local constinit Line at_work{{}, 0};
+thread_local constinit FaultLine at_work{{}, 0};
 std::atomic<int> descriptor{-1};
 
 void record_and_die(int signal) {
@@ -87,12 +82,12 @@ Result<std::vector<Lease>> take_recorded_faults(const std::filesystem::path& fil
   return faults;
 }
 
-FaultScope::FaultScope(const Lease& lease) {
+FaultScope::FaultScope(const Lease& lease) : before_(at_work) {
   const std::string text = lease.job_id + " " + std::to_string(lease.attempt) + "\n";
   at_work.size = std::min(text.size(), at_work.text.size());
   std::copy_n(text.begin(), at_work.size, at_work.text.begin());
 }
 
-FaultScope::~FaultScope() { at_work.size = 0; }
+FaultScope::~FaultScope() { at_work = before_; }
 
 }  // namespace driftlab::server

@@ -10,10 +10,18 @@
 #include "core/signal/result.hpp"
 #include "server/store/store.hpp"
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
 namespace driftlab::server {
+
+/// What the handler writes; ready-made, because a handler may neither format nor allocate.
+struct FaultLine {
+  std::array<char, 96> text;
+  std::size_t size;  ///< 0: nobody is at work
+};
 
 /// Installs the handlers, which append to `file`. Call once, before workers start. Error: Io.
 [[nodiscard]] Status install_fault_recorder(const std::filesystem::path& file);
@@ -22,13 +30,17 @@ namespace driftlab::server {
 /// Lines that a dying process left incomplete are skipped. Error: Io.
 [[nodiscard]] Result<std::vector<Lease>> take_recorded_faults(const std::filesystem::path& file);
 
-/// While it lives, a fault of this thread is charged to the attempt.
+/// While it lives, a fault of this thread is charged to the attempt; after it, to the one that was charged before.
+/// Destroy them in the reverse order.
 class FaultScope {
  public:
   explicit FaultScope(const Lease& lease);
   FaultScope(const FaultScope&) = delete;
   FaultScope& operator=(const FaultScope&) = delete;
   ~FaultScope();
+
+ private:
+  FaultLine before_;
 };
 
 }  // namespace driftlab::server
