@@ -1,15 +1,17 @@
 #pragma once
 /// Turns a value type such as GaussMarkov into a ProcessKind. A value type is an aggregate of doubles, one per declared
 /// parameter and in that order, with the functions of white_noise.hpp; `static shape_range(dt_s, samples)` where it has
-/// a shape, and `static shape_ranges(dt_s, samples)`, an array of ranges, where it has several; `low_frequency(dt_s)`
-/// where its density has a limit there; `appearance(dt_s)` where a curve that holds it is worth a word; `ringing(dt_s)`
-/// where its Haar coefficients' covariance rings; `kInOctaveSearch = false` where a search over octaves is not to add
-/// it; and those of the optional laws of ProcessKind that it has, `add_block_states` and `expected_periodogram` as
-/// static functions of slow_law.hpp's form.
+/// one shape, and `static shape_ranges(dt_s, samples)`, a std::array with a range for each shape, where it has several;
+/// `low_frequency(dt_s)` where its density has a limit there; `appearance(dt_s)` where a curve that holds it is worth a
+/// word; `ringing(dt_s)` where its Haar coefficients' covariance rings; `kInOctaveSearch = false` where a search over
+/// octaves is not to add it; and those of the optional laws of ProcessKind that it has, `add_block_states` and
+/// `expected_periodogram` as static functions of slow_law.hpp's form.
 #include "core/process/process.hpp"
 
+#include <array>
 #include <cassert>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 
 namespace driftlab {
@@ -27,6 +29,26 @@ T from_values(std::span<const double> p) {
   return from_values<T>(p, std::make_index_sequence<T::kParameters.size()>{});
 }
 
+/// How many parameters follow the level.
+template <class T>
+inline constexpr std::size_t kShapesOf = T::kParameters.size() - 1;
+
+/// Every shape has a range and there is no range without a shape: fits walk the ranges by the number of shapes.
+template <class T>
+constexpr bool ranges_every_shape() {
+  if constexpr (requires { T::shape_ranges(1.0, 1.0); }) {
+    return std::tuple_size_v<decltype(T::shape_ranges(1.0, 1.0))> == kShapesOf<T>;
+  } else {
+    return kShapesOf<T> == (requires { T::shape_range(1.0, 1.0); } ? 1 : 0);
+  }
+}
+
+/// The laws of slow_law.hpp take the level and one shape.
+template <class T>
+constexpr bool slow_laws_know_its_shapes() {
+  return !(requires { &T::add_block_states; } || requires { &T::expected_periodogram; }) || kShapesOf<T> <= 1;
+}
+
 }  // namespace detail
 
 template <class T>
@@ -34,6 +56,10 @@ template <class T>
   using Values = std::span<const double>;
   static_assert(!T::kParameters.empty() && T::kParameters.size() <= kMostParameters,
                 "a process has a level and at most two shapes");
+  static_assert(detail::ranges_every_shape<T>(),
+                "a process with one shape has shape_range, one with several an array shape_ranges of as many");
+  static_assert(detail::slow_laws_know_its_shapes<T>(),
+                "a process with add_block_states or expected_periodogram has a level and at most one shape");
   ProcessKind kind;
   kind.name = T::kName;
   kind.symbol = T::kSymbol;
@@ -98,7 +124,6 @@ template <class T>
     kind.slope = [](Values p) { return detail::from_values<T>(p).slope(); };
   }
   if constexpr (requires { &T::add_block_states; }) {
-    static_assert(T::kParameters.size() <= 2, "a slow process has a level and at most one shape");
     kind.add_block_states = T::add_block_states;
   }
   if constexpr (requires { &T::expected_periodogram; }) {
