@@ -2,6 +2,7 @@
 
 #include "core/investigate/causes/two_kinds.hpp"
 #include "core/investigate/fullrate/autoregression.hpp"
+#include "core/investigate/study/measured_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,6 @@ constexpr double kFrame = 1.0;   ///< [s]
 constexpr double kWidth = 3.0;   ///< [Hz] of a band
 constexpr double kLowest = 2.0;  ///< [Hz]
 constexpr double kFewest = 30.0;
-/// Share of the frames. The band of recorded sensors is unsteady for a fifth of the time and more, by itself.
-constexpr double kMostOften = 0.2;
 constexpr double kMostCoherent = 0.7;  ///< from one frame to the next
 
 /// Sums of a frame's power up to each ordinate.

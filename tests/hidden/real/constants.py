@@ -64,12 +64,18 @@ def references(root: Path) -> Iterator[tuple[str, Array, Array, float]]:
                 yield f"{study} {axis}", x[sound], reference[sound], rate
 
 
-def levels(pieces: list[Array]) -> tuple[Array, float]:
-    """Deviation of what one autoregression of all pieces cannot foresee in each, and the relative scatter of sampling."""
+def whitening(pieces: list[Array]) -> Array:
+    """The filter that takes off what one autoregression of all pieces foresees."""
     pieces = [piece - piece.mean() for piece in pieces]
     covariance = sum(np.array([np.dot(x[lag:], x[: len(x) - lag]) for lag in range(ORDER + 1)]) for x in pieces)
     toeplitz = np.asarray(covariance)[np.abs(np.subtract.outer(np.arange(ORDER), np.arange(ORDER)))]
-    weights = np.concatenate([[1.0], -np.linalg.solve(toeplitz, np.asarray(covariance)[1:])])
+    return np.concatenate([[1.0], -np.linalg.solve(toeplitz, np.asarray(covariance)[1:])])
+
+
+def levels(pieces: list[Array]) -> tuple[Array, float]:
+    """Deviation of what one autoregression of all pieces cannot foresee in each, and the relative scatter of sampling."""
+    weights = whitening(pieces)
+    pieces = [piece - piece.mean() for piece in pieces]
     found, variances = [], []
     for x in pieces:
         e = np.convolve(x, weights)[ORDER: len(x)]
@@ -145,7 +151,82 @@ def stop_band(root: Path, constants: dict[str, float]) -> None:
     print(f"  the lowest {min(shares):.2f}; behind the low-pass of 26 Hz that was once named there: {float(low_pass.mean()):.3f}")
 
 
+class Kinds:
+    """Two kinds of frames, the louder in runs, as core/investigate/causes/two_kinds.hpp has them: x over its scale is F(2 m, 2 others)."""
+
+    def __init__(self, runs: list[Array], m: int, others: int, length: float) -> None:
+        self.runs, self.m, self.others, self.length = runs, m, others, length
+        self.scale, self.ratio, self.fraction = float(np.median(np.concatenate(runs))), 4.0, 0.1
+        for _ in range(40):
+            self.step()
+
+    def density(self, x: Array, scale: float) -> Array:
+        return np.asarray(-self.m * np.log(scale) - (self.m + self.others) * np.log1p(self.m / self.others * x / scale))
+
+    def loud(self, x: Array) -> tuple[Array, float]:
+        """Chance of each frame to be loud, all frames seen, and the log likelihood."""
+        leave = 1.0 / self.length
+        enter = min(0.9, self.fraction / (1.0 - self.fraction) * leave)
+        rest = self.density(x, self.scale)
+        relative = np.exp(np.minimum(600.0, self.density(x, self.scale * self.ratio) - rest))
+        chance, before, total = np.empty(len(x)), self.fraction, float(rest.sum())
+        for f, r in enumerate(relative):
+            evidence = 1.0 - before + before * r
+            chance[f] = before * r / evidence
+            total += np.log(evidence)
+            before = chance[f] * (1.0 - leave) + (1.0 - chance[f]) * enter
+        smoothed, after = chance.copy(), 1.0
+        for f in range(len(x) - 1, -1, -1):
+            smoothed[f] = chance[f] * after / (chance[f] * after + 1.0 - chance[f])
+            said = relative[f] * after
+            after = ((1.0 - leave) * said + leave) / (enter * said + 1.0 - enter)
+        return smoothed, total
+
+    def step(self) -> None:
+        x = np.concatenate(self.runs)
+        loud = np.concatenate([self.loud(run)[0] for run in self.runs])
+        correction = (self.m + self.others) / self.others
+        scale = correction * float(np.sum((1.0 - loud) * x / (1.0 + self.m / self.others * x / self.scale))) / float(np.sum(1.0 - loud))
+        louder = correction * float(np.sum(loud * x / (1.0 + self.m / self.others * x / (self.scale * self.ratio)))) / max(1e-9, float(loud.sum()))
+        self.scale, self.ratio, self.fraction = scale, max(1.2, louder / scale), float(np.clip(loud.mean(), 1e-4, 0.5))
+
+    def likelihood(self) -> float:
+        return sum(self.loud(run)[1] for run in self.runs)
+
+
+def frames(pieces: list[Array], rate: float) -> list[Array]:
+    """Periodograms of whitened frames of a second, each ordinate in units of its mean over its piece."""
+    size = round(rate)
+    found = []
+    for x in pieces:
+        e = np.convolve(x - x.mean(), whitening(pieces))[ORDER: len(x)]
+        power = np.abs(np.fft.rfft(e[: len(e) // size * size].reshape(-1, size))[:, : size // 2]) ** 2
+        found.append(power / power.mean(axis=0))
+    return found
+
+
+def unsteady(root: Path, constants: dict[str, float]) -> None:
+    print(f"kMostOften = {constants['kMostOften']}: share of the seconds in which the band of 3 Hz that is least steady is the louder")
+    by_axis: dict[str, list[Array]] = {}
+    for study, recording, columns in recordings(root):
+        if study.startswith("adis"):
+            for axis in "xyz":
+                by_axis.setdefault(f"{study} {axis}", []).append(columns["angular_rate", axis])
+    for name, pieces in by_axis.items():
+        power = frames(pieces, 100.0)
+        bands = []
+        for first in np.arange(2, 47, 1.5).round().astype(int):
+            inside = [p[:, first:first + 3].mean(axis=1) for p in power]
+            outside = [np.delete(p[:, 2:], np.s_[first - 2:first + 1], axis=1).mean(axis=1) for p in power]
+            ratios = [i / o for i, o in zip(inside, outside)]
+            sums = np.concatenate([np.convolve(x, np.ones(4), "valid") for x in ratios])
+            bands.append((float(np.mean(sums ** 2) / np.mean(sums) ** 2), int(first), ratios))
+        _, first, ratios = max(bands, key=lambda band: band[0])
+        kinds = max((Kinds(ratios, 3, power[0].shape[1] - 5, length) for length in (2.0, 6.0, 18.0)), key=lambda kinds: kinds.likelihood())
+        print(f"  {name}: at {first} to {first + 2} Hz, {100.0 * kinds.fraction:.0f} % of the seconds {kinds.ratio:.2f} times as loud")
+
+
 if __name__ == "__main__":
     stored = kept()
-    for measure in (repeats, follow, stamps, stop_band):
+    for measure in (repeats, follow, stamps, stop_band, unsteady):
         measure(Path(sys.argv[1]), stored)
