@@ -12,6 +12,7 @@ import documents
 import floors
 import leaks
 import licence
+import measured
 import strict
 
 
@@ -357,6 +358,29 @@ class Documents(Planted):
         for part in ("tell of --data-sync (driftlabd)", "tell of --axis (driftlab table)", "tell of driftlab table"):
             self.refused(faults, part)
         self.assertEqual(len(faults), 3, faults)
+
+
+class Measured(Planted):
+    HEADER = "core/fit/measured_constants.hpp"
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.plant(self.HEADER, "/// Read off recordings:\n///     python3 tests/again.py SHARED\ninline constexpr double kLoud = 2.0;\n"
+                                "inline constexpr Tau0 kPrior{1.0, 2.0};\n")
+        self.plant("tests/again.py", f'"Measures {self.HEADER}: kLoud, kPrior"\n')
+
+    def test_constants_that_are_measured_again_are_clean(self) -> None:
+        self.assertEqual(measured.check(self.root), [])
+
+    def test_one_that_no_program_names_is_refused(self) -> None:
+        self.plant("tests/again.py", f'"Measures {self.HEADER}: kLouder, kPrior"\n')
+        self.assertEqual(measured.check(self.root), [f"{self.HEADER}: tests/again.py does not measure kLoud"])
+
+    def test_a_command_without_a_program_is_refused(self) -> None:
+        (self.root / "tests/again.py").unlink()
+        faults = measured.check(self.root)
+        self.refused(faults, "there is no tests/again.py")
+        self.refused(faults, "no command in it runs a program that names it")
 
 
 if __name__ == "__main__":
