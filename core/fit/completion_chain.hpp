@@ -11,9 +11,11 @@
 
 namespace driftlab::completion {
 
-/// Precisions closer than this to that of an endless run of good samples are taken as it.
+/// Over a long run of good samples the precision of the later information converges. A precision whose entries differ
+/// from that limit by less than this, relative to its diagonal, is taken to have reached it.
 inline constexpr double kAsEndless = 1e-7;
-/// Samples after which that run must have settled, to be used at all.
+/// The limit is found by following such a run until a further sample changes no diagonal entry by more than kSettledRun
+/// of its value. If that takes more than this many samples, the limit is not used and every sample is computed in full.
 inline constexpr std::size_t kLongestRun = 20000;
 inline constexpr double kSettledRun = 1e-13;
 
@@ -27,7 +29,7 @@ template <int N>
 struct Information {
   Matrix<N> precision{};
   Vector<N> shift{};
-  bool endless = false;  ///< the precision is that of an endless run of good samples
+  bool endless = false;  ///< the precision has reached the limit of a long run of good samples
 };
 
 /// The states of one model, and how information moves back over one sample of a series of `samples`.
@@ -58,8 +60,9 @@ class Chain {
   [[nodiscard]] const Vector<N>& noise() const { return noise_; }
   [[nodiscard]] const Vector<N>& start() const { return start_; }
 
-  /// From the information about x_{t+1} in samples after t to that about x_t in samples from t on. Where it has the
-  /// precision of an endless run and the sample is good only the shift moves, and that linearly.
+  /// Takes the information that the samples after t hold about x_{t+1}, and makes of it the information that sample t
+  /// and those after it hold about x_t. Where the precision has reached its limit and sample t is good, the precision
+  /// stays as it is and the new shift is linear in the old one and in y.
   void back(Information<N>& information, double y, std::uint8_t state) const {
     if (!information.endless || state != kGoodSample) {
       move(information, y, state);
@@ -126,8 +129,8 @@ class Chain {
     }
   }
 
-  /// The precision of an endless run of good samples, and how the shift moves over one of them. A run that settles only
-  /// after a good part of the series would save nothing.
+  /// Finds the limit of the precision over a long run of good samples, and how the shift changes over one of them. It
+  /// gives up after a quarter of the series: a limit that is reached so late would save nothing.
   void settle(std::size_t samples) {
     Information<N> endless;
     const std::size_t longest = std::min(kLongestRun, samples / 4);

@@ -8,9 +8,9 @@
 
 namespace driftlab::completion {
 
-/// Gains that move less than this from one sample to the next are taken as settled.
+/// The filter's gain counts as settled, and is computed no more, once no entry changes by this much over one sample.
 inline constexpr double kSettled = 1e-9;
-/// Weights are kept while the precision behind them moves less than this.
+/// The weights of later information are used again while its precision has changed by a smaller share than this.
 inline constexpr double kSame = 1e-5;
 
 /// The law of one sample given everything else.
@@ -68,7 +68,8 @@ class Past {
   }
 
  private:
-  /// Whether the weights of the last sample still do: its precision differs by less than 10^-5.
+  /// Whether the weights that were computed last can be used for this sample too: since then no diagonal entry of the
+  /// precision of the later information has changed by more than kSame of its value.
   [[nodiscard]] bool near_last(const Information<N>& later) const {
     double moved = 0.0;
     for (int k = 0; k < N; ++k) {
@@ -180,10 +181,10 @@ class Past {
   Vector<N> mean_{};
   Vector<N> next_{};
   Vector<N> weight_{};
-  Vector<N> weighed_{};  ///< diagonal of the precision that the weights are for
+  Vector<N> weighed_{};  ///< diagonal of the precision for which the weights were computed
   double level_ = 0.0;
   double variance_ = 0.0;  ///< of s_t given the past
-  double spread_ = 0.0;    ///< and given what follows
+  double spread_ = 0.0;    ///< of s_t given the past and the later information
   bool settled_ = false;
 };
 

@@ -7,10 +7,10 @@
 /// blocks P_nn (9 x 9), P_ns (9 x m) and P_ss (m x m); a step costs about 9 m^2 + 100 m multiplications instead of the
 /// 2 n^3 of the textbook. Every entry and its mirror image are computed by the same operations, so P stays symmetric to
 /// the bit. Updates are scalar and in Joseph's form, (I - k h^T) P (I - k h^T)^T + R k k^T, computed as the two updates
-/// of rank one that it amounts to (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977): what
-/// rounding leaves of P along a measurement far better than P is R, and no eigenvalue falls below zero by more than
-/// rounding. Multiplied out, as P - k (P h)^T - (P h) k^T + s k k^T, the form loses both
-/// (tests/unit/navigate/error_covariance_test.cpp).
+/// of rank one that it amounts to (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). After a
+/// measurement far more accurate than the state was known, the variance along h is then R despite rounding, and no
+/// eigenvalue of P is below zero by more than rounding. With the form multiplied out, as
+/// P - k (P h)^T - (P h) k^T + s k k^T, neither holds (tests/unit/navigate/error_covariance_test.cpp).
 #include "core/navigate/earth.hpp"
 
 #include <array>
@@ -59,7 +59,7 @@ struct WideMeasurement {
   }
 };
 
-/// What a measurement said that was not expected, given the measurements of its moment before it, and its variance.
+/// Innovation of a scalar measurement, given the earlier measurements of the same moment, and its variance.
 struct ScalarInnovation {
   double value = 0.0;
   double variance = 0.0;
@@ -70,7 +70,7 @@ class ErrorCovariance {
   using Navigation = Eigen::Matrix<double, 9, 9>;
   using State = Eigen::Matrix<double, 9 + kMaxSensorStates, 1>;
 
-  /// `sensor_states` at most kMaxSensorStates; all zero.
+  /// A covariance of zeros with this many sensor states, at most kMaxSensorStates.
   explicit ErrorCovariance(int sensor_states = 0);
 
   [[nodiscard]] int sensor_states() const { return sensor_states_; }

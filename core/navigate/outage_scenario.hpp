@@ -39,15 +39,17 @@ struct OutageScenario {
 
 inline constexpr std::size_t kMostOutages = 1000;
 
-/// A scenario as somebody wrote it: `scenario` with what else stands for its trajectory and outages.
+/// A scenario as its document has it. Beside the members of OutageScenario a document may name a recorded trajectory,
+/// for the poses and the duration of the drive, and ask for outages over turns; `completed` works these out.
 struct WrittenScenario {
-  OutageScenario scenario;  ///< a duration of 0: that of `recorded`
+  OutageScenario scenario;  ///< `drive.duration_s` of 0 stands for the duration of `recorded`
   RecordedTrajectory recorded;
   std::optional<double> at_turns_s;  ///< an outage of this duration over each turn of the drive, beside those listed
 };
 
-/// The scenario spelled out: a recorded vehicle looks where it goes (look_ahead.hpp), outages over turns begin with
-/// them, in the order of the segments.
+/// The scenario with its poses, its duration and every outage. Pitch and heading that the recorded trajectory does not
+/// have become those of the velocity (look_ahead.hpp). An outage over a turn begins with the turn; these outages come
+/// after the listed ones, in the order of the segments.
 [[nodiscard]] OutageScenario completed(WrittenScenario written);
 
 /// The motion of the scenario. Errors: those of make_segment_motion and make_recorded_motion; InvalidArgument (the

@@ -1,6 +1,6 @@
 #pragma once
-/// What the presence of a process in a curve is called, as a person reads it: `before`, a figure where the name has
-/// one, `after`. "white noise averaged over 3.2 samples" is {"white noise averaged over ", 3.2, " samples"}; how many
+/// What people are told about a curve in which a process is present: `before`, then a figure where the words have one,
+/// then `after`. "white noise averaged over 3.2 samples" is {"white noise averaged over ", 3.2, " samples"}; how many
 /// digits the figure gets is for the writer of the sentence.
 #include <optional>
 #include <string_view>

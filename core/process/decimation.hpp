@@ -5,8 +5,8 @@
 /// The autocovariance at lag h is g B(h/m), m = `samples`, with B the quintic B-spline, which ends at a lag of 3 m; the
 /// density is the sum of sinc^6((f + k) m) over all aliases k, f in cycles per sample. g is such that the samples have
 /// the density N^2 at low frequencies: N is the angle (velocity) random walk, whatever the filter. m = 1 is the usual
-/// decimator, which averages three times over what it makes one sample of; a slower output rate than that makes m
-/// smaller, and one of 1/3 and less leaves white noise.
+/// decimator, whose three averages are each one output interval long. Where only every k-th of its outputs is recorded,
+/// m is 1/k; samples with m of 1/3 and less are white noise.
 #include "core/process/appearance.hpp"
 #include "core/process/low_frequency.hpp"
 #include "core/process/parameter.hpp"

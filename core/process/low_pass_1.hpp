@@ -63,12 +63,13 @@ struct LowPass1 {
   /// One state, exact.
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const { return same(dt_s).state_space(dt_s); }
   void add_path(Random& random, double dt_s, std::span<double> out) const { same(dt_s).add_path(random, dt_s, out); }
-  /// Up to some multiples of the Nyquist frequency; below one hundredth of it the process is a Gauss-Markov bias.
+  /// Corners from one hundredth of the Nyquist frequency, below which the process is a Gauss-Markov bias, to 2.6 times
+  /// it, above which it is white noise.
   [[nodiscard]] static std::pair<double, double> shape_range(double dt_s, double /*samples*/) {
     return {0.005 / dt_s, 1.3 / dt_s};
   }
 
-  /// The Gauss-Markov process that it is.
+  /// The first-order Gauss-Markov process with the same law.
   [[nodiscard]] GaussMarkov same(double dt_s) const {
     const double beta = kTurn * corner_hz;
     return {n * std::sqrt(std::tanh(0.5 * beta * dt_s) / dt_s), beta};

@@ -54,8 +54,8 @@ struct ProcessKind {
   /// What of the covariances of Haar coefficients is not smooth between their kinks; null where all is.
   Ringing (*ringing)(std::span<const double> p, double dt_s) = nullptr;
 
-  /// What a curve shows that holds this process, where that is worth a word; null where it never is (white noise, a
-  /// random walk).
+  /// What people are told about a curve in which this process is present; null for kinds that need no mention (white
+  /// noise, a random walk).
   std::optional<Appearance> (*appearance)(std::span<const double> p, double dt_s) = nullptr;
 
   /// Optional laws, null where the kind declares none: what an investigation can do with the process where a model that
@@ -114,7 +114,7 @@ struct Process {
   [[nodiscard]] std::optional<LowFrequencyDensity> low_frequency(double dt_s) const {
     return kind->low_frequency != nullptr ? std::optional(kind->low_frequency(parameters, dt_s)) : std::nullopt;
   }
-  /// What a curve shows that holds it; nothing where that is nothing unusual.
+  /// What people are told about a curve in which this process is present; nothing where its kind needs no mention.
   [[nodiscard]] std::optional<Appearance> appearance(double dt_s) const {
     return kind->appearance != nullptr ? kind->appearance(parameters, dt_s) : std::nullopt;
   }

@@ -9,12 +9,15 @@
 /// of them, 6 % of the model's scatter allowed for the dictionary), the observed scatter takes the place of the assumed
 /// one at all of these scales, with the t quantile of its B degrees instead of the normal one.
 ///
-/// B is 192, 96, 48, 24 or 12: at most 0.12 samples/m, so that the squares forget within a period of the last cosine,
-/// and the largest with which smaller ones agree (Lepski's rule, one-sided), which follows slow changes of level.
+/// B, the number of cosines on which the squared coefficients are projected, is 192, 96, 48, 24 or 12. It is at most
+/// 0.12 samples/m: the fastest cosine then has a period of 17 m samples, over which squared coefficients, each of 2 m
+/// samples, are no longer correlated. Of these values the largest is taken for which no smaller one gives a larger
+/// scatter by more than 2.2 standard errors (Lepski's rule, one-sided): fewer cosines see slower changes of the level.
 ///
-/// Across scales: a level of the noise that changes moves all variances in proportion. The mean of what pairs of scales
-/// two and more octaves apart share beyond the model is that common part; it counts from 3 standard errors on, and also
-/// at the scales that are too long to be observed.
+/// Across scales: a change of the noise level changes the variances of all scales by the same factor. The covariance
+/// that this gives them is estimated from all pairs of scales two and more octaves apart, as the mean of their observed
+/// covariance less that of the model. Where it exceeds 3 standard errors it is added at all scales, those included that
+/// are too long to be observed.
 ///
 /// Where the fourth moment of the samples does not exist (Student t of four and less degrees of freedom), no estimate
 /// of the scatter is consistent: the intervals remain too narrow (tests/ACCURACY.md).

@@ -7,10 +7,11 @@
 
 namespace driftlab::investigate {
 
-/// Looks for switching noise (causes/family.hpp) in what the slow search has left. If there is some, its expected
-/// course is subtracted from `error` (per member, over the grid of the whole file), and samples about a change of
-/// level, and where it is not known which of the levels it is, are added to `mask`: what is left there is no noise of
-/// the sensor. The evidence is appended to `found`.
+/// Looks for switching noise (causes/family.hpp) in the residuals of the slow search. If it is found, the expected
+/// level at each sample is subtracted from `error` (per member, over the grid of the whole file) and the evidence is
+/// appended to `found`. Samples within 0.5 s of a change of level are added to `mask`, and so are samples whose level
+/// is uncertain (expected level below 0.9 of the greatest): there the subtraction leaves an error that is not the
+/// sensor's noise.
 void take_switching(const FullRate& data, std::vector<Series>& error, std::vector<std::vector<unsigned char>>& mask,
                     std::vector<Evidence>& found);
 
