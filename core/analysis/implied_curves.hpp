@@ -41,19 +41,19 @@ struct MeasuredDeviation {
   std::vector<std::optional<double>> high;
 };
 
-/// What is measured over what is implied, at the times that were measured.
+/// Ratio of the measured deviation to that of the model, at the measured averaging times.
 struct MeasuredOverModel {
   std::vector<double> tau_s;
   std::vector<double> deviation;             ///< implied [channel unit]
   std::vector<std::optional<double>> ratio;  ///< measured over implied; empty where either is not there
-  std::vector<std::optional<double>> low;    ///< the ends of the measured intervals over the same
+  std::vector<std::optional<double>> low;    ///< lower end of the measured interval over the implied deviation
   std::vector<std::optional<double>> high;
 };
 
-/// A fit beside the curve that it was fitted to, in the channel's own unit.
+/// The curves of a fit and its ratio to the measured curve, in the channel's own unit.
 struct ImpliedBeside {
-  /// Eight averaging times to the octave up to a quarter beyond the longest measured one; 160 frequencies, evenly
-  /// spaced in the logarithm, from 1/(2 tau) of that to 1/(2 dt).
+  /// Averaging times at eight to the octave, up to 1.25 times the longest measured one, tau_max; and 160 frequencies,
+  /// evenly spaced in the logarithm, from 1/(2 tau_max) to 1/(2 dt).
   ImpliedCurves curves;
   MeasuredOverModel at_measured;
 };
@@ -62,7 +62,7 @@ struct ImpliedBeside {
 [[nodiscard]] ImpliedBeside implied_beside(const Model& model, const Unit& unit, double dt_s,
                                            const MeasuredDeviation& measured);
 
-/// Whole numbers from 1 to `largest`, about `per_octave` of them between each and its double.
+/// Whole numbers from 1 to `largest`, about `per_octave` of them to the octave.
 [[nodiscard]] std::vector<double> octave_grid(double largest, int per_octave);
 
 }  // namespace driftlab

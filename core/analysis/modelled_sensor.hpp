@@ -1,11 +1,11 @@
 #pragma once
-/// A part of the use case "evaluate outages": the errors that one sensor of a scenario has by a simulation model which
-/// an investigation left.
+/// A part of the use case "evaluate outages": the errors of one sensor of a scenario, taken from a simulation model
+/// that an investigation made.
 ///
-/// The model speaks of the columns of a recording, the scenario of the axes of a gyroscope or an accelerometer. Where
-/// the caller names a column for the sensor, all of its axes take that one. Otherwise an axis takes the column with its
-/// usual name: gx, gy, gz of a gyroscope, fx, fy, fz of an accelerometer. Failing that it takes the only column that
-/// the model has, or, where the model does not tell columns apart, what it says of all.
+/// The model has errors for the columns of a recording, the scenario wants them for the axes of a gyroscope or an
+/// accelerometer. Where the caller names a column for the sensor, all of its axes take that one. Otherwise an axis
+/// takes the column with its usual name: gx, gy, gz of a gyroscope, fx, fy, fz of an accelerometer. If there is none,
+/// it takes the only column of the model, or, from a model that names no columns, the errors that hold for all.
 ///
 /// A drift [SI/s] becomes the process `linear_drift`. Not everything can be carried over: a scenario has no place for
 /// effects of the motion or the temperature, and a filter is not told the bias. `left_out` names what was dropped.
@@ -21,7 +21,7 @@ struct ScenarioSensor {
   bool gyro = true;   ///< else an accelerometer
   bool truth = true;  ///< the sensor itself, else what a filter believes of it
   std::vector<std::size_t> axes = {0, 1, 2};
-  std::string column = {};  ///< the one that is meant for all of them; empty: by the rule above
+  std::string column = {};  ///< of the model, for all axes of the sensor; empty: by the rule above
 };
 
 struct ModelledAxis {

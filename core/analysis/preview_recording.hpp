@@ -7,8 +7,8 @@
 /// speaks against a unit is a hint (core/datasheet/plausible_units.hpp). A column that rises as a time does and has
 /// no unit is proposed as one, and a condition that the readings show is proposed where they show one:
 ///   turning: the gyroscope axis of the largest mean reads at least 1 deg/s with a standard deviation below a fifth of
-///   it; at rest: every mean is below 1 deg/s, and no axis scatters more than a phone that lies still
-///   (core/analysis/growing_recording.hpp).
+///   it; at rest: every mean is below 1 deg/s, and the standard deviation of every axis is below that of a sensor that
+///   lies still (`still_deviation`, core/analysis/growing_recording.hpp).
 #include "core/read/decode_head.hpp"
 #include "core/signal/guess_time.hpp"
 #include "core/signal/recording.hpp"

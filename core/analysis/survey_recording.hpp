@@ -2,13 +2,13 @@
 /// The use case "survey": the facts about a recording as it came, found when it is uploaded and when its metadata are
 /// changed.
 ///
-/// Metadata and samples are held against each other as an analysis would: roles of the columns, window, gaps, and per
-/// channel what is missing, implausible, saturated or frozen (core/signal/channel_survey.hpp). With it goes what a
-/// drawing of the samples marks (the longest gaps, the ends of the range, the stretches that are no measurements), how
-/// warm the recording was, and what speaks against its units (core/datasheet/plausible_units.hpp).
+/// The metadata are applied to the samples as an analysis applies them: roles of the columns, window, gaps, and per
+/// channel which samples are missing, implausible, saturated or frozen (core/signal/channel_survey.hpp). The survey
+/// also holds the marks of a drawing (the longest gaps, the ends of the range, the implausible stretches), the
+/// temperature of the recording, and doubts about its units (core/datasheet/plausible_units.hpp).
 ///
-/// A drive's recording whose stated columns are no sensors (fixes, a reference path) is characterised by nothing: its
-/// columns are read as they are stated, and a note says so.
+/// A recording of a drive may have no sensor among its stated columns, but fixes or a reference path. No channel of it
+/// is characterised: its columns are read as they are stated, and a note says so.
 #include "core/calibrate/sensor_calibration.hpp"
 #include "core/signal/full_scale.hpp"
 #include "core/signal/measured_temperature.hpp"
@@ -22,7 +22,8 @@
 
 namespace driftlab {
 
-/// So many gaps of a recording, and stretches of a channel, are told one by one: more than a screen tells apart.
+/// The most gaps of a recording, and the most implausible stretches of a channel, that are listed one by one. A screen
+/// does not separate more.
 inline constexpr std::size_t kMarksTold = 64;
 
 struct SampleStretch {

@@ -1,5 +1,5 @@
 #pragma once
-/// What was measured of a sensor axis against what its data sheet states.
+/// Comparison of the measured parameters of a sensor axis with its data sheet.
 ///
 /// Data sheets state typical values of many sensors, so a measured one agrees where its 95 % interval reaches within a
 /// factor 1.5 of the stated figure; otherwise it is above or below. Compared are N, the density at low frequencies that

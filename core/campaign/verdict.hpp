@@ -17,7 +17,7 @@
 
 namespace driftlab {
 
-/// How much a person should care.
+/// Whether a result can be used.
 enum class VerdictLevel {
   Fine,
   Look,   ///< usable, with something that a reader must know first
@@ -34,7 +34,7 @@ struct Verdict {
   std::vector<std::pair<std::string, double>> facts;
 };
 
-/// What the test for gross errors said beside its verdict (core/variance/contamination.hpp).
+/// Details of the test for gross errors (core/variance/contamination.hpp).
 struct GrossErrorEvidence {
   bool not_gaussian = false;
   std::size_t disjoint_scales = 0;
@@ -56,7 +56,7 @@ struct GravestChannel {
   Verdict verdict;
 };
 
-/// The verdict that a person should look at first: the first of those of the worst level. Nothing of none.
+/// Index of the first verdict of the worst level; nothing for an empty list.
 [[nodiscard]] std::optional<std::size_t> gravest_of(std::span<const Verdict> verdicts);
 
 }  // namespace driftlab

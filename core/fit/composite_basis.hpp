@@ -73,8 +73,8 @@ class CompositeBasis {
   /// ln of the wavelet variances on the scan, scales (and the density at 0) x values; of a kind without shapes one
   /// column.
   [[nodiscard]] const Eigen::MatrixXd& scanned(std::size_t kind) const { return tables_[kind].value; }
-  /// A process that is white as far as slow noise is concerned: its density at 1/30 cycle per sample is at least half
-  /// of that at 0 (a Gauss-Markov process with beta dt of 0.2 or more).
+  /// Whether the process adds white noise at low frequencies: its density at 1/30 cycle per sample is at least half of
+  /// that at 0 (a Gauss-Markov process with beta dt of 0.2 or more).
   [[nodiscard]] bool is_fast(const Component& component) const;
   [[nodiscard]] Process process(const Component& component) const;
 
@@ -85,7 +85,7 @@ class CompositeBasis {
     Eigen::MatrixXd slope;
   };
   void evaluate(const Component& component, Eigen::VectorXd& out) const;
-  /// The slopes beside out.value.
+  /// Computes the derivatives that belong to out.value.
   void differentiate(const Component& component, LogColumn& out) const;
 
   std::shared_ptr<const SpectralTable> table_;

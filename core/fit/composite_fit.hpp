@@ -23,7 +23,7 @@ struct CompositeQuantity {
   enum class Of {
     Density,  ///< at frequency 0 [unit^2 s]: N^2
     Square,   ///< of the level: K^2 of a random walk, B^2, Q^2, R^2
-    Walk,     ///< 2 sigma^2 beta of a Gauss-Markov process, the K^2 of what it is to a short record
+    Walk,     ///< 2 sigma^2 beta of a Gauss-Markov process: K^2 of the random walk that a short record shows of it
   };
   std::vector<std::size_t> components;
   std::vector<Of> of;  ///< one per component
@@ -54,7 +54,8 @@ class CompositeDistance {
   [[nodiscard]] double value(const Composite& model, const CompositeQuantity& quantity) const;
   /// Its standard error from the curvature at a minimum.
   [[nodiscard]] double standard_error(const Composite& model, const CompositeQuantity& quantity) const;
-  /// Of every coordinate, in the order level and shapes of each component; large where it is not determined.
+  /// Standard errors of every coordinate, component by component, its level before its shapes. That of a coordinate
+  /// which the curve does not determine is large.
   [[nodiscard]] Eigen::VectorXd standard_errors(const Composite& model) const;
   /// All values of the quantity at which L, everything else free, is within `rise` of that of `model`, a minimum. An
   /// end further than 20 from the estimate, that is e^10 in a level, is open (infinite).
@@ -74,7 +75,7 @@ class CompositeDistance {
 };
 
 [[nodiscard]] std::size_t parameter_count(const CompositeBasis& basis, const Composite& model);
-/// As models are named everywhere: `WN+GM+RW`.
+/// The name of a model: `WN+GM+RW`.
 [[nodiscard]] std::string composite_name(const CompositeBasis& basis, const Composite& model);
 
 }  // namespace driftlab

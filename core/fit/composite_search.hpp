@@ -7,8 +7,8 @@
 /// scan of its shape, beside the components so far, give its start; the best of each kind is polished
 /// (core/fit/composite_fit.hpp), and the model of the smallest L + 4 p is kept while that falls. Then components are
 /// dropped whose removal costs less than 5 per parameter. A drift enters only if every model without it is rejected, a
-/// resonance or sinusoid only at a line of the periodogram. A model is accepted where L is no further out than a
-/// probability of 0.01 of chi-square(scales - parameters), and where four degrees of freedom at least are left.
+/// resonance or sinusoid only at a line of the periodogram. A model is accepted if chi-square(scales -
+/// parameters) exceeds its L with a probability of at least 0.01, and if at least four degrees of freedom are left.
 ///
 /// Where nothing is accepted, the search is repeated with a discrepancy delta of the variances
 /// (core/fit/discrepancy.hpp), the first of 1, 2, 5 and 10 % (`kDiscrepancyLadder`) at which L of some model is below

@@ -1,6 +1,6 @@
 #pragma once
-/// White noise behind a moving average: each sample is the mean over `samples` sample intervals, so that neighbours
-/// share what they overlap.
+/// White noise behind a moving average: each sample is the mean over `samples` sample intervals. Neighbouring samples
+/// are correlated because their means overlap.
 ///
 /// The autocovariance falls on a straight line to zero at a lag of m = `samples`, gamma(h) = g (m - |h|), and the
 /// density is the sum of sinc^2((f + k) m) over all aliases k, f in cycles per sample. g is such that the samples have
@@ -59,7 +59,7 @@ struct MovingAverage {
   [[nodiscard]] std::optional<StateSpace> state_space(double dt_s) const;
   /// Exact for every width. Two normal numbers per sample, one where m is whole.
   void add_path(Random& random, double dt_s, std::span<double> out) const;
-  /// From hardly any overlap to a quarter of the record.
+  /// From 1, where the means do not overlap, to a quarter of the record.
   [[nodiscard]] static std::pair<double, double> shape_range(double /*dt_s*/, double samples) {
     return {1.0, std::max(2.0, 0.25 * samples)};
   }

@@ -30,8 +30,9 @@ struct DecodeLimits {
   std::size_t max_line_bytes = std::size_t{1} << 20;            ///< one line of a text format
   std::size_t max_columns = 1024;
   std::size_t max_name_bytes = 256;  ///< one column name
-  /// Columns written = min(8 * max_expanded_bytes, columns_allowance + columns_ratio * input size). A text of one digit
-  /// a cell becomes four times as large, packed counts of one bit 64 times, and whatever a compression adds to that.
+  /// Most bytes of decoded columns = min(8 * max_expanded_bytes, columns_allowance + columns_ratio * input size).
+  /// Decoded, a text with one digit in each cell is four times as large and packed counts of one bit 64 times, in
+  /// addition to the factor of a compression.
   std::uint64_t columns_allowance = std::uint64_t{32} << 30;
   std::uint64_t columns_ratio = 1600;
   std::size_t max_notes = 64;         ///< sentences about the file; the rest is counted
@@ -58,7 +59,7 @@ class ByteReader {
   /// Size of the underlying input [bytes].
   [[nodiscard]] virtual std::uint64_t size() const = 0;
 
-  /// The file whose bytes these are, as they are; nothing for bytes that are no file's or were decompressed.
+  /// The file of which these are the unchanged bytes; nothing if they come from memory or were decompressed.
   [[nodiscard]] virtual std::optional<std::filesystem::path> path() const { return std::nullopt; }
 };
 
@@ -94,7 +95,7 @@ class ByteSource {
 
   [[nodiscard]] std::uint64_t input_size() const { return reader_->size(); }
 
-  /// For a format that is read where it lies instead of as a stream: that of the reader.
+  /// The path of the reader, for formats that a library opens by its path instead of reading a stream.
   [[nodiscard]] std::optional<std::filesystem::path> path() const { return reader_->path(); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// The slow path of the CSV reader, which reads one cell of any content. Internal to core/read.
+/// The slow path of the CSV reader: it reads a cell that may hold a number, a date or text. Internal to core/read.
 #include "core/read/format.hpp"
 #include "core/signal/result.hpp"
 
@@ -10,26 +10,26 @@
 
 namespace driftlab::formats {
 
-/// Reads cells and remembers what in them is no number.
+/// Reads cells, and remembers which columns held dates or text.
 class CsvCells {
  public:
   CsvCells() = default;
   CsvCells(ColumnNames names, bool decimal_comma);
 
-  /// The number that is all of `cell`, a date as seconds since 1970, or a NaN that says why there is none. `line`
-  /// counts from 1.
+  /// The number in `cell` if the cell holds nothing else, a date as seconds since 1970, or otherwise a NaN that encodes
+  /// the reason (core/signal/missing.hpp). `line` counts from 1.
   double take(std::string_view cell, std::size_t column, std::uint64_t line);
 
-  /// A number was met, here or by the fast reader.
+  /// Whether any cell held a number, here or in the fast reader, which reports it by `number_met`.
   [[nodiscard]] bool any_number() const { return any_number_; }
   void number_met() { any_number_ = true; }
-  /// The first cell that is no number; the answer where there is no number at all.
+  /// The error of the first cell without a number; it is the error of a file that holds no number at all.
   [[nodiscard]] const Error& first_fault() const { return first_fault_; }
   /// Says which columns hold dates or text.
   void note(std::uint64_t rows, ColumnSink& sink) const;
 
  private:
-  /// What was met in one column that is no number.
+  /// Cells of one column that hold text.
   struct Texts {
     std::uint64_t count = 0;
     std::string first;  ///< an excerpt in quotes

@@ -20,7 +20,8 @@ struct MemoryTable {
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
-/// Keeps what a decoder delivers. Error: LimitExceeded above `budget_bytes`, which several sinks may share.
+/// Stores the rows that a decoder delivers in a table. Error: LimitExceeded above `budget_bytes`, which several sinks
+/// may share.
 class MemorySink final : public ColumnSink {
  public:
   MemorySink(MemoryTable& table, std::size_t& budget_bytes) : table_(table), budget_bytes_(budget_bytes) {}
@@ -35,14 +36,15 @@ class MemorySink final : public ColumnSink {
   std::size_t& budget_bytes_;
 };
 
-/// Columns that go together, of one length, and a rate stated beside them.
+/// The columns that make the recording, of one length, and the rate that the file states, if it does.
 struct Recorded {
   ColumnNames names;
   std::vector<std::span<const double>> columns;
   std::optional<double> rate_hz;
 };
 
-/// Delivers a recording: its columns, and where none of them is a time and a rate is stated the time made from that.
+/// Delivers the columns of a recording. If a rate is stated and no column is a time, a time column made from the rate
+/// is added.
 [[nodiscard]] Status deliver(const Recorded& recorded, const DecodeLimits& limits, ColumnSink& sink);
 
 }  // namespace driftlab

@@ -19,16 +19,16 @@
 namespace driftlab {
 
 struct Spacing {
-  std::vector<std::size_t> long_steps;  ///< rows behind a step that is too long for the samples it joins
-  std::vector<Gap> gaps;                ///< what is missing behind them; of a late stamp nothing is
+  std::vector<std::size_t> long_steps;  ///< rows before which a step exceeds what the samples beside it span
+  std::vector<Gap> gaps;                ///< samples missing at these steps; a step before a late stamp misses none
   std::size_t repeated_stamps = 0;
-  double interval_s = 0.0;  ///< median step a sample; 0 where the clock stands
-  double jitter_s = 0.0;    ///< half the distance of the 5 % and 95 % quantiles of the steps, without what is lost
+  double interval_s = 0.0;  ///< median of step per sample; 0 if the clock does not advance
+  double jitter_s = 0.0;    ///< half the distance of the 5 % and 95 % quantiles of the steps that miss no sample
   bool bursts = false;
 };
 
-/// `stamps` [s] of all rows, which start anew at the rows `backward` (ascending). `stated_s`: the interval that the
-/// user states, 0 for none. O(rows log rows) where there are gaps, else O(rows).
+/// `stamps` [s] of all rows; `backward`: the rows, ascending, at which the clock goes back and starts again.
+/// `stated_s`: the interval that the user states, 0 for none. O(rows log rows) where there are gaps, else O(rows).
 [[nodiscard]] Spacing find_spacing(std::span<const double> stamps, std::span<const std::size_t> backward,
                                    double stated_s);
 

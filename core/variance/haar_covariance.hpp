@@ -11,8 +11,9 @@
 /// stretches between these lags. The stretches are m_i/2 long near these lags and grow fourfold with distance; each
 /// uses six lags (the Gauss-Legendre nodes rounded to whole lags, with weights that are exact for polynomials over
 /// whole lags). This takes some 100 lags for a pair of scales, and the error is below 0.1 % of sqrt(C_ii C_jj) for
-/// every process (0.3 % for flicker noise). Where a process rings (core/process/ringing.hpp) the stretches around the
-/// kinks are as short as that takes, at most 256 of them: a resonance of a quality above 80 is sampled beyond.
+/// every process (0.3 % for flicker noise). Where a process rings (core/process/ringing.hpp) gamma oscillates around
+/// the kinks, and the stretches there are made short enough to follow it, at most 256 of them; beyond these, which the
+/// ringing of a resonance outlasts if its quality is above 80, it is only sampled.
 #include "core/process/model.hpp"
 
 #include <Eigen/Core>
@@ -66,14 +67,14 @@ class HaarCovariance {
   struct Pair {
     std::vector<double> lag;
     std::vector<double> weight;  ///< quadrature weight times n_ij, both signs of the lag together, over Mi Mj
-    /// gamma at level 1 by kind and shapes: of kinds without shape, and of the shapes that diagonal() was asked for.
+    /// gamma at level 1 by kind and shapes: for kinds without shape, and for the shapes given to diagonal().
     std::map<std::pair<const ProcessKind*, std::array<double, kMostShapes>>, std::vector<double>> unit;
   };
   [[nodiscard]] std::optional<Ringing> ringing_of(const Model& model) const;
   Pair& pair(std::size_t i, std::size_t j, const Model& model);
-  /// Leaves gamma_ij at the plan's lags in scratch_.
+  /// Computes gamma_ij at the lags of `plan` into scratch_.
   void fill(Pair& plan, std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
-  /// The correlations in scratch_, summed in even powers.
+  /// The sums S_k of the correlations that are in scratch_.
   [[nodiscard]] std::array<double, kEvenPowers> sums_of(const Pair& plan, std::size_t i, std::size_t j,
                                                         const Model& model) const;
   double entry(std::size_t i, std::size_t j, const Model& model, bool remember_shapes);
@@ -83,8 +84,8 @@ class HaarCovariance {
   double dt_s_;
   std::unique_ptr<Rules> rules_;
   std::vector<Pair> pairs_;
-  Pair ringing_pair_;          ///< the plan asked for last of a model that rings
-  std::vector<Pair> thinned_;  ///< by scale, of the stride asked for last
+  Pair ringing_pair_;          ///< the lags of the latest pair of scales under a model that rings
+  std::vector<Pair> thinned_;  ///< the lags of each scale for the latest stride
   std::vector<std::size_t> stride_;
   std::vector<double> scratch_;
 };

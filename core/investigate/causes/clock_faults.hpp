@@ -15,10 +15,12 @@ namespace driftlab::investigate {
 [[nodiscard]] std::vector<FaultyRecordings> clock_faults(const Study& study, ClockBreak kind,
                                                          const std::string& parameter, const LabUnit& unit);
 
-/// Adds w at the times at which the recording is read, minus w, to a draft; `values` are size and t0.
+/// Adds the effect of a break to the mean of a draft: the rate at the times of the broken clock less the rate at the
+/// right ones. `values` are size and t0.
 void inject_clock_break(Draft& draft, ClockBreak kind, std::span<const double> values);
 
-/// Size and time of a break in the middle of the second recording that is seen at about 1.5 z deviations.
+/// Size and time of a break in the middle of the second recording, of the size that stands out at about 1.5 times
+/// `stage.z` standard deviations.
 [[nodiscard]] std::vector<double> shown_clock_break(const Stage& stage, ClockBreak kind);
 
 }  // namespace driftlab::investigate

@@ -47,11 +47,11 @@ struct Evidence {
   std::string doubt;  ///< why an effect outside the registry may be behind it; empty: no doubt
 };
 
-/// Of the rivals of a finding, and of the alternatives that are told.
+/// The most rivals that a finding keeps, and the most alternatives that are reported of it.
 inline constexpr std::size_t kMostAlternatives = 5;
 
-/// What else may be behind a finding, to be told: the names of its rivals, best first, and last `unnamed` where an
-/// effect outside the registry may be, in place of the rivals that would be more than kMostAlternatives with it.
+/// The reported alternatives to a finding: the names of its rivals, best first. If an effect outside the registry may
+/// be behind it, `unnamed` comes last, and rivals are dropped so that there are kMostAlternatives at most.
 [[nodiscard]] std::vector<std::string> alternatives_of(const Evidence& evidence);
 
 /// Penalty for having chosen among `choices` equally likely places.

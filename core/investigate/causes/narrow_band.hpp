@@ -2,10 +2,10 @@
 /// Oscillations that are not a single spectral line: their frequency runs, or their amplitude is modulated.
 ///
 /// Both are followed in the innovations, which are white and of unit variance under the model. With a phase
-/// p(t) = 2 pi (f t + c t^2/2) the sum S = sum e exp(-i p) of n innovations has X = 2 |S|^2 / n, chi-square with two
-/// degrees of freedom where nothing oscillates so; a local excess of the spectrum divides it. Sums over blocks of
-/// e exp(-i p0), p0 a phase that is nearly right, keep all frequencies within half the rate of the blocks about it, so
-/// that the search about p0 costs no more than the number of blocks.
+/// p(t) = 2 pi (f t + c t^2/2) let S = sum e exp(-i p) over n innovations. Without an oscillation of that phase
+/// X = 2 |S|^2 / n is chi-square with two degrees of freedom; where the spectrum of the innovations is locally above 1,
+/// X is divided by it. For a phase p0 that is nearly right, sums of e exp(-i p0) over blocks keep all frequencies
+/// within half the block rate of p0, so that a trial of a phase near p0 costs one operation per block.
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/fullrate/full_rate.hpp"
 
@@ -42,7 +42,7 @@ struct Beaten {
 /// Least squares of cosines and sines of several phases in the residuals of member r [SI].
 struct PhaseFit {
   std::vector<std::complex<double>> amplitude;  ///< modulus [SI]
-  double variance = 0.0;                        ///< of each part of each [SI^2]
+  double variance = 0.0;                        ///< of the real and of the imaginary part of each amplitude [SI^2]
   std::vector<double> values;                   ///< over the analysed part
 };
 [[nodiscard]] PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep>& sweeps);

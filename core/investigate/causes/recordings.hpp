@@ -1,6 +1,6 @@
 #pragma once
-/// What causes of recordings at fault share: the error renewed after a repair, recordings thinned to fewer samples, and
-/// a list of channels in a sentence.
+/// What the causes that repair recordings (RecordingFault in family.hpp) share: computing the error again after a
+/// repair, keeping every m-th sample of a recording, and naming channels in a sentence.
 #include "core/investigate/causes/family.hpp"
 
 #include <cstddef>
@@ -17,10 +17,10 @@ namespace driftlab::investigate {
 [[nodiscard]] std::string list_of_names(const std::vector<std::string>& names);
 [[nodiscard]] std::string list_of_names(const std::vector<ChannelName>& names);
 
-/// error = measured - reference, where the channel had one.
+/// Computes `error` again as `measured` - `reference`, in a channel that has an error.
 void renew_error(Channel& channel);
 
-/// The readings with their sign turned; their error is not renewed.
+/// Changes the sign of the readings. The error is not computed again.
 void turn_sign(Channel& channel);
 
 /// A number for a sentence, four digits.
@@ -29,23 +29,24 @@ void turn_sign(Channel& channel);
 /// Keeps every m-th sample of a recording from `phase` on: its interval becomes m times as long.
 void thin_out(StudyRecording& recording, std::size_t every, std::size_t phase, std::deque<std::vector<double>>& rows);
 
-/// Takes the grid places marked in `gone` out of every channel: they count as absent, and their rows as not written.
+/// Takes the samples at the grid places marked in `gone` out of every channel, as if their rows were not in the file.
 void leave_out(StudyRecording& recording, const std::vector<unsigned char>& gone,
                std::deque<std::vector<double>>& rows);
 
-/// m and phase of a recording; m = 0: it is as it should be.
+/// Which samples of a recording are the original ones: every m-th from `phase` on. m = 0: all are.
 struct Thinning {
   std::size_t every = 0;
   std::size_t phase = 0;
 };
 
-/// The fault of all recordings that `look` finds resampled by one m. They are thinned out; recordings of the other kind
-/// are set aside, whichever are fewer. `parameter` makes the reported value of a recording's m.
+/// One fault for each m by which `look` finds recordings resampled. If these are more than half of the study they are
+/// thinned out and the others are set aside; otherwise they are set aside themselves. `parameter` gives the reported
+/// value of a recording's m.
 [[nodiscard]] std::vector<FaultyRecordings> resampled_recordings(
     const Study& study, const std::function<Thinning(const StudyRecording&)>& look,
     const std::function<FoundParameter(const StudyRecording&, std::size_t every)>& parameter, const std::string& what);
 
-/// Takes every criticised channel of a recording out of what is examined.
+/// Leaves every channel of a recording out of the examination; it stays an input.
 void set_aside(StudyRecording& recording);
 
 }  // namespace driftlab::investigate

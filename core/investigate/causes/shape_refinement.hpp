@@ -1,6 +1,6 @@
 #pragma once
-/// How the shape of a mean effect is refined between the values that a cause tries: not at all, as a time constant, or
-/// as a phase.
+/// How the shape of a mean effect is refined. A cause tries a list of shapes; the best of them is kept as it is, or
+/// refined as a time constant or as a phase.
 #include "core/signal/estimate.hpp"
 
 #include <algorithm>
@@ -10,15 +10,15 @@ namespace driftlab::investigate {
 
 class ShapeRefinement {
  public:
-  /// The tried values are all there are.
+  /// No refinement: the shape is one of the tried values.
   ShapeRefinement() = default;
   /// A time [s], zero or more.
   [[nodiscard]] static ShapeRefinement time() { return ShapeRefinement(Kind::Time, 0.0); }
-  /// A phase: half a period more is the negative, so that the amplitude can be and is positive.
+  /// A phase. Adding half a period changes the sign of the effect, so that its amplitude can always be made positive.
   [[nodiscard]] static ShapeRefinement phase(double period) { return ShapeRefinement(Kind::Phase, period); }
 
   [[nodiscard]] bool refined() const { return kind_ != Kind::Tried; }
-  /// The shape is a phase: every effect has an amplitude that is positive.
+  /// Whether the shape is a phase.
   [[nodiscard]] bool turns() const { return kind_ == Kind::Phase; }
 
   /// Step of a difference quotient at `shape`.
@@ -26,26 +26,26 @@ class ShapeRefinement {
     return turns() ? period_ / 360.0 : std::max(0.02 * shape, 0.05);
   }
 
-  /// About the standard deviation of a shape that is clearly seen: where the search for an interval's end begins.
+  /// A typical standard error of the shape of a clear effect, with which the search for the end of an interval begins.
   [[nodiscard]] double usual_error(double shape) const {
     return turns() ? period_ / 100.0 : std::max(0.5, 0.15 * shape);
   }
 
-  /// Where an interval about `shape` ends at the latest.
+  /// The largest interval about `shape`.
   [[nodiscard]] Interval bounds(double shape) const {
     constexpr double kLongest = 1e5;  // [s]
     return turns() ? Interval{shape - 0.5 * period_, shape + 0.5 * period_} : Interval{0.0, kLongest};
   }
 
-  /// The nearest shape that there is.
+  /// The nearest valid shape: times are not negative.
   [[nodiscard]] double nearest(double shape) const { return turns() ? shape : std::max(0.0, shape); }
 
-  /// The shape of the same effect whose amplitude is positive, given the amplitude at `shape`. As it is for a time.
+  /// The shape at which the effect of `shape` and `amplitude` has a positive amplitude. A time is returned unchanged.
   [[nodiscard]] double for_positive(double shape, double amplitude) const {
     return turns() ? std::fmod(shape + (amplitude < 0.0 ? 0.5 * period_ : 0.0) + period_, period_) : shape;
   }
 
-  /// The shape near `start` that makes `score(shape)` largest, by steps to either side that become shorter.
+  /// The shape near `start` with the largest `score(shape)`, by steps of decreasing length to either side.
   template <class Score>
   [[nodiscard]] double best_near(double start, const Score& score) const {
     if (!refined()) {

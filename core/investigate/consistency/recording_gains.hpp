@@ -4,10 +4,11 @@
 /// Per recording, the channels of a quantity are regressed on the motion that drives them: on the reference where it
 /// varies, by means over a second, jointly on all axes that move; where it is constant, the gain is
 ///   (mean - b) / w,   b the median of the channel's means over the recordings in which nothing drives it.
-/// A right recording has a gain of 1 on its own axis and of 0 on the others. Errors of calibration are small and common
-/// to all recordings; what comes to more than a tenth in one of them is an error of the recording: a turned sign (-1),
-/// exchanged axes (0, and 1 on another axis), another unit (a known factor), or another motion than the one stated. A
-/// wrong unit scales the noise by the same factor, so the noise decides at rest and where a bias hides the gain.
+/// In a recording that is what its description says, a channel has a gain of 1 on its own axis and of 0 on the others.
+/// Errors of calibration are small and the same in all recordings. A gain that is off by more than a tenth in one
+/// recording is therefore an error of that recording: a turned sign (-1), exchanged axes (0, and 1 on another axis),
+/// another unit (a known factor), or another motion than the one stated. A wrong unit scales the noise by the same
+/// factor; the noise is compared at rest and where a bias hides the gain.
 /// Samples at a clipped extreme are left out.
 #include "core/investigate/study/study.hpp"
 
@@ -21,7 +22,7 @@ enum class RecordingDoubt {
   TurnedSign,
   SwappedAxes,
   OtherUnit,
-  NoResponse,  ///< the channel does not see the motion
+  NoResponse,  ///< the gain is below a tenth: the channel does not follow the motion
   OddGain,     ///< a gain that neither sign, axis nor unit explains, and that other recordings do not have
 };
 

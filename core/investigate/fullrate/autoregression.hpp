@@ -1,19 +1,20 @@
 #pragma once
-/// An autoregression of fixed order that whitens what a model has left coloured.
+/// An autoregression of fixed order, to whiten innovations whose spectrum the model does not describe.
 ///
 /// The autocovariance is pooled over all recordings, the coefficients follow by Levinson's recursion (Durbin 1960).
-/// Gross values would stretch the covariance; clipping at 4 standard deviations changes a Gaussian one by 1e-4.
+/// Outliers would enlarge the autocovariance, so values are clipped at 4 standard deviations; this changes that of
+/// Gaussian noise by 1e-4.
 #include <array>
 #include <cstddef>
 #include <vector>
 
 namespace driftlab::investigate {
 
-/// Chosen, not measured: what a filter colours is taken to be over within 24 samples; each order costs a product a
-/// sample.
+/// Chosen, not measured: filters of sensors are taken to correlate samples up to 24 apart. Each order costs one
+/// multiplication for each sample.
 inline constexpr std::size_t kAutoregressionOrder = 24;
 
-/// The last values of a walk through a series.
+/// The latest values of a series that is read sample by sample.
 class Recent {
  public:
   /// The value `lag` places before the present one, 1 to kAutoregressionOrder.

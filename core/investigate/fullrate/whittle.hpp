@@ -4,9 +4,9 @@
 
 namespace driftlab::investigate {
 
-/// Spectra and what is expected of them: the density E = fixed + sum_k level_k shape_k, every level_k >= 0.
+/// Measured spectra, and the model of their expected density E = fixed + sum_k level_k shape_k, every level_k >= 0.
 struct LinearDensity {
-  Eigen::VectorXd power, weight, fixed;  ///< by bin: mean of the ordinates P, their number m, what is known of E
+  Eigen::VectorXd power, weight, fixed;  ///< by bin: mean P of the ordinates, their number m, the known part of E
   Eigen::MatrixXd shape;                 ///< bins x levels
 };
 struct LevelFit {

@@ -1,12 +1,12 @@
 #pragma once
-/// Numbers over a grid, or over a part of one, in as little memory as they need.
+/// One value per sample of a grid, or of a part of one, computed when it is read instead of stored.
 ///
-/// A recording of a day holds millions of samples of every channel, and most of what is said of them follows from the
-/// file by one operation a sample: SI instead of the file's unit, less the reference, less the bias. A `Series` keeps
-/// what it follows from and works a number out when it is asked for:
+/// A recording of a day has millions of samples in every channel, and the search needs them in SI, less the reference,
+/// and less the bias. Stored, each of these would take 8 bytes a sample. A `Series` keeps the operands and computes a
+/// value when it is asked for:
 ///   value(i) = (first(i) - second(i)) - shift,
-/// where `first` and `second` are each a column of the file in SI, one number throughout, or numbers of their own. The
-/// results are those of the same operations done beforehand, to the bit. Copies share what they hold.
+/// where `first` and `second` are each a column of the file in SI, a constant, or stored values. Values are equal to
+/// the bit to those of the same operations done beforehand. Copies of a series share its stored values.
 #include "core/signal/unit.hpp"
 
 #include <cstddef>
@@ -21,13 +21,13 @@ class Series {
   class Iterator;
 
   Series() = default;
-  /// Numbers of its own.
+  /// Stored values.
   // NOLINTNEXTLINE(google-explicit-constructor): a vector is a series, and stands where one is asked for
   Series(std::vector<double> values);
   [[nodiscard]] static Series constant(double value, std::size_t count);
-  /// A column of a file in SI; `rows` are the caller's memory and stay it.
+  /// A column of a file, converted to SI as it is read. `rows` are not copied and must outlive the series.
   [[nodiscard]] static Series column(std::span<const double> rows, const Unit& unit);
-  /// Numbers as they are, in the caller's memory.
+  /// Values that are not copied and must outlive the series.
   [[nodiscard]] static Series view(std::span<const double> values);
 
   [[nodiscard]] std::size_t size() const { return count_; }
@@ -42,20 +42,20 @@ class Series {
   [[nodiscard]] Iterator begin() const;
   [[nodiscard]] Iterator end() const;
 
-  /// Place by place less another of the same size.
+  /// This series less another of the same size, value by value.
   [[nodiscard]] Series minus(const Series& other) const;
   [[nodiscard]] Series minus(double value) const;
-  /// The places [from, from + count).
+  /// The values [from, from + count).
   [[nodiscard]] Series part(std::size_t from, std::size_t count) const;
-  /// Every `every`-th place from `phase` on.
+  /// Every `every`-th value from `phase` on.
   [[nodiscard]] Series thinned(std::size_t every, std::size_t phase) const;
-  /// All of them at once, 8 bytes each.
+  /// A copy of all values, 8 bytes each.
   [[nodiscard]] std::vector<double> values() const;
 
  private:
   struct Term {
-    std::shared_ptr<const std::vector<double>> own;  ///< keeps `data` alive; null: the caller's memory, or none
-    const double* data = nullptr;                    ///< null: `value` throughout
+    std::shared_ptr<const std::vector<double>> own;  ///< keeps `data` alive; null where it is the caller's or null
+    const double* data = nullptr;                    ///< null: every value is `value`
     double value = 0.0;
     bool converts = false;  ///< data * factor + offset
     double factor = 1.0, offset = 0.0;
@@ -77,7 +77,7 @@ class Series {
   bool shifted_ = false;
 };
 
-/// Walks over a series, which must outlive it; numbers come by value.
+/// Iterates over a series, which must outlive it; dereferencing computes the value.
 class Series::Iterator {
  public:
   using value_type = double;
@@ -104,7 +104,7 @@ class Series::Iterator {
 inline Series::Iterator Series::begin() const { return {*this, 0}; }
 inline Series::Iterator Series::end() const { return {*this, count_}; }
 
-/// Which places of a grid hold a sample. Copies share what they hold; where every place does, there is nothing to hold.
+/// Which places of a grid have a sample. Copies share the flags; if every place has one, no flags are stored.
 class Presence {
  public:
   Presence() = default;
