@@ -2,11 +2,12 @@
 /// A given model as the search uses it: it is taken as true and never refitted.
 ///
 /// Its processes become the noise model, by the laws that their kinds declare. Drifts and mean effects with fixed shape
-/// are subtracted from the error before anything is examined. Slow effects become processes; a `white_noise_level` or
-/// `quantization_noise` replaces or joins the level of the processes. Effects that cannot be subtracted from a
-/// recording (sinusoids, tails, band limits, facts of the file) stay in it; if one is found again with parameters that
-/// agree with the model, this is a confirmation and not a finding. The constant bias stays free: it is one number per
-/// channel and never a finding (spec/causes.md).
+/// are subtracted from the error before anything is examined. Slow effects become processes. An effect that states the
+/// density of the white noise takes the place of the processes' white level, and one that is differenced noise is added
+/// to theirs; which effects these are, their causes declare (NoiseLevel and DifferencedNoise in causes/family.hpp).
+/// Effects that cannot be subtracted from a recording (sinusoids, tails, band limits, facts of the file) stay in it; if
+/// one is found again with parameters that agree with the model, this is a confirmation and not a finding. The constant
+/// bias stays free: it is one number per channel and never a finding (spec/causes.md).
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/slow/slow_model.hpp"
