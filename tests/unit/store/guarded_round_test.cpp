@@ -49,7 +49,7 @@ TEST_F(GuardedRound, TellsOncePerRoundThatAnExceptionEndedAndGoesOn) {
 }
 
 TEST_F(GuardedRound, TellsWhatIsNoStandardException) {
-  EXPECT_FALSE(guarded_round("loop", [] { throw 7; }));  // NOLINT(hicpp-exception-baseclass)
+  EXPECT_FALSE(guarded_round("loop", [] { throw 7; }));
   EXPECT_THAT(told_, ElementsAre("loop: an exception of an unknown type"));
 }
 
