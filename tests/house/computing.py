@@ -26,10 +26,10 @@ MEDIAN = re.compile(r"\bstd::(ranges::)?(stable_|partial_)?sort\b((?!\n\}).)*?(s
 COUNTING = re.compile(r"\bstd::(ranges::)?count_if\((?:(?!;).)*?\]\s*\(\s*(const\s+)?(double|float)\b", re.DOTALL)  # of numbers, by what they are
 
 # What nobody needs to move documents, files and jobs about: job kinds, endpoints and commands hold no analysis (core/analysis does).
-# Costs, progress, paths and times are added and divided there, so that plain arithmetic passes.
+# What they may add and divide beside it, accounting.py says; endpoints are held to this alone.
 STATISTICS = re.compile(
     r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|fma|lerp|midpoint|accumulate|"
-    r"(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element)\b")
+    r"(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element|plus|minus|multiplies|divides)\b")
 # These write numbers: whether one is finite, to how many decimals, that a whole number fits its type, the bytes of a MATLAB file.
 WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json/mat_file.cpp"}
 
@@ -37,12 +37,13 @@ WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json
 ARITHMETIC = re.compile(r"(?<=[\w)\]])\s+([-+*/])\s+(?=[\w(*\-])|(?<=[\w)\]])\s+([-+*/]=)\s")
 # The last name of an operand that is a unit: kDegree, unit.per_si, a factor; or a power of ten, a reciprocal.
 UNIT = re.compile(r"k(Degree|StandardGravity|MilliG|Percent|RegressionMg|RegressionPpm)|per|(\w+_)?per_si|si|(\w+_)?factor|unit|100\.0|1e-?\d+")
+CHOSEN_UNIT = re.compile(r"\([\w.]+ \? kDegree : 1\.0\)")
 WHOLE = re.compile(r"\d[\d']*U?")
-PLACE = re.compile(r"size|begin|end|length")  # in a list or a text
+PLACE = re.compile(r"size|begin|end|data|length")  # in a list or a text
 # Strings are added too: numbers are known by a unit in their name, by their decimals, as numbers taken from a document, or as
 # elements of two lists; what is added to also by its declaration.
 MEASURED = re.compile(r"\w+_(m|m2|s|hz|rad|deg|degc|m_s|rad_s|m_s2|si)|\d+\.\d*|missing|implausible|samples|get<(double|float)>")
-DECLARED = re.compile(r"\b(?:double|float|int|unsigned|long|(?:std::)?(?:size_t|u?int\d+_t|ptrdiff_t))\s+(\w+)\s*(?=[={;])")
+DECLARED = re.compile(r"\b(?:double|float|int|unsigned|long|(?:std::)?(?:size_t|u?int\d+_t|ptrdiff_t))&?\s+(\w+)\s*(?=[={;:,)])|\bauto\s+(\w+)\s*=\s*\d")
 ARGUMENT = re.compile(r"<[\w:]+>")  # of a template: get<double>
 
 COMMENT_OR_LITERAL = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|' r"(?<!\w)'(?:\\.|[^'\\\n])+'", re.DOTALL)
@@ -115,10 +116,12 @@ def inside_an_index(code: str, position: int) -> bool:
     return False
 
 
-def arithmetic_of(code: str) -> list[tuple[int, str]]:
-    """Where numbers are added, subtracted, multiplied or divided that are neither places in a list nor changes of units."""
-    found: list[tuple[int, str]] = []
-    declared = set(DECLARED.findall(code))
+def arithmetic_of(code: str) -> list[tuple[int, str, str, str]]:
+    """Where numbers are added, subtracted, multiplied or divided that are neither places in a list nor changes of units: the place,
+    what stands left of the sign, the sign and what stands right of it.
+    """
+    found: list[tuple[int, str, str, str]] = []
+    declared = {name for match in DECLARED.finditer(code) for name in match.groups()}
     for match in ARITHMETIC.finditer(code):
         left, right = left_of(code, match.start()), right_of(code, match.end())
         names = (last_name(left), last_name(right))
@@ -126,10 +129,13 @@ def arithmetic_of(code: str) -> list[tuple[int, str]]:
         places = any(PLACE.fullmatch(name) for name in names)
         whole = [bool(WHOLE.fullmatch(name)) for name in names]
         counted = (sign[0] in "+-" and (places or any(whole))) or (places and any(whole)) or all(whole) or inside_an_index(code, match.start())
-        unit = any(UNIT.fullmatch(name) for name in names[1 if sign[0] == "/" else 0:]) or (sign == "/" and left == "1.0")
-        number = sign[0] != "+" or any(MEASURED.fullmatch(name) for name in names) or names == ("]", "]") or (sign == "+=" and left in declared)
+        unit = (any(UNIT.fullmatch(name) for name in names[1 if sign[0] == "/" else 0:]) or (sign == "/" and left == "1.0")
+                or CHOSEN_UNIT.fullmatch(right))
+        compared = re.match(r"\s+([<>!=]=?|\?)\s", code[match.end() + len(right):])  # text += i < full ? "#" : ".";
+        number = sign[0] != "+" or any(MEASURED.fullmatch(name) for name in names) or names == ("]", "]") \
+            or left in declared or (right in declared and not compared)
         if number and not counted and not (unit and sign[0] in "*/"):
-            found.append((match.start(), f"{left} {sign} {right}"))
+            found.append((match.start(), left, sign, right))
     return found
 
 
@@ -139,9 +145,10 @@ def said_by(patterns: tuple[re.Pattern[str], ...], code: str) -> list[tuple[int,
 
 def statistics_in(code: str) -> list[tuple[int, str]]:
     """Where code without comments calls what only an analysis calls."""
-    return said_by((STATISTICS, UNQUALIFIED, REDUCTION, MEDIAN), code)
+    return said_by((STATISTICS, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code)
 
 
 def computing_in(code: str) -> list[tuple[int, str]]:
     """Where code without comments computes, and what it says there."""
-    return said_by((COMPUTING, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code) + arithmetic_of(code)
+    return said_by((COMPUTING, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code) + [
+        (place, f"{left} {sign} {right}") for place, left, sign, right in arithmetic_of(code)]

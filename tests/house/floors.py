@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import accounting
 import computing
 import tree
 
@@ -161,8 +162,9 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
     if module == "schema/json" and name not in computing.WRITE_NUMBERS:
         for position, said in computing.computing_in(code):
             fault(position, f"schema/json computes ({said}): that belongs to core", code)
-    if module in ("server/jobs", "server/api", "clients/cli"):
-        for position, said in computing.statistics_in(code):
+    if module in ABOVE_USE_CASES:
+        unaccounted = accounting.unaccounted_in(name, code) if module != "server/api" else []
+        for position, said in computing.statistics_in(code) + unaccounted:
             fault(position, f"{module} analyses ({said}): that belongs to core/analysis", code)
     if module.startswith("core/"):
         for match in THREADS.finditer(code) if name != EXECUTOR else ():

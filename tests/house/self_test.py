@@ -5,9 +5,12 @@ from __future__ import annotations
 import os
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
+import accounting
 import causes
+import computing
 import documents
 import floors
 import leaks
@@ -126,7 +129,7 @@ class Floors(Planted):
         self.assertEqual(floors.check(self.root), [])
 
     def test_an_analysis_in_a_job_kind_an_endpoint_or_a_command_is_refused(self) -> None:
-        for folder in ("server/jobs", "server/api", "clients/cli"):
+        for folder in ("server/jobs", "server/api", "server", "clients/cli"):
             for line in ("auto s = std::sqrt(sum / n);", "auto r = std::log(a / b);", "std::nth_element(v.begin(), middle, v.end());",
                          "auto s = std::accumulate(v.begin(), v.end(), 0.0);", "auto s = sqrt(sum / n);", "auto m = v.mean();", "auto m = v.maxCoeff();",
                          "std::sort(v.begin(), v.end()); auto m = v[v.size() / 2];", "std::ranges::sort(v); return v.at((v.size() - 1) / 2);"):
@@ -134,9 +137,43 @@ class Floors(Planted):
                     path = self.plant(f"{folder}/a.cpp", "int before;\n" + line + "\n")
                     self.refused(floors.check(self.root), f"{folder}/a.cpp:2: {folder} analyses")
                     path.unlink()
-        self.plant("server/jobs/a.cpp", "auto cost = kBytesPerSample * size.rows;\nauto left = std::max(a, b) / threads;  // std::sqrt\n"
-                                             "std::sort(ids.begin(), ids.end());\nauto all = figure.mean + 2 * cost;\n")
+
+    def test_a_hand_written_statistic_outside_core_is_refused(self) -> None:
+        # A mean summed by hand, a sort of measured values and their greatest passed: plain arithmetic was let through.
+        for folder in ("server/jobs", "server", "clients/cli"):
+            for line in ("double sum = 0.0; for (double v : values) { sum += v; }", "double sum = 0.0; for (double v : values) { sum = sum + v; }",
+                         "auto sum = 0.0; for (auto v : values) { sum += v; }", "for (double v : values) { found.sum += v; }",
+                         "auto mean = sum / n;", "auto mean = sum / values.size();", "auto mean = sum / static_cast<double>(values.size());",
+                         "double s = (v - mean) * (v - mean);", "auto d = values[i] - values[i - 1];", "total += row.at(m).get<double>();",
+                         "std::sort(values.begin(), values.end());", "std::ranges::sort(values);", "std::stable_sort(axis.values.begin(), axis.values.end());",
+                         "auto m = *std::max_element(values.begin(), values.end());", "auto [l, h] = std::ranges::minmax(values);",
+                         "worst = std::max(worst, error);", "auto c = std::clamp(share, low, high);", "auto a = std::abs(error);",
+                         "auto k = kBytesPerRow * mean;", "auto r = std::round(error);",
+                         "auto n = std::count_if(v.begin(), v.end(), [](double x) { return x > kMost; });"):
+                with self.subTest(folder=folder, line=line):
+                    path = self.plant(f"{folder}/a.cpp", "int before;\n" + line + "\n")
+                    self.refused(floors.check(self.root), f"{folder}/a.cpp:2: {folder} analyses")
+                    path.unlink()
+            self.plant(f"{folder}/b.cpp",
+                       "auto cost = kBytesPerSample * size.rows;\ncost.memory_bytes += kBytes * std::max(size.rows, kFew);  // std::sqrt\n"
+                       "std::sort(ids.begin(), ids.end());\nauto left = std::max(1, options.threads);\nauto path = folder / file;\n"
+                       "auto late = now - job.created_at > budgets.job_seconds * kMicros;\nauto e = std::min(text.find(mark), text.size());\n"
+                       "auto share = static_cast<double>(done) / static_cast<double>(files.size());\nauto n = text.substr(at + 1, stop - at);\n"
+                       "list[axis] = one.bias / (place.gyro ? kDegree : 1.0);\nauto percent = 100.0 * share;\nbar += i < full ? full_block : empty;\n"
+                       "int i = 0;\ntext += name;\nauto s = backup + 1;\n")
         self.assertEqual(floors.check(self.root), [])
+        # What a place may say beside, no other may.
+        for folder, name in (("server/jobs", "outage_evaluation.cpp"), ("clients/cli", "outages.cpp")):
+            self.plant(f"{folder}/{name}", "auto cost = epochs * runs;\n")
+        faults = floors.check(self.root)
+        self.refused(faults, "clients/cli/outages.cpp:1: clients/cli analyses (epochs * runs)")
+        self.assertEqual(len(faults), 1, faults)
+
+    def test_every_place_of_an_account_is_needed(self) -> None:
+        tree = Path(__file__).parents[2]
+        for name in accounting.PLACES:
+            with self.subTest(name=name), unittest.mock.patch.dict(accounting.PLACES, clear=True):
+                self.assertTrue(accounting.unaccounted_in(name, computing.code_of((tree / name).read_text())))
 
     def test_a_thread_of_core_outside_its_executor_is_refused(self) -> None:
         for line in ("std::thread helper(work);", "std::jthread helper(work);", "auto f = std::async(work);"):
