@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on an include that climbs a floor, on what core/ may not use, and on documents that compute.
+"""Fails on an include that climbs a floor, on what core/ may not use, and on documents that compute or run an analysis.
 
 Each module stands only on those named here; `tests/` stands on everything. A relative include of a driftlab header is a
 fault too, for it hides the floor.
@@ -11,6 +11,7 @@ from pathlib import Path
 
 import accounting
 import computing
+import running
 import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
@@ -133,7 +134,8 @@ def module_of(name: str) -> str | None:
     return None
 
 
-def faults_of(root: Path, name: str, text: str) -> list[str]:
+def faults_of(root: Path, name: str, text: str, functions: set[str], members: set[str]) -> list[str]:
+    """`functions` and `members` run an analysis: no document calls them."""
     faults: list[str] = []
     module = module_of(name)
     if module is None:
@@ -162,6 +164,9 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
     if module == "schema/json" and name not in computing.WRITE_NUMBERS:
         for position, said in computing.computing_in(code):
             fault(position, f"schema/json computes ({said}): that belongs to core", code)
+    if module.split("/")[0] == "schema":
+        for position, said in running.run_in(code, functions, members):
+            fault(position, f"{module} runs an analysis ({said}): it tells what one found", code)
     if module in ABOVE_USE_CASES:
         unaccounted = accounting.unaccounted_in(name, code) if module != "server/api" else []
         for position, said in computing.statistics_in(code) + unaccounted:
@@ -176,13 +181,15 @@ def faults_of(root: Path, name: str, text: str) -> list[str]:
 
 
 def check(root: Path) -> list[str]:
-    faults: list[str] = []
+    functions, members, empty = running.runners(root)
+    faults = [f"{name}: no function of the use case is known; one that neither takes a request nor fails is named in "
+              "tests/house/running.py" for name in empty]
     seen = 0
     for path in tree.files(root):
         name = path.relative_to(root).as_posix()
         if path.suffix in {".hpp", ".cpp", ".h"} and name.split("/")[0] in {"core", "schema", "server", "clients"}:
             seen += 1
-            faults += faults_of(root, name, path.read_text())
+            faults += faults_of(root, name, path.read_text(), functions, members)
     return faults if seen else [f"no sources under {root}"]
 
 

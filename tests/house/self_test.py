@@ -16,6 +16,7 @@ import floors
 import leaks
 import licence
 import measured
+import running
 import strict
 
 
@@ -127,6 +128,49 @@ class Floors(Planted):
         self.plant("schema/json/mat_file.cpp", "bytes.resize((bytes.size() + 7) / eight * eight);\n")
         self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
         self.assertEqual(floors.check(self.root), [])
+
+    def test_a_document_that_runs_an_analysis_is_refused(self) -> None:
+        # Every header of a use case is open to documents, and one of them could have called it.
+        self.plant("core/analysis/characterise.hpp", """#pragma once
+/// The use case "characterise": recordings in, models out.
+#include "core/signal/result.hpp"
+[[nodiscard]] Result<std::vector<CharacterisedRecording>> characterise(RecordingSource& recordings,
+                                                                       const CharacteriseOptions& options);
+[[nodiscard]] std::vector<Remark> remarks_of(const std::vector<CharacterisedRecording>& recordings);
+RecordingPreview preview_recording(const PreviewRequest& request, const DecodeLimits& limits = {});
+[[nodiscard]] Result<ChannelSimulation> simulate_model(const Baseline& model);
+[[nodiscard]] Status check_options(const Options& options);
+class ChannelLook {
+ public:
+  static Result<ChannelLook> open(RecordingSource& source, std::string_view column);
+  [[nodiscard]] Result<BinnedSpectrum> spectrum(FrequencyScale scale, std::size_t bins) const;
+  [[nodiscard]] const Unit& unit() const { return unit_; }
+};
+""")
+        self.plant("core/fit/characterise.hpp", "#pragma once\nResult<int> characterise_channel(const Series& series, const RunControl& control);\n")
+        self.plant("core/analysis/compare_devices.hpp", '#pragma once\n/// The use case "compare": devices in.\nReport compare_devices(const Devices& devices);\n')
+        for module in ("schema/json", "schema/text"):
+            for line in ("const auto found = characterise(recordings, options);", "return driftlab::characterise(recordings, {});",
+                         "auto p = preview_recording(request);", "auto t = simulate_model(model);", "auto s = look.spectrum(scale, 8);",
+                         "auto l = look->spectrum(scale, 8);", "auto r = compare_devices(devices);", "auto c = characterise_channel(series, {});",
+                         "Json list_json(RecordingSource& recordings);", "Json run_json(const RunControl& control);"):
+                with self.subTest(module=module, line=line):
+                    path = self.plant(f"{module}/a.cpp", '#include "core/analysis/characterise.hpp"\n' + line + "\n")
+                    self.refused(floors.check(self.root), f"{module}/a.cpp:2: {module} runs an analysis")
+                    path.unlink()
+            self.plant(f"{module}/a.cpp", '#include "core/analysis/characterise.hpp"\nauto r = remarks_of(recordings);\nauto s = look.unit();\n'
+                                          "void characterise(const Row& row);\nauto t = characterise(row);\nauto c = check_options(options);\n"
+                                          "const CharacterisedRecording& one = recordings.front();\nauto v = look.spectrum;\n")
+        self.assertEqual(floors.check(self.root), [])
+        self.plant("core/analysis/quiet.hpp", '#pragma once\n/// The use case "quiet": numbers in, numbers out.\nNumbers calm(const Numbers& numbers);\n')
+        self.refused(floors.check(self.root), "core/analysis/quiet.hpp", "no function of the use case is known")
+
+    def test_the_entries_of_the_use_cases_are_found(self) -> None:
+        functions, members, _ = running.runners(Path(__file__).parents[2])
+        self.assertLessEqual({"answer_drive", "calibrate", "characterise", "characterise_campaign", "compare_devices", "draft_drive", "draw_trace",
+                              "evaluate_outages", "investigate_study", "plan_study", "preview_recording", "regress", "report_outages",
+                              "simulate_drive", "simulate_model", "simulate_preset", "survey_recording"}, functions)
+        self.assertLessEqual({"open", "spectrum", "ratio"}, members)
 
     def test_an_analysis_in_a_job_kind_an_endpoint_or_a_command_is_refused(self) -> None:
         for folder in ("server/jobs", "server/api", "server", "clients/cli"):
