@@ -2,36 +2,21 @@
 
 #include "core/signal/number.hpp"
 #include "schema/text/fields.hpp"
+#include "schema/text/printed.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <optional>
 #include <vector>
 
 namespace driftlab {
 namespace {
 
-/// Four significant digits, without an exponent where people would not write one.
-std::string rounded(double x) {
-  std::array<char, 48> buffer{};
-  const double size = std::fabs(x);
-  const bool plain = size == 0.0 || (size >= 1e-3 && size < 1e5);
-  int decimals = 0;
-  if (plain && size > 0.0) {
-    decimals = std::clamp(3 - static_cast<int>(std::floor(std::log10(size))), 0, 6);
-  }
-  const int length = plain ? std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, x)
-                           : std::snprintf(buffer.data(), buffer.size(), "%.3e", x);
-  return {buffer.data(), static_cast<std::size_t>(length)};
-}
-
-std::string rounded(const std::optional<double>& end) { return end ? rounded(*end) : "…"; }
+std::string end_text(const std::optional<double>& end) { return end ? to_four_digits(*end) : "…"; }
 
 std::string value_text(const ReportedValue& estimate) {
-  return estimate.value ? rounded(*estimate.value) + " [" + rounded(estimate.low) + ", " + rounded(estimate.high) + "]"
-                        : "…";
+  return estimate.value
+             ? to_four_digits(*estimate.value) + " [" + end_text(estimate.low) + ", " + end_text(estimate.high) + "]"
+             : "…";
 }
 
 std::string cell_text(const TableCell& cell) {
@@ -62,7 +47,7 @@ std::string notes_of(const ParameterTable& table) {
               (row.robust ? "; the values are from robust variances.\n" : ".\n");
     }
     if (row.agreement && disagrees(row)) {
-      text += "! " + row.label + ": its recordings disagree (p = " + rounded(row.agreement->p) +
+      text += "! " + row.label + ": its recordings disagree (p = " + to_four_digits(row.agreement->p) +
               "); the pooled values stand for none of them.\n";
     }
     for (const std::string& warning : row.warnings) {
@@ -101,7 +86,7 @@ std::string stated_text(const ParameterTable& table, const std::string& key) {
   if (table.data_sheet) {
     for (const SheetFigure& figure : table.data_sheet->figures) {
       if (figure.parameter == key) {
-        return rounded(figure.stated);
+        return to_four_digits(figure.stated);
       }
     }
   }
