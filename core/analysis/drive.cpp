@@ -120,6 +120,19 @@ Result<drive::Tables> open_tables(const drive::Document& document, DriveSource& 
   return tables;
 }
 
+double DriveCheck::resting_s() const {
+  double resting_s = 0.0;
+  for (const drive::Rest& rest : rests) {
+    resting_s += rest.to_s - rest.from_s;
+  }
+  return resting_s;
+}
+
+double DriveCheck::repeated_percent() const {
+  const drive::SamplingFacts& sampling = drive.facts.sampling;
+  return sampling.rows == 0 ? 0.0 : 100.0 * static_cast<double>(sampling.repeated) / static_cast<double>(sampling.rows);
+}
+
 DriveCheck check_drive(drive::Drive drive) {
   DriveCheck checked;
   for (std::size_t run = 0; run < drive.runs.size(); ++run) {

@@ -80,6 +80,11 @@ struct DriveCheck {
   std::vector<drive::Rest> rests;
   std::optional<drive::Start> start;  ///< of the first run that can be started
   std::string cannot_start;           ///< why none can
+
+  /// How long the vehicle rests in all [s].
+  [[nodiscard]] double resting_s() const;
+  /// Rows of the inertial unit that repeat the row before [%]; 0 without rows.
+  [[nodiscard]] double repeated_percent() const;
 };
 
 [[nodiscard]] DriveCheck check_drive(drive::Drive drive);

@@ -57,7 +57,7 @@ Result<TimeAlignment> estimate(const ChannelView& channel, double dt_s, Alignmen
 bool known(const TimeAlignment& found, double dt_s) {
   const Interval& ci95 = found.delay_s.ci95;
   return found.converged && found.warnings.empty() && found.correlation >= kLeastCorrelation &&
-         0.5 * (ci95.high - ci95.low) <= dt_s && !ci95.contains(0.0);
+         ci95.half_width() <= dt_s && !ci95.contains(0.0);
 }
 
 /// Subtracts the reference as it was `delay_s` earlier.

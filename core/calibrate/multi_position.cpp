@@ -169,7 +169,7 @@ AxisAngles MultiPositionCalibration::misalignment() const {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i + 1; j < 3; ++j) {
       const double angle = -a[i][j].value / diagonal[j] + (j == i + 2 ? between : 0.0);
-      const double half = 0.5 * (a[i][j].ci95.high - a[i][j].ci95.low) / std::abs(diagonal[j]);
+      const double half = a[i][j].ci95.half_width() / std::abs(diagonal[j]);
       angles[i][j] = Estimate{angle, {angle - half, angle + half}};
     }
   }

@@ -239,6 +239,8 @@ void place_devices(const Logs& logs, double mean, Population& population) {
 
 }  // namespace
 
+double Population::differ_percent() const { return std::round(1000.0 * std::expm1(spread)) / 10.0; }
+
 Result<Population> describe_population(const std::vector<DeviceEstimate>& devices) {
   Population population;
   auto sorted = sort_devices(devices, population);

@@ -73,6 +73,8 @@ struct Population {
   std::optional<double> predicted_high;
 
   [[nodiscard]] std::size_t heterogeneity_dof() const { return places.size() - 1; }
+  /// tau as people say it: by how many per cent a device differs from the mean, one standard deviation, to a tenth.
+  [[nodiscard]] double differ_percent() const;
 };
 
 /// From here on a device is flagged.

@@ -4,7 +4,6 @@
 #include "core/signal/significant.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace driftlab {
 namespace {
@@ -65,7 +64,7 @@ void say_levels(const PopulationReport& report, Verdict& verdict) {
     if (row.parameter != "N" || !mean.value) {
       continue;
     }
-    const double differ = std::round(1000.0 * std::expm1(row.population.spread)) / 10.0;
+    const double differ = row.population.differ_percent();
     verdict.details.push_back(
         "N of " + axis_of(row) + ", " + row.label + ": " + significant(*mean.value, mean.low, mean.high) + " " +
         mean.unit + ", " +

@@ -10,6 +10,8 @@ struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   [[nodiscard]] bool contains(double value) const { return low <= value && value <= high; }
+  /// Infinite where an end is open.
+  [[nodiscard]] double half_width() const { return 0.5 * (high - low); }
 };
 
 /// A point estimate with its 95 % interval, both in SI.

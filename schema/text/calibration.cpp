@@ -10,17 +10,15 @@ namespace {
 
 constexpr double kWidestAngle = 1.0;  // [rad] a half interval beyond it says nothing about how two axes lie
 
-double half_width(const Estimate& estimate) { return 0.5 * (estimate.ci95.high - estimate.ci95.low); }
-
-bool bounded(const Estimate& estimate) { return std::isfinite(half_width(estimate)); }
+bool bounded(const Estimate& estimate) { return std::isfinite(estimate.ci95.half_width()); }
 
 /// "+- 0.001", or that nothing bounds the number.
 std::string spread_text(const Estimate& estimate) {
-  return bounded(estimate) ? printed("+- %.2g", half_width(estimate)) : "(no interval)";
+  return bounded(estimate) ? printed("+- %.2g", estimate.ci95.half_width()) : "(no interval)";
 }
 
 std::string ppm_text(const Estimate& estimate) {
-  const std::string spread = bounded(estimate) ? printed("+- %.1f", 1e6 * half_width(estimate)) : "(no interval)";
+  const std::string spread = bounded(estimate) ? printed("+- %.1f", 1e6 * estimate.ci95.half_width()) : "(no interval)";
   return printed("%+.1f %s ppm", 1e6 * estimate.value, spread.c_str());
 }
 
@@ -33,9 +31,9 @@ std::string angle_lines(const AxisAngles& angles) {
       if (!angle) {
         continue;
       }
-      if (half_width(*angle) < kWidestAngle) {
+      if (angle->ci95.half_width() < kWidestAngle) {
         text += printed("  %c reads %+.3f +- %.3f mrad of %c\n", "xyz"[i], 1e3 * angle -> value,
-                        1e3 * half_width(*angle), "xyz"[j]);
+                        1e3 * angle -> ci95.half_width(), "xyz"[j]);
       } else {
         text += printed(
             "  What %c reads of %c cannot be told from these positions; add attitudes with gravity between the two "

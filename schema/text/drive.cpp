@@ -31,8 +31,7 @@ std::string drive_check_to_text(const DriveCheck& checked) {
     text += printed(
         "  The host polls faster than the sensor samples: %zu rows (%.2f %%) repeat the row before; the sensor runs at "
         "%.2f Hz. They are dropped, and the others get equal spacing.\n",
-        sampling.repeated, 100.0 * static_cast<double>(sampling.repeated) / static_cast<double>(sampling.rows),
-        sampling.sensor_rate_hz);
+        sampling.repeated, checked.repeated_percent(), sampling.sensor_rate_hz);
   } else if (sampling.repeated > 0) {
     text +=
         printed("  %zu rows repeat the row before, %zu of them in longer runs.\n", sampling.repeated, sampling.stuck);
@@ -44,11 +43,7 @@ std::string drive_check_to_text(const DriveCheck& checked) {
       "Fixes: %zu used at %.2f Hz; left out: %zu held, %zu of other types, %zu without a position, %zu far "
       "away\n",
       facts.fixes, facts.fix_rate_hz, facts.held, facts.other_types, facts.incomplete, facts.far_away);
-  double still = 0.0;
-  for (const drive::Rest& rest : checked.rests) {
-    still += rest.to_s - rest.from_s;
-  }
-  text += printed("Rest: %.0f s in %zu stretches\n", still, checked.rests.size());
+  text += printed("Rest: %.0f s in %zu stretches\n", checked.resting_s(), checked.rests.size());
   if (checked.start) {
     const drive::Start& start = *checked.start;
     const EulerAngles angles = start.attitude();

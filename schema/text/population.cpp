@@ -6,16 +6,14 @@
 #include "core/signal/significant.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/text/fields.hpp"
-
-#include <cmath>
+#include "schema/text/printed.hpp"
 
 namespace driftlab {
 namespace {
 
 std::string full_digits(const std::optional<double>& value) { return value ? to_text(*value) : ""; }
 
-/// tau as people say it: by how many per cent a device differs from the mean, one standard deviation.
-std::string percent(double spread) { return short_text(std::round(1000.0 * std::expm1(spread)) / 10.0) + " %"; }
+std::string percent(const Population& population) { return short_text(population.differ_percent()) + " %"; }
 
 std::string axis_text(const PopulationRow& row) {
   return std::string(sensor_of(row.quantity)) + (row.axis.empty() ? "" : " " + row.axis) + ", " + row.label;
@@ -42,7 +40,7 @@ std::string row_text(const PopulationRow& row) {
   const ReportedValue& mean = population.mean;
   text += (mean.value ? significant(*mean.value, mean.low, mean.high) : "-") + " " +
           interval_text(mean.low, mean.high) + " " + population.unit + ", " +
-          with_count(population.places.size(), "device") + "; devices differ by " + percent(population.spread);
+          with_count(population.places.size(), "device") + "; devices differ by " + percent(population);
   if (population.predicted_low) {
     text += "; a further one lies in " + interval_text(population.predicted_low, population.predicted_high);
   }
@@ -51,9 +49,8 @@ std::string row_text(const PopulationRow& row) {
     if (place.outlying && place.estimate.value) {
       text += "     ! " + place.device + ": " +
               significant(*place.estimate.value, place.estimate.low, place.estimate.high) +
-              " is outlying (z = " + short_text(std::round(10.0 * place.z) / 10.0) +
-              ", p = " + significant(place.p_holm.value_or(1.0)) + " corrected for " +
-              with_count(population.places.size(), "device") + ")\n";
+              " is outlying (z = " + in_tenths(place.z) + ", p = " + significant(place.p_holm.value_or(1.0)) +
+              " corrected for " + with_count(population.places.size(), "device") + ")\n";
     }
   }
   if (!population.left_out.empty()) {
@@ -107,7 +104,7 @@ std::string populations_to_markdown(const PopulationReport& report) {
           described && mean.value
               ? significant(*mean.value, mean.low, mean.high) + " " + interval_text(mean.low, mean.high)
               : row.reason,
-          described ? percent(population.spread) : std::string(),
+          described ? percent(population) : std::string(),
           interval_text(population.predicted_low, population.predicted_high), std::to_string(population.places.size()),
           joined(outlying), names_of(population.left_out)}) {
       text += " " + markdown_field(cell) + " |";

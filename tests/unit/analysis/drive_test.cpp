@@ -49,6 +49,17 @@ TEST(DriveUseCase, RefusesWhatTheVehicleOrTheDriveDoesNotHave) {
   EXPECT_TRUE(check_options(flight, {}));
 }
 
+TEST(DriveUseCase, ACheckSumsItsRestsAndTellsTheShareOfRepeatedRows) {
+  DriveCheck checked;
+  EXPECT_EQ(checked.resting_s(), 0.0);
+  EXPECT_EQ(checked.repeated_percent(), 0.0) << "of no rows";
+  checked.rests = {{.from_s = 2.0, .to_s = 5.0}, {.from_s = 10.0, .to_s = 14.5}};
+  checked.drive.facts.sampling.rows = 400;
+  checked.drive.facts.sampling.repeated = 7;
+  EXPECT_EQ(checked.resting_s(), 7.5);
+  EXPECT_EQ(checked.repeated_percent(), 1.75);
+}
+
 TEST(DriveUseCase, TheFirstSentenceHoldsWhatWasMeasuredAgainstWhatWasPromised) {
   // A gyroscope five times as noisy as the document says: the errors of the outages exceed the filter's promise.
   const auto honest = run_drive(simulated_drive(31), {});

@@ -141,6 +141,13 @@ Measured measure(std::size_t k, double tau, int runs, unsigned seed) {
   return {counted.mean / runs, counted.prediction / runs, counted.flags / runs};
 }
 
+TEST(Population, TellsItsSpreadInTenthsOfAPercent) {
+  Population population;
+  EXPECT_EQ(population.differ_percent(), 0.0);
+  population.spread = 0.1;  // exp(0.1) - 1 is 10.517 %
+  EXPECT_EQ(population.differ_percent(), 10.5);
+}
+
 // Coverage of 95 % intervals between 93 and 97 %, with 2 sigma of the simulation: 1000 populations have 0.7 % at 95 %.
 // Errors of the estimates are 5 %, the spread between devices 10 or 30 % as of parts of one line.
 TEST(PopulationCoverage, OfMeanAndPredictionIsNinetyFivePercent) {
