@@ -124,20 +124,8 @@ std::string badge_words(const regression::Report& report) {
     return svg_written("no worse, %.3g %% to ", percent) + regression::duration_text(report.scope_s);
   }
   if (report.verdict == regression::Verdict::Fail) {
-    const UnitReport* unit = nullptr;
-    const ScaleReport* worst = nullptr;
-    for (const UnitReport& each : report.units) {
-      for (const ScaleReport& test : each.tests) {
-        const bool beyond = test.outcome.finding == regression::Finding::Beyond;
-        if (beyond &&
-            (worst == nullptr || test.outcome.lower - test.test.margin > worst->outcome.lower - worst->test.margin)) {
-          unit = &each;
-          worst = &test;
-        }
-      }
-    }
-    if (worst != nullptr) {
-      return "worse: " + regression::short_name(unit->name) + " " + regression::percent_text(worst->theta);
+    if (const regression::ToldTest worst = regression::furthest_beyond(report); worst.test != nullptr) {
+      return "worse: " + regression::short_name(worst.unit->name) + " " + regression::percent_text(worst.test->theta);
     }
     const auto failed = std::find_if(
         report.checks.begin(), report.checks.end(),

@@ -1,12 +1,10 @@
 /// Terminal text and Markdown page of a regression run.
-#include "core/signal/sort_keeping_ties.hpp"
 #include "core/signal/with_count.hpp"
 #include "schema/text/fields.hpp"
 #include "schema/text/regression.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -14,33 +12,12 @@ namespace driftlab {
 namespace {
 
 using regression::ScaleReport;
-using regression::UnitReport;
+using regression::ToldTest;
 
 constexpr std::size_t kWorstTests = 5;
 /// What keeps a page below 60 lines, whatever was compared: 42 lines are its own.
 constexpr std::size_t kFoldedTests = 15;
 constexpr std::size_t kMostDetails = 12;
-
-struct ListedTest {
-  const UnitReport* unit;
-  const ScaleReport* test;
-};
-
-/// All tests, the nearest to or furthest beyond its margin first.
-std::vector<ListedTest> by_distance(const regression::Report& report) {
-  std::vector<ListedTest> tests;
-  for (const UnitReport& unit : report.units) {
-    for (const ScaleReport& test : unit.tests) {
-      tests.push_back({&unit, &test});
-    }
-  }
-  const auto score = [](const ListedTest& listed) {
-    const double beyond = listed.test->outcome.finding == regression::Finding::Beyond ? 10.0 : 0.0;
-    return beyond + (listed.test->gated ? 1.0 : 0.0) + listed.test->outcome.upper_one - listed.test->test.margin;
-  };
-  sort_keeping_ties(tests, [&](const ListedTest& a, const ListedTest& b) { return score(a) > score(b); });
-  return tests;
-}
 
 std::string test_place(const ScaleReport& test) {
   return test.name.empty() ? regression::duration_text(test.test.tau_s) : test.name;
@@ -79,9 +56,9 @@ std::string look_line(const Look& look) {
          (look.counted ? "." : " (not counted).");
 }
 
-std::string worst_row(const ListedTest& listed) {
-  const ScaleReport& test = *listed.test;
-  return "| " + regression::short_name(listed.unit->name) + " | " + test_place(test) + " | " + test_figures(test) +
+std::string worst_row(const ToldTest& told) {
+  const ScaleReport& test = *told.test;
+  return "| " + regression::short_name(told.unit->name) + " | " + test_place(test) + " | " + test_figures(test) +
          " | " + std::string(name_of(test.outcome.finding)) + (test.gated ? "" : ", watched") + " |\n";
 }
 
@@ -119,7 +96,7 @@ std::string regression_to_text(const RegressReport& run) {
   if (run.versus_previous) {
     text += "Against " + run.versus_previous->label + ": " + run.versus_previous->sentence + "\n";
   }
-  const std::vector<ListedTest> tests = by_distance(report);
+  const std::vector<ToldTest> tests = regression::by_distance(report);
   for (std::size_t i = 0; i < std::min(kWorstTests, tests.size()); ++i) {
     std::array<char, 160> line{};
     const int length = std::snprintf(
@@ -147,7 +124,7 @@ std::string regression_to_markdown(const RegressReport& run, const std::string& 
     page += "- Against " + markdown_field(run.versus_previous->label) +
             ", as information: " + markdown_field(run.versus_previous->sentence) + "\n";
   }
-  const std::vector<ListedTest> tests = by_distance(report);
+  const std::vector<ToldTest> tests = regression::by_distance(report);
   if (!tests.empty()) {
     page += std::string("\n") + kWorstHead;
     for (std::size_t i = 0; i < std::min(kWorstTests, tests.size()); ++i) {

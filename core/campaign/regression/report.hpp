@@ -84,6 +84,21 @@ struct Report {
 /// field "arm" where it concerns one; Cancelled.
 [[nodiscard]] Result<Report> run_regression(const Request& request, const RunControl& control = {});
 
+/// A test with the unit that it belongs to, as long as their report lives; without a test: none is such.
+struct ToldTest {
+  const UnitReport* unit = nullptr;
+  const ScaleReport* test = nullptr;
+};
+
+/// Of the tests that found a change beyond what is accepted, the one whose interval of all tests at once lies furthest
+/// beyond its margin; of equals the first.
+[[nodiscard]] ToldTest furthest_beyond(const Report& report);
+
+/// All tests by how far their own upper end lies beyond their margin in ln deviation, the furthest first; equals in the
+/// order of the report. A gated test counts as 1 further than a watched one, a test that found a change beyond what is
+/// accepted as 10.
+[[nodiscard]] std::vector<ToldTest> by_distance(const Report& report);
+
 /// `+23 % [+14, +33]`: a difference in ln deviation as people read it.
 [[nodiscard]] std::string percent_text(double ln_deviation);
 [[nodiscard]] std::string interval_text(double theta, double lower, double upper);

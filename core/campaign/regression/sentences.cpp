@@ -1,5 +1,6 @@
 /// The sentences of a regression run, made once for every output (spec/regression.md, section 9).
 #include "core/campaign/regression/report.hpp"
+#include "core/signal/sort_keeping_ties.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
@@ -22,21 +23,15 @@ std::string written(const char* format, Arguments... arguments) {
 
 double percent_of(double ln_deviation) { return 100.0 * std::expm1(ln_deviation); }
 
-/// A test with the unit it belongs to.
-struct Told {
-  const UnitReport* unit = nullptr;
-  const ScaleReport* test = nullptr;
-};
-
-std::string place_of(const Told& told) {
+std::string place_of(const ToldTest& told) {
   return told.test->name.empty() ? " at " + duration_text(told.test->test.tau_s)
                                  : " in " + told.test->name.substr(told.test->name.find('.') + 1);
 }
 
 /// Of the tests that `is` holds for, the one with the largest `score`.
 template <class Is, class Score>
-Told largest(const Report& report, const Is& is, const Score& score) {
-  Told best;
+ToldTest largest(const Report& report, const Is& is, const Score& score) {
+  ToldTest best;
   for (const UnitReport& unit : report.units) {
     for (const ScaleReport& test : unit.tests) {
       if (is(test) && (best.test == nullptr || score(test) > score(*best.test))) {
@@ -47,7 +42,7 @@ Told largest(const Report& report, const Is& is, const Score& score) {
   return best;
 }
 
-std::string worse_sentence(const Told& told) {
+std::string worse_sentence(const ToldTest& told) {
   const ScaleReport& test = *told.test;
   return short_name(told.unit->name) + (test.theta >= 0.0 ? " is worse: " : " changed: ") +
          interval_text(test.theta, test.outcome.lower, test.outcome.upper) + place_of(told) + ", margin " +
@@ -75,7 +70,7 @@ std::string pass_sentence(const Report& report) {
 
 bool is_open(const ScaleReport& test) { return test.gated && test.outcome.upper_one >= test.test.margin; }
 
-std::string needs_sentence(const Report& report, const Told& open) {
+std::string needs_sentence(const Report& report, const ToldTest& open) {
   if (open.test != nullptr && std::abs(open.test->theta - open.test->test.margin) < kOnTheMargin) {
     return short_name(open.unit->name) + " sits on the margin; no affordable recording decides; the margin does.";
   }
@@ -90,7 +85,7 @@ std::string needs_sentence(const Report& report, const Told& open) {
                         : "Sessions of " + length + " decide.";
 }
 
-std::string undecided_sentence(const Report& report, const Told& open) {
+std::string undecided_sentence(const Report& report, const ToldTest& open) {
   const std::string head = report.leaning_worse ? "Undecided, leaning worse: " : "Undecided: ";
   if (!report.comparability.empty()) {
     return head + report.comparability.front().sentence;
@@ -117,7 +112,7 @@ void note_structures(Report& report) {
 }
 
 void note_improvement(Report& report) {
-  const Told best = largest(
+  const ToldTest best = largest(
       report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Improved; },
       [](const ScaleReport& test) { return -test.theta; });
   if (best.test == nullptr) {
@@ -200,16 +195,35 @@ std::string short_name(const std::string& unit) {
   return unit;
 }
 
+ToldTest furthest_beyond(const Report& report) {
+  return largest(
+      report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Beyond; },
+      [](const ScaleReport& test) { return test.outcome.lower - test.test.margin; });
+}
+
+std::vector<ToldTest> by_distance(const Report& report) {
+  std::vector<ToldTest> tests;
+  for (const UnitReport& unit : report.units) {
+    for (const ScaleReport& test : unit.tests) {
+      tests.push_back({&unit, &test});
+    }
+  }
+  const auto score = [](const ToldTest& told) {
+    const double beyond = told.test->outcome.finding == Finding::Beyond ? 10.0 : 0.0;
+    return beyond + (told.test->gated ? 1.0 : 0.0) + told.test->outcome.upper_one - told.test->test.margin;
+  };
+  sort_keeping_ties(tests, [&](const ToldTest& a, const ToldTest& b) { return score(a) > score(b); });
+  return tests;
+}
+
 void tell(Report& report) {
   note_structures(report);
   note_improvement(report);
   note_scatter(report);
   note_robust(report);
   note_trends(report);
-  const Told beyond = largest(
-      report, [](const ScaleReport& test) { return test.outcome.finding == Finding::Beyond; },
-      [](const ScaleReport& test) { return test.outcome.lower - test.test.margin; });
-  const Told open =
+  const ToldTest beyond = furthest_beyond(report);
+  const ToldTest open =
       largest(report, is_open, [](const ScaleReport& test) { return test.outcome.upper_one - test.test.margin; });
   if (report.comparison.needs.length_factor) {
     double longest_s = 0.0;

@@ -1,0 +1,57 @@
+// Which tests of a regression run are told first.
+#include "core/campaign/regression/report.hpp"
+
+#include <gtest/gtest.h>
+
+namespace driftlab::regression {
+namespace {
+
+/// A test of margin 0.1; both ends are those of ln candidate/baseline.
+ScaleReport test_of(const std::string& name, Finding finding, double lower, double upper_one, bool gated = true) {
+  ScaleReport made;
+  made.name = name;
+  made.test.margin = 0.1;
+  made.outcome.finding = finding;
+  made.outcome.lower = lower;
+  made.outcome.upper_one = upper_one;
+  made.gated = gated;
+  return made;
+}
+
+Report report_of(std::vector<ScaleReport> first, std::vector<ScaleReport> second) {
+  Report report;
+  report.units.resize(2);
+  report.units[0].name = "gyroscope x";
+  report.units[0].tests = std::move(first);
+  report.units[1].name = "gyroscope y";
+  report.units[1].tests = std::move(second);
+  return report;
+}
+
+TEST(FurthestBeyond, IsTheTestWhoseWholeIntervalLiesFurthestBeyondItsMargin) {
+  const Report report = report_of({test_of("a", Finding::Beyond, 0.15, 0.9), test_of("b", Finding::Open, 0.5, 0.9)},
+                                  {test_of("c", Finding::Beyond, 0.3, 0.4), test_of("d", Finding::Beyond, 0.3, 0.8)});
+  const ToldTest found = furthest_beyond(report);
+  ASSERT_NE(found.test, nullptr);
+  EXPECT_EQ(found.test->name, "c") << "the first of two equals, and not b, which is open";
+  EXPECT_EQ(found.unit, &report.units[1]);
+}
+
+TEST(FurthestBeyond, IsNoneWhereNoTestIsBeyond) {
+  EXPECT_EQ(furthest_beyond(report_of({test_of("a", Finding::Open, 0.5, 0.9)}, {})).test, nullptr);
+}
+
+TEST(ByDistance, HasTestsBeyondFirstThenGatedOnesThenWatchedOnesByTheirUpperEnds) {
+  const Report report = report_of(
+      {test_of("fine", Finding::Ok, -0.2, 0.0), test_of("watched", Finding::Open, 0.0, 0.6, false),
+       test_of("open", Finding::Open, 0.0, 0.2), test_of("like it", Finding::Open, 0.0, 0.2)},
+      {test_of("watched and beyond", Finding::Beyond, 0.2, 0.9, false), test_of("beyond", Finding::Beyond, 0.15, 0.3)});
+  std::string order;
+  for (const ToldTest& told : by_distance(report)) {
+    order += told.test->name + "; ";
+  }
+  EXPECT_EQ(order, "beyond; watched and beyond; open; like it; fine; watched; ");
+}
+
+}  // namespace
+}  // namespace driftlab::regression
