@@ -1,10 +1,10 @@
 #include "schema/figure/drawing.hpp"
+#include "schema/figure/svg_text.hpp"
 
 #include <array>
 #include <cstdio>
 
 namespace driftlab::figure {
-namespace {
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -13,6 +13,8 @@ std::string escaped(const std::string& text) {
   }
   return out;
 }
+
+namespace {
 
 /// A pixel with at most two decimals, none that are zero.
 std::string pixel(double value) {

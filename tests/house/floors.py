@@ -43,7 +43,7 @@ FLOORS: dict[str, list[str]] = {
     "core/analysis": [*ANALYSIS, "core/read"],  # one file per use case: what the command line and the jobs ask for
     "schema/figure": ["core/signal"],  # drawings: data in, nothing known of where they come from
     "schema/json": [*DOCUMENTED, "schema/figure"],
-    "schema/text": USE_CASES,  # for people: tables and lines, of the same types and without a document in between
+    "schema/text": [*USE_CASES, "schema/figure"],  # for people: tables and lines, of the same types and without a document in between
     "schema/shell": [],  # what --help knows, as manuals and completions
     "schema": [],  # schema/contract.hpp: the documents inside the binary
     "server/store": ["core/signal"],
