@@ -13,8 +13,10 @@ COMPUTING_HEADERS = {"cmath", "complex", "numeric", "valarray", "math.h"}
 COMPUTING = re.compile(
     r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|l?l?round|floor|ceil|trunc|f?abs|fmod|"
     r"remainder|fma|lerp|midpoint|accumulate|(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element|"
-    r"(ranges::)?(min|max|minmax)(_element)?|(ranges::)?clamp|plus|minus|multiplies|divides)\b"
-    r"|\b(ned_axes|to_euler|deviation_of|distances_2p|(white_noise|random_walk)_equivalents|ellipse95|horizontal_m)\b"
+    r"(ranges::)?(min|max|minmax)(_element)?|(ranges::)?clamp|plus|minus|multiplies|divides)\b")
+# Functions of core that compute, and members of a matrix.
+OF_CORE = re.compile(
+    r"\b(ned_axes|to_euler|deviation_of|distances_2p|(white_noise|random_walk)_equivalents|ellipse95|horizontal_m)\b"
     r"|\.(transpose|conjugate|inverse|squaredNorm|norm|dot|cross)\(")
 # The same without std::, which <cmath> declares too; not a member, nor a function of another name space.
 UNQUALIFIED = re.compile(
@@ -31,7 +33,7 @@ STATISTICS = re.compile(
     r"\bstd::(sqrt|cbrt|hypot|exp2?|expm1|log(2|10|1p)?|pow|a?(sin|cos|tan)h?|atan2|erfc?|[lt]gamma|fma|lerp|midpoint|accumulate|"
     r"(transform_)?reduce|inner_product|partial_sum|(inclusive|exclusive)_scan|nth_element|plus|minus|multiplies|divides)\b")
 # These write numbers: whether one is finite, to how many decimals, that a whole number fits its type, the bytes of a MATLAB file.
-WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json/mat_file.cpp"}
+WRITE_NUMBERS = {"schema/json/json.cpp", "schema/json/rounded.cpp", "schema/json/mat_file.cpp", "schema/text/printed.cpp"}
 
 # clang-format puts blanks around an operator of two operands, and none beside one of a single operand or a pointer.
 ARITHMETIC = re.compile(r"(?<=[\w)\]])\s+([-+*/])\s+(?=[\w(*\-])|(?<=[\w)\]])\s+([-+*/]=)\s")
@@ -55,8 +57,9 @@ def code_of(text: str) -> str:
 
 
 def hangs(code: str, place: int) -> bool:
-    """Whether the character belongs to names, members, calls and elements that hang together."""
-    return code[place].isalnum() or code[place] in "_.:'()[]" or "->" in code[max(0, place - 1):place + 2]
+    """Whether the character belongs to names, members, calls and elements that hang together, or to a number."""
+    return (code[place].isalnum() or code[place] in "_.:'()[]" or "->" in code[max(0, place - 1):place + 2]
+            or (code[place] in "+-" and re.search(r"(?<![\w.])\d[\d.]*e$", code[max(0, place - 24):place]) is not None))
 
 
 def left_of(code: str, end: int) -> str:
@@ -143,6 +146,11 @@ def said_by(patterns: tuple[re.Pattern[str], ...], code: str) -> list[tuple[int,
     return [(match.start(), textwrap.shorten(match.group(0), 80)) for pattern in patterns for match in pattern.finditer(code)]
 
 
+def told_in(code: str) -> list[tuple[int, str]]:
+    """Where code without comments calls what only an analysis calls, or a function of core that computes."""
+    return statistics_in(code) + said_by((OF_CORE,), code)
+
+
 def statistics_in(code: str) -> list[tuple[int, str]]:
     """Where code without comments calls what only an analysis calls."""
     return said_by((STATISTICS, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code)
@@ -150,5 +158,5 @@ def statistics_in(code: str) -> list[tuple[int, str]]:
 
 def computing_in(code: str) -> list[tuple[int, str]]:
     """Where code without comments computes, and what it says there."""
-    return said_by((COMPUTING, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code) + [
+    return said_by((COMPUTING, OF_CORE, UNQUALIFIED, REDUCTION, MEDIAN, COUNTING), code) + [
         (place, f"{left} {sign} {right}") for place, left, sign, right in arithmetic_of(code)]

@@ -157,6 +157,8 @@ def faults_of(root: Path, name: str, text: str, functions: set[str], members: se
             fault(match.start(2), f"include {included} by its path from the top of the repository")
         if module == "schema/json" and name not in computing.WRITE_NUMBERS and included in computing.COMPUTING_HEADERS:
             fault(match.start(2), f"schema/json may not include <{included}>: documents compute nothing, core does")
+        if module == "schema/text" and included == "numeric":
+            fault(match.start(2), "schema/text may not include <numeric>: texts compute nothing, core does")
         for pattern, owners in RESERVED.items():
             if re.fullmatch(pattern, included) and not any(o in (module, name) or module.startswith(o + "/") for o in owners):
                 fault(match.start(2), f"{module} may not include <{included}>: it is kept to {', '.join(owners)}")
@@ -164,6 +166,9 @@ def faults_of(root: Path, name: str, text: str, functions: set[str], members: se
     if module == "schema/json" and name not in computing.WRITE_NUMBERS:
         for position, said in computing.computing_in(code):
             fault(position, f"schema/json computes ({said}): that belongs to core", code)
+    if module == "schema/text" and name not in computing.WRITE_NUMBERS:
+        for position, said in computing.told_in(code) + accounting.unaccounted_in(name, code):
+            fault(position, f"schema/text computes ({said}): that belongs to core", code)
     if module.split("/")[0] == "schema":
         for position, said in running.run_in(code, functions, members):
             fault(position, f"{module} runs an analysis ({said}): it tells what one found", code)

@@ -126,7 +126,27 @@ class Floors(Planted):
                                         'auto p = channel.mean;\nauto q = figure::floor(plot);\nauto r = audit.log(line);\nconst double sum = document.sum;\n')
         self.plant("schema/json/b.cpp", "void f() {\n  std::sort(names.begin(), names.end());\n}\nvoid g() {\n  cells.reserve(cells.size() / 2);\n}\n")
         self.plant("schema/json/mat_file.cpp", "bytes.resize((bytes.size() + 7) / eight * eight);\n")
-        self.plant("schema/text/a.cpp", "#include <cmath>\nauto d = std::log10(v);\n")
+        self.assertEqual(floors.check(self.root), [])
+
+    def test_a_text_that_computes_is_refused(self) -> None:
+        # Rests were summed, a share taken, an interval halved, a spread rounded and the worst test picked where they were printed.
+        for line in ("double still = 0.0; for (const Rest& rest : rests) { still += rest.to_s - rest.from_s; }",
+                     "double still = 0.0; for (double rest : rests) { still += rest; }",
+                     "auto p = 100.0 * static_cast<double>(sampling.repeated) / static_cast<double>(sampling.rows);",
+                     "auto h = 0.5 * (estimate.ci95.high - estimate.ci95.low);", "auto p = std::round(1000.0 * std::expm1(spread)) / 10.0;",
+                     "auto e = std::expm1(spread);", "if (test.outcome.lower - test.test.margin > worst) {", "auto d = std::log10(v);",
+                     "auto z = std::round(10.0 * place.z) / 10.0;", "auto a = std::abs(error);", "worst = std::max(worst, test.p);",
+                     "auto m = *std::max_element(x.begin(), x.end());", "std::sort(values.begin(), values.end());", "auto s = v.sum();",
+                     "auto e = to_euler(attitude);", "auto half = width / 2.0 * spread;", "#include <numeric>"):
+            with self.subTest(line=line):
+                path = self.plant("schema/text/a.cpp", "int before;\n" + line + "\n")
+                self.refused(floors.check(self.root), "schema/text/a.cpp:2: schema/text")
+                path.unlink()
+        self.plant("schema/text/a.cpp", "#include <cmath>\nauto w = std::max(width, target.name.size());\nauto gap = std::string(widths[i] - width(line[i]) + 2, blank);\n"
+                                        "text += std::string(2 * depth, blank);\nauto g = key.substr(from, at - from);\nauto c = std::isfinite(v);\n"
+                                        "auto k = 1e-3 * facts.length_m;\nauto d = angles.roll_rad / kDegree;\nauto m = with_count(all - shown, noun);\n"
+                                        "auto e = std::min(kWorst, tests.size());\nauto p = 100.0 * share;\ntext += name + end;\n")
+        self.plant("schema/text/printed.cpp", "auto d = std::floor(std::log10(v));\n")
         self.assertEqual(floors.check(self.root), [])
 
     def test_a_document_that_runs_an_analysis_is_refused(self) -> None:
