@@ -7,7 +7,9 @@ import os
 import random
 import subprocess
 import tempfile
+import time
 import unittest
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -265,6 +267,72 @@ class CommandLine(DaemonTest):
         self.refused(4, "characterise", "rest.csv", "--rate-hz", "100", "--server", "http://127.0.0.1:1")
         self.refused(4, "outages", "--runs", "2", "--server", "http://127.0.0.1:1")
         self.assertEqual(self.driftlab("no-such-command").returncode, 2)
+
+
+class BehindALongJob(DaemonTest):
+    """One worker, which a long evaluation keeps from pooling what commands ask for."""
+
+    arguments = ("--workers", "1")
+    # A command asks again where 20 s did not suffice (clients/cli/http_client.cpp): it is held a little longer.
+    HELD_S = 21.0
+
+    def keep_busy(self, seed: int) -> str:
+        answer = self.daemon.post("/v1/outage-evaluations", {"scenario": "paper", "runs": 100_000, "seed": seed})
+        return str(self.expect(202, answer).json["id"])
+
+    def release(self, job: str) -> None:
+        self.daemon.post(f"/v1/jobs/{job}/cancel")
+        self.daemon.finished(job)
+
+    def table(self, device: str) -> dict[str, Any]:
+        target = f"/v1/parameter-tables?device={device}&sensor=gyroscope&axis=z&method=gmwm"
+        return dict(self.expect(200, self.daemon.get(target)).json)
+
+    def until(self, reached: Callable[[], bool]) -> None:
+        end = time.monotonic() + PATIENCE_S
+        while not reached():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
+
+    def start(self, *arguments: str) -> subprocess.Popen[str]:
+        command = [PROGRAM, *arguments, "--server", f"http://127.0.0.1:{self.daemon.port}"]
+        started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(started.kill)
+        return started
+
+    def printed(self, command: subprocess.Popen[str]) -> str:
+        out, error = command.communicate(timeout=PATIENCE_S)
+        self.assertEqual(command.returncode, 0, error)
+        return out
+
+    def test_what_they_print_is_what_was_pooled(self) -> None:
+        # A table that is asked for while its recordings wait to be fitted jointly has averages, which the next one replaces: both
+        # commands wait, and without that only a race would show it.
+        with tempfile.TemporaryDirectory(prefix="driftlab-test-") as folder:
+            files = []
+            for seed in (1, 2):
+                files.append(f"{folder}/rest {seed}.csv")
+                Path(files[-1]).write_bytes(samples.gyro_csv(20_000, seed=seed))
+            before = self.keep_busy(seed=1)
+            characterise = self.start("characterise", *files, "--rate-hz", "100", "--columns", samples.GYRO_Z, "--models", "WN,WN+RW", "--device", "held")
+            self.until(lambda: bool(self.daemon.items("/v1/jobs?kind=characterise")))
+            behind = self.keep_busy(seed=2)  # queued after the characterisation, and before its pooling
+            self.release(before)
+            [job] = self.daemon.items("/v1/jobs?kind=characterise")
+            self.assertEqual(self.daemon.finished(job["id"])["state"], "succeeded")
+            self.assertEqual(self.table("held")["pooling"]["state"], "pending")
+            self.assertEqual([row["pooling"] for row in self.table("held")["rows"]], ["average"])
+            table = self.start("table", "--device", "held", "--sensor", "gyroscope", "--axis", "z", "--method", "gmwm", "--format", "json")
+            text = self.start("table", "--device", "held", "--sensor", "gyroscope", "--axis", "z", "--method", "gmwm")
+            time.sleep(self.HELD_S)
+            self.assertEqual(self.table("held")["pooling"]["state"], "pending", "the worker was to be busy all the while")
+            self.assertEqual([command.poll() for command in (characterise, table, text)], [None] * 3, "all wait")
+            self.release(behind)
+            document = json.loads(self.printed(table))
+            self.assertEqual((document["pooling"]["state"], [row["pooling"] for row in document["rows"]]), ("done", ["joint"]))
+            self.assertNotIn("pending", self.printed(text))
+            self.printed(characterise)
+            self.assertEqual(document, self.table("held"))
 
 
 if __name__ == "__main__":
