@@ -134,6 +134,9 @@ class Pooling(unittest.TestCase):
     def test_eight_workers_and_kill_9(self) -> None:
         self.same(8, seed=14, kills=3)
 
+    def test_one_worker_and_kill_9(self) -> None:
+        self.same(1, seed=16, kills=3)
+
     def test_two_workers_and_kill_9(self) -> None:
         self.same(2, seed=15, kills=3)
 
