@@ -10,10 +10,6 @@
 namespace driftlab {
 namespace {
 
-// Where a vehicle's axle lies and how worn its tyres are no document says; what --estimate begins with.
-constexpr double kAxleSd = 1.5;  ///< [m] forward of the unit
-constexpr double kOdometerScaleSd = 0.05;
-
 /// A share with its interval: "97 % [95, 99]"; without an interval where there are too few blocks.
 std::string percent_of(const Estimate& share) {
   std::array<char, 64> text{};
@@ -51,17 +47,8 @@ drive::FilterOptions options_of(const DriveRequest& request, const drive::Docume
   options.zero_velocity = request.zero_velocity;
   options.odometer = request.odometer;
   options.gate = request.gate;
-  if (request.estimate && document.gnss.lever_arm_sd_m > 0.0) {
-    options.constants.lever_arm_sd_m = document.gnss.lever_arm_sd_m;
-  }
-  if (request.estimate && request.velocity_constraint && document.imu.mounting_sd_rad > 0.0) {
-    options.constants.mounting_sd_rad = document.imu.mounting_sd_rad;
-  }
-  if (request.estimate && request.velocity_constraint) {
-    options.constants.axle_sd_m = kAxleSd;
-  }
-  if (request.estimate && request.odometer) {
-    options.constants.odometer_scale_sd = kOdometerScaleSd;
+  if (request.estimate) {
+    options.constants = drive::declared_states(document, options);
   }
   return options;
 }

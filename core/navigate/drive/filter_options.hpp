@@ -33,13 +33,14 @@ struct ReadingErrors {
   bool operator==(const ReadingErrors&) const = default;
 };
 
-/// Constants that a filter estimates beside everything else: their standard deviations; nothing: they are known.
-struct EstimatedConstants {
-  std::optional<double> lever_arm_sd_m;
-  std::optional<double> mounting_sd_rad;  ///< yaw and pitch of the constraint
-  std::optional<double> axle_sd_m;
-  std::optional<double> odometer_scale_sd;
-  bool operator==(const EstimatedConstants&) const = default;
+struct FilterOptions;
+
+/// A number of the options that a filter estimates beside everything else: an unknown constant around the value that
+/// the options have. Whatever measurement depends on it shows it; the filter knows no more of it than how to turn it.
+struct EstimatedConstant {
+  void (*turn)(FilterOptions& options, double by) = nullptr;  ///< SI
+  double sd = 0.0;                                            ///< SI
+  bool operator==(const EstimatedConstant&) const = default;
 };
 
 /// Errors of a receiver's positions that last: a Gauss-Markov process in north, east and, one and a half times as
@@ -69,7 +70,7 @@ struct FilterOptions {
   bool odometer = false;
   double odometer_scale = 0.0;                    ///< odometer = (1 + scale) speed
   std::vector<std::array<double, 2>> slips = {};  ///< from, to [s]: the wheel slips, and its readings are not used
-  EstimatedConstants constants;
+  std::vector<EstimatedConstant> constants = {};
   double gate = 0.0;     ///< a fix whose normalised squared innovation is above is rejected; 0: none
   int gate_memory = 60;  ///< disagreeing fixes that are remembered once the receiver is believed again (fix_gate.hpp)
   bool date_to_sample =

@@ -40,7 +40,6 @@ class Driver {
         done_(start.reading),
         position_gate_(options.gate, options.gate_memory),
         velocity_gate_(options.gate, options.gate_memory) {
-    (void)constants_of(options, layout_, design.first_constant());
     if (task.vibration != nullptr && (options.gyro_vibration > 0.0 || options.force_vibration > 0.0)) {
       vibration_ = task.vibration;
       for (std::size_t c = 0; c < kImuChannels; ++c) {
@@ -143,7 +142,8 @@ class Driver {
       }
       if (options_.constraint && done_ % constraint_step_ == 0) {
         const std::array<double, 2> slip = task_.slip != nullptr ? (*task_.slip)(done_) : std::array<double, 2>{};
-        apply(MeasurementKind::Constraint, now(), constraint_equations(moment(), *options_.constraint, slip));
+        measure(MeasurementKind::Constraint, now(),
+                [&](const FilterMoment& at) { return constraint_equations(at, *at.options.constraint, slip); });
       }
       if (options_.zero_velocity && done_ % rest_step_ == 0) {
         hold_still();
@@ -180,30 +180,51 @@ class Driver {
         note_error();
         return;
       case Step::Position:
-        apply(MeasurementKind::Position, event.time_s,
-              position_equations(moment(), drive_.fixes[event.index], late(event.time_s)), &position_gate_);
+        measure(
+            MeasurementKind::Position, event.time_s,
+            [&](const FilterMoment& at) {
+              return position_equations(at, drive_.fixes[event.index], late(event.time_s));
+            },
+            &position_gate_);
         if (task_.keep_poses) {
           pose();
         }
         return;
       case Step::Velocity:
         if (const Fix& fix = drive_.fixes[event.index]; fix.velocity_ned_m_s) {
-          apply(MeasurementKind::Velocity, event.time_s,
-                velocity_equations(moment(), *fix.velocity_ned_m_s, fix.velocity_sd_m_s, late(event.time_s)),
-                &velocity_gate_);
+          measure(
+              MeasurementKind::Velocity, event.time_s,
+              [&](const FilterMoment& at) {
+                return velocity_equations(at, *fix.velocity_ned_m_s, fix.velocity_sd_m_s, late(event.time_s));
+              },
+              &velocity_gate_);
         }
         return;
       case Step::Odometer:
         if (drive_.document.odometer) {
           const OdometerReading& reading = drive_.odometer[event.index];
-          apply(MeasurementKind::Odometer, reading.time_s,
-                odometer_equations(moment(), *drive_.document.odometer, reading.speed_m_s));
+          measure(MeasurementKind::Odometer, reading.time_s, [&](const FilterMoment& at) {
+            return odometer_equations(at, *drive_.document.odometer, reading.speed_m_s);
+          });
         }
         return;
     }
   }
 
-  [[nodiscard]] FilterMoment moment() const { return {filter_, options_, layout_, body_rate()}; }
+  /// A measurement by the options as the filter has them.
+  template <class Equations>
+  void measure(MeasurementKind kind, double time_s, const Equations& equations, FixGate* gate = nullptr) {
+    if (options_.constants.empty()) {
+      apply(kind, time_s, equations(moment(options_)), gate);
+    } else {
+      const FilterOptions present = at_estimates(options_, filter_, design_.first_constant());
+      apply(kind, time_s, with_constants(moment(present), equations), gate);
+    }
+  }
+
+  [[nodiscard]] FilterMoment moment(const FilterOptions& options) const {
+    return {filter_, options, body_rate(), design_.first_constant()};
+  }
   /// The turning rate of the vehicle around now: the mean of a tenth of a second, for vibration on a long arm is no
   /// velocity that a receiver sees, less what the filter believes to be the gyroscope's error.
   [[nodiscard]] Vector3 body_rate() const {
@@ -242,11 +263,11 @@ class Driver {
     if (!steady(rate[0] - rate[1], force[0] - force[1])) {
       return;
     }
-    apply(MeasurementKind::ZeroVelocity, now(), rest_equations(moment()));
+    apply(MeasurementKind::ZeroVelocity, now(), rest_equations(moment(options_)));
     if (moves_along_its_nose(drive_.document.vehicle)) {  // an aircraft or a boat at rest may turn with the wind
       const double mean = 0.5 * (rate[0].z() + rate[1].z());
       apply(MeasurementKind::ZeroTurn, now(),
-            no_turn_equations(moment(), design_, mean, 2.0 * static_cast<double>(half) * run_.dt_s));
+            no_turn_equations(moment(options_), design_, mean, 2.0 * static_cast<double>(half) * run_.dt_s));
     }
   }
 
@@ -303,7 +324,9 @@ class Driver {
   }
 
   [[nodiscard]] OutageMoment outage_moment() const {
-    return {now(), filter_.state(), filter_.attitude(), moment().arm()};
+    const bool known = options_.constants.empty();
+    return {now(), filter_.state(), filter_.attitude(),
+            known ? options_.lever_arm_m : at_estimates(options_, filter_, design_.first_constant()).lever_arm_m};
   }
 
   /// Of the state alone: asked for its covariance, the filter would end a step here.
@@ -328,7 +351,6 @@ class Driver {
   NavigationFilter filter_;
   const FilterDesign& design_;
   std::size_t done_;
-  ConstantLayout layout_;
   const Vibration* vibration_ = nullptr;
   std::array<double, kImuChannels> shaken_{};  ///< squared density of the noise that follows the vibration, on average
   std::size_t constraint_step_ = 0;
@@ -349,8 +371,7 @@ Result<FilterDesign> make_design(const Document& document, double dt_s, const St
     scale_white_noise(settings.imu.axes[c], even_noise_factor(options, c) * noise_after_correction(options.errors, c));
   }
   settings.initial = start.uncertainty;
-  ConstantLayout layout;
-  Constants constants = constants_of(options, layout, 0);
+  Constants constants = constants_of(options);
   settings.constants_sd = std::move(constants.sd);
   settings.constants_tau_s = std::move(constants.tau_s);
   return FilterDesign::make(settings, dt_s);

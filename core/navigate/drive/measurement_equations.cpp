@@ -9,55 +9,43 @@ namespace {
 constexpr double kRestSd = 0.02;                ///< [m/s]
 constexpr double kRestTurnSd = 0.05 * kDegree;  ///< [rad/s]: what a vehicle turns on its springs, over a second
 
-void add_arm(const FilterMoment& at, WideMeasurement& m, const Vector3& weight) {
-  for (int k = 0; at.layout.arm >= 0 && k < 3; ++k) {
-    m.add(at.layout.arm + k, weight(k));
-  }
-}
-
 }  // namespace
 
-Constants constants_of(const FilterOptions& options, ConstantLayout& layout, int first) {
+Constants constants_of(const FilterOptions& options) {
   Constants all;
-  const auto add = [&](const std::optional<double>& value, int count, int& at) {
-    if (value) {
-      at = first + static_cast<int>(all.sd.size());
-      all.sd.insert(all.sd.end(), static_cast<std::size_t>(count), *value);
-    }
-  };
-  const EstimatedConstants& constants = options.constants;
-  add(constants.lever_arm_sd_m, 3, layout.arm);
-  add(constants.mounting_sd_rad, 2, layout.yaw);
-  add(constants.axle_sd_m, 1, layout.axle);
-  add(constants.odometer_scale_sd, 1, layout.odometer);
-  all.tau_s.assign(all.sd.size(), 0.0);
-  if (!options.coloured.none()) {
-    layout.fixes = first + static_cast<int>(all.sd.size());
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      all.sd.push_back(options.coloured.sd_m()(k));
-      all.tau_s.push_back(options.coloured.tau_s);
-    }
+  for (const EstimatedConstant& constant : options.constants) {
+    all.sd.push_back(constant.sd);
+    all.tau_s.push_back(0.0);
+  }
+  for (Eigen::Index k = 0; k < 3 && !options.coloured.none(); ++k) {
+    all.sd.push_back(options.coloured.sd_m()(k));
+    all.tau_s.push_back(options.coloured.tau_s);
   }
   return all;
 }
 
-Vector3 FilterMoment::arm() const {
-  return options.lever_arm_m + Vector3(constant(layout.arm), constant(layout.arm < 0 ? -1 : layout.arm + 1),
-                                       constant(layout.arm < 0 ? -1 : layout.arm + 2));
+FilterOptions at_estimates(const FilterOptions& options, const NavigationFilter& filter, int first_constant) {
+  FilterOptions present = options;
+  for (std::size_t k = 0; k < options.constants.size(); ++k) {
+    options.constants[k].turn(present, filter.sensor_states()(first_constant + static_cast<int>(k)));
+  }
+  return present;
 }
 
 std::array<WideMeasurement, 3> position_equations(const FilterMoment& at, const Fix& fix, double late_s) {
   const NavigationState& state = at.filter.state();
   const Matrix3& attitude = at.filter.attitude();
   const Matrix3 axes = ned_axes(state.position_ecef_m);
-  const Vector3 own_arm = at.arm();
+  const Vector3& own_arm = at.options.lever_arm_m;
   const Vector3 turned = attitude * own_arm;
   const Vector3 arm_velocity = attitude * at.body_rate.cross(own_arm);
   const Vector3 antenna = state.position_ecef_m + turned - late_s * (state.velocity_ecef_m_s + arm_velocity) +
                           (0.5 * late_s * late_s) * at.filter.last_acceleration();
   Vector3 gap = fix.position_ecef_m - antenna;
-  for (int k = 0; at.layout.fixes >= 0 && k < 3; ++k) {
-    gap -= at.constant(at.layout.fixes + k) * axes.col(k);
+  const int lasting = at.first_constant + static_cast<int>(at.options.constants.size());
+  const bool lasts = !at.options.coloured.none();
+  for (int k = 0; lasts && k < 3; ++k) {
+    gap -= at.filter.sensor_states()(lasting + k) * axes.col(k);
   }
   std::array<WideMeasurement, 3> measurements;
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -66,9 +54,8 @@ std::array<WideMeasurement, 3> position_equations(const FilterMoment& at, const 
     m.navigation.h << axis, -late_s * axis, turned.cross(axis);
     m.navigation.innovation = axis.dot(gap);
     m.navigation.variance = fix.position_sd_m(k) * fix.position_sd_m(k);
-    add_arm(at, m, attitude.transpose() * axis);
-    if (at.layout.fixes >= 0) {
-      m.add(at.layout.fixes + static_cast<int>(k), 1.0);
+    if (lasts) {
+      m.add(lasting + static_cast<int>(k), 1.0);
     }
   }
   return measurements;
@@ -79,7 +66,7 @@ std::array<WideMeasurement, 3> velocity_equations(const FilterMoment& at, const 
   const NavigationState& state = at.filter.state();
   const Matrix3& attitude = at.filter.attitude();
   const Matrix3 axes = ned_axes(state.position_ecef_m);
-  const Vector3 arm_velocity = attitude * at.body_rate.cross(at.arm());
+  const Vector3 arm_velocity = attitude * at.body_rate.cross(at.options.lever_arm_m);
   const Vector3 gap =
       axes * velocity_ned_m_s - (state.velocity_ecef_m_s + arm_velocity - late_s * at.filter.last_acceleration());
   std::array<WideMeasurement, 3> measurements;
@@ -89,22 +76,17 @@ std::array<WideMeasurement, 3> velocity_equations(const FilterMoment& at, const 
     m.navigation.h << Vector3::Zero(), axis, arm_velocity.cross(axis);
     m.navigation.innovation = axis.dot(gap);
     m.navigation.variance = sd_m_s(k) * sd_m_s(k);
-    add_arm(at, m, (attitude.transpose() * axis).cross(at.body_rate));  // axis . C (w x l) = l . (C^T axis x w)
   }
   return measurements;
 }
 
 std::array<WideMeasurement, 2> constraint_equations(const FilterMoment& at, const Constraint& constraint,
                                                     const std::array<double, 2>& slip) {
-  const Constraint& c = constraint;
-  const ConstantLayout& layout = at.layout;
+  const auto& [rate_hz, sd_m_s, yaw, pitch, axle] = constraint;
   const Matrix3& attitude = at.filter.attitude();
   const Vector3 v = at.filter.state().velocity_ecef_m_s;
   const Vector3 body = attitude.transpose() * v;
   const Vector3& rate = at.body_rate;
-  const double yaw = c.yaw_rad + at.constant(layout.yaw);
-  const double pitch = c.pitch_rad + at.constant(layout.yaw < 0 ? -1 : layout.yaw + 1);
-  const double axle = c.axle_m + at.constant(layout.axle);
   std::array<WideMeasurement, 2> measurements;
   const Vector3 right = attitude.col(1) - yaw * attitude.col(0);
   const Vector3 down = attitude.col(2) + pitch * attitude.col(0);
@@ -113,15 +95,7 @@ std::array<WideMeasurement, 2> constraint_equations(const FilterMoment& at, cons
   measurements[1].navigation.h << Vector3::Zero(), down, down.cross(v);
   measurements[1].navigation.innovation = slip[1] - (body.z() + pitch * body.x() - axle * rate.y());
   for (WideMeasurement& m : measurements) {
-    m.navigation.variance = c.sd_m_s * c.sd_m_s;
-  }
-  if (layout.yaw >= 0) {
-    measurements[0].add(layout.yaw, -body.x());
-    measurements[1].add(layout.yaw + 1, body.x());
-  }
-  if (layout.axle >= 0) {
-    measurements[0].add(layout.axle, rate.z());
-    measurements[1].add(layout.axle, -rate.y());
+    m.navigation.variance = sd_m_s * sd_m_s;
   }
   return measurements;
 }
@@ -165,16 +139,13 @@ std::array<WideMeasurement, 1> odometer_equations(const FilterMoment& at, const 
   const Vector3 v = at.filter.state().velocity_ecef_m_s;
   const Vector3 arm_velocity = at.body_rate.cross(source.lever_arm_m);
   const double speed = (attitude.transpose() * v).x() + arm_velocity.x();
-  const double scale = 1.0 + at.options.odometer_scale + at.constant(at.layout.odometer);
+  const double scale = 1.0 + at.options.odometer_scale;
   std::array<WideMeasurement, 1> measurement;
   WideMeasurement& m = measurement[0];
   const Vector3 forward = scale * attitude.col(0);
   m.navigation.h << Vector3::Zero(), forward, forward.cross(v);
   m.navigation.innovation = speed_m_s - scale * speed;
   m.navigation.variance = source.sd_m_s * source.sd_m_s;
-  if (at.layout.odometer >= 0) {
-    m.add(at.layout.odometer, speed);
-  }
   return measurement;
 }
 

@@ -5,6 +5,9 @@
 /// The errors are those of the filter (navigation_filter.hpp): position, velocity and attitude in e, then the sensors'
 /// states, then the constants that the options ask to be estimated. Body axes are forward, right, down; C is body to e,
 /// w the turning rate of the body against the Earth.
+///
+/// The equations take every constant from the options. How a measurement depends on one that is estimated is found by
+/// turning it (with_constants), so that none of them is written into the filter.
 #include "core/navigate/drive/drive.hpp"
 #include "core/navigate/drive/filter_options.hpp"
 #include "core/navigate/navigation_filter.hpp"
@@ -14,30 +17,48 @@
 
 namespace driftlab::drive {
 
-/// Where the constants that a filter estimates stand among its sensor states; -1: it takes them as known.
-struct ConstantLayout {
-  int arm = -1, yaw = -1, axle = -1, odometer = -1, fixes = -1;
-};
-
-/// Standard deviations of the constants and their correlation times, 0 for what stays.
+/// Standard deviations of the constants and their correlation times, 0 for what stays: those that the options ask for
+/// in their order, then, where errors of positions last, these along north, east and down.
 struct Constants {
   std::vector<double> sd, tau_s;
 };
-
-/// The constants that the options ask for; the first of them stands at `first`.
-[[nodiscard]] Constants constants_of(const FilterOptions& options, ConstantLayout& layout, int first);
+[[nodiscard]] Constants constants_of(const FilterOptions& options);
 
 /// The filter at the moment of a measurement. Everything that it refers to must outlive it.
 struct FilterMoment {
   const NavigationFilter& filter;
-  const FilterOptions& options;
-  const ConstantLayout& layout;
-  Vector3 body_rate;  ///< w in body axes [rad/s]
-
-  [[nodiscard]] double constant(int at) const { return at < 0 ? 0.0 : filter.sensor_states()(at); }
-  /// From the unit to the antenna, as the filter has it.
-  [[nodiscard]] Vector3 arm() const;
+  const FilterOptions& options;  ///< with the constants as the filter has them
+  Vector3 body_rate;             ///< w in body axes [rad/s]
+  int first_constant = 0;        ///< among the filter's sensor states
 };
+
+/// The options with every estimated constant as the filter has it.
+[[nodiscard]] FilterOptions at_estimates(const FilterOptions& options, const NavigationFilter& filter,
+                                         int first_constant);
+
+/// `equations` of a moment, and how the measurements depend on each estimated constant x: dz/dx by the difference of
+/// the innovations at x - h and x + h, h a thousandth of its standard deviation. O(constants) times the equations.
+template <class Equations>
+[[nodiscard]] auto with_constants(const FilterMoment& at, const Equations& equations) {
+  auto measurements = equations(at);
+  for (std::size_t k = 0; k < at.options.constants.size(); ++k) {
+    const EstimatedConstant& constant = at.options.constants[k];
+    const double step = 1e-3 * constant.sd;
+    FilterOptions below = at.options;
+    FilterOptions above = at.options;
+    constant.turn(below, -step);
+    constant.turn(above, step);
+    const auto of_below = equations(FilterMoment{at.filter, below, at.body_rate, at.first_constant});
+    const auto of_above = equations(FilterMoment{at.filter, above, at.body_rate, at.first_constant});
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      const double change = of_below[i].navigation.innovation - of_above[i].navigation.innovation;
+      if (change != 0.0) {
+        measurements[i].add(at.first_constant + static_cast<int>(k), change / (2.0 * step));
+      }
+    }
+  }
+  return measurements;
+}
 
 /// A fix's position [m], north, east, down, of a moment that is `late_s` ago.
 [[nodiscard]] std::array<WideMeasurement, 3> position_equations(const FilterMoment& at, const Fix& fix, double late_s);

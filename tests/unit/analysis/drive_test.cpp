@@ -21,16 +21,22 @@ TEST(DriveUseCase, EstimatesWhatTheDocumentLeavesOpenAndNothingElse) {
   document.gnss.lever_arm_sd_m = 0.3;
   document.imu.mounting_sd_rad = 0.01;
   DriveRequest request;
-  EXPECT_FALSE(options_of(request, document).constants.lever_arm_sd_m) << "nobody asked";
+  const auto sds = [&] {
+    std::vector<double> list;
+    for (const drive::EstimatedConstant& constant : options_of(request, document).constants) {
+      list.push_back(constant.sd);
+    }
+    return list;
+  };
+  EXPECT_TRUE(sds().empty()) << "nobody asked";
   request.estimate = true;
-  EXPECT_EQ(options_of(request, document).constants.lever_arm_sd_m, 0.3);
-  EXPECT_FALSE(options_of(request, document).constants.mounting_sd_rad) << "unobservable without the constraint";
+  EXPECT_EQ(sds(), (std::vector<double>{0.3, 0.3, 0.3})) << "the mounting is unobservable without the constraint";
   request.velocity_constraint = true;
-  EXPECT_EQ(options_of(request, document).constants.mounting_sd_rad, 0.01);
-  EXPECT_GT(options_of(request, document).constants.axle_sd_m, 0.0) << "no document says where the axle is";
-  EXPECT_FALSE(options_of(request, document).constants.odometer_scale_sd) << "without an odometer";
+  EXPECT_EQ(sds(), (std::vector<double>{0.3, 0.3, 0.3, 0.01, 0.01, 1.5})) << "no document says where the axle is";
   request.odometer = true;
-  EXPECT_GT(options_of(request, document).constants.odometer_scale_sd, 0.0);
+  EXPECT_EQ(sds(), (std::vector<double>{0.3, 0.3, 0.3, 0.01, 0.01, 1.5, 0.05}));
+  document.gnss.lever_arm_sd_m = 0.0;
+  EXPECT_EQ(sds().size(), 4U) << "an arm that is known is no state";
 }
 
 TEST(DriveUseCase, RefusesWhatTheVehicleOrTheDriveDoesNotHave) {

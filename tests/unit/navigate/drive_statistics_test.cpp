@@ -150,7 +150,7 @@ TEST(DriveStatistics, TheScaleOfTheOdometerIsEstimatedAsAState) {
   FilterOptions believed;
   believed.odometer = true;
   FilterOptions estimated = believed;
-  estimated.constants.odometer_scale_sd = 0.05;
+  estimated.constants = declared_states(drive.document, estimated);
   const auto [wrong_rms, wrong_nees] = of_long_outages(drive, believed);
   const auto [rms, nees] = of_long_outages(drive, estimated);
   EXPECT_LT(rms, 0.7 * wrong_rms);
@@ -164,7 +164,8 @@ TEST(DriveStatistics, TheMountingIsEstimatedAsAState) {
   FilterOptions believed;
   believed.constraint.emplace();
   FilterOptions estimated = believed;
-  estimated.constants.mounting_sd_rad = 3.0 * kDegree;
+  drive.document.imu.mounting_sd_rad = 3.0 * kDegree;
+  estimated.constants = declared_states(drive.document, estimated);
   const auto [wrong_rms, wrong_nees] = of_long_outages(drive, believed);
   const auto [rms, nees] = of_long_outages(drive, estimated);
   EXPECT_LT(rms, 0.7 * wrong_rms);

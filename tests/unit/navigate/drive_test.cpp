@@ -189,7 +189,9 @@ TEST(DriveFilter, KnowsItselfOnADriveOfItsOwnModel) {
 TEST(DriveFilter, EstimatesTheArmAndSaysHowWell) {
   const Drive drive = simulated_drive(13, {.lever_arm_m = {0.8, -0.4, 0.0}});
   FilterOptions options;
-  options.constants.lever_arm_sd_m = 1.0;
+  Document document = drive.document;
+  document.gnss.lever_arm_sd_m = 1.0;
+  options.constants = declared_states(document, options);
   const auto prepared = PreparedDrive::make(drive, options);
   ASSERT_TRUE(prepared);
   FilterTask task;

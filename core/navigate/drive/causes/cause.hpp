@@ -6,7 +6,8 @@
 /// All that is specific to the cause is in that file. A cause declares one or more of:
 ///
 ///   - knobs: numbers of the filter's options. The search turns every knob that applies to the drive, an injection into
-///     a simulated drive turns the same one the other way;
+///     a simulated drive turns the same one the other way. A knob that measurements depend on may be a state of the
+///     filter: it then declares the standard deviation with which a filter that is to estimate it begins;
 ///   - what the drive's files show of it before any filter runs;
 ///   - levels: factors of the model's white noise, which are fitted before anything is sought and named last.
 ///
@@ -58,6 +59,9 @@ struct Knob {
   bool share = false;
   /// A further error of the estimate beside its standard error, SI; it is included in the stated error. Null: none.
   double (*systematic)(const Drive& drive, const FilterOptions& options) = nullptr;
+  /// What is known of it beforehand, SI, where a filter is to estimate it as a state; 0: nothing is to be estimated by
+  /// these. Null: it is no state.
+  double (*prior_sd)(const Document& document, const FilterOptions& options) = nullptr;
   /// The sign says nothing: findings have none.
   bool magnitude = false;
   /// Fitted as soon as it applies, and reported with the cause's first parameter, never before it, because that
@@ -106,6 +110,9 @@ struct Cause {
 
 /// The knob of a cause's parameter; null for one that has none.
 [[nodiscard]] const Knob* find_knob(std::string_view cause, std::string_view parameter);
+
+/// The states that the causes declare for a filter with these options.
+[[nodiscard]] std::vector<EstimatedConstant> declared_states(const Document& document, const FilterOptions& options);
 
 /// A cause as people call it. `cause` is a registered name.
 [[nodiscard]] std::string_view words_of(std::string_view cause);

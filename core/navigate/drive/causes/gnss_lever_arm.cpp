@@ -29,7 +29,8 @@ constexpr Knob antenna_arm(std::string_view parameter, std::string_view title) {
           .turn = [](FilterOptions& o, double by) { o.lever_arm_m(Axis) += by; },
           .value = [](const FilterOptions& o) { return o.lever_arm_m(Axis); },
           .applies = Axis == 2 ? rolls_and_pitches : nullptr,
-          .told_apart = "constant in the body: x and y need turns, z needs slopes"};
+          .told_apart = "constant in the body: x and y need turns, z needs slopes",
+          .prior_sd = [](const Document& document, const FilterOptions&) { return document.gnss.lever_arm_sd_m; }};
 }
 
 }  // namespace

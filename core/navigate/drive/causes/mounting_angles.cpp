@@ -6,6 +6,8 @@
 namespace driftlab::drive {
 namespace {
 
+constexpr double kAxleSd = 1.5;  ///< [m]: where a vehicle's axle lies no document says
+
 template <double Constraint::* Member>
 constexpr Knob turned_mounting(std::string_view parameter, std::string_view title) {
   return {.parameter = parameter,
@@ -17,7 +19,9 @@ constexpr Knob turned_mounting(std::string_view parameter, std::string_view titl
           .turn = [](FilterOptions& o, double by) { (*o.constraint).*Member += by; },
           .value = [](const FilterOptions& o) { return o.constraint ? (*o.constraint).*Member : 0.0; },
           .applies = [](const Drive&, const FilterOptions& o) { return o.constraint.has_value(); },
-          .told_apart = "sideways velocity in proportion to speed; the arm to the axle in proportion to turning"};
+          .told_apart = "sideways velocity in proportion to speed; the arm to the axle in proportion to turning",
+          .prior_sd = [](const Document& document,
+                         const FilterOptions& o) { return o.constraint ? document.imu.mounting_sd_rad : 0.0; }};
 }
 
 }  // namespace
@@ -28,6 +32,7 @@ Cause mounting_angles() {
   axle.per_si = 1.0;
   axle.step = 0.2;
   axle.most = 10.0;
+  axle.prior_sd = [](const Document&, const FilterOptions& o) { return o.constraint ? kAxleSd : 0.0; };
   return {.name = "mounting_angles",
           .words = "how the unit is mounted",
           .knobs = {

@@ -62,6 +62,16 @@ const Knob* find_knob(std::string_view cause, std::string_view parameter) {
   return nullptr;
 }
 
+std::vector<EstimatedConstant> declared_states(const Document& document, const FilterOptions& options) {
+  std::vector<EstimatedConstant> states;
+  for (const Knob& knob : all_knobs()) {
+    if (const double sd = knob.prior_sd != nullptr ? knob.prior_sd(document, options) : 0.0; sd > 0.0) {
+      states.push_back({knob.turn, sd});
+    }
+  }
+  return states;
+}
+
 std::string_view words_of(std::string_view cause) {
   const Cause* const found = find_cause(cause);
   assert(found != nullptr);
