@@ -94,14 +94,15 @@ constexpr double kMovingOn = 1.0;        ///< [m/s] between two fixes: the vehic
 constexpr double kNextFix = 3.0;         ///< [s]: rows farther apart are not compared
 constexpr std::size_t kRowsToTell = 50;  ///< while it moves
 
+/// Latitude, longitude and height, which is 0 where the row has none; or x, y and z.
 std::array<double, 3> position_at(const FixColumns& c, std::size_t row) {
   const auto at = [row](const Column& column) { return column ? (*column)[row] : 0.0; };
-  return c.lat ? std::array{at(c.lat), at(c.lon), at(c.height)} : std::array{at(c.x), at(c.y), at(c.z)};
+  const double height = std::isfinite(at(c.height)) ? at(c.height) : 0.0;
+  return c.lat ? std::array{at(c.lat), at(c.lon), height} : std::array{at(c.x), at(c.y), at(c.z)};
 }
 
 Vector3 place_of(const FixColumns& c, const std::array<double, 3>& numbers) {
-  return c.lat ? to_ecef({numbers[0], numbers[1], std::isfinite(numbers[2]) ? numbers[2] : 0.0})
-               : Vector3(numbers[0], numbers[1], numbers[2]);
+  return c.lat ? to_ecef({numbers[0], numbers[1], numbers[2]}) : Vector3(numbers[0], numbers[1], numbers[2]);
 }
 
 bool holds_no_position(const std::array<double, 3>& numbers) {

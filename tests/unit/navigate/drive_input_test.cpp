@@ -193,6 +193,10 @@ TEST(DriveInput, AFileThatHoldsItsFixesIsTheDriveOfTheFixes) {
     EXPECT_EQ(a->fixes[i].position_ecef_m, b->fixes[i].position_ecef_m);
   }
   EXPECT_EQ(b->facts.held, 4 * a->fixes.size());
+  held.gnss("h").assign(held.gnss("h").size(), kNothing);
+  const auto flat = load_drive(held.document, held.tables);
+  ASSERT_TRUE(flat);
+  EXPECT_EQ(flat->facts.held, b->facts.held) << "a height that is missing is no new fix";
 }
 
 TEST(DriveInput, AReceiverAtRestThatRepeatsItselfHoldsNothing) {
