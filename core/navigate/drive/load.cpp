@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace driftlab::drive {
@@ -137,26 +138,26 @@ void describe_motion(Drive& drive) {
   }
 }
 
-/// What decoding said of the files, such as an end in the middle of a row.
+/// What decoding said of the files, such as an end in the middle of a row; once of a file that holds several sources.
 void write_notes_of_decoding(const Document& document, const Tables& tables, std::vector<std::string>& notes) {
-  const auto add = [&](const std::string& file, const Table& table) {
-    for (const std::string& said : table.notes) {
-      std::string note = file + ": " + said;
-      if (std::find(notes.begin(), notes.end(), note) == notes.end()) {  // several sources may be one file
-        notes.push_back(std::move(note));
-      }
+  std::vector<std::string> told;
+  const auto add = [&](const char* what, const Source& source, const Table& table) {
+    if (std::find(told.begin(), told.end(), source.file) == told.end()) {
+      told.push_back(source.file);
+      std::transform(table.notes.begin(), table.notes.end(), std::back_inserter(notes),
+                     [&](const std::string& said) { return std::string("The file of ") + what + ": " + said; });
     }
   };
-  add(document.imu.source.file, tables.imu);
+  add("the readings", document.imu.source, tables.imu);
   if (document.imu.force && tables.force) {
-    add(document.imu.force->file, *tables.force);
+    add("the accelerometer", *document.imu.force, *tables.force);
   }
-  add(document.gnss.source.file, tables.gnss);
+  add("the fixes", document.gnss.source, tables.gnss);
   if (document.reference.source && tables.reference) {
-    add(document.reference.source->file, *tables.reference);
+    add("the reference", *document.reference.source, *tables.reference);
   }
   if (document.odometer && tables.odometer) {
-    add(document.odometer->source.file, *tables.odometer);
+    add("the odometer", document.odometer->source, *tables.odometer);
   }
 }
 

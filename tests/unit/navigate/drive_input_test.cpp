@@ -321,7 +321,7 @@ TEST(DriveInput, IsRefusedOrSurvivedWithItsSentence) {
        false, "The course of the fixes never varies"},
       {"a file that is torn, as its decoder says",
        [](Files& f) { f.tables.imu.notes.emplace_back("the last row is torn and left out"); }, false,
-       "imu.csv: the last row is torn and left out"},
+       "The file of the readings: the last row is torn and left out"},
       {"a unit that ends before the fixes do",
        [](Files& f) {
          for (auto& column : f.tables.imu.columns) {
