@@ -227,6 +227,21 @@ struct PoleSum {
   }
 };
 
+/// A process that has decayed within a block is held by its variance and its covariance of neighbouring block means,
+/// without a remainder. Its exact remainder is the negative of many times that variance (36 times at beta L dt = 6),
+/// which white noise beside weak flicker can give and white noise beside strong flicker cannot.
+void keep_two_moments(BlockStates& states) {
+  const double variance = states.p0[0] + states.remainder;
+  states.phi[0] *= states.p0[0] / variance;
+  states.p0[0] = variance;
+  states.q[0] = variance * (1.0 - states.phi[0] * states.phi[0]);
+  states.remainder = 0.0;
+}
+
+/// Of beta L dt. What keep_two_moments gets wrong, the covariance over two blocks, is 4 % of the variance here and
+/// comes out as 11 %; of what is faster it is less.
+constexpr double kFast = 2.0;
+
 }  // namespace
 
 double FlickerNoise::haar_variance(double m, double /*dt_s*/) const { return b * b * cached_unit_haar_variance(m); }
@@ -284,8 +299,16 @@ void FlickerNoise::add_block_states(double square, double /*shape*/, const Block
   const double high = std::log(2.0 * blocks.longest_s);
   const double step = (high - low) / kStates;
   for (int i = 0; i < kStates; ++i) {
-    GaussMarkov::add_block_states(square * step / std::numbers::pi, std::exp(-(low + (i + 0.5) * step)), blocks,
-                                  states);
+    const double beta = std::exp(-(low + (i + 0.5) * step));
+    BlockStates one;
+    GaussMarkov::add_block_states(square * step / std::numbers::pi, beta, blocks, one);
+    if (blocks.block > 1 && beta * blocks.block_s() > kFast) {
+      keep_two_moments(one);
+    }
+    states.phi.push_back(one.phi[0]);
+    states.q.push_back(one.q[0]);
+    states.p0.push_back(one.p0[0]);
+    states.remainder += one.remainder;
   }
 }
 

@@ -47,7 +47,8 @@ struct FlickerNoise {
   void add_path(Random& random, double dt_s, std::span<double> out) const;
   /// Approximate: six Gauss-Markov processes with correlation times spaced evenly in the logarithm, from two samples to
   /// twice the longest record; the integral of their densities over ln(tau) is 1/f. Variances of differences of single
-  /// samples come out 36 % too large, of longer blocks less.
+  /// samples come out 36 % too large, of longer blocks less. Those that decay within half a block keep their variance
+  /// and their covariance of neighbouring blocks, and take nothing from the white noise beside them.
   static void add_block_states(double square, double shape, const Blocks& blocks, BlockStates& states);
   /// The density.
   [[nodiscard]] static double expected_periodogram(double square, double shape, double f_hz, double dt_s,

@@ -1,4 +1,5 @@
 #include "core/investigate/slow/slow_fit.hpp"
+#include "core/process/flicker_noise.hpp"
 #include "core/process/gauss_markov.hpp"
 #include "core/process/random.hpp"
 #include "core/process/random_walk.hpp"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace driftlab::investigate {
 namespace {
@@ -141,6 +143,41 @@ TEST(SlowFit, RecoversAGaussMarkovProcessAndADriftWithinTheirIntervals) {
   EXPECT_TRUE(profile_amplitude(series, columns, fit, 2, {}).contains(1e-3));
   EXPECT_TRUE(profile_parameter(series, columns, fit, {0, false}, {}).contains(0.01));
   EXPECT_TRUE(profile_parameter(series, columns, fit, {0, true}, {}).contains(0.1));
+}
+
+/// Flicker noise of more power than the white noise beside it was given half its level, and the rest to processes that
+/// are not there: the fastest of the six that stand for it, gone within a block, had a negative white remainder of many
+/// times its variance. At density ratios B^2/N^2 below and above one the fit has to return the level.
+TEST(SlowFit, FlickerNoiseAboveTheWhiteKeepsItsLevel) {
+  constexpr std::size_t kBlock = 10;
+  constexpr std::size_t kBlocks = 3000;
+  constexpr double kDt = 0.02;
+  for (const double ratio : {0.3, 2.5, 10.0}) {
+    BlockSeries series = series_of(3, kBlocks, kBlock, kDt);
+    BlockColumns columns = BlockColumns::zeros(series, 2);
+    Random random(6);
+    FlickerNoise flicker;
+    flicker.b = std::sqrt(ratio);
+    for (std::size_t r = 0; r < 3; ++r) {
+      std::vector<double> samples(kBlock * kBlocks, 0.0);
+      flicker.add_path(random, kDt, samples);
+      for (std::size_t b = 0; b < kBlocks; ++b) {
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          columns.rows[r][2 * b] +=
+              (samples[b * kBlock + i] + random.normal() / std::sqrt(kDt)) / static_cast<double>(kBlock);
+        }
+        columns.rows[r][2 * b + 1] = 1.0;
+      }
+    }
+    SlowModel start;
+    start.white = 1.0;
+    start.components = {slow_component(registered<FlickerNoise>(), 0.1 * ratio)};
+    const SlowFit fit = fit_slow(series, columns, start, {.white = false});
+    ASSERT_TRUE(fit.converged);
+    // Five standard deviations, and 10 % for the density of six processes near the block's Nyquist frequency.
+    const double sd = 1.0 / std::sqrt(fit.information(0, 0));
+    EXPECT_NEAR(std::log(fit.model.components[0].process.square() / ratio), 0.0, 5.0 * sd + 0.1) << ratio;
+  }
 }
 
 TEST(SlowModel, AsManyProcessesAsABaselineNamesAreWhitened) {
