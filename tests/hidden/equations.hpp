@@ -48,6 +48,9 @@ struct Injected {
 struct Equation {
   std::string_view cause;
   std::vector<double> values;
+  /// The unit of `values`, of all parameters that the cause declares: SI but for an angle of the compass; `y` is that
+  /// of the channel's readings (reported.hpp reads it).
+  std::vector<std::string_view> units;
   std::vector<investigate::Figure> (*figures)(const Injected& injected);
 };
 

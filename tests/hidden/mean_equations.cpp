@@ -172,22 +172,22 @@ double lagged_temperature(double t, double lag_s) {
 
 std::vector<Equation> mean_equations() {
   return {
-      {"linear_drift", {-2e-4}, linear_drift},
-      {"periodic_disturbance", {0.03, 1.7}, periodic_disturbance},
-      {"bias_step", {-0.04, 300.01}, bias_step},
-      {"warm_up_transient", {-0.05, 60.0}, warm_up_transient},
-      {"temperature_bias", {3e-3, 30.0}, temperature_bias},
-      {"scale_factor_error", {4e-3}, scale_factor_error},
-      {"scale_factor_asymmetry", {4e-3}, scale_factor_asymmetry},
-      {"scale_factor_nonlinearity", {4e-3, 2.0}, scale_factor_nonlinearity},
-      {"scale_factor_nonlinearity", {4e-3, 3.0}, scale_factor_nonlinearity},
-      {"axis_misalignment", {5e-3, 2.0}, axis_misalignment},
-      {"reference_time_offset", {4e-3}, reference_time_offset},
-      {"reference_clock_drift", {1e-5}, reference_clock_drift},
-      {"once_per_revolution", {0.02}, once_per_revolution},
-      {"g_sensitivity", {1e-3}, g_sensitivity},
-      {"vibration_rectification", {2e-3}, vibration_rectification},
-      {"lever_arm", {0.05}, lever_arm},
+      {"linear_drift", {-2e-4}, {"y/s"}, linear_drift},
+      {"periodic_disturbance", {0.03, 1.7}, {"y", "1/s"}, periodic_disturbance},
+      {"bias_step", {-0.04, 300.01}, {"y", "s"}, bias_step},
+      {"warm_up_transient", {-0.05, 60.0}, {"y", "s"}, warm_up_transient},
+      {"temperature_bias", {3e-3, 30.0}, {"y/K", "s"}, temperature_bias},
+      {"scale_factor_error", {4e-3}, {"1"}, scale_factor_error},
+      {"scale_factor_asymmetry", {4e-3}, {"1"}, scale_factor_asymmetry},
+      {"scale_factor_nonlinearity", {4e-3, 2.0}, {"s/rad", "s^2/rad^2"}, scale_factor_nonlinearity},
+      {"scale_factor_nonlinearity", {4e-3, 3.0}, {"s/rad", "s^2/rad^2"}, scale_factor_nonlinearity},
+      {"axis_misalignment", {5e-3, 2.0}, {"rad"}, axis_misalignment},
+      {"reference_time_offset", {4e-3}, {"s"}, reference_time_offset},
+      {"reference_clock_drift", {1e-5}, {"1"}, reference_clock_drift},
+      {"once_per_revolution", {0.02}, {"y"}, once_per_revolution},
+      {"g_sensitivity", {1e-3}, {"y/(m/s^2)"}, g_sensitivity},
+      {"vibration_rectification", {2e-3}, {"y/(m/s^2)^2"}, vibration_rectification},
+      {"lever_arm", {0.05}, {"m"}, lever_arm},
   };
 }
 

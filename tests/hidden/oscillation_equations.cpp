@@ -150,12 +150,12 @@ Figures of_heading(const Injected& injected) {
 
 std::vector<Equation> oscillation_equations() {
   return {
-      {"resonance", {0.02, 7.0, 5.0}, resonance},
-      {"heading_dependent_bias", {0.02, 40.0}, of_heading},
-      {"random_telegraph_noise", {0.02, 10.0}, telegraph},
-      {"chirped_disturbance", {0.03, 3.0, 11.0}, chirped},
-      {"modulated_disturbance", {0.03, 1.7, 0.03}, modulated},
-      {"vibration_bursts", {0.05, 7.0, 0.15}, bursts},
+      {"resonance", {0.02, 7.0, 5.0}, {"y", "1/s", "1"}, resonance},
+      {"heading_dependent_bias", {0.02, 40.0}, {"y", "deg"}, of_heading},
+      {"random_telegraph_noise", {0.02, 10.0}, {"y", "s"}, telegraph},
+      {"chirped_disturbance", {0.03, 3.0, 11.0}, {"y", "1/s", "1/s"}, chirped},
+      {"modulated_disturbance", {0.03, 1.7, 0.03}, {"y", "1/s", "1/s"}, modulated},
+      {"vibration_bursts", {0.05, 7.0, 0.15}, {"y", "1/s", "1"}, bursts},
   };
 }
 

@@ -186,16 +186,16 @@ Figures sampling_rate_change(const Injected& injected) {
 
 std::vector<Equation> recording_equations() {
   return {
-      {"reference_noise", {3e-3}, reference_noise},
-      {"bursty_clock", {8.0, 50.0}, bursty_clock},
-      {"duplicated_blocks", {0.2, 40.0}, duplicated_blocks},
-      {"interpolated_samples", {12.5}, interpolated_samples},
-      {"averaged_samples", {3.0}, averaged_samples},
-      {"unit_error", {0.02}, unit_error},
-      {"turned_sign", {}, turned_sign},
-      {"swapped_axes", {}, swapped_axes},
-      {"clock_jump", {0.05, 300.01}, clock_jump},
-      {"sampling_rate_change", {-8e-4, 300.01}, sampling_rate_change},
+      {"reference_noise", {3e-3}, {"y*sqrt(s)"}, reference_noise},
+      {"bursty_clock", {8.0, 50.0}, {"1", "1/s"}, bursty_clock},
+      {"duplicated_blocks", {0.2, 40.0}, {"1", "1"}, duplicated_blocks},
+      {"interpolated_samples", {12.5}, {"1/s"}, interpolated_samples},
+      {"averaged_samples", {3.0}, {"1"}, averaged_samples},
+      {"unit_error", {0.02}, {"1"}, unit_error},
+      {"turned_sign", {}, {}, turned_sign},
+      {"swapped_axes", {}, {}, swapped_axes},
+      {"clock_jump", {0.05, 300.01}, {"s", "s"}, clock_jump},
+      {"sampling_rate_change", {-8e-4, 300.01}, {"1", "s"}, sampling_rate_change},
   };
 }
 
