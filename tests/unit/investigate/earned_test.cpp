@@ -1,0 +1,163 @@
+/// A name that the evidence does not carry has to be taken back: each reason for it, and how near to it a finding may
+/// come, was code whose absence no test would have noticed.
+#include "core/investigate/report/earned.hpp"
+
+#include "core/investigate/causes/cause.hpp"
+#include "tests/unit/investigate/noise_at_full_rate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr double kDt = 0.02;
+constexpr std::size_t kSamples = 1000;
+constexpr double kLongest_s = 20.0;
+
+/// Recordings of one axis, the longest of 20 s, and one finding in it.
+class Earned : public testing::Test {
+ protected:
+  /// Why `evidence` is not earned beside what the test has set; empty: it is.
+  std::string doubt(Evidence evidence) {
+    std::vector<Evidence> found{std::move(evidence)};
+    doubt_what_is_not_earned(groups_, {means_}, remains_, report_, found);
+    EXPECT_EQ(found[0].ambiguous, !found[0].doubt.empty());
+    return found[0].doubt;
+  }
+  static Evidence evidence_of(std::string_view cause) {
+    Evidence evidence;
+    evidence.cause = find_cause(cause);
+    EXPECT_NE(evidence.cause, nullptr) << cause;
+    return evidence;
+  }
+  static Evidence with(Evidence evidence, const std::string& name, double value, const char* unit) {
+    evidence.parameters.push_back({name, {value, {value, value}}, {unit, 1.0}});
+    return evidence;
+  }
+
+  NoiseAtFullRate noise_{
+      {std::vector<double>(kSamples), std::vector<double>(kSamples / 2), std::vector<double>(kSamples / 2),
+       std::vector<double>(kSamples / 2), std::vector<double>(kSamples / 2)},
+      kDt};
+  std::vector<ChannelGroup> groups_{noise_.group};
+  std::vector<double> means_ = std::vector<double>(5, 0.0);
+  std::vector<Remainder> remains_;
+  Report report_;
+};
+
+TEST_F(Earned, WhatNothingSpeaksAgainstIs) {
+  EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", 5.0, "s")), "");
+}
+
+TEST_F(Earned, ATimeBeyondTwentyRecordingsIsAtTheBoundOfItsSearch) {
+  const std::string at_bound = "a parameter is at the bound of its search";
+  for (const double side : {1.0, -1.0}) {
+    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 20.01 * kLongest_s, "s")), at_bound);
+    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 19.99 * kLongest_s, "s")), "");
+  }
+  EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", 20.01 * kLongest_s, "1/s")), "") << "no time";
+  EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", std::numeric_limits<double>::quiet_NaN(), "1/s")),
+            at_bound);
+  EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", std::numeric_limits<double>::infinity(), "1/s")), at_bound);
+}
+
+TEST_F(Earned, AnEstimateBelowWhatItsCauseDeclaresIsAtTheBoundToo) {
+  const Evidence tails = evidence_of("heavy_tailed_noise");
+  const double least = tails.cause->parameters[0].doubtful_below;
+  ASSERT_GT(least, 2.0) << "a t of two degrees of freedom has no variance";
+  EXPECT_NE(doubt(with(tails, "nu", 0.999 * least, "1")), "");
+  EXPECT_EQ(doubt(with(tails, "nu", 1.001 * least, "1")), "");
+  EXPECT_EQ(doubt(with(tails, "another", 0.0, "1")), "") << "that holds of the declared parameter alone";
+}
+
+/// Of squares d^2 and 1 about a median of 0 the larger is 1/(1 + d^2) of the sum: 0.954 at d = 0.22, 0.946 at 0.24.
+TEST_F(Earned, ABiasOfEveryRecordingThatIsOneRecordingsIsNot) {
+  const Evidence biases = evidence_of("turn_on_bias");
+  means_ = {0.0, 0.0, 0.22, -1.0, 0.0};
+  EXPECT_EQ(doubt(biases), "it is carried by r3 alone");
+  for (double& mean : means_) {
+    mean += 7.0;
+  }
+  EXPECT_EQ(doubt(biases), "it is carried by r3 alone") << "wherever the median lies";
+  EXPECT_EQ(doubt(evidence_of("gauss_markov")), "") << "which may wander in one recording alone";
+  means_ = {0.0, 0.0, 0.24, -1.0, 0.0};
+  EXPECT_EQ(doubt(biases), "");
+  means_ = {0.0, 1.0, 0.0};
+  EXPECT_EQ(doubt(biases), "") << "of three one always lies far from the median";
+  means_ = {0.0, 1.0, 0.0, 0.0};
+  EXPECT_EQ(doubt(biases), "it is carried by r1 alone");
+}
+
+TEST_F(Earned, WhatLeavesAtLeastThreeChecksAndHalfOfThemFailingIsNot) {
+  const Evidence evidence = evidence_of("white_noise_level");
+  const auto failing = [&](std::size_t before, std::size_t after) {
+    report_.failed_before = before;
+    report_.failed_after = after;
+    return doubt(evidence);
+  };
+  EXPECT_EQ(failing(6, 3), "3 checks still fail with it");
+  EXPECT_EQ(failing(9, 5), "5 checks still fail with it");
+  EXPECT_EQ(failing(7, 3), "") << "most of them are mended";
+  EXPECT_EQ(failing(2, 2), "") << "one or two may fail beside a true cause";
+}
+
+TEST_F(Earned, WhatLeavesTheNoiseOfItsChannelChangingIsNot) {
+  Remainder burst;
+  burst.channel = "gz";
+  burst.p_study = 0.0009;
+  burst.in_time_or_frequency = true;
+  const auto beside = [&](const Remainder& remainder) {
+    remains_ = {Remainder{}, remainder};
+    return doubt(evidence_of("white_noise_level"));
+  };
+  EXPECT_EQ(beside(burst), "with it in the model the noise of gz still changes");
+  Remainder weak = burst;
+  weak.p_study = 0.0011;
+  EXPECT_EQ(beside(weak), "");
+  Remainder elsewhere = burst;
+  elsewhere.channel = "gx";
+  EXPECT_EQ(beside(elsewhere), "");
+  Remainder skewed = burst;
+  skewed.in_time_or_frequency = false;
+  EXPECT_EQ(beside(skewed), "");
+}
+
+TEST_F(Earned, FactsOfAFileAndFaultsOfARecordingAlwaysAre) {
+  report_.failed_before = 10;
+  report_.failed_after = 10;
+  for (const char* const cause : {"missing_samples", "unit_error"}) {
+    EXPECT_EQ(doubt(with(evidence_of(cause), "fraction", 1e9, "s")), "") << cause;
+  }
+  EXPECT_NE(doubt(evidence_of("linear_drift")), "");
+}
+
+TEST_F(Earned, IsAskedOfEachFindingInItsOwnChannel) {
+  ChannelGroup other = groups_[0];
+  other.column = "gx";
+  groups_.push_back(other);
+  std::vector<Evidence> found(3, evidence_of("turn_on_bias"));
+  found[1].group = 1;
+  found[2].group = 1;
+  found[2].cause = find_cause("random_walk");
+  found[2].ambiguous = true;
+  doubt_what_is_not_earned(groups_, {means_, {0.0, 0.0, 1.0, 0.0, 0.0}}, remains_, report_, found);
+  EXPECT_EQ(found[0].doubt, "");
+  EXPECT_FALSE(found[0].ambiguous);
+  EXPECT_EQ(found[1].doubt, "it is carried by r2 alone");
+  EXPECT_TRUE(found[1].ambiguous);
+  EXPECT_EQ(found[2].doubt, "");
+  EXPECT_TRUE(found[2].ambiguous) << "a rival was near already";
+}
+
+TEST(MeansOf, AreThoseOfTheResidualsOfEachRecording) {
+  const NoiseAtFullRate noise({{1.0, 2.0, 6.0}, {-4.0, -4.0}});
+  EXPECT_EQ(means_of(noise.data), (std::vector<double>{3.0, -4.0}));
+}
+
+}  // namespace
+}  // namespace driftlab::investigate
