@@ -3,12 +3,13 @@
 #include "core/read/little_endian.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace driftlab {
 namespace {
 
-constexpr std::string_view kTagSignature = "TIMETAG RTKLIB";
+constexpr std::uint32_t kGpsEpoch = 315964800;  ///< 1980-01-06, seconds since 1970
 constexpr std::size_t kTagHeader = 76;
 constexpr std::size_t kTagEntry = 8;
 constexpr std::size_t kMostTagBytes = std::size_t{64} << 20;
@@ -16,8 +17,11 @@ constexpr std::size_t kMostTagBytes = std::size_t{64} << 20;
 }  // namespace
 
 Result<RtklibTag> parse_rtklib_tag(std::string_view bytes) {
-  if (!bytes.starts_with(kTagSignature) || bytes.size() < kTagHeader) {
+  if (!bytes.starts_with(kTagSignature) && !kTagSignature.starts_with(bytes)) {
     return fail(ErrorCode::UnsupportedFormat, "The time tag is none of RTKLIB's: it begins with other bytes.");
+  }
+  if (bytes.size() < kTagHeader) {
+    return fail(ErrorCode::Truncated, "The time tag ends within its header of 76 bytes.");
   }
   const std::size_t entries = (bytes.size() - kTagHeader) / kTagEntry;
   if (entries == 0) {
@@ -27,9 +31,17 @@ Result<RtklibTag> parse_rtklib_tag(std::string_view bytes) {
   if (!std::isfinite(fraction) || fraction < 0.0 || fraction >= 1.0) {
     return fail(ErrorCode::UnsupportedFormat, "The time tag is none of RTKLIB's: its start is no time.");
   }
-  RtklibTag tag;
-  tag.first_s = static_cast<double>(load_at<std::uint32_t>(bytes, 64)) + fraction;
+  const auto seconds = load_at<std::uint32_t>(bytes, 64);
+  if (seconds < kGpsEpoch) {
+    return fail(ErrorCode::UnsupportedFormat,
+                "The time tag starts before 1980, when GPS time begins: the computer that wrote it had no date.");
+  }
   const auto last_ms = load_at<std::uint32_t>(bytes, kTagHeader + (entries - 1) * kTagEntry);
+  if (last_ms == 0) {
+    return fail(ErrorCode::TooFewSamples, "The time tag ends at the moment of its start; it dates no log.");
+  }
+  RtklibTag tag;
+  tag.first_s = static_cast<double>(seconds) + fraction;
   tag.last_s = tag.first_s + 1e-3 * static_cast<double>(last_ms);
   return tag;
 }

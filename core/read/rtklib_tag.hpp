@@ -18,7 +18,11 @@ struct RtklibTag {
   double last_s = 0.0;
 };
 
-/// Errors: UnsupportedFormat (no time tag), Truncated (no entry).
+/// What a time tag begins with.
+inline constexpr std::string_view kTagSignature = "TIMETAG RTKLIB";
+
+/// Later than its start is the last entry of a tag that is taken. Errors: UnsupportedFormat (no time tag, a start
+/// before GPS time), Truncated (no entry), TooFewSamples (no time between start and last entry).
 [[nodiscard]] Result<RtklibTag> parse_rtklib_tag(std::string_view bytes);
 
 /// The same of a file, compressed or not. Errors: NotFound, Io, LimitExceeded (more than 64 MiB), those of
