@@ -1,4 +1,5 @@
 #include "core/read/format.hpp"
+#include "core/read/rtklib_tag.hpp"
 #include "core/read/text_shape.hpp"
 
 #include <algorithm>
@@ -25,6 +26,9 @@ constexpr std::array kSignatures{
     Signature{0, "$GP"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},
     Signature{0, "$GN"sv, "an NMEA log without checksums; switch them on, for they show that its numbers are whole"},
     Signature{0, "FMT, 128, 89"sv, "an ArduPilot log turned into text; send the .bin"},
+    Signature{0, kTagSignature,
+              "an RTKLIB time tag, which dates the log beside it; send that log, and name the tag as the time.tag of a "
+              "drive"sv},
     Signature{0, "%PDF"sv, "a PDF document; send the samples as CSV or .npy"},
     Signature{0, "\x89PNG\r\n\x1a\n"sv, "a PNG image; send the samples as CSV or .npy"},
     Signature{0, "\xff\xd8\xff"sv, "a JPEG image; send the samples as CSV or .npy"},

@@ -93,6 +93,7 @@ TEST(Unknown, IsNamedByWhatItLooksLike) {
       {"PK\x03\x04............................Gyroscope.jpg", "a ZIP archive"},
       {"PK\x03\x04............................[Content_Types].xml", "Office"},
       {"MATLAB 7.3 MAT-file, Platform: GLNXA64", "a MATLAB 7.3 file that is cut off"},
+      {"TIMETAG RTKLIB demo5\0\0\0\0"s, "an RTKLIB time tag, which dates the log beside it"},
       {"%PDF-1.7\n%", "PDF"},
       {"\xb5\x62\x01\x07\x5c", "UBX"},
       {"$GPGGA,123519,4807.038,N,01131.000,E,1,08\n", "NMEA"},
