@@ -68,11 +68,14 @@ Result<bool> take_variable(Taker& taker, std::size_t most_text, std::size_t& bud
   }
   const std::uint64_t rows = shape[0];
   const std::uint64_t columns = shape[1];
-  const std::uint64_t most = budget_bytes / sizeof(double);
-  if (columns > kMostColumns || (columns > 0 && rows > most / columns)) {
+  // An array without samples takes memory too: a stream of nothing else must end.
+  const std::uint64_t own = sizeof(Variable) + variable.name.size() + columns * sizeof(std::vector<double>);
+  const bool fits = columns <= kMostColumns && own <= budget_bytes;
+  const std::uint64_t most = fits ? (budget_bytes - own) / sizeof(double) : 0;
+  if (!fits || (columns > 0 && rows > most / columns)) {
     return fail(ErrorCode::LimitExceeded, "The arrays of the file take more memory than one decoding may.");
   }
-  budget_bytes -= rows * columns * sizeof(double);
+  budget_bytes -= own + rows * columns * sizeof(double);
   for (std::uint64_t c = 0; c < columns; ++c) {
     std::vector<double>& column = variable.columns.emplace_back(rows);
     there = taker.take(column.data(), rows * sizeof(double));
