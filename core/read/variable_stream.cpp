@@ -98,8 +98,9 @@ Result<bool> take_error(Taker& taker, std::size_t most_text) {
   if (!there || !*there) {
     return there;
   }
-  const auto& codes = all_error_codes();
-  return fail(code < codes.size() ? codes[code] : ErrorCode::ShapeMismatch, std::move(sentence));
+  // What the process says of a file; it knows nothing of disks and of this program.
+  const bool too_much = code == static_cast<std::uint32_t>(ErrorCode::LimitExceeded);
+  return fail(too_much ? ErrorCode::LimitExceeded : ErrorCode::ShapeMismatch, std::move(sentence));
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ struct VariableStream {
 
 /// Reads the records. `read(into)` delivers the next bytes: at least one unless the stream has ended, 0 then. Arrays of
 /// more than `budget_bytes` together, their names and empty columns included, and names of more than `most_text` bytes
-/// end it; notes beyond the 64th are dropped. Errors: that of an E record; LimitExceeded; those of `read`. A stream
-/// that breaks off is not `whole`.
+/// end it; notes beyond the 64th are dropped. Errors: LimitExceeded, also where an E record says it, ShapeMismatch for
+/// any other E record; those of `read`. A stream that breaks off is not `whole`.
 [[nodiscard]] Result<VariableStream> read_variables(const std::function<Result<std::size_t>(std::span<char>)>& read,
                                                     std::size_t budget_bytes, std::size_t most_text);
 
