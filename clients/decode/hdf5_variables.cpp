@@ -1,5 +1,7 @@
 #include "clients/decode/hdf5_variables.hpp"
 
+#include "core/read/text_shape.hpp"
+
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
@@ -47,7 +49,7 @@ class Walk {
   Status dataset(hid_t id, const std::string& path);
   Status array(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, bool turned, const std::string& path);
   void left_out(const std::string& path, const std::string& why) {
-    writer_.note("'" + path.substr(0, 200) + "' is left out: " + why + ".");
+    writer_.note("'" + std::string(text::front_of(path, 200)) + "' is left out: " + why + ".");
   }
 
   VariableWriter& writer_;
@@ -56,7 +58,8 @@ class Walk {
 };
 
 tl::unexpected<Error> damaged(const std::string& path) {
-  return fail(ErrorCode::ShapeMismatch, "The HDF5 file is damaged at '" + path.substr(0, 200) + "'.");
+  return fail(ErrorCode::ShapeMismatch,
+              "The HDF5 file is damaged at '" + std::string(text::front_of(path, 200)) + "'.");
 }
 
 /// Name of the link number `index`.

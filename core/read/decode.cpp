@@ -22,12 +22,13 @@ class WatchingSink final : public ColumnSink {
         control_(control) {}
 
   Status begin(const ColumnLayout& layout) override {
-    if (auto distinct = check_distinct_names(layout); !distinct) {
-      return distinct;
+    auto sound = sound_layout(layout);
+    if (!sound) {
+      return fail(sound.error());
     }
-    decoded_.names = layout.names;
+    decoded_.names = sound->names;
     decoded_.has_header = layout.has_header;
-    return next_.begin(layout);
+    return next_.begin(*sound);
   }
   Status rows(std::span<const double> values) override {
     decoded_.rows += values.size() / decoded_.names.size();
@@ -44,10 +45,7 @@ class WatchingSink final : public ColumnSink {
       ++notes_left_out_;
       return;
     }
-    if (sentence.size() > limits_.max_note_bytes) {
-      sentence.resize(limits_.max_note_bytes);
-      sentence += "...";
-    }
+    sentence = sound_note(sentence, limits_);
     decoded_.notes.push_back(sentence);
     next_.note(std::move(sentence));
   }
@@ -119,7 +117,7 @@ Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_p
   auto status =
       kitti ? decode_kitti_folder(folder, limits, watching, control) : decode_folder(folder, limits, watching, control);
   if (!status) {
-    return fail(status.error());
+    return fail(sound_error(status.error()));
   }
   watching.decoded().format = kitti ? "kitti_folder" : "phone_folder";
   control.report("decode", 1.0);
@@ -137,7 +135,7 @@ Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& si
   ByteSource& source = stream->source;
   WatchingSink watching(sink, source, limits, control);
   if (auto status = stream->format->decode(source, limits, watching, control); !status) {
-    return fail(status.error());
+    return fail(sound_error(status.error()));
   }
   watching.decoded().format = stream->format->name;
   watching.decoded().compression = stream->compression;

@@ -14,13 +14,14 @@ constexpr std::size_t kMostSamples = 2'000'000;
 /// Keeps the first samples, then asks the decoder to stop.
 class HeadSink final : public ColumnSink {
  public:
-  explicit HeadSink(DecodedHead& head, const DecodeLimits& limits) : head_(head), most_notes_(limits.max_notes) {}
+  explicit HeadSink(DecodedHead& head, const DecodeLimits& limits) : head_(head), limits_(limits) {}
 
   Status begin(const ColumnLayout& layout) override {
-    if (auto distinct = check_distinct_names(layout); !distinct) {
-      return distinct;
+    auto sound = sound_layout(layout);
+    if (!sound) {
+      return fail(sound.error());
     }
-    head_.names = layout.names;
+    head_.names = std::move(sound->names);
     head_.has_header = layout.has_header;
     head_.columns.resize(layout.names.size());
     most_rows_ = std::min(kMostRows, std::max<std::size_t>(1, kMostSamples / layout.names.size()));
@@ -43,8 +44,8 @@ class HeadSink final : public ColumnSink {
     return go_on();
   }
   void note(std::string sentence) override {
-    if (head_.notes.size() < most_notes_) {
-      head_.notes.push_back(std::move(sentence));
+    if (head_.notes.size() < limits_.max_notes) {
+      head_.notes.push_back(sound_note(sentence, limits_));
     }
   }
   [[nodiscard]] bool full() const { return full_; }
@@ -56,7 +57,7 @@ class HeadSink final : public ColumnSink {
   }
 
   DecodedHead& head_;
-  std::size_t most_notes_;
+  const DecodeLimits& limits_;
   std::size_t most_rows_ = 0;
   bool full_ = false;
 };
@@ -97,7 +98,7 @@ Result<DecodedHead> decode_head(std::string_view bytes, HeadExtent extent, const
   HeadSink sink(head, limits);
   const auto decoded = stream->format->decode(stream->source, limits, sink, RunControl{});
   if (!decoded && !sink.full() && !(beginning && says_more_is_to_come(decoded.error().code))) {
-    return fail(decoded.error());
+    return fail(sound_error(decoded.error()));
   }
   return head;
 }

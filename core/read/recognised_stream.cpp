@@ -1,5 +1,7 @@
 #include "core/read/recognised_stream.hpp"
 
+#include "core/read/text_shape.hpp"
+
 #include <memory>
 #include <set>
 #include <utility>
@@ -74,15 +76,31 @@ Result<RecognisedStream> recognise_stream(std::unique_ptr<ByteReader> reader, co
   return RecognisedStream{std::move(source), compression, format};
 }
 
-Status check_distinct_names(const ColumnLayout& layout) {
+Result<ColumnLayout> sound_layout(const ColumnLayout& layout) {
+  ColumnLayout sound = layout;
   std::set<std::string_view> seen;
-  for (const std::string& name : layout.names) {
+  for (std::string& name : sound.names) {
+    name = text::mended_utf8(name);
     if (!seen.insert(name).second) {
       return fail(ErrorCode::DuplicateColumn, "Two columns are called '" + name + "'; give each its own name.",
                   {{"column", name}});
     }
   }
-  return {};
+  return sound;
+}
+
+std::string sound_note(std::string_view note, const DecodeLimits& limits) {
+  std::string mended = text::mended_utf8(note);
+  return mended.size() <= limits.max_note_bytes ? mended
+                                                : std::string(text::front_of(mended, limits.max_note_bytes)) + "...";
+}
+
+Error sound_error(Error error) {
+  error.message = text::mended_utf8(error.message);
+  for (ErrorField& field : error.fields) {
+    field.value = text::mended_utf8(field.value);
+  }
+  return error;
 }
 
 }  // namespace driftlab

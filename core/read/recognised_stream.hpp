@@ -21,7 +21,11 @@ enum class StreamEnd {
 [[nodiscard]] Result<RecognisedStream> recognise_stream(std::unique_ptr<ByteReader> reader, const DecodeLimits& limits,
                                                         StreamEnd end = StreamEnd::OfTheFile);
 
-/// Refuses a layout that names two columns alike. Error: DuplicateColumn.
-[[nodiscard]] Status check_distinct_names(const ColumnLayout& layout);
+/// The layout with its names in UTF-8; refuses one that names two columns alike. Error: DuplicateColumn.
+[[nodiscard]] Result<ColumnLayout> sound_layout(const ColumnLayout& layout);
+
+/// What a decoder says of a file, in UTF-8 whatever names it holds; a note is cut to its limit.
+[[nodiscard]] std::string sound_note(std::string_view note, const DecodeLimits& limits);
+[[nodiscard]] Error sound_error(Error error);
 
 }  // namespace driftlab

@@ -244,6 +244,16 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+void append_latin1(char c, std::string& converted) {
+  const auto byte = static_cast<unsigned char>(c);
+  if (byte < 0x80) {
+    converted += c;
+  } else {
+    converted += static_cast<char>(0xC0U | (byte >> 6U));
+    converted += static_cast<char>(0x80U | (byte & 0x3FU));
+  }
+}
+
 }  // namespace
 
 std::string to_utf8(std::string_view text) {
@@ -252,15 +262,31 @@ std::string to_utf8(std::string_view text) {
   }
   std::string converted;
   for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      converted += c;
-    } else {
-      converted += static_cast<char>(0xC0U | (byte >> 6U));
-      converted += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
+    append_latin1(c, converted);
   }
   return converted;
+}
+
+std::string mended_utf8(std::string_view text) {
+  std::string mended;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) {
+      append_latin1(text.front(), mended);
+    } else {
+      mended += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return mended;
+}
+
+std::string_view front_of(std::string_view text, std::size_t most) {
+  std::size_t end = std::min(most, text.size());
+  while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) {
+    --end;
+  }
+  return text.substr(0, end);
 }
 
 }  // namespace driftlab::text

@@ -40,6 +40,13 @@ enum class Shape {
 /// `text` as UTF-8: unchanged if it is, else every byte read as ISO 8859-1.
 [[nodiscard]] std::string to_utf8(std::string_view text);
 
+/// `text` as UTF-8, of which only the bytes that belong to no character are read as ISO 8859-1: sentences that hold
+/// names from a file.
+[[nodiscard]] std::string mended_utf8(std::string_view text);
+
+/// At most `most` bytes of text in UTF-8, whole characters.
+[[nodiscard]] std::string_view front_of(std::string_view text, std::size_t most);
+
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace driftlab::text

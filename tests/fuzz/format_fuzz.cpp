@@ -1,6 +1,7 @@
 /// Any bytes as an uploaded file: sniffed, decompressed, decoded. Every answer is an error or a rectangular table of
 /// finite numbers and missing samples, and the same whether the bytes arrive at once or in small pieces.
 #include "core/read/format.hpp"
+#include "core/read/text_shape.hpp"
 #include "core/signal/missing.hpp"
 
 #include <cmath>
@@ -23,6 +24,9 @@ class CheckingSink final : public ColumnSink {
  public:
   Status begin(const ColumnLayout& layout) override {
     require(counts_.empty() && !layout.names.empty());
+    for (const std::string& name : layout.names) {
+      require(text::to_utf8(name) == name);  // or no document could hold it
+    }
     counts_.resize(layout.names.size());
     return {};
   }
@@ -40,7 +44,7 @@ class CheckingSink final : public ColumnSink {
     }
     return {};
   }
-  void note(std::string) override {}
+  void note(std::string sentence) override { require(text::to_utf8(sentence) == sentence); }
 
   void check(const Decoded& decoded) const {
     require(decoded.rows > 0 && decoded.names.size() == counts_.size());
@@ -82,6 +86,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!first) {
     require(first.error().code == second.error().code && first.error().message == second.error().message);
     require(!first.error().message.empty() && first.error().code != ErrorCode::Internal);
+    require(text::to_utf8(first.error().message) == first.error().message);
     return 0;
   }
   whole.check(*first);

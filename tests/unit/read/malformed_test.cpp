@@ -1,6 +1,7 @@
 /// One suite of damaged input over every registered format and compression: whatever the bytes, the answer is an error
 /// or a decoded table, never a crash, and the same however the bytes arrive.
 #include "core/read/column_file.hpp"
+#include "core/read/text_shape.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -34,10 +35,13 @@ std::vector<std::pair<std::string, std::string>> all_samples() {
 /// Steps between the places at which a sample is damaged: HDF5 is read by a process for each.
 std::size_t stride_of(const std::string& name) { return name.starts_with("hdf5") ? 41 : 1; }
 
-/// An error says something and has a known code; a table is rectangular.
+bool is_utf8(const std::string& said) { return text::to_utf8(said) == said; }
+
+/// An error says something and has a known code; a table is rectangular. Whatever is said is UTF-8, as documents are.
 void expect_sound(const Outcome& outcome, const std::string& what) {
   if (outcome.error) {
     EXPECT_FALSE(outcome.message.empty()) << what;
+    EXPECT_TRUE(is_utf8(outcome.message)) << what << ": " << outcome.message;
     EXPECT_NE(*outcome.error, ErrorCode::Internal) << what << ": " << outcome.message;
     return;
   }
@@ -45,6 +49,9 @@ void expect_sound(const Outcome& outcome, const std::string& what) {
   EXPECT_EQ(outcome.decoded.names.size(), outcome.bits.size()) << what;
   for (const auto& column : outcome.bits) {
     EXPECT_EQ(column.size(), outcome.decoded.rows) << what;
+  }
+  for (const auto* const said : {&outcome.decoded.names, &outcome.decoded.notes}) {
+    EXPECT_TRUE(std::all_of(said->begin(), said->end(), is_utf8)) << what;
   }
 }
 
