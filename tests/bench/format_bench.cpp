@@ -95,16 +95,26 @@ void geneactiv_text(benchmark::State& state) { decode(state, long_geneactiv()); 
 void euroc_text(benchmark::State& state) { decode(state, euroc(inertial_rows(kRows))); }
 void kf_gins_text(benchmark::State& state) { decode(state, kf_gins(inertial_rows(kRows))); }
 
-/// The largest real recording of each format.
-void real(benchmark::State& state, const char* path) {
-  const char* const shared = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): one thread
-  const auto file = std::filesystem::path(shared == nullptr ? "" : shared) / "data" / path;
+void decode_file_at(benchmark::State& state, const std::filesystem::path& file, const char* otherwise) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
-    state.SkipWithError("not there; DRIFTLAB_SHARED names the folder that holds data/");
+    state.SkipWithError(otherwise);
     return;
   }
   decode(state, std::string(std::istreambuf_iterator<char>(stream), {}));
+}
+
+/// The largest real recording of each format.
+void real(benchmark::State& state, const char* path) {
+  const char* const shared = std::getenv("DRIFTLAB_SHARED");  // NOLINT(concurrency-mt-unsafe): one thread
+  decode_file_at(state, std::filesystem::path(shared == nullptr ? "" : shared) / "data" / path,
+                 "not there; DRIFTLAB_SHARED names the folder that holds data/");
+}
+
+/// Any recording, as one of HDF5 that h5py wrote.
+void named(benchmark::State& state) {
+  const char* const file = std::getenv("DRIFTLAB_BENCH_FILE");  // NOLINT(concurrency-mt-unsafe): one thread
+  decode_file_at(state, file == nullptr ? "" : file, "DRIFTLAB_BENCH_FILE names no file");
 }
 
 BENCHMARK(npy_doubles)->Unit(benchmark::kMillisecond);
@@ -127,6 +137,7 @@ BENCHMARK(cwa_file)->Unit(benchmark::kMillisecond);
 BENCHMARK(geneactiv_text)->Unit(benchmark::kMillisecond);
 BENCHMARK(euroc_text)->Unit(benchmark::kMillisecond);
 BENCHMARK(kf_gins_text)->Unit(benchmark::kMillisecond);
+BENCHMARK(named)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(real, ulog, "px4-ulog/sample_log_small.ulg")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(real, rosbag_bz2, "rosbag1-imu/phidgets_imu_upside_down.bag")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(real, rosbag2, "rosbag2-db3-fixture/rosbag2_test_0.db3")->Unit(benchmark::kMillisecond);
