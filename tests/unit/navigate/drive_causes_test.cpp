@@ -1,4 +1,5 @@
-// What causes of drives are made of, and the smoother's path. Hidden ones: drive_hidden_test.cpp.
+// What causes of drives are made of, and the smoother's path. Hidden ones: drive_hidden_test.cpp; the laws of every
+// one: drive_cause_laws_test.cpp.
 #include "core/navigate/drive/motion_power.hpp"
 #include "core/navigate/drive/profile.hpp"
 #include "core/navigate/drive/smoother.hpp"
@@ -8,7 +9,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
 
 namespace driftlab::drive {
 namespace {
@@ -36,21 +36,7 @@ SearchResult searched(const Drive& drive, FilterOptions options = {}) {
   return result ? *result : SearchResult{};
 }
 
-TEST(DriveCauses, EachHasWordsOfItsOwnWithoutItsNameInDocuments) {
-  std::set<std::string> words;
-  for (const Cause& cause : cause_registry()) {
-    EXPECT_EQ(cause.words.find('_'), std::string_view::npos) << cause.words;
-    EXPECT_TRUE(words.insert(std::string(cause.words)).second) << cause.words;
-    EXPECT_EQ(find_cause(cause.name), &cause);
-    EXPECT_TRUE(!cause.knobs.empty() || !cause.levels.empty() || cause.from_files != nullptr)
-        << cause.name << " can show in no way";
-  }
-  std::set<std::string> of_knobs;
-  for (const Knob& knob : all_knobs()) {
-    EXPECT_EQ(words_of(knob).find('_'), std::string::npos) << words_of(knob);
-    EXPECT_TRUE(of_knobs.insert(words_of(knob)).second) << words_of(knob);
-    EXPECT_EQ(find_knob(knob.cause, knob.parameter), &knob);
-  }
+TEST(DriveCauses, AreCalledByTheirParameterWhereTheyHaveSeveral) {
   EXPECT_EQ(words_of(*find_knob("gnss_velocity_latency", "delay_s")), "late velocities of fixes");
   EXPECT_EQ(words_of(*find_knob("gnss_coloured_noise", "tau_s")), "lasting errors of positions (tau)");
 }
@@ -83,25 +69,6 @@ TEST(DriveCauses, TheBoundIsOnWhatTheDocumentDoesNotSay) {
   ASSERT_NE(late, nullptr) << names_of(result);
   EXPECT_NEAR(late->value, 3.05, 0.01);
   EXPECT_FALSE(late->at_bound);
-}
-
-TEST(DriveCauses, AKnobTurnsItsOwnValueAndNoOther) {
-  FilterOptions options;
-  options.constraint.emplace();
-  options.odometer = true;
-  options.coloured.sigma_m = 0.5;
-  for (const Knob& knob : all_knobs()) {
-    FilterOptions turned = options;
-    knob.turn(turned, knob.step);
-    for (const Knob& other : all_knobs()) {
-      const double by = &other == &knob ? knob.step : 0.0;
-      EXPECT_DOUBLE_EQ(other.value(turned), other.value(options) + by) << words_of(knob) << ", " << words_of(other);
-    }
-    EXPECT_GT(knob.step, 0.0);
-    EXPECT_GT(knob.most, knob.step);
-    EXPECT_GT(knob.per_si, 0.0);
-    EXPECT_FALSE(knob.told_apart.empty());
-  }
 }
 
 TEST(DriveCauses, AQuietAxisHasNoScaleFactor) {

@@ -1,6 +1,6 @@
 #pragma once
 /// Every cause of drives put into simulated drives, by code that knows nothing of the filter's options: what a search
-/// must find again. A cause without an injection here fails the laws of drive_hidden_test.cpp.
+/// must find again. A cause without an injection here fails the laws of drive_cause_laws_test.cpp.
 #include "core/navigate/earth.hpp"
 #include "core/process/random.hpp"
 #include "tests/unit/navigate/drive_fixture.hpp"
