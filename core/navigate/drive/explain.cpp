@@ -110,6 +110,12 @@ std::vector<DriveFinding> findings_of_files(const Drive& drive, FilterOptions& f
   return findings;
 }
 
+void add_note(std::vector<std::string>& notes, std::string note) {
+  if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
+    notes.push_back(std::move(note));
+  }
+}
+
 /// What the causes of the innovations' findings add in words.
 std::vector<std::string> notes_on(const std::vector<DriveFinding>& findings,
                                   const std::vector<DriveFinding>& of_files) {
@@ -118,12 +124,16 @@ std::vector<std::string> notes_on(const std::vector<DriveFinding>& findings,
     const Cause& cause = *find_cause(finding.cause);
     const bool known = std::any_of(of_files.begin(), of_files.end(),
                                    [&](const DriveFinding& other) { return other.cause == finding.cause; });
-    std::string note = cause.note != nullptr ? cause.note(finding, known) : "";
-    if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
-      notes.push_back(std::move(note));
-    }
+    add_note(notes, cause.note != nullptr ? cause.note(finding, known) : "");
   }
   return notes;
+}
+
+/// The evidence of a finding of the innovations, with what the files show of it.
+std::string evidence_of(const DriveFinding& finding, const Drive& drive) {
+  const Cause& cause = *find_cause(finding.cause);
+  const std::string seen = cause.seen_in_files != nullptr ? cause.seen_in_files(drive) : "";
+  return seen.empty() ? finding.evidence : finding.evidence + "; " + seen;
 }
 
 /// The levels of the noise that are worth a name under the options.
@@ -220,6 +230,7 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   for (const DriveFinding& finding : search->findings) {
     knobs.push_back(find_knob(finding.cause, finding.parameter));
     explanation.findings.push_back(finding);
+    explanation.findings.back().evidence = evidence_of(finding, drive);
   }
   explanation.gyro_noise = search->options.gyro_noise;
   explanation.force_noise = search->options.force_noise;
@@ -305,6 +316,11 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
     return fail(after.error());
   }
   explanation.after = std::move(*after);
+  for (const DriveFinding& finding : search->findings) {
+    const Cause& cause = *find_cause(finding.cause);
+    add_note(explanation.notes,
+             cause.seen_in_outages != nullptr ? cause.seen_in_outages(drive, explanation.after) : "");
+  }
   const auto prepared_after = PreparedDrive::make(drive, explanation.extended);
   simulated =
       simulate_outages(*prepared_after, explanation.after.durations, {options.simulated_runs, options.seed}, control);

@@ -12,7 +12,7 @@
 ///   - levels: factors of the model's white noise, which are fitted before anything is sought and named last.
 ///
 /// No other code knows it by name; tests/house/causes.py refuses the name anywhere else.
-#include "core/navigate/drive/filter_run.hpp"
+#include "core/navigate/drive/evaluation.hpp"
 
 #include <functional>
 #include <optional>
@@ -97,6 +97,10 @@ struct Cause {
   std::vector<NoiseLevel> levels = {};
   /// A sentence beside a finding of the innovations; `known`: the files had shown the cause before. Empty: none.
   std::string (*note)(const DriveFinding& finding, bool known) = nullptr;
+  /// What the files show of a finding of the innovations: a phrase beside its evidence. Empty: nothing.
+  std::string (*seen_in_files)(const Drive& drive) = nullptr;
+  /// What the outages of the mended model show of one: a sentence. Empty: nothing.
+  std::string (*seen_in_outages)(const Drive& drive, const DriveEvaluation& mended) = nullptr;
 };
 
 /// Every cause once, in the order of the specification.
