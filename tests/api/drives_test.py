@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import drive_documents
@@ -81,6 +82,48 @@ class MadeUp(Folder):
         estimated = json.loads(self.drive(0, "run", document, "--estimate", "--json"))
         self.assertGreater(estimated["durations"][0]["promised_rms_m"], known["durations"][0]["promised_rms_m"])
 
+    def test_the_smoothed_path_is_a_table_and_a_reference(self) -> None:
+        document = self.document()
+        self.drive(0, "smooth", document, "--out", "path.csv")
+        lines = [line for line in (self.folder / "path.csv").read_text().splitlines() if not line.startswith("#")]
+        names = lines[0].split(",")
+        rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
+        times = [row[names[0]] for row in rows]
+        self.assertEqual(times, sorted(times))
+        self.assertGreater(times[-1] - times[0], 150)
+        self.assertGreater(len(rows), 500)  # a 20 Hz unit: between its fixes every third of a second
+        sd = "sn [m]"
+        middle = [row[sd] for row in rows if 60 < row[names[0]] < 150]
+        self.assertLess(max(middle), 1.0, "no better than a fix")
+        self.assertIn("--out", self.drive(2, "smooth", document))
+        withheld = json.loads(self.drive(0, "run", document, "--json"))
+        document["reference"] = "smoothed_fixes"
+        smoothed = json.loads(self.drive(0, "run", document, "--json"))
+        self.assertTrue(any("smoothed" in note for note in smoothed["facts"]["notes"]), smoothed["facts"]["notes"])
+        [mine], [theirs] = smoothed["durations"], withheld["durations"]
+        self.assertGreaterEqual(mine["n"], theirs["n"] - 2)
+        # The withheld fixes err by 1 m north and east themselves.
+        self.assertNotEqual(mine["rms_m"]["value"], theirs["rms_m"]["value"])
+        self.assertAlmostEqual(mine["rms_m"]["value"], theirs["rms_m"]["value"], delta=1.0)
+
+    def test_an_odometer_carries_the_filter_through_outages(self) -> None:
+        document = self.document()
+        rows = [list(map(float, line.split(","))) for line in (self.folder / "gnss.csv").read_text().splitlines()[1:]]
+        random = Random(7)
+        speeds = [(row[0], row[4] + 0.02 * random.gauss(0, 1)) for row in rows]
+        (self.folder / "wheel.csv").write_text("t,speed\n" + "".join(f"{time},{speed}\n" for time, speed in speeds))
+        self.assertIn("odometer", self.drive(2, "run", document, "--odometer"))
+        document["odometer"] = {"file": "wheel.csv", "columns": {"speed": drive_documents.role("odometer_speed", None, "m/s")},
+                                "time": {"column": "t", "unit": "s", "scale": "gps"}, "sd_m_s": 0.05}
+        [without] = json.loads(self.drive(0, "run", document, "--json"))["durations"]
+        found = json.loads(self.drive(0, "run", document, "--odometer", "--json"))
+        [with_it] = found["durations"]
+        self.assertEqual(with_it["n"], without["n"])
+        self.assertLess(with_it["promised_rms_m"], without["promised_rms_m"])
+        self.assertLess(with_it["along_rms_m"], without["along_rms_m"])  # across the way a wheel says nothing
+        counts = {each["kind"]: each["n"] for each in found["innovations"]}
+        self.assertGreater(counts["odometer"], 150)
+
     def test_what_cannot_be_is_refused_with_the_repair(self) -> None:
         document = self.document()
 
@@ -143,7 +186,9 @@ class Shared(Folder):
         values = {f"{finding['cause']} {finding['parameter']}": finding["value"] for finding in found["findings"]}
         self.assertAlmostEqual(values["sample_clock rate_hz"], 97.90, delta=0.01)
         self.assertTrue(0.10 <= values["gnss_velocity_latency delay_s"] <= 0.13, values)
-        self.assertIn("imu_time_offset delta_s", values)
+        # Specified were 0.12 to 0.15 s in size and an arm of 0.59 m: tests/DRIVES.md says what contradicts them.
+        self.assertTrue(-0.20 <= values["imu_time_offset delta_s"] <= -0.15, values)
+        self.assertTrue(0.05 <= values.get("gnss_lever_arm x", 0.1) <= 0.20, values)
         self.assertTrue(any(name.startswith("noise_level") for name in values), values)
         ten, thirty, sixty = (duration["rms_m"]["value"] for duration in found["after"]["durations"])
         self.assertLess(ten, 1.1 * 3.57)
@@ -158,6 +203,16 @@ class Shared(Folder):
         sentences = [found["summary"], *found["notes"], *(rung["name"] for rung in found["rungs"]), *(f["words"] for f in found["findings"])]
         self.assertEqual([text for text in sentences if re.search(r"[a-z]_[a-z]", text)], [], "names of documents are not for people")
         self.assertIn("late velocities of fixes", found["summary"])
+
+    @unittest.skipIf(os.environ.get("DRIFTLAB_SANITIZE"), "takes ten times as long; drive_resources_test.py explains a drive of its own")
+    def test_the_car_with_velocity_constraints_is_mended_as_asked(self) -> None:
+        found = self.of("rtk-car-0708", drive_documents.car(), "explain", "--nhc")
+        for duration, asked in zip(found["after"]["durations"], (1.91, 7.6, 13.1), strict=True):
+            self.assertLessEqual(duration["rms_m"]["value"], 1.1 * asked, duration["duration_s"])
+        values = {f"{finding['cause']} {finding['parameter']}": finding["value"] for finding in found["findings"]}
+        self.assertTrue(-0.20 <= values["imu_time_offset delta_s"] <= -0.12, values)
+        self.assertEqual([finding for finding in found["findings"] if finding["score"] < 5], [])
+        self.assertNotIn("initial_heading", {finding["cause"] for finding in found["findings"]})
 
     def test_rest_is_used_where_asked(self) -> None:
         found = self.of("rtk-car-0708", drive_documents.car(), "run", "--zupt")
