@@ -32,16 +32,26 @@ class CauseSearch {
     }
     const double scale = profile_.scale(result_.options);
     const double at = profile_.values({result_.options}).front();
-    const auto estimates = profile_.estimates(result_.options, at, open, scale);
+    auto estimates = profile_.estimates(result_.options, at, open, scale);
+    std::vector<bool> tried(open.size(), false);
     const auto best_of = [&](auto&& counts) {
-      std::optional<std::size_t> best;
-      for (std::size_t i = 0; i < open.size(); ++i) {
-        const bool sure = estimates[i].sound && std::abs(estimates[i].value) >= kSure * estimates[i].se;
-        if (sure && counts(i) && (!best || estimates[i].score > estimates[*best].score)) {
-          best = i;
+      while (true) {
+        std::optional<std::size_t> best;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+          const bool sure = estimates[i].sound && std::abs(estimates[i].value) >= kSure * estimates[i].se;
+          if (sure && counts(i) && (!best || estimates[i].score > estimates[*best].score)) {
+            best = i;
+          }
         }
+        if (!best || tried[*best]) {
+          return best;
+        }
+        // A parabola through three points of a likelihood that is none promises a gain that is not there.
+        const FilterOptions there = Profile::turned(result_.options, *open[*best], estimates[*best].value);
+        const double gain = profile_.values({there}).front() - at;
+        estimates[*best].score = std::min(estimates[*best].score, std::max(gain, 0.0) / scale);
+        tried[*best] = true;
       }
-      return best;
     };
     const auto best = best_of([&](std::size_t i) { return estimates[i].score >= kNamed; });
     if (!best) {
