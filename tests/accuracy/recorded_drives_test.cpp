@@ -1,154 +1,112 @@
 // Causes put into a recorded drive and sought again; what arm and clock a search finds where both are known.
 #include "core/navigate/drive/profile.hpp"
 #include "core/navigate/drive/simulation.hpp"
+#include "tests/accuracy/recorded_injections.hpp"
 #include "tests/accuracy/section.hpp"
 #include "tests/unit/navigate/recorded_car.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
+#include <cstdio>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace driftlab::accuracy {
 namespace {
 
-using drive::Drive;
-using drive::FilterOptions;
-using drive::Fix;
-
 /// The options that the recording's own search ends at, from the delay that the fixes show.
 FilterOptions refitted(const Drive& recorded, bool constraint) {
   FilterOptions options = options_of(recorded.document);
+  options.odometer = !recorded.odometer.empty();
   if (constraint) {
     options.constraint.emplace();
   }
-  if (const auto delay = drive::delay_from_fixes(recorded.fixes)) {
-    options.velocity_latency_s = delay->delay_s;
-  }
+  options.velocity_latency_s = velocities_late_s(recorded);
   const auto found = drive::search_causes(recorded, options, 10);
   EXPECT_TRUE(found) << found.error().message;
   return found ? found->options : options;
 }
 
-/// The velocity of the fixes at a moment: cubic between four of them.
-std::optional<Vector3> velocity_at(const std::vector<Fix>& fixes, double time_s) {
-  const auto after = std::find_if(fixes.begin(), fixes.end(), [&](const Fix& fix) { return fix.time_s >= time_s; });
-  const auto i = after - fixes.begin();
-  if (i < 2 || i + 1 >= static_cast<std::ptrdiff_t>(fixes.size())) {
-    return std::nullopt;
-  }
-  Vector3 sum = Vector3::Zero();
-  for (std::ptrdiff_t j = i - 2; j < i + 2; ++j) {
-    const Fix& own = fixes[static_cast<std::size_t>(j)];
-    if (!own.velocity_ned_m_s || std::abs(own.time_s - time_s) > 1.6) {
-      return std::nullopt;
-    }
-    double weight = 1.0;
-    for (std::ptrdiff_t k = i - 2; k < i + 2; ++k) {
-      const double other = fixes[static_cast<std::size_t>(k)].time_s;
-      weight *= k == j ? 1.0 : (time_s - other) / (own.time_s - other);
-    }
-    sum += weight * *own.velocity_ned_m_s;
-  }
-  return sum;
-}
-
-void delay_velocities(Drive& changed, double by_s) {
-  const std::vector<Fix> recorded = changed.fixes;
-  for (Fix& fix : changed.fixes) {
-    if (const auto earlier = velocity_at(recorded, fix.time_s - by_s)) {
-      fix.velocity_ned_m_s = *earlier;
-    }
-  }
-}
-
-/// The antenna `arm` further from the unit, by the attitude that the filter finds and the rate that the unit reads.
-void move_antenna(Drive& changed, const FilterOptions& options, const Vector3& arm) {
-  const auto prepared = drive::PreparedDrive::make(changed, options);
-  ASSERT_TRUE(prepared);
-  drive::FilterTask task;
-  task.keep_poses = true;
-  const auto poses = prepared->run(0, task).poses;
-  const drive::UniformRun& run = changed.runs.front();
-  for (Fix& fix : changed.fixes) {
-    const double own_s = fix.time_s - options.imu_offset_s;
-    const auto pose = std::min_element(poses.begin(), poses.end(), [&](const auto& a, const auto& b) {
-      return std::abs(a.time_s - own_s) < std::abs(b.time_s - own_s);
-    });
-    const Quaternion attitude = from_euler(pose->attitude);
-    const auto rate_at = [&](double time_s) {
-      const auto middle = static_cast<std::ptrdiff_t>((time_s - options.imu_offset_s - run.start_s) / run.dt_s);
-      Vector3 mean = Vector3::Zero();
-      for (std::ptrdiff_t i = middle - 5; i < middle + 5; ++i) {
-        const auto at = static_cast<std::size_t>(
-            std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(run.readings.size()) - 1));
-        mean += 0.1 * Vector3(run.readings[at][0], run.readings[at][1], run.readings[at][2]);
-      }
-      return mean;
-    };
-    fix.position_ecef_m += ned_axes(fix.position_ecef_m) * (attitude * arm);
-    if (fix.velocity_ned_m_s) {
-      *fix.velocity_ned_m_s += attitude * rate_at(fix.time_s - options.velocity_latency_s).cross(arm);
-    }
-  }
-}
-
-void turn_unit(Drive& changed, const Matrix3& by, const Matrix3& gyroscope, const Matrix3& accelerometer) {
-  for (drive::UniformRun& run : changed.runs) {
-    for (ImuSample& sample : run.readings) {
-      const Vector3 rate =
-          by * (Vector3(sample[0], sample[1], sample[2]) + gyroscope * Vector3(sample[0], sample[1], sample[2]));
-      const Vector3 force =
-          by * (Vector3(sample[3], sample[4], sample[5]) + accelerometer * Vector3(sample[3], sample[4], sample[5]));
-      sample = {rate.x(), rate.y(), rate.z(), force.x(), force.y(), force.z()};
-    }
-  }
-}
-
-Matrix3 single(int row, int column, double value) {
-  Matrix3 matrix = Matrix3::Zero();
-  matrix(row, column) = value;
-  return matrix;
-}
-
-struct Injected {
-  const char* cause;
-  const char* parameter;
-  double size;  ///< SI
-  bool constraint;
-  std::function<void(Drive& changed, const FilterOptions& options, double size)> put;
-};
-
-std::vector<Injected> injections() {
-  const Matrix3 one = Matrix3::Identity();
-  const Matrix3 none = Matrix3::Zero();
-  return {
-      {"imu_time_offset", "delta_s", 0.030, false,
-       [](Drive& d, const FilterOptions&, double by) { d.runs.front().start_s -= by; }},
-      {"gnss_velocity_latency", "delay_s", 0.060, false,
-       [](Drive& d, const FilterOptions&, double by) { delay_velocities(d, by); }},
-      {"gnss_lever_arm", "x", 0.4, false,
-       [](Drive& d, const FilterOptions& o, double by) { move_antenna(d, o, {by, 0.0, 0.0}); }},
-      {"gnss_lever_arm", "y", 0.4, false,
-       [](Drive& d, const FilterOptions& o, double by) { move_antenna(d, o, {0.0, by, 0.0}); }},
-      {"gyro_scale_factor_error", "z", 0.02, false,
-       [=](Drive& d, const FilterOptions&, double by) { turn_unit(d, one, single(2, 2, by), none); }},
-      {"gyro_axis_misalignment", "xz", 0.02, false,
-       [=](Drive& d, const FilterOptions&, double by) { turn_unit(d, one, single(0, 2, by), none); }},
-      {"accelerometer_scale_factor_error", "x", 0.04, false,
-       [=](Drive& d, const FilterOptions&, double by) { turn_unit(d, one, none, single(0, 0, by)); }},
-      {"mounting_angles", "yaw", 2.0 * kDegree, true,
-       [=](Drive& d, const FilterOptions&, double by) {
-         turn_unit(d, Eigen::AngleAxisd(by, Vector3::UnitZ()).toRotationMatrix(), none, none);
-       }},
-      {"mounting_angles", "pitch", 2.0 * kDegree, true,
-       [=](Drive& d, const FilterOptions&, double by) {
-         turn_unit(d, Eigen::AngleAxisd(by, Vector3::UnitY()).toRotationMatrix(), none, none);
-       }},
+/// What is said of a drive beyond what it was before something was put in, in the order of an explanation: by the
+/// files, by the search, levels. Values are changes; of a level, the factor.
+std::vector<drive::DriveFinding> named(const Drive& before, const Drive& changed, const FilterOptions& base) {
+  std::vector<drive::DriveFinding> all;
+  const auto without_base = [&](drive::DriveFinding finding) {
+    const drive::Knob* const knob = drive::find_knob(finding.cause, finding.parameter);
+    finding.value -= knob != nullptr ? knob->value(base) * knob->per_si : 0.0;
+    return finding;
   };
+  FilterOptions options = base;
+  for (const drive::Cause& cause : drive::cause_registry()) {
+    auto found = cause.from_files != nullptr ? cause.from_files(changed, options) : std::nullopt;
+    if (!found) {
+      continue;
+    }
+    found->finding.cause = cause.name;
+    if (const auto known = cause.from_files(before, base)) {
+      found->finding.value -= known->finding.value;
+      if (std::abs(found->finding.value) <= 3.0 * std::hypot(found->finding.se, known->finding.se)) {
+        continue;
+      }
+    }
+    if (found->use) {
+      found->use(options);
+    }
+    all.push_back(without_base(found->finding));
+  }
+  const auto search = drive::search_causes(changed, options, 1);
+  EXPECT_TRUE(search) << search.error().message;
+  if (!search) {
+    return all;
+  }
+  std::transform(search->findings.begin(), search->findings.end(), std::back_inserter(all), without_base);
+  const RunControl control;
+  const drive::Profile profile(changed, {true, true}, control);
+  for (const drive::Cause& cause : drive::cause_registry()) {
+    for (const drive::NoiseLevel& level : cause.levels) {
+      FilterOptions without = search->options;
+      without.*level.factor = base.*level.factor;
+      const auto sums = profile.values({search->options, without});
+      drive::DriveFinding finding;
+      finding.cause = cause.name;
+      finding.parameter = level.parameter;
+      finding.value = search->options.*level.factor / base.*level.factor;
+      finding.score = (sums[0] - sums[1]) / profile.scale(search->options);
+      if ((finding.value > level.named_from || finding.value < 1.0 / level.named_from) && finding.score >= 5.0) {
+        all.push_back(finding);
+      }
+    }
+  }
+  return all;
+}
+
+std::string row_of(const std::string& put, const std::vector<drive::DriveFinding>& all) {
+  std::string names;
+  std::array<char, 200> text{};
+  for (const drive::DriveFinding& found : all) {
+    (void)std::snprintf(text.data(), text.size(), "%s%s (%s)%s %.3g +- %.2g %s, score %.0f", names.empty() ? "" : "; ",
+                        found.cause.c_str(), found.parameter.c_str(),
+                        found.pair.empty() ? "" : (" or " + found.pair).c_str(), found.value, found.se,
+                        found.unit.c_str(), found.score);
+    names += text.data();
+  }
+  return "| " + put + " | " + (names.empty() ? "nothing" : names) + " |\n";
+}
+
+Drive on(const Drive& recorded, Ground ground) {
+  Drive drive = recorded;
+  if (ground == Ground::WithOdometer) {
+    add_odometer(drive);
+  }
+  if (ground == Ground::HeadingStated) {
+    state_heading(drive);
+  }
+  return drive;
 }
 
 }  // namespace
@@ -161,47 +119,39 @@ TEST(Accuracy, CausesPutIntoARecordedDriveAreNamedFirst) {
   Section section("recorded_drives");
   section.print(
       "\n## Causes put into a recorded drive\n\nrtk-car-0708 with the values that its own search ends at; one cause is "
-      "put into readings or fixes, and the search goes on from there.\n\n| put in | found first | value | se | score "
-      "|\n|---|---|---|---|---|\n");
-  for (const bool constraint : {false, true}) {
-    const FilterOptions base = refitted(*recorded, constraint);
-    const auto nothing = drive::search_causes(*recorded, base, 1);
-    ASSERT_TRUE(nothing);
-    const std::string suffix = constraint ? " (velocity constraints)" : "";
-    if (nothing->findings.empty()) {
-      section.print("| nothing%s | nothing | | | |\n", suffix.c_str());
-    } else {
-      const auto& first = nothing->findings.front();
-      section.print("| nothing%s | %s (%s) | | %.3g %s | %.0f |\n", suffix.c_str(), first.cause.c_str(),
-                    first.parameter.c_str(), first.se, first.unit.c_str(), first.score);
-    }
-    for (const Injected& one : injections()) {
-      if (one.constraint != constraint) {
+      "put into readings, fixes, odometer or document, and the search goes on from there for one more. Values are "
+      "changes; of a level, the factor.\n\n| put in | named, in this order |\n|---|---|\n");
+  for (const auto& [ground, with] :
+       {std::pair{Ground::AsRecorded, ""}, std::pair{Ground::Constrained, " (velocity constraints)"},
+        std::pair{Ground::WithOdometer, " (an odometer)"}, std::pair{Ground::HeadingStated, " (heading stated)"}}) {
+    const Drive before = on(*recorded, ground);
+    const FilterOptions base = refitted(before, ground == Ground::Constrained);
+    const auto nothing = named(before, before, base);
+    section.print("%s", row_of(std::string("nothing") + with, nothing).c_str());
+    EXPECT_TRUE(nothing.empty()) << with;
+    for (const Injected& one : recorded_injections()) {
+      if (one.ground != ground) {
         continue;
       }
-      Drive changed = *recorded;
+      Drive changed = before;
       one.put(changed, base, one.size);
-      const auto found = drive::search_causes(changed, base, 1);
-      ASSERT_TRUE(found);
       const drive::Knob* const knob = drive::find_knob(one.cause, one.parameter);
-      ASSERT_NE(knob, nullptr) << one.cause;
-      const double put = one.size * knob->per_si;
-      if (found->findings.empty()) {
-        section.print("| %s (%s) %.3g %s%s | nothing | | | |\n", one.cause, one.parameter, put,
-                      std::string(knob->unit).c_str(), suffix.c_str());
-        ADD_FAILURE() << one.cause << " " << one.parameter;
+      const double put = one.change ? one.change(base, one.size) : one.size * (knob != nullptr ? knob->per_si : 1.0);
+      const auto all = named(before, changed, base);
+      std::array<char, 100> words{};
+      (void)std::snprintf(words.data(), words.size(), "%s (%s) %.3g%s", one.cause, one.parameter, put, with);
+      section.print("%s", row_of(words.data(), all).c_str());
+      const auto found = std::find_if(all.begin(), all.end(), [&](const drive::DriveFinding& finding) {
+        return finding.cause == one.cause && finding.parameter == one.parameter;
+      });
+      if (found == all.end()) {
+        ADD_FAILURE() << words.data() << " has no name";
         continue;
       }
-      const auto& first = found->findings.front();
-      const drive::Knob* const named = drive::find_knob(first.cause, first.parameter);
-      const double change = first.value - named->value(base) * named->per_si;
-      section.print("| %s (%s) %.3g %s%s | %s (%s)%s | %.3g %s | %.2g | %.0f |\n", one.cause, one.parameter, put,
-                    std::string(knob->unit).c_str(), suffix.c_str(), first.cause.c_str(), first.parameter.c_str(),
-                    first.pair.empty() ? "" : (" or " + first.pair).c_str(), change, first.unit.c_str(), first.se,
-                    first.score);
-      EXPECT_TRUE(first.cause == one.cause && first.parameter == one.parameter)
-          << one.cause << " " << one.parameter << " came out as " << first.cause << " " << first.parameter;
-      EXPECT_LT(std::abs(change - put), std::max(0.2 * put, 3.0 * first.se)) << one.cause << " " << one.parameter;
+      const bool of_level = !drive::find_cause(one.cause)->levels.empty();  // a level is named last
+      EXPECT_TRUE(found == all.begin() || of_level) << words.data();
+      EXPECT_LT(std::abs(found->value - put), std::max({0.2 * std::abs(put), 3.0 * found->se, one.within}))
+          << words.data();
     }
   }
 }
