@@ -121,9 +121,11 @@ Profile::Bracket Profile::stride(const FilterOptions& options, const Knob& knob,
   while (bracket.middle_value < std::max(bracket.low_value, bracket.high_value)) {
     const bool up = bracket.high_value > bracket.low_value;
     const double edge = up ? bracket.high : bracket.low;
-    const double next = std::clamp(edge + 2.0 * (edge - bracket.middle), least, most);
-    if ((up ? next <= edge : next >= edge) || control_.stop.stop_requested()) {
-      return bracket;  // the end is an edge already
+    const double beyond = edge + 2.0 * (edge - bracket.middle);
+    const double next = knob.share ? std::clamp(beyond, least, most) : beyond;
+    const bool ends = next < least || next > most || (up ? next <= edge : next >= edge);
+    if (ends || control_.stop.stop_requested()) {
+      return bracket;
     }
     const double value = values({turned(options, knob, next)}).front();
     if (up) {
