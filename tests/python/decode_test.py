@@ -53,8 +53,8 @@ class Held(unittest.TestCase):
         with tempfile.TemporaryFile() as recording:
             recording.write(SMALL)
             recording.flush()
-            with subprocess.Popen([DECODE, "hdf5", str(budget)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                  preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None, pass_fds=(3,), env=NOTHING) as process:
+            with subprocess.Popen([DECODE, "hdf5", str(budget)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                  stderr=subprocess.DEVNULL, preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None, pass_fds=(3,), env=NOTHING) as process:
                 try:
                     said = process.stdout.read(1) if process.stdout else b""  # it has something to say, so it is behind the door
                     self.assertEqual(said, b"V")
@@ -83,8 +83,8 @@ class Held(unittest.TestCase):
             with self.subTest(budget=budget), tempfile.TemporaryFile() as recording:
                 recording.write(chunk)
                 recording.flush()
-                ran = subprocess.run([DECODE, "hdf5", str(budget)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False, env=NOTHING,
-                                     preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None, pass_fds=(3,))
+                ran = subprocess.run([DECODE, "hdf5", str(budget)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False,
+                                     env=NOTHING, preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None, pass_fds=(3,))
                 self.assertEqual(ran.stdout.endswith(b"Z"), reads, (ran.returncode, ran.stdout[:200]))
 
 

@@ -15,8 +15,9 @@ namespace {
 constexpr double kHeadingKnown = 1.0 * kDegree;  // spec/drives.md, section 3
 constexpr double kRestSeconds = 1.0;             // the same
 constexpr double kTurnWindow = 0.05;             ///< [s] on each side; chosen, not measured
-constexpr std::size_t kTapedReadings = 9;        ///< the filter itself closes a step after ten
+constexpr std::size_t kTapedReadings = 9;        ///< at most: the filter itself closes a step after ten
 constexpr double kTapedPoints = 0.08;            ///< [s] at least between two points; chosen, not measured
+constexpr double kTapedStep = 0.1;               ///< [s] at most, or one reading
 
 enum class Step { Score, Begin, Along, Position, Velocity, Odometer };  // in this order at one moment
 struct FilterEvent {
@@ -54,6 +55,7 @@ class Driver {
             : 0;
     turn_window_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTurnWindow / run_.dt_s)));
     rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kRestSeconds / run_.dt_s)));
+    taped_step_ = std::clamp<std::size_t>(static_cast<std::size_t>(kTapedStep / run_.dt_s + 1e-9), 1, kTapedReadings);
   }
 
   FilterRun go(double from_s) {
@@ -133,7 +135,7 @@ class Driver {
         shake();
       }
       if (task_.tape != nullptr) {
-        next = std::min(next, done_ + kTapedReadings);
+        next = std::min(next, done_ + taped_step_);
       }
       filter_.advance(readings_.subspan(done_, next - done_));
       done_ = next;
@@ -356,6 +358,7 @@ class Driver {
   std::size_t constraint_step_ = 0;
   std::size_t rest_step_ = 100;
   std::size_t turn_window_ = 5;  ///< readings on each side
+  std::size_t taped_step_ = kTapedReadings;
   FixGate position_gate_, velocity_gate_;
   OutageStart begun_;
   FilterRun result_;

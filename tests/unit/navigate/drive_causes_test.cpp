@@ -265,6 +265,22 @@ TEST(DriveSmoother, BridgesAGapFromBothSidesAndKnowsHowWell) {
   EXPECT_LT(fixed.rms_m, 0.02 * std::sqrt(3.0)) << "better than the fixes";
 }
 
+TEST(DriveSmoother, HasAPointEveryTenthOfASecondAtAnyRate) {
+  // Steps of nine readings are half a second of a unit at 20 Hz.
+  for (const double rate_hz : {10.0, 20.0, 100.0}) {
+    Hidden hidden;
+    hidden.rate_hz = rate_hz;
+    const Drive drive = simulated_drive(41, hidden, 1);
+    const auto prepared = PreparedDrive::make(drive, {});
+    ASSERT_TRUE(prepared);
+    const auto path = smoothed_path(*prepared);
+    ASSERT_GT(path.size(), 600U);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      EXPECT_LT(path[i].time_s - path[i - 1].time_s, 0.17) << rate_hz << " Hz at " << path[i].time_s;
+    }
+  }
+}
+
 TEST(DriveSmoother, IsAReferenceWithANote) {
   const auto drive = with_smoothed_reference(simulated_drive(39), {});
   ASSERT_TRUE(drive) << drive.error().message;
