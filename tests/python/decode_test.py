@@ -54,7 +54,8 @@ class Held(unittest.TestCase):
             recording.write(SMALL)
             recording.flush()
             with subprocess.Popen([DECODE, "hdf5", str(budget)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                  stderr=subprocess.DEVNULL, preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None, pass_fds=(3,), env=NOTHING) as process:
+                                  stderr=subprocess.DEVNULL, env=NOTHING, pass_fds=(3,),
+                                  preexec_fn=lambda: os.dup2(recording.fileno(), 3) and None) as process:
                 try:
                     said = process.stdout.read(1) if process.stdout else b""  # it has something to say, so it is behind the door
                     self.assertEqual(said, b"V")
