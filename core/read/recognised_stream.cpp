@@ -90,7 +90,7 @@ Result<ColumnLayout> sound_layout(const ColumnLayout& layout) {
 }
 
 std::string sound_note(std::string_view note, const DecodeLimits& limits) {
-  std::string mended = text::mended_utf8(note);
+  const std::string mended = text::mended_utf8(note);
   return mended.size() <= limits.max_note_bytes ? mended
                                                 : std::string(text::front_of(mended, limits.max_note_bytes)) + "...";
 }
