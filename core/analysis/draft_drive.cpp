@@ -171,18 +171,22 @@ bool take_altitude_for_height(DraftSource& source) {
   return none;
 }
 
-/// The first stream of fixes among the columns; `beside`: the unit's own columns stand among them.
+/// The first stream of fixes among the columns; `beside`: the unit's own columns stand among them. A table in which no
+/// column names a stream holds fixes in the rows of the unit, and at their times.
 Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& draft) {
   DraftSource source{file.file, {}, "", "s", beside ? drive::TimeScale::Boot : scale_of(file.format), std::nullopt};
   const auto roles = assign_roles(file.spec, file.names);
   if (!roles) {
     return fail(roles.error());
   }
+  const bool one_table = beside && std::none_of(file.names.begin(), file.names.end(), [](const std::string& name) {
+                           return !read_name(name).stream.empty();
+                         });
   std::string stream;
   for (std::size_t i = 0; i < file.names.size(); ++i) {
     const std::string& name = file.names[i];
     const ReadName read = read_name(name);
-    if (beside && read.stream.empty()) {
+    if (beside && !one_table && read.stream.empty()) {
       continue;
     }
     stream = stream.empty() ? read.stream : stream;
@@ -191,7 +195,7 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
       break;
     }
     const std::optional<ColumnRole>& role = (*roles)[i];
-    const bool time = read.word == "time" || (!beside && role && role->quantity == Quantity::Time);
+    const bool time = !one_table && (read.word == "time" || (!beside && role && role->quantity == Quantity::Time));
     if (time && source.time_column.empty()) {
       source.time_column = name;
       source.time_unit = role && role->unit && role->unit->dimension == Dimension::Time ? role->unit->symbol
@@ -212,7 +216,13 @@ Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& 
       return fail(no_column(file.file, what));
     }
   }
-  if (source.time_column.empty()) {
+  if (one_table) {
+    source.time_column = draft.unit.time_column;
+    source.time_unit = draft.unit.time_unit;
+    source.scale = draft.unit.scale;
+    source.rate_hz = draft.unit.rate_hz;
+    draft.notes.emplace_back("Fixes stand in the rows of the unit: rows that repeat a fix are no new data.");
+  } else if (source.time_column.empty()) {
     return fail(no_column(file.file, "the time of the fixes"));
   }
   if (find(source, drive::Quantity::GnssVelocity, "north") != nullptr) {  // what speed and course say again

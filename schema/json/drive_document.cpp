@@ -65,6 +65,9 @@ drive::ColumnMeaning drive_column(const Json& document, const std::string& point
     return meaning;
   }
   meaning.quantity = *parsed;
+  const bool of_unit = *parsed == drive::Quantity::AngularRate || *parsed == drive::Quantity::SpecificForce;
+  const bool points_back = of_unit && meaning.axis.starts_with('-');  // "-x": what a left-handed unit calls x
+  meaning.axis.erase(0, points_back ? 1 : 0);
   const auto& axes = drive::axes_of(*parsed);
   const bool known = axes.empty() ? meaning.axis.empty()
                                   : std::find(axes.begin(), axes.end(), std::string_view(meaning.axis)) != axes.end();
@@ -82,10 +85,10 @@ drive::ColumnMeaning drive_column(const Json& document, const std::string& point
     } else {
       faults.add(reader.pointer("unit"), factor.error());
     }
-  } else if (*parsed == drive::Quantity::AngularRate || *parsed == drive::Quantity::SpecificForce ||
-             meaning.axis == "lat" || meaning.axis == "lon" || *parsed == drive::Quantity::GnssCourse) {
+  } else if (of_unit || meaning.axis == "lat" || meaning.axis == "lon" || *parsed == drive::Quantity::GnssCourse) {
     faults.add(pointer, ErrorCode::InvalidArgument, "The unit of " + quantity + " is not guessed: give `unit`.");
   }
+  meaning.factor *= points_back ? -1.0 : 1.0;
   return meaning;
 }
 

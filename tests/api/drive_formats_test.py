@@ -77,6 +77,22 @@ class MadeUpDrive(Folder):
         return self.document("imu.csv", "gnss.csv")
 
 
+class LeftHandedUnit(MadeUpDrive):
+    def test_an_axis_that_points_back_is_said_by_its_sign(self) -> None:
+        document = copy.deepcopy(self.as_csv())
+        wanted = self.found(document)
+        mirrored = [[row[0], *row[1:4], -row[4], *row[5:]] for row in self.readings]
+        (self.folder / "imu.csv").write_text(",".join(samples.DRIVE_IMU) + "\n" + text_of(mirrored, ","))
+        name = list(samples.DRIVE_IMU)[4]
+        self.assertEqual((document["imu"]["columns"][name]["quantity"], document["imu"]["columns"][name]["axis"]), ("specific_force", "x"))
+        refused = self.drive(2, "run", document)
+        self.assertIn("The accelerometer's x points back where the speed rises", refused)
+        document["imu"]["columns"][name]["axis"] = "-x"
+        self.assertEqual(self.found(document), wanted)
+        document["gnss"]["columns"][list(samples.DRIVE_GNSS)[1]]["axis"] = "-lat"
+        self.assertIn("gnss_position has one of the axes lat, lon, height", self.drive(2, "run", document))
+
+
 def single(value: float) -> float:
     """As a log of PX4 keeps it."""
     return float(struct.unpack("<f", struct.pack("<f", value))[0])

@@ -621,8 +621,9 @@ class DriveColumn(TypedDict):
     quantity: Literal['ignored', 'angular_rate', 'specific_force', 'gnss_position', 'gnss_velocity', 'gnss_speed',
                       'gnss_course', 'gnss_accuracy', 'fix_type', 'satellites', 'reference_position',
                       'reference_velocity', 'odometer_speed', 'odometer_ticks']
-    axis: NotRequired[Literal['x', 'y', 'z', 'lat', 'lon', 'height', 'north', 'east', 'down', 'up', 'horizontal',
-                              'vertical', 'speed']]
+    # `-x`: the unit's axis points back; of angular_rate and specific_force.
+    axis: NotRequired[Literal['x', 'y', 'z', '-x', '-y', '-z', 'lat', 'lon', 'height', 'north', 'east', 'down', 'up',
+                              'horizontal', 'vertical', 'speed']]
     unit: NotRequired[str]
 
 

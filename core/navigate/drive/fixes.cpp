@@ -101,6 +101,11 @@ std::array<double, 3> position_at(const FixColumns& c, std::size_t row) {
   return c.lat ? std::array{at(c.lat), at(c.lon), height} : std::array{at(c.x), at(c.y), at(c.z)};
 }
 
+/// Whether two rows hold one fix: receivers state the height at another moment than the place.
+bool same_place(const FixColumns& c, const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] == b[0] && a[1] == b[1] && (c.lat || a[2] == b[2]);
+}
+
 Vector3 place_of(const FixColumns& c, const std::array<double, 3>& numbers) {
   return c.lat ? to_ecef({numbers[0], numbers[1], numbers[2]}) : Vector3(numbers[0], numbers[1], numbers[2]);
 }
@@ -115,7 +120,7 @@ bool holds_no_position(const std::array<double, 3>& numbers) {
 bool repeats_until_the_next(const FixColumns& c, const StampedRows& stamped) {
   const auto same = [&](std::size_t a, std::size_t b) {
     const auto equal = [&](const Column& column) { return !column || (*column)[a] == (*column)[b]; };
-    return position_at(c, a) == position_at(c, b) && equal(c.north) && equal(c.east) && equal(c.speed) &&
+    return same_place(c, position_at(c, a), position_at(c, b)) && equal(c.north) && equal(c.east) && equal(c.speed) &&
            equal(c.course);
   };
   std::size_t rows = 0;
@@ -216,7 +221,7 @@ Result<std::vector<Fix>> fixes_of(const GnssSource& source, const Table& table, 
       continue;
     }
     const bool again = !fixes.empty() && stamped.time_s[k] <= before_s;
-    if (!fixes.empty() && (again || (hold && numbers == before))) {
+    if (!fixes.empty() && (again || (hold && same_place(c, numbers, before)))) {
       ++facts.held;
       continue;
     }

@@ -16,6 +16,7 @@ constexpr double kSwapped = 0.9;  ///< correlation of displacements and velociti
 constexpr double kMirrored = -0.5;
 constexpr double kExchanged = 0.6;
 constexpr std::size_t kEnoughIntervals = 50;
+constexpr double kWindow = 1.0;       ///< [s] and more: velocities are late by some tenths, and noisy
 constexpr double kEnoughForce = 0.4;  ///< [m/s^2], rms
 
 tl::unexpected<Error> implausible(const char* member, std::string sentence) {
@@ -198,10 +199,16 @@ Status check_horizontal_axes(const Drive& drive) {
   }
   std::vector<std::pair<CourseStep, Vector3>> steps;
   Vector3 mean = Vector3::Zero();
+  std::size_t first = 0;
   for (std::size_t i = 1; i < drive.fixes.size(); ++i) {
-    const auto course = course_step(drive.fixes[i - 1], drive.fixes[i], 3.0);
-    const auto read =
-        course ? mean_reading(drive.runs, drive.fixes[i - 1].time_s, drive.fixes[i].time_s) : std::nullopt;
+    const Fix& from = drive.fixes[first];
+    const Fix& to = drive.fixes[i];
+    if (to.time_s - from.time_s < kWindow) {
+      continue;
+    }
+    first = i;
+    const auto course = course_step(from, to, 3.0);
+    const auto read = course ? mean_reading(drive.runs, from.time_s, to.time_s) : std::nullopt;
     if (course && read) {
       steps.emplace_back(*course, read->force);
       mean += read->force;
@@ -231,13 +238,13 @@ Status check_horizontal_axes(const Drive& drive) {
   }
   if (speeds && along.correlation() < kMirrored) {
     return implausible("imu.columns",
-                       "The accelerometer's x points back where the speed rises: the axis is mirrored or mounting_deg "
-                       "is wrong. Body axes are forward, right, down.");
+                       "The accelerometer's x points back where the speed rises: mounting_deg is wrong, or the axis is "
+                       "mirrored, which \"axis\": \"-x\" says. Body axes are forward, right, down.");
   }
   if (turns && across.correlation() < kMirrored) {
     return implausible("imu.columns",
-                       "The accelerometer's y points left where the course turns right: the axis is mirrored or "
-                       "mounting_deg is wrong. Body axes are forward, right, down.");
+                       "The accelerometer's y points left where the course turns right: mounting_deg is wrong, or the "
+                       "axis is mirrored, which \"axis\": \"-y\" says. Body axes are forward, right, down.");
   }
   return {};
 }

@@ -73,6 +73,22 @@ TEST(DraftDrive, TakesFixesOfAFileOfTheirOwnOnTheClockOfItsFormat) {
   EXPECT_TRUE(notes_say(*draft, "clock"));
 }
 
+TEST(DraftDrive, TakesFixesThatStandInTheRowsOfTheUnit) {
+  const DraftFile timed{"car.csv",
+                        "csv",
+                        {"time [ms]", "ax [m/s^2]", "ay [m/s^2]", "az [m/s^2]", "gx [deg/s]", "gy [deg/s]",
+                         "gz [deg/s]", "speed [km/h]", "course", "latitude", "longitude", "altitude"},
+                        {}};
+  const auto draft = draft_drive({timed, std::nullopt, drive::Vehicle::Road});
+  ASSERT_TRUE(draft) << draft.error().message;
+  EXPECT_EQ(draft->receiver.file, "car.csv");
+  EXPECT_EQ(draft->receiver.time_column, "time [ms]");
+  EXPECT_EQ(draft->receiver.time_unit, "ms");
+  EXPECT_EQ(told(draft->receiver, drive::Quantity::GnssPosition, "lat"), "latitude in deg");
+  EXPECT_EQ(told(draft->receiver, drive::Quantity::GnssSpeed, ""), "speed [km/h] in km/h");
+  EXPECT_TRUE(notes_say(*draft, "rows that repeat a fix are no new data"));
+}
+
 TEST(DraftDrive, OfHeightsAboveTheGeoidOnlySaysSo) {
   DraftFile log = flight_log();
   std::erase(log.names, "gnss_height (m)");

@@ -193,6 +193,13 @@ TEST(DriveInput, AFileThatHoldsItsFixesIsTheDriveOfTheFixes) {
     EXPECT_EQ(a->fixes[i].position_ecef_m, b->fixes[i].position_ecef_m);
   }
   EXPECT_EQ(b->facts.held, 4 * a->fixes.size());
+  std::vector<double>& heights = held.gnss("h");
+  for (std::size_t row = 0; row < heights.size(); ++row) {
+    heights[row] += row % 5 >= 3 ? 0.1 : 0.0;  // stated later than the place, as a car's logger does
+  }
+  const auto twice = load_drive(held.document, held.tables);
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(twice->facts.held, b->facts.held) << "a new height is no new place";
   held.gnss("h").assign(held.gnss("h").size(), kNothing);
   const auto flat = load_drive(held.document, held.tables);
   ASSERT_TRUE(flat);
