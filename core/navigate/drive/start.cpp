@@ -27,6 +27,7 @@ constexpr double kNeighbour = 1.5;    ///< [s]: fixes that tell the acceleration
 constexpr double kHeadingSd = 5.0 * kDegree;
 constexpr double kHeadingSdOfDrifting = 30.0 * kDegree;  ///< of what does not move along its nose
 constexpr double kTiltSdInMotion = 3.0 * kDegree;
+constexpr double kDoubted = 0.5;  // share of an acceleration by velocities that are late and smoothed; chosen
 constexpr double kTiltSdFromRest = 1.0 * kDegree;  // chosen, not measured, as are the next three
 constexpr double kTiltSdStated = 2.0 * kDegree;    // the document has no place for its own
 constexpr double kBesidePositionVariance = 1.0;    ///< [m^2], beside what the fix states
@@ -213,10 +214,12 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
     start.uncertainty.tilt_sd_rad = kTiltSdFromRest;
   } else {
     const BlockMeans around = mean_of(run, reading_at(run, start.time_s - 0.5), reading_at(run, start.time_s + 0.5));
-    const Vector3 force = around.force - acceleration_around(drive, *fix, heading_rad);
+    const Vector3 acceleration = acceleration_around(drive, *fix, heading_rad);
+    const Vector3 force = around.force - acceleration;
     angles.roll_rad = std::atan2(-force.y(), -force.z());
     angles.pitch_rad = std::atan2(force.x(), std::hypot(force.y(), force.z()));
-    start.uncertainty.tilt_sd_rad = kTiltSdInMotion;
+    start.uncertainty.tilt_sd_rad =
+        std::hypot(kTiltSdInMotion, kDoubted * acceleration.head<2>().norm() / kStandardGravity);
   }
   angles.heading_rad = heading_rad;
   const Vector3 antenna = at_beginning && stated.position ? to_ecef(*stated.position) : fix->position_ecef_m;

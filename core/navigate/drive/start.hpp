@@ -6,7 +6,8 @@
 /// Tilt. The vehicle's last rest, if it ended within the minute before the start, shows the tilt by the direction of
 /// the mean force. The gyroscope carries it from there to the start, less its own mean over the rest. Without such a
 /// rest, the tilt is that of the mean force over one second around the start, less the acceleration that the velocities
-/// of the fixes show there: 2 m/s^2 would be taken for 12 deg.
+/// of the fixes show there: 2 m/s^2 would be taken for 12 deg. Velocities of a receiver are late and smoothed, so that
+/// half of what is taken off is in the tilt's standard deviation.
 ///
 /// Heading. It is the course of the first fix that is faster than 3 m/s and around which the vehicle turns by less than
 /// 3 deg in a second. The filter begins at that fix, or, where the heading is stated, at the first of all. An aircraft

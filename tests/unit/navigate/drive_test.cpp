@@ -374,6 +374,7 @@ TEST(DriveStart, ChangesOfSpeedAreNoTilt) {
   EXPECT_EQ(start->tilt_from, TiltFrom::Motion);
   EXPECT_NEAR(start->attitude().pitch_rad, 0.0, 2.0 * kDegree);
   EXPECT_NEAR(start->attitude().roll_rad, 0.0, 2.0 * kDegree);
+  EXPECT_NEAR(start->uncertainty.tilt_sd_rad, std::hypot(3.0, 5.8) * kDegree, 1.5 * kDegree) << "half of 12 deg";
   Drive silent = drive;
   for (Fix& fix : silent.fixes) {
     fix.has_course = false;
