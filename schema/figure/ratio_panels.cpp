@@ -106,8 +106,9 @@ std::string to_svg(const RatioPanels& figure) {
   svg += "<title>" + escaped(figure.title) + "</title>\n";
   svg += written("<rect width=\"%.0f\" height=\"%.0f\" fill=\"#ffffff\"/>\n", wide, high);
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
+    const std::size_t row = p / columns;
     svg += written("<g transform=\"translate(%.0f %.0f)\">\n", kPanelWide * static_cast<double>(p % columns),
-                   kPanelHigh * static_cast<double>(p / columns)) +
+                   kPanelHigh * static_cast<double>(row)) +
            panel_svg(figure.panels[p], figure.scope_s) + "</g>\n";
   }
   svg += written("<text x=\"%.0f\" y=\"%.0f\">", 8.0, high - 8.0) + escaped(figure.caption) + "</text>\n</svg>\n";

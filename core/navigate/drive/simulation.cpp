@@ -209,10 +209,10 @@ SimulatedWorld::World SimulatedWorld::draw(std::uint64_t seed, std::uint64_t run
     }
   }
   Random wheel(seed, 16 * run + kWheelStream);
+  const OdometerSource source = recorded_->document.odometer.value_or(OdometerSource{});
   for (const OdometerReading& recorded : recorded_->odometer) {
     const double own = recorded.time_s - start_s_;
     if (own > 0.0 && own < end) {
-      const OdometerSource& source = *recorded_->document.odometer;
       const NavigationState truth = truth_at(truth_, own);
       const Vector3 body = truth.attitude.conjugate() * truth.velocity_ecef_m_s;
       const double speed = (body + rate_at(own).cross(source.lever_arm_m)).x();
