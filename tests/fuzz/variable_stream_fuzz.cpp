@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     kept += sizeof variable + variable.name.size();
     for (const auto& column : variable.columns) {
       require(column.size() == variable.columns.front().size());
-      kept += sizeof column + column.size() * sizeof(double);
+      kept += sizeof(std::vector<double>) + column.size() * sizeof(double);
     }
   }
   require(kept <= kBudget && stream->notes.size() <= 64);

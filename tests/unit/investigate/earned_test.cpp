@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDt = 0.02;
 constexpr std::size_t kSamples = 1000;
-constexpr double kLongest_s = 20.0;
+constexpr double kLongest = 20.0;  // [s]
 
 /// Recordings of one axis, the longest of 20 s, and one finding in it.
 class Earned : public testing::Test {
@@ -57,10 +57,10 @@ TEST_F(Earned, WhatNothingSpeaksAgainstIs) {
 TEST_F(Earned, ATimeBeyondTwentyRecordingsIsAtTheBoundOfItsSearch) {
   const std::string at_bound = "a parameter is at the bound of its search";
   for (const double side : {1.0, -1.0}) {
-    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 20.01 * kLongest_s, "s")), at_bound);
-    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 19.99 * kLongest_s, "s")), "");
+    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 20.01 * kLongest, "s")), at_bound);
+    EXPECT_EQ(doubt(with(evidence_of("warm_up_transient"), "tau_s", side * 19.99 * kLongest, "s")), "");
   }
-  EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", 20.01 * kLongest_s, "1/s")), "") << "no time";
+  EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", 20.01 * kLongest, "1/s")), "") << "no time";
   EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", std::numeric_limits<double>::quiet_NaN(), "1/s")),
             at_bound);
   EXPECT_EQ(doubt(with(evidence_of("gauss_markov"), "beta", std::numeric_limits<double>::infinity(), "1/s")), at_bound);

@@ -72,7 +72,8 @@ double score_power(double sd, double share) {
 /// x = m (r - 1 - ln r) / (1 - share), and the most surprising is that very quarter at all frequencies.
 TEST(Remains, TellWhenTheNoiseIsLouderOrQuieterAndHowMuch) {
   constexpr double kShare = 0.25;
-  constexpr double kOrdinates = 256.0 * (kFrame / 2 - 1);
+  constexpr auto kOfAFrame = kFrame / 2 - 1;
+  constexpr double kOrdinates = 256.0 * static_cast<double>(kOfAFrame);
   for (const double sd : {2.0, 0.5}) {
     const NoiseAtFullRate noise({white(kSamples, 1), changed(2, [&](double value, double t) {
                                    return t >= 256.0 && t < 512.0 ? sd * value : value;
