@@ -11,6 +11,13 @@ constexpr double kCourseSpeed = 0.5;       ///< [m/s]: below it there is no cour
 constexpr double kFarAway = 200e3;         ///< [m]: a fix this far from the middle of the drive is none
 constexpr double kUnknownVertical = 10.0;  ///< [m/s]: standard deviation of a vertical velocity that nobody measured
 
+constexpr std::size_t kEnoughToVary = 10;  ///< numbers: a column with more that are all the same says nothing
+
+// Of a file that repeats each fix until the next. Chosen, not measured.
+constexpr double kMovingOn = 1.0;        ///< [m/s] between two fixes: the vehicle has moved
+constexpr double kNextFix = 3.0;         ///< [s]: rows farther apart are not compared
+constexpr std::size_t kRowsToTell = 50;  ///< while it moves
+
 using Column = std::optional<std::vector<double>>;
 
 struct FixColumns {
@@ -70,8 +77,6 @@ Result<FixColumns> columns_of_fixes(const GnssSource& source, const Table& table
   return columns;
 }
 
-constexpr std::size_t kEnoughToVary = 10;  ///< numbers: a column with more that are all the same says nothing
-
 /// The number that the column has in every row that has a time and a number; nothing where it varies.
 std::optional<double> constant_of(const Column& column, const StampedRows& stamped) {
   std::optional<double> first;
@@ -89,10 +94,6 @@ std::optional<double> constant_of(const Column& column, const StampedRows& stamp
   }
   return numbers > kEnoughToVary ? first : std::nullopt;
 }
-
-constexpr double kMovingOn = 1.0;        ///< [m/s] between two fixes: the vehicle has moved
-constexpr double kNextFix = 3.0;         ///< [s]: rows farther apart are not compared
-constexpr std::size_t kRowsToTell = 50;  ///< while it moves
 
 /// Latitude, longitude and height, which is 0 where the row has none; or x, y and z.
 std::array<double, 3> position_at(const FixColumns& c, std::size_t row) {
