@@ -69,6 +69,8 @@ struct Drive {
   FileFacts facts;
 
   [[nodiscard]] double end_s() const { return runs.back().end_s(); }
+  /// Whether any fix has a velocity.
+  [[nodiscard]] bool has_velocities() const;
   /// A place on the map of the drive: north, east and down of where its reference begins [m].
   [[nodiscard]] Vector3 on_map(const Vector3& position_ecef_m) const;
 };

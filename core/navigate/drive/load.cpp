@@ -121,11 +121,9 @@ void describe_motion(Drive& drive) {
   facts.fixes = drive.fixes.size();
   facts.fix_rate_hz =
       static_cast<double>(drive.fixes.size() - 1) / (drive.fixes.back().time_s - drive.fixes.front().time_s);
-  bool has_velocity = false;
   for (std::size_t i = 0; i < drive.fixes.size(); ++i) {
     const Fix& fix = drive.fixes[i];
     if (fix.velocity_ned_m_s) {
-      has_velocity = true;
       facts.highest_speed_m_s = std::max(facts.highest_speed_m_s, fix.velocity_ned_m_s->head<2>().norm());
       if (i > 0) {
         const double step = std::min(fix.time_s - drive.fixes[i - 1].time_s, 2.0);
@@ -133,7 +131,7 @@ void describe_motion(Drive& drive) {
       }
     }
   }
-  if (!has_velocity) {
+  if (!drive.has_velocities()) {
     describe_motion_by_positions(drive);
   }
 }
@@ -252,8 +250,7 @@ void write_notes(Drive& drive) {
        "The reference is the withheld fixes: their own errors are part of every error given here.");
   note(facts.highest_speed_m_s < 3.0,
        "The vehicle never moves faster than 3 m/s: its heading cannot be observed from its course.");
-  note(std::none_of(drive.fixes.begin(), drive.fixes.end(), [](const Fix& fix) { return fix.velocity_ned_m_s; }),
-       "No fix has a velocity: the heading at the start cannot be observed from a course.");
+  note(!drive.has_velocities(), "No fix has a velocity: the heading at the start cannot be observed from a course.");
 }
 
 Status load_reference(const Document& document, const Tables& tables, double epoch_s, bool absolute, Drive& drive) {

@@ -171,8 +171,7 @@ Result<Start> find_start(const Drive& drive, std::size_t run_index) {
   const UniformRun& run = drive.runs[run_index];
   const StartState stated = run_index == 0 ? drive.document.start : StartState{};  // nothing behind a gap
   const Fix* const fix = first_heading(drive, run, stated.heading_rad.has_value());
-  if (fix == nullptr && std::none_of(drive.fixes.begin(), drive.fixes.end(),
-                                     [](const Fix& one) { return one.velocity_ned_m_s.has_value(); })) {
+  if (fix == nullptr && !drive.has_velocities()) {
     return fail(ErrorCode::InvalidArgument,
                 "No fix has a velocity, so no course shows the heading; give start.heading_deg.",
                 {{"parameter", "start.heading_deg"}});
