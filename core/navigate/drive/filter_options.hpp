@@ -87,11 +87,11 @@ inline constexpr double kMostShaken = 0.999;
 /// Share of the mean power of a channel's white noise that follows the vibration, from 0 to kMostShaken.
 [[nodiscard]] double shaken_share(const FilterOptions& options, std::size_t channel);
 
-/// Multiplies the white noise of an axis, at every rate.
-void scale_white_noise(AxisModel& axis, double factor);
-
 /// That share over the rest of the power.
 [[nodiscard]] double shaken_over_even(const FilterOptions& options, std::size_t channel);
+
+/// Multiplies the white noise of an axis, at every rate.
+void scale_white_noise(AxisModel& axis, double factor);
 
 /// Adds the noise that follows the vibration, by the options' shares, to readings simulated from `model`, the design's
 /// model of the noise that does not follow it.
