@@ -3,6 +3,7 @@
 /// this process, where each of its own faults would be a finding.
 #include "core/read/format.hpp"
 #include "core/read/text_shape.hpp"
+#include "tests/fuzz/table_sink.hpp"
 
 #include <cstdint>
 #include <cstdlib>
@@ -13,31 +14,9 @@ namespace {
 
 using namespace driftlab;
 
-void require(bool holds) {
-  if (!holds) {
-    std::abort();
-  }
-}
-
-class CountingSink final : public ColumnSink {
+class CountingSink final : public TableSink {
  public:
-  Status begin(const ColumnLayout& layout) override {
-    require(width_ == 0 && !layout.names.empty());
-    width_ = layout.names.size();
-    return {};
-  }
-  Status rows(std::span<const double> values) override {
-    require(width_ > 0 && values.size() % width_ == 0);
-    return {};
-  }
-  Status column(std::size_t index, std::span<const double>) override {
-    require(index < width_);
-    return {};
-  }
   void note(std::string sentence) override { require(text::to_utf8(sentence) == sentence); }
-
- private:
-  std::size_t width_ = 0;
 };
 
 }  // namespace

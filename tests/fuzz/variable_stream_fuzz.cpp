@@ -1,6 +1,7 @@
 /// Any bytes as what a decoding process says, which a file may have taken over: refused in a sentence, or arrays within
 /// the limit that make a rectangular table.
 #include "core/read/variable_stream.hpp"
+#include "tests/fuzz/table_sink.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,31 +14,9 @@ namespace {
 
 using namespace driftlab;
 
-void require(bool holds) {
-  if (!holds) {
-    std::abort();
-  }
-}
-
-class CountingSink final : public ColumnSink {
+class CountingSink final : public TableSink {
  public:
-  Status begin(const ColumnLayout& layout) override {
-    require(width_ == 0 && !layout.names.empty());
-    width_ = layout.names.size();
-    return {};
-  }
-  Status rows(std::span<const double> values) override {
-    require(width_ > 0 && values.size() % width_ == 0);
-    return {};
-  }
-  Status column(std::size_t index, std::span<const double>) override {
-    require(index < width_);
-    return {};
-  }
   void note(std::string sentence) override { require(!sentence.empty()); }
-
- private:
-  std::size_t width_ = 0;
 };
 
 }  // namespace
