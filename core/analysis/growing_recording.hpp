@@ -35,9 +35,8 @@ struct GrowingRecording {
 [[nodiscard]] GrowingRecording look_at_growth(std::span<const double> time_s, std::span<const double> values);
 
 /// The standard deviation over three seconds below which a sensor lies still: 0.02 rad/s of an angular rate, 0.3 m/s^2
-/// of a specific force; 0 for another dimension. Chosen, not measured, to lie above the noise of sensors at rest: that
-/// of the noisiest ones looked at is 0.009 rad/s and 0.09 m/s^2 (ADIS16405), and 0.015 rad/s and 0.16 m/s^2 for a phone
-/// in the holder of a parked car.
+/// of a specific force; 0 for another dimension. Chosen, not measured, to lie above the noise
+/// of a sensor that lies still and below what a hand does.
 [[nodiscard]] double still_deviation(Dimension dimension);
 
 /// Whether the sensor lay still in the last three seconds, by its standard deviation. Nothing for other units and for
