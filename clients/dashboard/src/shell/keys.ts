@@ -1,5 +1,5 @@
 // Keys that work on every page; a page adds its own by `usePageKeys`.
-import {useEffect} from 'preact/hooks';
+import {useLayoutEffect} from 'preact/hooks';
 import {go, listOf} from '../route';
 
 const PLACES: Record<string, string> = {l: '/', d: '/devices', i: '/investigations', o: '/outages', r: '/regressions', j: '/jobs', p: listOf('populations'), s: listOf('data-sheets'), v: listOf('drives'), w: listOf('webhooks')};
@@ -33,8 +33,9 @@ export function startKeys(help: () => void): void {
   });
 }
 
+// In the layout phase, so that a key pressed once the page is seen never finds the listener of the page before.
 export function usePageKeys(keys: Record<string, () => void>): void {
-  useEffect(() => {
+  useLayoutEffect(() => {
     const listener = (event: KeyboardEvent): void => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
       keys[event.key]?.();
