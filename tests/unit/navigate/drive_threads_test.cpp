@@ -1,5 +1,5 @@
 // The explanation of a drive and its simulated outages were compared for one number of threads alone: what hands tasks
-// out there must give the same bits for any number, as the evaluation does (drive_test.cpp).
+// out there must give the same bits for any number, as the evaluation does (drive_outages_test.cpp).
 #include "core/signal/executor.hpp"
 #include "tests/unit/navigate/drive_fixture.hpp"
 
