@@ -1,6 +1,7 @@
 #include "core/read/phone_export.hpp"
 
 #include "core/read/formats.hpp"
+#include "core/read/phone_fixes.hpp"
 #include "core/read/zip_entries.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
@@ -153,15 +154,33 @@ std::string seconds(double value) {
   return {buffer.data(), static_cast<std::size_t>(std::max(size, 0))};
 }
 
-/// Puts the sensors beside the first.
-Status deliver_sensors(std::vector<Sensor> sensors, const DecodeLimits& limits, ColumnSink& sink) {
+/// The fixes of the best table that holds some, whose name is cleared.
+std::optional<PhoneFixes> take_fixes(std::vector<MemoryTable>& tables) {
+  const auto worth = [](const MemoryTable& table) {
+    return table.columns.empty() ? 0 : holds_fixes(squashed(stem(table.name)));
+  };
+  const auto best = std::max_element(tables.begin(), tables.end(),
+                                     [&](const MemoryTable& a, const MemoryTable& b) { return worth(a) < worth(b); });
+  if (best == tables.end() || worth(*best) == 0) {
+    return std::nullopt;
+  }
+  auto fixes = read_fixes(*best);
+  if (fixes) {
+    best->name.clear();
+  }
+  return fixes;
+}
+
+/// Puts the sensors beside the first, and the fixes, which have a clock of their own rhythm, behind them.
+Status deliver_sensors(std::vector<Sensor> sensors, const std::optional<PhoneFixes>& fixes, const DecodeLimits& limits,
+                       ColumnSink& sink) {
   const Sensor& first = sensors.front();
   const std::size_t rows = first.time_s.size();
   Recorded recorded;
   recorded.names.emplace_back("time (s)");
   recorded.columns.emplace_back(first.time_s);
   std::vector<std::vector<double>> kept;
-  kept.reserve(3 * limits.max_columns);
+  kept.reserve(3 * sensors.size() + (fixes ? fixes->columns.size() : 0));
   for (Sensor& sensor : sensors) {
     if (sensor.time_s.empty() || !(std::abs(sensor.dt_s / first.dt_s - 1.0) <= 0.01) || first.dt_s <= 0.0) {
       if (&sensor != &first) {
@@ -184,6 +203,18 @@ Status deliver_sensors(std::vector<Sensor> sensors, const DecodeLimits& limits, 
     for (std::size_t i = 0; i < sensor.columns.size(); ++i) {
       recorded.names.push_back(sensor.names[i]);
       kept.push_back(placed(sensor.columns[i], shift, rows));
+      recorded.columns.emplace_back(kept.back());
+    }
+  }
+  if (fixes) {
+    if (fixes->columns.front().size() > rows) {
+      sink.note("The export holds " + with_count(fixes->columns.front().size(), "fix", "fixes") +
+                " and fewer rows of '" + first.name + "'; the last " +
+                std::to_string(fixes->columns.front().size() - rows) + " are left out.");
+    }
+    for (std::size_t i = 0; i < fixes->columns.size(); ++i) {
+      recorded.names.push_back(fixes->names[i]);
+      kept.push_back(placed(fixes->columns[i], 0, rows));
       recorded.columns.emplace_back(kept.back());
     }
   }
@@ -266,6 +297,7 @@ Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits&
     }
     return deliver({only.names, {only.columns.begin(), only.columns.end()}, std::nullopt}, limits, sink);
   }
+  const std::optional<PhoneFixes> fixes = take_fixes(tables);
   for (const MemoryTable& table : tables) {
     if (!table.name.empty()) {
       left_out += (left_out.empty() ? "'" : ", '") + stem(table.name) + "'";
@@ -274,7 +306,7 @@ Status deliver_phone_export(std::vector<MemoryTable> tables, const DecodeLimits&
   if (!left_out.empty()) {
     sink.note("Left out, as computed by the phone, given twice or no sensor: " + left_out + ".");
   }
-  return deliver_sensors(std::move(sensors), limits, sink);
+  return deliver_sensors(std::move(sensors), fixes, limits, sink);
 }
 
 Status decode_folder(const std::filesystem::path& folder, const DecodeLimits& limits, ColumnSink& sink,

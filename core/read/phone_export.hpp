@@ -11,8 +11,8 @@
 /// Each sensor has a clock of its own rhythm. The gyroscope (else the first sensor) gives rows and time; the rows of a
 /// sensor of the same rate (within 1 %) are set beside them, shifted by whole samples to where its start time puts
 /// them, never resampled; what is missing at its ends is missing. Sensors of another rate and what the phone computes
-/// (gravity, orientation) are left out, and named. Rows of two sensors are therefore up to half a sample apart, and
-/// more where their clocks drift.
+/// (gravity, orientation) are left out, and named. Fixes (phone_fixes.hpp) have a time of their own. Rows of two
+/// sensors are therefore up to half a sample apart, and more where their clocks drift.
 #include "core/read/memory_table.hpp"
 
 #include <filesystem>

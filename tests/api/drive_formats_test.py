@@ -10,6 +10,7 @@ import math
 import struct
 import subprocess
 import unittest
+import zipfile
 from pathlib import Path
 from typing import Any, Callable
 
@@ -191,6 +192,37 @@ class SameDrive(MadeUpDrive):
         together = self.of_one_log("drive.bag", velocity=False)
         apart["start"] = together["start"] = {"heading_deg": 0}
         self.assertEqual(self.found(together), self.found(apart))
+
+    def test_an_export_of_a_phone(self) -> None:
+        """Sensor Logger's ZIP: the axes by name, and fixes with speed and bearing in a file of their own."""
+        def clock(seconds: float) -> str:
+            return f"{1_700_000_000_000_000_000 + round(1e9 * seconds)},{seconds!r}"
+        with zipfile.ZipFile(self.folder / "walk.zip", "w") as archive:
+            for name, first in (("Gyroscope", 1), ("AccelerometerUncalibrated", 4)):
+                rows = "".join(f"{clock(row[0])},{row[first + 2]!r},{row[first + 1]!r},{row[first]!r}\n" for row in self.readings)
+                archive.writestr(f"{name}.csv", "time,seconds_elapsed,z,y,x\n" + rows)
+            moving = [(*row[:4], math.hypot(row[4], row[5]), math.degrees(math.atan2(row[5], row[4])) % 360.0) for row in self.fixes]
+            rows = "".join(f"{clock(t)},{speed!r},{course!r},{height!r},{lon!r},{lat!r}\n" for t, lat, lon, height, speed, course in moving)
+            archive.writestr("Location.csv", "time,seconds_elapsed,speed,bearing,altitude,longitude,latitude\n" + rows)
+        apart = self.as_csv()
+        columns = {name: role for name, role in apart["gnss"]["columns"].items() if not name.startswith("v")}
+        apart["gnss"]["columns"] = columns | {"speed": drive_documents.role("gnss_speed", "", "m/s"),
+                                              "course": drive_documents.role("gnss_course", "", "deg")}
+        (self.folder / "gnss.csv").write_text("t,lat,lon,height,speed,course\n" + text_of([list(row) for row in moving], ","))
+        together = copy.deepcopy(apart)
+        together["imu"]["columns"] = columns_as(apart["imu"]["columns"], {**{f"g{a}": f"Gyroscope {a} (rad/s)" for a in "xyz"},
+                                                                         **{f"a{a}": f"Accelerometer {a} (m/s^2)" for a in "xyz"}})
+        together["gnss"]["columns"] = columns_as(apart["gnss"]["columns"],
+                                                 {"lat": "gnss_latitude (deg)", "lon": "gnss_longitude (deg)", "height": "gnss_height (m)",
+                                                  "speed": "gnss_speed (m/s)", "course": "gnss_course (deg)"})
+        for source, time in (("imu", "time (s)"), ("gnss", "gnss_time (s)")):
+            together[source]["file"], together[source]["time"]["column"] = "walk.zip", time
+        self.assertEqual(self.found(together), self.found(apart))
+        done = subprocess.run([PROGRAM, "drive", "draft", "walk.zip"], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        draft = json.loads(done.stdout)
+        facts = json.loads(self.drive(0, "check", draft, "--json"))["facts"]
+        self.assertEqual((facts["imu"]["rows"], facts["gnss"]["fixes"]), (len(self.readings), len(self.fixes)))
 
     def test_structs_of_navego(self) -> None:
         t, lat, lon, height, *velocity = [list(column) for column in zip(*self.fixes)]

@@ -7,12 +7,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace driftlab {
 namespace {
 
 using namespace driftlab::testing;
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAreArray;
 
 constexpr std::size_t kRows = 30;
 
@@ -342,6 +346,67 @@ TEST(SameData, InTheExportsOfPhonesAsInCsvToTheBit) {
               ElementsAre("time (s)", "Gyroscope x (rad/s)", "Gyroscope y (rad/s)", "Gyroscope z (rad/s)",
                           "Accelerometer x (m/s^2)", "Accelerometer y (m/s^2)", "Accelerometer z (m/s^2)"));
   EXPECT_EQ(export_of_logger.bits, same.bits);
+}
+
+TEST(SameData, FixesInTheExportsOfPhonesAsInCsvToTheBit) {
+  const std::string gyro = "\"Time (s)\",\"X (rad/s)\"\n0,0.1\n0.01,0.2\n0.02,0.3\n0.03,0.4\n";
+  const std::string header = "time (s),Gyroscope X (rad/s),gnss_time (s),gnss_latitude (deg),gnss_longitude (deg),";
+  const auto rows = [](const std::string& second, const std::string& third) {
+    return "0,0.1," + second + "0.01,0.2," + third + "0.02,0.3,,,,,,,\n0.03,0.4,,,,,,,\n";
+  };
+  const auto numbers = [](const Outcome& outcome) {  // of what is missing, the reasons differ
+    Columns columns;
+    for (const auto& bits : outcome.bits) {
+      auto& column = columns.emplace_back();
+      std::transform(bits.begin(), bits.end(), std::back_inserter(column), [](std::uint64_t word) {
+        const auto value = std::bit_cast<double>(word);
+        return std::isnan(value) ? -999.0 : value;
+      });
+    }
+    return columns;
+  };
+  const Outcome as_table = decoded(header +
+                                       "gnss_altitude (m),gnss_speed (m/s),gnss_course (deg),"
+                                       "gnss_sd_horizontal (m)\n" +
+                                       rows("-0.5,48.1,9.1,312.5,1.5,90,4\n", "0.5,48.2,9.2,313.5,2.5,91,5\n"),
+                                   "csv");
+  const Outcome phyphox =
+      decoded(zip({{"Gyroscope.csv", gyro},
+                   {"Location.csv",
+                    "\"Time (s)\",\"Latitude (\xC2\xB0)\",\"Longitude (\xC2\xB0)\",\"Height (m)\",\"Velocity (m/s)\","
+                    "\"Direction (\xC2\xB0)\",\"Horizontal Accuracy (m)\"\n"
+                    "-0.5,48.1,9.1,312.5,1.5,90,4\n0.5,48.2,9.2,313.5,2.5,91,5\n"}}),
+              "phone_zip");
+  EXPECT_EQ(phyphox.decoded.names, as_table.decoded.names);
+  EXPECT_EQ(numbers(phyphox), numbers(as_table));
+
+  const Outcome invalid =
+      decoded(header + "gnss_height (m),gnss_speed (m/s),gnss_course (deg),gnss_sd_horizontal (m)\n" +
+                  rows("-0.5,,,312.5,,90,\n", "0.5,48.2,9.2,313.5,2.5,,5\n"),
+              "csv");
+  const Outcome logger =
+      decoded(zip({{"Gyroscope.csv", gyro},
+                   {"Location.csv",
+                    "time,seconds_elapsed,speed,bearing,altitude,longitude,latitude,horizontalAccuracy\n"
+                    "1,9,9,9,9,9,9,9\n"},
+                   {"LocationGps.csv",
+                    "time,seconds_elapsed,speed,bearing,altitude,longitude,latitude,horizontalAccuracy\n"
+                    "1,-0.5,-1,90,312.5,9.1,48.1,-1\n2,0.5,2.5,-1,313.5,9.2,48.2,5\n"}}),
+              "phone_zip");
+  EXPECT_THAT(logger.decoded.names, UnorderedElementsAreArray(invalid.decoded.names));
+  EXPECT_THAT(numbers(logger), UnorderedElementsAreArray(numbers(invalid)));
+  EXPECT_THAT(logger.decoded.notes, Contains(HasSubstr("'Location'"))) << "given twice";
+}
+
+TEST(SameData, MoreFixesThanRowsAreSaid) {
+  const Outcome few =
+      decoded(zip({{"Gyroscope.csv", "\"Time (s)\",\"X (rad/s)\"\n0,0.1\n0.01,0.2\n"},
+                   {"Location.csv",
+                    "\"Time (s)\",\"Latitude (\xC2\xB0)\",\"Longitude (\xC2\xB0)\"\n0,48,9\n1,48,9\n2,48,9\n"}}),
+              "phone_zip");
+  EXPECT_EQ(few.decoded.rows, 2U);
+  EXPECT_THAT(few.decoded.notes,
+              Contains("The export holds 3 fixes and fewer rows of 'Gyroscope'; the last 1 are left out."));
 }
 
 }  // namespace

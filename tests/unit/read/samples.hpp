@@ -223,7 +223,9 @@ inline std::map<std::string, std::vector<std::string>> valid_samples() {
       {"phone_zip",
        {zip({{"Gyroscope.csv", "\"Time (s)\",\"X (rad/s)\",\"Y (rad/s)\"\n0.00,1E-3,2\n0.01,3,4\n0.02,5,6\n"},
              {"Accelerometer.csv", "\"Time (s)\",\"X (m/s^2)\"\n0.011,9.8\n0.021,9.7\n"},
-             {"meta/device.csv", "\"property\",\"value\"\n\"model\",\"none\"\n"}})}},
+             {"meta/device.csv", "\"property\",\"value\"\n\"model\",\"none\"\n"}}),
+        zip({{"Gyroscope.csv", "time,seconds_elapsed,z,y,x\n1,0.00,1,2,3\n2,0.01,3,4,5\n"},
+             {"Location.csv", "time,seconds_elapsed,speed,longitude,latitude\n1,-0.5,-1,9,48\n2,0.5,1,9,48\n"}})}},
       {"vmu931", {"Attribute,Time stamp,x,y,z\nG,10,1,2,3\nA,10,0.1,0.2,1\nG,11,2,3,4\nE,11,0,0,0\nA,11,0.1,0.2,1\n"}},
       {"cxd5602",
        {"9b981977,41d84d00,b9685f6a,39738705,b8c2bdea,3e823bd9,bc5bae10,411c758a\r\n"
