@@ -156,6 +156,22 @@ TEST(DriveEvidence, OfLastingErrorsSaysHowTheyLastAtRest) {
       ::testing::ContainsRegex("^innovations; at rest \\(once, .* s in all\\) positions correlate by .* after 1 s"));
 }
 
+TEST(DriveEvidence, OfLateVelocitiesOffersAMeanBesideADelay) {
+  Drive drive = simulated_drive(63, {}, 3);
+  const std::vector<Fix> fixes = drive.fixes;
+  for (std::size_t i = 1; i < fixes.size(); ++i) {
+    const Vector3 moved = fixes[i].position_ecef_m - fixes[i - 1].position_ecef_m;
+    drive.fixes[i].velocity_ned_m_s =
+        ned_axes(fixes[i].position_ecef_m).transpose() * moved / (fixes[i].time_s - fixes[i - 1].time_s);
+  }
+  const auto found = find_cause("gnss_velocity_latency")->from_files(drive, {});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->finding.value, 0.125, std::max(0.005, 3.0 * found->finding.se)) << "half of the fixes' interval";
+  EXPECT_THAT(found->finding.evidence, ::testing::HasSubstr("means over the 0.2"));
+  drive.fixes = fixes;
+  EXPECT_FALSE(find_cause("gnss_velocity_latency")->from_files(drive, {}));
+}
+
 TEST(DriveEvidence, OfNoiseThatFollowsTheVibrationIsANoteOnceAndOfNothingElse) {
   const auto thirds_in = [](const DriveExplanation& result) {
     return std::count_if(result.notes.begin(), result.notes.end(),
