@@ -144,6 +144,7 @@ test('a drive is asked on its page, and the answer says what is wrong and what m
   await page.getByRole('button', {name: 'Ask'}).click();
   await page.waitForURL(/\/drive-evaluations\/job_/);
   await page.locator('.verdict', {hasText: 'without fixes the filter is'}).waitFor();
+  await visible(page, /The heading is known to 1° from .+ on\./);
   await page.goto(`${daemon.address}/drive-evaluations/${drive.explain}`);
   await page.getByRole('heading', {name: 'Causes found'}).waitFor();
   const text = await page.locator('main').innerText();

@@ -104,7 +104,8 @@ function Answer({evaluation, id}: {evaluation: Measured | Explanation; id: strin
   const at = chosen ? durations.indexOf(chosen) : 0;
   const step = (by: number): void => { const next = durations[(at + by + durations.length) % Math.max(1, durations.length)]; if (next) choose({duration: String(next.duration_s), from: null}); };
   usePageKeys({'[': () => step(-1), ']': () => step(1)});
-  const notes = [...evaluation.notes, ...(explained || evaluation.natural_outages.length === 0 ? [] : [`The receiver itself was silent ${plural(evaluation.natural_outages.length, 'time')}; that is not scored.`]), ...(explained || evaluation.rejected_fixes === 0 ? [] : [`${plural(evaluation.rejected_fixes, 'fix', 'fixes')} rejected.`])];
+  const heading = explained ? [] : [evaluation.heading_known_s === null ? 'The heading is never known to 1°.' : `The heading is known to 1° from ${writeDuration(evaluation.heading_known_s)} on.`];
+  const notes = [...evaluation.notes, ...heading, ...(explained || evaluation.natural_outages.length === 0 ? [] : [`The receiver itself was silent ${plural(evaluation.natural_outages.length, 'time')}; that is not scored.`]), ...(explained || evaluation.rejected_fixes === 0 ? [] : [`${plural(evaluation.rejected_fixes, 'fix', 'fixes')} rejected.`])];
   const curl = curlOf(`/v1/drive-evaluations/${id}`);
   return <>
     <p class="verdict">{first}{(more || notes.length > 0) && <small>{[more, ...notes].filter(Boolean).join(' ')}</small>}</p>
