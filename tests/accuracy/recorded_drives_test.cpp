@@ -1,6 +1,9 @@
 // Causes put into a recorded drive and sought again; what arm and clock a search finds where both are known.
+#include "core/navigate/drive/joint_top.hpp"
 #include "core/navigate/drive/profile.hpp"
+#include "core/navigate/drive/rest_correlation.hpp"
 #include "core/navigate/drive/simulation.hpp"
+#include "core/navigate/drive/vibration_thirds.hpp"
 #include "tests/accuracy/recorded_injections.hpp"
 #include "tests/accuracy/section.hpp"
 #include "tests/unit/navigate/recorded_car.hpp"
@@ -14,6 +17,8 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace driftlab::accuracy {
@@ -172,8 +177,8 @@ TEST(Accuracy, TheArmOfADriveAlongTheRecordedPathIsFound) {
   const auto world = drive::SimulatedWorld::make(*prepared, 0);
   ASSERT_TRUE(world) << world.error().message;
   section.print(
-      "\n| simulated along the path, arm 0.59 m, clock 0 s | arm x [m] | se | clock [s] | se "
-      "|\n|---|---|---|---|---|\n");
+      "\n| simulated along the path, arm 0.59 m, clock 0 s | arm x [m] | se alone | se | clock [s] | se alone | se "
+      "|\n|---|---|---|---|---|---|---|\n");
   const std::vector<const drive::Knob*> knobs{
       drive::find_knob("imu_time_offset", "delta_s"), drive::find_knob("gnss_lever_arm", "x"),
       drive::find_knob("gnss_lever_arm", "y"), drive::find_knob("gnss_velocity_latency", "delay_s")};
@@ -221,13 +226,53 @@ TEST(Accuracy, TheArmOfADriveAlongTheRecordedPathIsFound) {
     const drive::Profile profile(simulated, {true, true}, control);
     options = profile.refitted(options, knobs, 6);
     const double scale = profile.scale(options);
-    const auto last = profile.estimates(options, profile.values({options}).front(), knobs, scale);
-    section.print("| %s | %.3f | %.3f | %.4f | %.4f |\n", one.name, options.lever_arm_m.x(), last[1].se,
-                  options.imu_offset_s, last[0].se);
+    const auto alone = profile.estimates(options, profile.values({options}).front(), knobs, scale);
+    std::vector<double> steps;
+    std::transform(alone.begin(), alone.end(), std::back_inserter(steps),
+                   [](const drive::ProfileEstimate& estimate) { return estimate.scatter; });
+    const drive::JointTop together(profile, options, knobs, steps, scale);
+    section.print("| %s | %.3f | %.3f | %.3f | %.4f | %.4f | %.4f |\n", one.name, options.lever_arm_m.x(), alone[1].se,
+                  together.se(1), options.imu_offset_s, alone[0].se, together.se(0));
     if (one.must_find) {
       EXPECT_NEAR(options.lever_arm_m.x(), 0.59, 0.06);
       EXPECT_NEAR(options.imu_offset_s, 0.0, 0.01);
     }
+  }
+}
+
+// What tells the noise that follows the vibration, and lasting errors of positions, apart from everything else.
+TEST(Accuracy, TheRecordedDriveErrsMoreWhereItIsShaken) {
+  const auto recorded = drive::recorded_car();
+  if (!recorded) {
+    GTEST_SKIP();
+  }
+  Section section("recorded_drives");
+  section.print("\n## Vibration and rest\n\nrtk-car-0708, by the values that its own search ends at.\n\n");
+  const auto rest = drive::rest_correlation(*recorded);
+  ASSERT_TRUE(rest);
+  section.print("At rest (%zu times, %.0f s in all) positions correlate by %.2f after 1 s and by 1/e after %.1f s.\n\n",
+                rest->rests, rest->seconds, rest->after_1s, rest->lasts_s.value_or(0.0));
+  section.print(
+      "| outages of 10 s in thirds by the gyroscope's power above 5 Hz | calm | middle | shaken "
+      "|\n|---|---|---|---|\n");
+  const FilterOptions found = refitted(*recorded, false);
+  FilterOptions even = found;
+  even.gyro_vibration = even.force_vibration = 0.0;
+  const RunControl control;
+  even = drive::Profile(*recorded, {true, true}, control).with_noise_fitted(even, 1.2);
+  for (const auto& [name, options] : {std::pair{"rms [m], noise that is even", even},
+                                      {"rms [m], noise that follows the vibration", found},
+                                      {"rms [m], velocity constraints beside it", refitted(*recorded, true)}}) {
+    const auto evaluation = drive::evaluate_drive(*recorded, options, {.resamples = 0});
+    ASSERT_TRUE(evaluation) << evaluation.error().message;
+    const auto thirds = drive::errors_by_vibration(*recorded, evaluation->durations.front());
+    ASSERT_TRUE(thirds);
+    if (std::string_view(name).ends_with("even")) {
+      section.print("| power over its mean | %.2f | %.2f | %.2f |\n", thirds->power[0], thirds->power[1],
+                    thirds->power[2]);
+    }
+    section.print("| %s | %.2f | %.2f | %.2f |\n", name, thirds->rms_m[0], thirds->rms_m[1], thirds->rms_m[2]);
+    EXPECT_GT(thirds->rms_m[2], thirds->rms_m[0]) << name;
   }
 }
 

@@ -83,6 +83,7 @@ std::vector<ProfileEstimate> Profile::estimates(const FilterOptions& options, do
     if (knob.share) {
       settle_share(options, knob, bracket, scale, estimates[i]);
     }
+    estimates[i].scatter = estimates[i].se;
     if (knob.systematic != nullptr) {
       estimates[i].se = std::hypot(estimates[i].se, knob.systematic(drive_, options));
     }

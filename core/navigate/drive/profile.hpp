@@ -13,7 +13,8 @@ struct ProfileEstimate {
   bool sound = false;  ///< the profile is concave there
   double value = 0.0;
   double se = 0.0;
-  double top = 0.0;  ///< log likelihood
+  double scatter = 0.0;  ///< the part of `se` that innovations leave open, without what the knob adds to it
+  double top = 0.0;      ///< log likelihood
   double score = 0.0;
   [[nodiscard]] double gain_to(double at) const { return sound ? top - at : 0.0; }
 };
@@ -42,6 +43,8 @@ class Profile {
   [[nodiscard]] double change(const FilterOptions& options, const Knob& knob) const {
     return knob.value(options) - knob.value(stated_);
   }
+  /// How far a knob may be turned from the options: down, up.
+  [[nodiscard]] std::array<double, 2> range(const FilterOptions& options, const Knob& knob) const;
   [[nodiscard]] static FilterOptions turned(const FilterOptions& options, const Knob& knob, double by);
 
  private:
@@ -51,8 +54,6 @@ class Profile {
   };
   /// The likelihood of each trial; nothing for options that no filter can have.
   [[nodiscard]] std::vector<std::optional<LogLikelihood>> runs(const std::vector<FilterOptions>& trials) const;
-  /// How far a knob may be turned from the options: down, up.
-  [[nodiscard]] std::array<double, 2> range(const FilterOptions& options, const Knob& knob) const;
   [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;
   /// Value, top and error of a share, whose profile is no parabola and may have its top at an end.
   void settle_share(const FilterOptions& options, const Knob& knob, const Bracket& bracket, double scale,

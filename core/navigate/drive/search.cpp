@@ -1,3 +1,4 @@
+#include "core/navigate/drive/joint_top.hpp"
 #include "core/navigate/drive/profile.hpp"
 
 #include <algorithm>
@@ -12,7 +13,9 @@ constexpr double kNamed = 5.0;  ///< score
 constexpr double kSure = 3.0;   ///< standard errors
 constexpr double kPair = 2.0;   ///< scores that differ by less are a pair
 constexpr int kRefits = 2;
-constexpr double kBound = 0.9;  ///< of the most that is sought: nearer to it an estimate is at its bound
+constexpr int kClimbs = 3;
+constexpr double kWorthClimbing = 0.01;  ///< score
+constexpr double kBound = 0.9;           ///< of the most that is sought: nearer to it an estimate is at its bound
 
 /// One search: the causes that were named, and the options in which they are set.
 class CauseSearch {
@@ -80,6 +83,7 @@ class CauseSearch {
   SearchResult told() {
     do {
       result_.options = profile_.refitted(result_.options, named_, kRefits);
+      climb_together();
       result_.options = profile_.with_noise_fitted(result_.options, 1.2);
     } while (!judge_or_drop());
     return std::move(result_);
@@ -96,6 +100,29 @@ class CauseSearch {
     result_.findings.push_back(std::move(finding));
   }
 
+  /// Shares are left alone: they have their own ends, and errors that are no curvature.
+  [[nodiscard]] JointTop joint_top(const std::vector<ProfileEstimate>& alone, double scale) const {
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < named_.size(); ++i) {
+      steps.push_back(named_[i]->share || !alone[i].sound ? 0.0 : std::min(alone[i].scatter, named_[i]->most));
+    }
+    return {profile_, result_.options, named_, steps, scale};
+  }
+
+  /// From where no knob alone raises the likelihood to where all of them together do not.
+  void climb_together() {
+    for (int climb = 0; climb < kClimbs && named_.size() > 1; ++climb) {
+      const double scale = profile_.scale(result_.options);
+      const double at = profile_.values({result_.options}).front();
+      const auto alone = profile_.estimates(result_.options, at, named_, scale);
+      FilterOptions top = joint_top(alone, scale).at_top();
+      if (profile_.values({top}).front() < at + kWorthClimbing * scale) {
+        return;
+      }
+      result_.options = std::move(top);
+    }
+  }
+
   /// By how much the search has turned a knob.
   [[nodiscard]] double turned_by(const Knob& knob) const { return knob.value(result_.options) - knob.value(first_); }
 
@@ -105,6 +132,7 @@ class CauseSearch {
     const double scale = profile_.scale(result_.options);
     const double at = profile_.values({result_.options}).front();
     const auto last = profile_.estimates(result_.options, at, named_, scale);
+    const JointTop joint = joint_top(last, scale);
     result_.mean_square = scale / 3.0;
     std::optional<std::size_t> least;
     for (std::size_t i = 0; i < named_.size(); ++i) {
@@ -115,13 +143,17 @@ class CauseSearch {
       if (knob.magnitude) {
         finding.value = std::abs(finding.value);
       }
-      finding.se = last[i].se * knob.per_si;
+      const auto stated = [&](double scatter) {
+        return std::hypot(last[i].se, std::sqrt(std::max(scatter * scatter - last[i].scatter * last[i].scatter, 0.0)));
+      };
+      finding.se = stated(joint.se(i)) * knob.per_si;
       const double change = profile_.change(result_.options, knob);
       const double wanted = std::max(std::abs(change), std::abs(change + last[i].value));
       finding.at_bound = !knob.share && wanted > kBound * knob.most;
       const double without = profile_.values({Profile::turned(result_.options, knob, -value)}).front();
       finding.score = std::max((at - without) / scale, 0.0);
-      const bool doubted = finding.score < kNamed || (last[i].sound && std::abs(value) < kSure * last[i].se);
+      const bool doubted =
+          finding.score < kNamed || (last[i].sound && std::abs(value) < kSure * stated(joint.se_beside_companions(i)));
       if (!knob.companion && doubted && (!least || finding.score < result_.findings[*least].score)) {
         least = i;
       }
