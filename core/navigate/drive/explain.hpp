@@ -7,10 +7,9 @@
 /// falls. The knob with the best score is set, those found before and the noise level are fitted again, and the search
 /// goes on until no knob has a score of 5 at three standard errors. Two whose scores differ by less than 2 are reported
 /// as a pair. At the end all knobs go to the top of the likelihood together, and each standard error leaves the others
-/// as uncertain as they are (joint_top.hpp). What is below a score of 5
-/// or three of these errors then is taken out again:
-/// until the last cause is set, its effect stands in the values of those before it (a heading at the start wrong by 79
-/// deg, until a clock was known).
+/// as uncertain as they are (joint_top.hpp). What is below a score of 5 or three of these errors then is taken out
+/// again: until the last cause is set, its effect stands in the values of those before it (a heading at the start wrong
+/// by 79 deg, until a clock was known).
 ///
 /// Causes that the files show without a filter (velocities older than positions) are found first.
 ///
