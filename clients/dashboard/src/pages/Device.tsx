@@ -1,32 +1,32 @@
 // One device: its parameters by condition, how they move, its recordings.
 import type {JSX} from 'preact';
 import {useEffect, useMemo, useState} from 'preact/hooks';
-import {useRead, ask} from '../api/client';
-import type {Attention, Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
-import {writeTick} from '../format/number';
-import {writeDuration, writeWhen} from '../format/time';
+import {ask, Problem, send, useRead} from '../api/client';
+import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
+import {writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
-import {conditionName, plural, sensorOf, writeSentence, writeUnit} from '../format/words';
-import {copy, curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
+import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
+import {curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
 import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
 import {choose, go, hover, pageOf, usePlace} from '../route';
 import {Characterise} from '../shell/Characterise';
+import {Delete} from '../shell/Delete';
 import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {LiveLine, useLiveJobs} from '../shell/Live';
 import {MadeFrom, Report} from '../shell/Report';
+import {say} from '../shell/say';
 import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
-import {qualityWords} from './Recording';
 import {colours, type ParameterTable, type Trends} from './device/documents';
 import {ExportModel} from './device/ExportModel';
+import {Recordings} from './device/Recordings';
 import {Parameters} from './device/Table';
 import {SheetLine} from './device/SheetLine';
 import {TrendFrame} from './device/TrendPanel';
 
 const CONDITIONS = 8;
-const PRINTED = 10;  // recordings of a report, as style/print.css says
 const WAITS_MS = 2500;
 
 function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}): JSX.Element | null {
@@ -56,33 +56,6 @@ function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}
   return <Figure name={`${table.device}-${table.axis}-allan`} title="Allan deviation by condition" sub="first recording of each" plots={plots} source={`driftlab, ${table.device}, ${table.sensor} ${table.axis ?? ''}`}
     describe={`Allan deviations of ${plots[0]!.series.map(one => one.name).join(', ')}, log-log with equal decades.`} cursor={tau} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }}
     readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} note="Rates are one ordered ramp, angular accelerations another, dashed with open marks." />;
-}
-
-// What the newest result of a recording says: the sentence where it must be read. Of the gravest channel where there are several.
-function ResultCell({recording, attention}: {recording: Recording; attention: List<Attention> | undefined}): JSX.Element {
-  const about = attention?.items.find(one => one.recording === recording.id);
-  if (recording.latest_job === null) return <>not characterised</>;
-  if (about) return <><span class={`g ${about.level === 'wrong' ? 'bad' : 'warn'}`} aria-hidden="true">{about.level === 'wrong' ? '✗' : '△'} </span>{writeSentence(about.verdict)}</>;
-  return <>{attention && !attention.next_cursor ? 'fits' : '…'}</>;
-}
-
-function Recordings({device, axis}: {device: Device; axis: string | null}): JSX.Element {
-  const {query} = usePlace();
-  const after = query.get('after');
-  const read = useRead<List<Recording>>(`/v1/recordings?device=${device.id}&sort=-created_at&limit=50${after ? `&cursor=${after}` : ''}`);
-  const attention = useRead<List<Attention>>(`/v1/attention?device=${device.id}&limit=500`);
-  return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
-    <Shown read={read}>{list => <>
-      <div class="scroll"><table class="stacked list-of-recordings">
-        <thead><tr><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">length</th><th scope="col">quality</th><th scope="col">result</th><th scope="col">uploaded</th></tr></thead>
-        <tbody>{list.items.map(recording => <tr key={recording.id}>
-          <th scope="row"><a href={pageOf('recordings', recording.id)}>{recording.metadata.id ?? recording.id}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
-          <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec"><ResultCell recording={recording} attention={attention.data} /></td><td class="sec">{writeWhen(recording.created_at)}</td>
-        </tr>)}</tbody></table></div>
-      {(list.items.length > PRINTED || list.next_cursor) && <p class="print-only note">The newest {PRINTED} of {list.next_cursor ? `more than ${list.items.length}` : list.items.length} recordings; the page has all.</p>}
-      {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
-    </>}</Shown>
-  </Panel>;
 }
 
 // `onCompared`: told which recordings a comparison would show, the first of each condition.
@@ -161,6 +134,8 @@ export default function DevicePage(): JSX.Element {
   const read = useRead<Device>(`/v1/devices/${encodeURIComponent(name)}`);
   const [waits, setWaits] = useState(true);
   const [compared, setCompared] = useState('');
+  const [refused, setRefused] = useState<Problem>();
+  const remove = (device: Device): void => { send('DELETE', `/v1/devices/${device.id}`, undefined, {'If-Match': '*'}).then(() => { say(`${device.name} is deleted.`); go('/devices', {replace: true}); }, error => setRefused(error as Problem)); };
   const live = useLiveJobs(read.data?.id ?? null);
   const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits || live.length > 0 ? WAITS_MS : undefined);
   // Until there is a first result the page looks for one.
@@ -169,7 +144,8 @@ export default function DevicePage(): JSX.Element {
   return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
-      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /></>} />
+      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => remove(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
+    {refused && <Refusal problem={refused} />}
     <LiveLine jobs={live} />
     <Shown read={summary}>{found => <><Results device={device} summary={found} live={live.length > 0} onCompared={setCompared} />{found.channels.length === 0 && <Recordings device={device} axis={null} />}</>}</Shown>
   </>}</Shown>;

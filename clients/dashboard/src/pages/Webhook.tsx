@@ -1,12 +1,13 @@
 // One receiver: what it hears of, what it was told, and how that went.
 import type {JSX} from 'preact';
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {Problem, send, useRead} from '../api/client';
 import type {List} from '../api/documents';
 import {writeClock, writeFull, writeWhen} from '../format/time';
 import {capital, plural} from '../format/words';
 import {copy, curlOf} from '../figure/Figure';
 import {choose, go, here, listOf, pageOf, usePlace} from '../route';
+import {Delete} from '../shell/Delete';
 import {Head} from '../shell/Head';
 import {say} from '../shell/say';
 import {Panel, Refusal, Segments, Shown} from '../shell/states';
@@ -45,20 +46,6 @@ function Deliveries({hook, asked}: {hook: WebhookDocument; asked: number}): JSX.
   </Panel>;
 }
 
-// Deleting asks once and names what goes with it.
-function Delete({hook, onProblem}: {hook: WebhookDocument; onProblem: (problem: Problem) => void}): JSX.Element {
-  const dialog = useRef<HTMLDialogElement>(null);
-  const remove = (): void => {
-    dialog.current?.close();
-    send('DELETE', `/v1/webhooks/${hook.id}`, undefined, {'If-Match': '*'}).then(() => { say('The webhook is deleted.'); go(listOf('webhooks')); }, error => onProblem(error as Problem));
-  };
-  return <>
-    <button type="button" class="btn danger" onClick={() => dialog.current?.showModal()}>Delete</button>
-    <dialog ref={dialog} aria-labelledby="delete-title"><h2 id="delete-title">Delete this webhook?</h2><p>{receiverOf(hook.url)} hears nothing more; its deliveries and what waits go with it.</p>
-      <p class="row"><button type="button" class="btn danger" onClick={remove}>Delete</button><button type="button" class="btn" onClick={() => dialog.current?.close()}>Keep</button></p></dialog>
-  </>;
-}
-
 function Body({hook, again}: {hook: WebhookDocument; again: () => void}): JSX.Element {
   const [problem, setProblem] = useState<Problem>();
   const [secret, setSecret] = useState('');
@@ -67,10 +54,11 @@ function Body({hook, again}: {hook: WebhookDocument; again: () => void}): JSX.El
   const enable = (enabled: boolean): void => { setProblem(undefined); send('PATCH', `/v1/webhooks/${hook.id}`, {enabled}, {'If-Match': '*'}).then(again, refused); };
   const test = (): void => { setProblem(undefined); send('POST', `/v1/webhooks/${hook.id}/test`).then(() => { say('A message is under way.'); if (here().query.has('state') || here().query.has('after')) choose({state: null, after: null}); setAsked(asked + 1); }, refused); };
   const rotate = (): void => { setProblem(undefined); send<Issued>('POST', `/v1/webhooks/${hook.id}/rotate`).then(issued => { setSecret(issued.secret); again(); }, refused); };
+  const remove = (): void => { send('DELETE', `/v1/webhooks/${hook.id}`, undefined, {'If-Match': '*'}).then(() => { say('The webhook is deleted.'); go(listOf('webhooks')); }, refused); };
   return <>
     <Head crumb={[['Webhooks', listOf('webhooks')], [receiverOf(hook.url), null]]} title={hook.description || receiverOf(hook.url)} facts={[<code>{hook.url}</code>, `since ${writeWhen(hook.created_at)}`]}
       actions={<>{hook.enabled ? <><button type="button" class="btn" onClick={test}>Send a test</button><button type="button" class="btn" onClick={() => enable(false)}>Pause</button></> : <button type="button" class="btn primary" onClick={() => enable(true)}>Enable again</button>}
-        <button type="button" class="btn" onClick={rotate}>New secret</button><Delete hook={hook} onProblem={setProblem} /></>} />
+        <button type="button" class="btn" onClick={rotate}>New secret</button><Delete title="Delete this webhook?" onDelete={remove}>{receiverOf(hook.url)} hears nothing more; its deliveries and what waits go with it.</Delete></>} />
     <p class="verdict" role="status">{hook.enabled ? hook.given_up > 0 ? <><span class="g warn" aria-hidden="true">△ </span>{capital(plural(hook.given_up, 'delivery', 'deliveries'))} in a row did not arrive; after three the webhook is disabled.</> : `It hears of ${hears(hook)}.`
       : isPaused(hook) ? 'Paused: nothing is told, and what waited was given up.' : <><span class="g bad" aria-hidden="true">✗ </span>{hook.disabled_why}</>}
       {hook.previous_secret_until && <small>The secret before signs beside the new one until {writeFull(hook.previous_secret_until)}.</small>}</p>

@@ -6,6 +6,7 @@ import {writeFull} from '../../format/time';
 import {conventionName, processName, symbolOf, writeSentence, writeUnit} from '../../format/words';
 import {copy} from '../../figure/Figure';
 import {Panel} from '../../shell/states';
+import {LabelsOf} from './Labels';
 import {styleOf} from './plots';
 
 function Row({name, hidden, symbol, quantity, reason, sample}: {name: string; hidden?: string; symbol: string; quantity: Quantity | null; reason?: string | undefined; sample?: JSX.Element | null}): JSX.Element {
@@ -96,6 +97,7 @@ export function FilePanel({recording, result}: {recording: Recording; result?: C
   return <Panel title="File" tools={<div class="tools"><a href={`/v1/recordings/${recording.id}`}>JSON</a></div>}>
     <table class="params"><tbody>
       {recording.metadata.id && <tr><th scope="row">name</th><td>{recording.metadata.id}</td></tr>}
+      <tr><th scope="row">labels</th><td><LabelsOf recording={recording} /></td></tr>
       <tr><th scope="row">format</th><td>{file.format ?? '–'}{file.compression && file.compression !== 'none' ? `, ${file.compression}` : ''}{file.bytes ? `, ${writeBytes(file.bytes)}` : ''}</td></tr>
       {file.rows && <tr><th scope="row">rows</th><td>{writeCount(file.rows)}</td></tr>}
       {file.columns && <tr><th scope="row">columns</th><td><code>{file.columns.slice(0, 12).join(', ')}{file.columns.length > 12 ? ' …' : ''}</code></td></tr>}
