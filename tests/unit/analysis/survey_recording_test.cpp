@@ -21,7 +21,7 @@ class SurveyRecording : public testing::Test {
     std::string pattern = (std::filesystem::temp_directory_path() / "driftlab-test-XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
-  ~SurveyRecording() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// What the survey says of a file of these bytes.
   Result<RecordingSurvey> survey(const std::string& bytes, const RecordingSpec& spec,
