@@ -22,9 +22,9 @@ class DrawTrace : public ::testing::Test {
     std::string name = (std::filesystem::temp_directory_path() / "driftlab-trace-XXXXXX").string();
     folder_ = ::mkdtemp(name.data());
   }
-  ~DrawTrace() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  Result<RecordingTrace> draw(const std::vector<double>& values, const TraceRequest& request) const {
+  [[nodiscard]] Result<RecordingTrace> draw(const std::vector<double>& values, const TraceRequest& request) const {
     auto writer = ColumnFileWriter::create(folder_ / "columns", {"gz"});
     EXPECT_TRUE(writer && writer->append_rows(values) && writer->finish());
     const auto columns = ColumnFile::open(folder_ / "columns");
