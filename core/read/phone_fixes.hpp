@@ -3,11 +3,11 @@
 ///
 /// phyphox         `Location.csv`: `"Time (s)","Latitude (°)","Longitude (°)","Height (m)","Velocity (m/s)",
 ///                 "Direction (°)","Horizontal Accuracy (m)","Vertical Accuracy (°)"` (the last is in metres, whatever
-///                 its header says); since 1.1.9 `Altitude (m)` above the geoid beside `Altitude WGS84 (m)`.
+///                 its header says); other exports have `Altitude (m)`, above the geoid, and `Altitude WGS84 (m)`.
 /// Sensor Logger   `Location.csv`, of Android also `LocationGps.csv`, whose fixes are the receiver's alone:
 ///                 `seconds_elapsed`, `latitude`, `longitude`, `altitude` (above the ellipsoid), `speed`, `bearing` and
 ///                 their accuracies. A negative speed, bearing or accuracy is none, and a position whose horizontal
-///                 accuracy is negative neither (UNITS.md of the application).
+///                 accuracy is negative neither (the application's unit reference).
 ///
 /// Times are on the clock of the export's other sensors.
 #include "core/read/memory_table.hpp"
