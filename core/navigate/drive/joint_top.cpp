@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace driftlab::drive {
 namespace {
@@ -97,27 +98,29 @@ std::vector<JointTop::Direction> JointTop::directions_of(const std::vector<std::
   return directions;
 }
 
-FilterOptions JointTop::along(const Direction& direction, double length) const {
-  FilterOptions there = options_;
+FilterOptions JointTop::along(const Direction& direction, double length, FilterOptions from) const {
   for (std::size_t a = 0; a < turned_.size(); ++a) {
-    there = turned(there, *knobs_[turned_[a]], steps_[turned_[a]], length * direction.steps(index(a)));
+    from = turned(from, *knobs_[turned_[a]], steps_[turned_[a]], length * direction.steps(index(a)));
   }
-  return there;
+  return from;
+}
+
+double JointTop::outside(std::size_t knob, const FilterOptions& there) const {
+  const auto [least, most] = profile_.range(options_, *knobs_[knob]);
+  const double by = knobs_[knob]->value(there) - knobs_[knob]->value(options_);
+  return std::clamp(by, least, most) - by;
 }
 
 void JointTop::measure(Direction& direction) const {
   const auto inside = [&](double length) {
-    const FilterOptions there = along(direction, length);
-    return std::all_of(turned_.begin(), turned_.end(), [&](std::size_t knob) {
-      const auto [least, most] = profile_.range(options_, *knobs_[knob]);
-      const double by = knobs_[knob]->value(there) - knobs_[knob]->value(options_);
-      return by >= least && by <= most;
-    });
+    const FilterOptions there = along(direction, length, options_);
+    return std::all_of(turned_.begin(), turned_.end(), [&](std::size_t knob) { return outside(knob, there) == 0.0; });
   };
   bool measured = false;
   double length = std::sqrt(scale_ / std::max(direction.curvature, kFlat));
   for (int stride = 0; stride < kStrides && inside(length) && inside(-length); ++stride) {
-    const std::vector<double> f = profile_.values({along(direction, length), along(direction, -length)});
+    const std::vector<double> f =
+        profile_.values({along(direction, length, options_), along(direction, -length, options_)});
     const double fall = top_ - 0.5 * (f[0] + f[1]);
     if (!std::isfinite(fall)) {
       break;
@@ -138,14 +141,10 @@ FilterOptions JointTop::at_top() const {
   for (const Direction& direction : directions_) {
     const double farthest = kFarthest * std::sqrt(scale_ / direction.curvature);
     const double length = std::clamp(direction.slope / direction.curvature, -farthest, farthest);
-    for (std::size_t a = 0; a < turned_.size(); ++a) {
-      top = turned(top, *knobs_[turned_[a]], steps_[turned_[a]], length * direction.steps(index(a)));
-    }
+    top = along(direction, length, std::move(top));
   }
   for (const std::size_t knob : turned_) {
-    const auto [least, most] = profile_.range(options_, *knobs_[knob]);
-    const double by = knobs_[knob]->value(top) - knobs_[knob]->value(options_);
-    knobs_[knob]->turn(top, std::clamp(by, least, most) - by);
+    knobs_[knob]->turn(top, outside(knob, top));
   }
   return top;
 }
@@ -159,7 +158,7 @@ double JointTop::se_over(std::size_t knob, const std::vector<std::size_t>& which
   double variance = 0.0;
   for (const Direction& direction : directions) {
     const double steps = direction.steps(place - which.begin());
-    variance += scale_ * steps * steps / std::max(direction.curvature, 1e-9);
+    variance += scale_ * steps * steps / direction.curvature;
   }
   return steps_[knob] * std::sqrt(variance);
 }

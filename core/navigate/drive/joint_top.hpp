@@ -44,7 +44,8 @@ class JointTop {
   static constexpr double kFlat = 0.02;  ///< of the likelihood's roughness: no shorter first stride along a vector
   static constexpr int kStrides = 4;
 
-  /// An eigenvector in steps of the turned knobs: f falls by a^2 curvature/2 - a slope over a of it.
+  /// An eigenvector in steps of the turned knobs: `length` of it away, f has changed by
+  /// slope length - curvature length^2/2.
   struct Direction {
     Eigen::VectorXd steps;
     double curvature = 0.0;
@@ -55,8 +56,10 @@ class JointTop {
   [[nodiscard]] std::vector<Direction> directions_of(const std::vector<std::size_t>& which) const;
   /// Measures a nearly flat one again, from far enough.
   void measure(Direction& direction) const;
-  /// The options at `length` of a direction.
-  [[nodiscard]] FilterOptions along(const Direction& direction, double length) const;
+  /// `from` turned by `length` of a direction.
+  [[nodiscard]] FilterOptions along(const Direction& direction, double length, FilterOptions from) const;
+  /// How far a knob would have to be turned from `there` to lie in its range; 0 where it does.
+  [[nodiscard]] double outside(std::size_t knob, const FilterOptions& there) const;
   [[nodiscard]] double se_over(std::size_t knob, const std::vector<std::size_t>& which,
                                const std::vector<Direction>& directions) const;
 
