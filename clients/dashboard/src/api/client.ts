@@ -112,6 +112,9 @@ export async function send<T>(method: string, path: string, body?: unknown, head
   return (text ? JSON.parse(text) : null) as T;
 }
 
+// Whatever its revision.
+export const remove = (path: string): Promise<null> => send<null>('DELETE', path, undefined, {'If-Match': '*'});
+
 // --- documents as a page reads them
 export interface Read<T> {
   data: T | undefined;

@@ -1,7 +1,7 @@
 // One device: its parameters by condition, how they move, its recordings.
 import type {JSX} from 'preact';
 import {useEffect, useMemo, useState} from 'preact/hooks';
-import {ask, Problem, send, useRead} from '../api/client';
+import {ask, Problem, remove, useRead} from '../api/client';
 import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
 import {writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
@@ -135,7 +135,7 @@ export default function DevicePage(): JSX.Element {
   const [waits, setWaits] = useState(true);
   const [compared, setCompared] = useState('');
   const [refused, setRefused] = useState<Problem>();
-  const remove = (device: Device): void => { send('DELETE', `/v1/devices/${device.id}`, undefined, {'If-Match': '*'}).then(() => { say(`${device.name} is deleted.`); go('/devices', {replace: true}); }, error => setRefused(error as Problem)); };
+  const forget = (device: Device): void => { remove(`/v1/devices/${device.id}`).then(() => { say(`${device.name} is deleted.`); go('/devices', {replace: true}); }, error => setRefused(error as Problem)); };
   const live = useLiveJobs(read.data?.id ?? null);
   const summary = useRead<DeviceSummary>(read.data ? `/v1/devices/${read.data.id}/summary` : null, waits || live.length > 0 ? WAITS_MS : undefined);
   // Until there is a first result the page looks for one.
@@ -144,7 +144,7 @@ export default function DevicePage(): JSX.Element {
   return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
-      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => remove(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
+      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => forget(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
     {refused && <Refusal problem={refused} />}
     <LiveLine jobs={live} />
     <Shown read={summary}>{found => <><Results device={device} summary={found} live={live.length > 0} onCompared={setCompared} />{found.channels.length === 0 && <Recordings device={device} axis={null} />}</>}</Shown>

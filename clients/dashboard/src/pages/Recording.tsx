@@ -1,7 +1,7 @@
 // One recording: what it says, the evidence, the method.
 import type {JSX} from 'preact';
 import {useMemo, useState} from 'preact/hooks';
-import {get, Problem, send, useJobEvents, useRead} from '../api/client';
+import {get, Problem, remove, useJobEvents, useRead} from '../api/client';
 import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List, Recording} from '../api/documents';
 import {useEvents} from '../api/events';
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
@@ -170,7 +170,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   useTitle(title);
   const deviceName = device.data?.name ?? recording.device;
   const [refused, setRefused] = useState<Problem>();
-  const remove = (): void => { send('DELETE', `/v1/recordings/${recording.id}`, undefined, {'If-Match': '*'}).then(() => { say(`${title} is deleted.`); go(pageOf('devices', deviceName), {replace: true}); }, error => setRefused(error as Problem)); };
+  const forget = (): void => { remove(`/v1/recordings/${recording.id}`).then(() => { say(`${title} is deleted.`); go(pageOf('devices', deviceName), {replace: true}); }, error => setRefused(error as Problem)); };
   const axis = channel?.result.axis ?? null;
   const label = (one: CharacterisedChannel): string => one.result.axis ? `${SENSORS.indexOf(one.result.quantity) === 1 ? 'f' : 'ω'} ${one.result.axis}` : one.result.channel;
   return <>
@@ -182,7 +182,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
         <a class="btn" href={`/compare?with=${recording.id}`}>Compare <kbd>c</kbd></a>
         <a class="btn" href={`/investigations?device=${encodeURIComponent(deviceName)}`}>Investigate</a>
         <Report />
-        <Delete title="Delete this recording?" onDelete={remove}>{title}, its file and its results.</Delete>
+        <Delete title="Delete this recording?" onDelete={forget}>{title}, its file and its results.</Delete>
       </>} />
     {refused && <Refusal problem={refused} />}
     {newer && <p class="note" role="status">Newer result. <button type="button" class="link" onClick={() => { setNewer(false); read.again(); }}>Show it</button></p>}

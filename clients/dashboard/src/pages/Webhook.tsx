@@ -1,7 +1,7 @@
 // One receiver: what it hears of, what it was told, and how that went.
 import type {JSX} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
-import {Problem, send, useRead} from '../api/client';
+import {Problem, remove, send, useRead} from '../api/client';
 import type {List} from '../api/documents';
 import {writeClock, writeFull, writeWhen} from '../format/time';
 import {capital, plural} from '../format/words';
@@ -54,11 +54,11 @@ function Body({hook, again}: {hook: WebhookDocument; again: () => void}): JSX.El
   const enable = (enabled: boolean): void => { setProblem(undefined); send('PATCH', `/v1/webhooks/${hook.id}`, {enabled}, {'If-Match': '*'}).then(again, refused); };
   const test = (): void => { setProblem(undefined); send('POST', `/v1/webhooks/${hook.id}/test`).then(() => { say('A message is under way.'); if (here().query.has('state') || here().query.has('after')) choose({state: null, after: null}); setAsked(asked + 1); }, refused); };
   const rotate = (): void => { setProblem(undefined); send<Issued>('POST', `/v1/webhooks/${hook.id}/rotate`).then(issued => { setSecret(issued.secret); again(); }, refused); };
-  const remove = (): void => { send('DELETE', `/v1/webhooks/${hook.id}`, undefined, {'If-Match': '*'}).then(() => { say('The webhook is deleted.'); go(listOf('webhooks')); }, refused); };
+  const forget = (): void => { remove(`/v1/webhooks/${hook.id}`).then(() => { say('The webhook is deleted.'); go(listOf('webhooks')); }, refused); };
   return <>
     <Head crumb={[['Webhooks', listOf('webhooks')], [receiverOf(hook.url), null]]} title={hook.description || receiverOf(hook.url)} facts={[<code>{hook.url}</code>, `since ${writeWhen(hook.created_at)}`]}
       actions={<>{hook.enabled ? <><button type="button" class="btn" onClick={test}>Send a test</button><button type="button" class="btn" onClick={() => enable(false)}>Pause</button></> : <button type="button" class="btn primary" onClick={() => enable(true)}>Enable again</button>}
-        <button type="button" class="btn" onClick={rotate}>New secret</button><Delete title="Delete this webhook?" onDelete={remove}>{receiverOf(hook.url)} hears nothing more; its deliveries and what waits go with it.</Delete></>} />
+        <button type="button" class="btn" onClick={rotate}>New secret</button><Delete title="Delete this webhook?" onDelete={forget}>{receiverOf(hook.url)} hears nothing more; its deliveries and what waits go with it.</Delete></>} />
     <p class="verdict" role="status">{hook.enabled ? hook.given_up > 0 ? <><span class="g warn" aria-hidden="true">△ </span>{capital(plural(hook.given_up, 'delivery', 'deliveries'))} in a row did not arrive; after three the webhook is disabled.</> : `It hears of ${hears(hook)}.`
       : isPaused(hook) ? 'Paused: nothing is told, and what waited was given up.' : <><span class="g bad" aria-hidden="true">✗ </span>{hook.disabled_why}</>}
       {hook.previous_secret_until && <small>The secret before signs beside the new one until {writeFull(hook.previous_secret_until)}.</small>}</p>

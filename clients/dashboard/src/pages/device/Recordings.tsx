@@ -1,7 +1,7 @@
 // The recordings of a device, and what can be done with those that are chosen.
 import type {JSX} from 'preact';
 import {useRef, useState} from 'preact/hooks';
-import {Problem, send, useRead} from '../../api/client';
+import {Problem, remove, useRead} from '../../api/client';
 import type {Attention, Device, List, Recording} from '../../api/documents';
 import {copy, curlOf} from '../../figure/Figure';
 import {writeTick} from '../../format/number';
@@ -31,11 +31,11 @@ function ResultCell({recording, attention}: {recording: Recording; attention: Li
 function Chosen({ids, names, onDeleted}: {ids: readonly string[]; names: readonly string[]; onDeleted: () => void}): JSX.Element {
   const [problem, setProblem] = useState<Problem>();
   // One after the other: where one is refused, the rest stays chosen and is not asked for.
-  const remove = async (): Promise<void> => {
+  const forget = async (): Promise<void> => {
     let gone = 0;
     setProblem(undefined);
     try {
-      for (const id of ids) { await send('DELETE', `/v1/recordings/${id}`, undefined, {'If-Match': '*'}); ++gone; }
+      for (const id of ids) { await remove(`/v1/recordings/${id}`); ++gone; }
     } catch (error) {
       setProblem(error as Problem);
     }
@@ -48,7 +48,7 @@ function Chosen({ids, names, onDeleted}: {ids: readonly string[]; names: readonl
     <div class="chosen" role="group" aria-label="Chosen recordings"><span>{ids.length} chosen</span>
       {ids.length > 1 && ids.length <= COMPARED && <a class="btn" href={`/compare?with=${ids.join(',')}`}>Compare</a>}
       <Characterise recordings={[...ids]} label="Characterise" onQueued={job => go(pageOf('jobs', job.id))} />
-      <Delete title={`Delete ${plural(ids.length, 'recording')}?`} onDelete={() => void remove()}>{names.slice(0, COMPARED).join(', ')}{names.length > COMPARED ? ` and ${names.length - COMPARED} more` : ''}: with their files and results.</Delete>
+      <Delete title={`Delete ${plural(ids.length, 'recording')}?`} onDelete={() => void forget()}>{names.slice(0, COMPARED).join(', ')}{names.length > COMPARED ? ` and ${names.length - COMPARED} more` : ''}: with their files and results.</Delete>
       <button type="button" class="link" onClick={() => choose({chosen: null})}>Choose none</button></div>
   </>;
 }
