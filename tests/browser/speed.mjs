@@ -98,7 +98,7 @@ try {
   const {recording, long} = await fill(daemon);
   console.log(`${DEVICES} devices, ${RECORDINGS} recordings stored in ${((Date.now() - began) / 1000).toFixed(0)} s\n\n| page | median ms | worst ms | budget ms |\n|---|---|---|---|`);
   const device = (await daemon.json(`/v1/devices/${name(7 % DEVICES)}`)).name;
-  for (const [title, path, selector] of [['Lab', '/', 'table tbody tr'], ['Devices', '/devices', 'table tbody tr'], ['device', `/devices/${device}`, 'main h2'], ['recording', `/recordings/${recording}`, 'main svg'], ['Jobs', '/jobs', 'table tbody tr'],
+  for (const [title, path, selector] of [['Lab', '/', 'table tbody tr'], ['Devices', '/devices', 'table tbody tr'], ['device', `/devices/${device}`, 'main h2:visible'], ['recording', `/recordings/${recording}`, 'main svg'], ['Jobs', '/jobs', 'table tbody tr'],
     ['Populations', '/populations', 'table tbody tr'], ['population', `/populations/${model(7)}`, 'main table tbody tr'], ['Data sheets', '/data-sheets', 'table tbody tr']]) {
     const times = [];
     const beside = [];
