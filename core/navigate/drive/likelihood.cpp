@@ -59,19 +59,23 @@ Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& op
 
 std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
   struct StepOfFixes {
-    double change_along, change_across, gap_along, gap_across;
+    double change_along, change_across, gap_along, gap_across, wide_along, wide_across;  // wide: the instrument
   };
   std::vector<StepOfFixes> steps;
-  for (std::size_t i = 1; i < fixes.size(); ++i) {
+  for (std::size_t i = 2; i + 1 < fixes.size(); ++i) {
+    const Fix& before = fixes[i - 2];
     const Fix& a = fixes[i - 1];
     const Fix& b = fixes[i];
+    const Fix& after = fixes[i + 1];
     const double step = b.time_s - a.time_s;
-    if (!a.velocity_ned_m_s || !b.velocity_ned_m_s || step > 1.6) {
+    if (!before.velocity_ned_m_s || !a.velocity_ned_m_s || !b.velocity_ned_m_s || !after.velocity_ned_m_s ||
+        after.time_s - before.time_s > 4.8) {
       continue;
     }
     const Vector3 moved = ned_axes(a.position_ecef_m).transpose() * (b.position_ecef_m - a.position_ecef_m);
     const Vector3 gap = moved - 0.5 * step * (*a.velocity_ned_m_s + *b.velocity_ned_m_s);
     const Vector3 change = *b.velocity_ned_m_s - *a.velocity_ned_m_s;
+    const Vector3 wide = *after.velocity_ned_m_s - *before.velocity_ned_m_s;
     const Vector3 way = *a.velocity_ned_m_s + *b.velocity_ned_m_s;
     const double length = way.head<2>().norm();
     if (length < 2.0) {
@@ -79,8 +83,9 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
     }
     const double x = way.x() / length;
     const double y = way.y() / length;
-    steps.push_back({x * change.x() + y * change.y(), x * change.y() - y * change.x(), x * gap.x() + y * gap.y(),
-                     x * gap.y() - y * gap.x()});
+    const auto along = [&](const Vector3& v) { return x * v.x() + y * v.y(); };
+    const auto across = [&](const Vector3& v) { return x * v.y() - y * v.x(); };
+    steps.push_back({along(change), across(change), along(gap), across(gap), along(wide), across(wide)});
   }
   if (steps.size() < 50) {
     return std::nullopt;
@@ -89,33 +94,41 @@ std::optional<FixDelay> delay_from_fixes(const std::vector<Fix>& fixes) {
   FixDelay delay;
   double limit = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < 3; ++pass) {
-    double ll = 0.0;
-    double lg = 0.0;
-    double cc = 0.0;
-    double cg = 0.0;
-    double gg = 0.0;
+    double lw = 0.0;
+    double gw = 0.0;
+    double lw_across = 0.0;
+    double gw_across = 0.0;
+    double ww = 0.0;
     double count = 0.0;
     for (const StepOfFixes& s : steps) {
       if (std::abs(s.gap_along - delay.delay_s * s.change_along) > limit ||
           std::abs(s.gap_across - delay.delay_s * s.change_across) > limit) {
         continue;
       }
-      ll += s.change_along * s.change_along;
-      lg += s.change_along * s.gap_along;
-      cc += s.change_across * s.change_across;
-      cg += s.change_across * s.gap_across;
-      gg += s.gap_along * s.gap_along + s.gap_across * s.gap_across;
+      lw += s.change_along * s.wide_along;
+      gw += s.gap_along * s.wide_along;
+      lw_across += s.change_across * s.wide_across;
+      gw_across += s.gap_across * s.wide_across;
+      ww += s.wide_along * s.wide_along + s.wide_across * s.wide_across;
       count += 2.0;
     }
-    if (!(ll > 0.0 && cc > 0.0)) {
+    if (!(lw > 0.0 && lw_across > 0.0)) {
       return std::nullopt;
     }
-    delay.along_s = lg / ll;
-    delay.across_s = cg / cc;
-    delay.delay_s = (lg + cg) / (ll + cc);
-    const double rest = std::max(gg - delay.delay_s * (lg + cg), 1e-12);
-    const double variance = rest / count;
-    delay.se_s = std::sqrt(3.0 * variance / (ll + cc));  // as innovations: their correlation triples the variance
+    delay.along_s = gw / lw;
+    delay.across_s = gw_across / lw_across;
+    delay.delay_s = (gw + gw_across) / (lw + lw_across);
+    double rest = 0.0;
+    for (const StepOfFixes& s : steps) {
+      const double of_along = s.gap_along - delay.delay_s * s.change_along;
+      const double of_across = s.gap_across - delay.delay_s * s.change_across;
+      if (std::max(std::abs(of_along), std::abs(of_across)) <= limit) {
+        rest += of_along * of_along + of_across * of_across;
+      }
+    }
+    const double variance = std::max(rest, 1e-12) / count;
+    // As innovations: their correlation triples the variance.
+    delay.se_s = std::sqrt(3.0 * variance * ww) / (lw + lw_across);
     delay.score = 0.5 * delay.delay_s * delay.delay_s / (delay.se_s * delay.se_s);
     delay.steps = static_cast<std::size_t>(count / 2.0);
     limit = 4.0 * std::sqrt(variance);

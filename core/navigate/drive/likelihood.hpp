@@ -32,7 +32,9 @@ inline constexpr double kFoldLength = 100.0;
 [[nodiscard]] Result<LogLikelihood> log_likelihood(const Drive& drive, const FilterOptions& options);
 
 /// The receiver's velocities against its positions, without the unit: displacement minus integrated velocity, regressed
-/// on the change of velocity. Both along and across the way give the delay.
+/// on the change of velocity. Both along and across the way give the delay. The change from the fix before to the fix
+/// after the two is the instrument: it goes with the change between them and has none of their noise, which would make
+/// the delay too small (by 4 % where velocities of 4 Hz have 5 cm/s).
 struct FixDelay {
   double delay_s = 0.0;  ///< by how much the velocity is older than the position
   double se_s = 0.0;
