@@ -44,6 +44,11 @@ double noise_after_correction(const ReadingErrors& errors, std::size_t channel) 
   return (Matrix3::Identity() + own).inverse().row(static_cast<Eigen::Index>(channel % 3)).norm();
 }
 
+double velocity_mean_s(const FilterOptions& options) {
+  const double older = std::max(options.velocity_latency_s - options.position_latency_s, 0.0);
+  return 2.0 * older * std::sqrt(std::max(options.velocity_averaging, 0.0));
+}
+
 FilterOptions options_of(const Document& document) {
   FilterOptions options;
   options.lever_arm_m = document.gnss.lever_arm_m;

@@ -57,6 +57,10 @@ struct FilterOptions {
   double imu_offset_s = 0.0;        ///< added to the unit's stamps
   double position_latency_s = 0.0;  ///< stamp minus the moment that a position describes
   double velocity_latency_s = 0.0;
+  /// How far the velocities of fixes are means over the time before them rather than velocities of one moment: 1 if
+  /// they are means over twice the delay d by which they are older than the positions, which end at the positions'
+  /// moment.
+  double velocity_averaging = 0.0;
   Vector3 lever_arm_m = Vector3::Zero();
   ReadingErrors errors;
   double gyro_noise = 1.0;  ///< factor of the model's white noise
@@ -77,6 +81,11 @@ struct FilterOptions {
       false;  ///< fixes count as of the end of their sample: what a filter does that ignores their dates
   bool operator==(const FilterOptions&) const = default;
 };
+
+/// The time over which velocities of fixes are means, T [s], around the moment that they describe. A mean over T
+/// differs from the velocity in the middle by T^2/24 of the rate of change of the acceleration: T = 2 d
+/// sqrt(averaging).
+[[nodiscard]] double velocity_mean_s(const FilterOptions& options);
 
 /// The options that the document states: lever arm and latencies.
 [[nodiscard]] FilterOptions options_of(const Document& document);

@@ -39,6 +39,7 @@ class Driver {
         filter_(design, start.state),
         design_(design),
         done_(start.reading),
+        mean_s_(velocity_mean_s(options)),
         position_gate_(options.gate, options.gate_memory),
         velocity_gate_(options.gate, options.gate_memory) {
     if (task.vibration != nullptr && (options.gyro_vibration > 0.0 || options.force_vibration > 0.0)) {
@@ -54,6 +55,7 @@ class Driver {
                   1, static_cast<std::size_t>(std::lround(1.0 / (options.constraint->rate_hz * run_.dt_s))))
             : 0;
     turn_window_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kTurnWindow / run_.dt_s)));
+    mean_window_ = static_cast<std::size_t>(std::lround(0.5 * mean_s_ / run_.dt_s));
     rest_step_ = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kRestSeconds / run_.dt_s)));
     taped_step_ = std::clamp<std::size_t>(static_cast<std::size_t>(kTapedStep / run_.dt_s + 1e-9), 1, kTapedReadings);
   }
@@ -196,8 +198,10 @@ class Driver {
         if (const Fix& fix = drive_.fixes[event.index]; fix.velocity_ned_m_s) {
           measure(
               MeasurementKind::Velocity, event.time_s,
-              [&](const FilterMoment& at) {
-                return velocity_equations(at, *fix.velocity_ned_m_s, fix.velocity_sd_m_s, late(event.time_s));
+              [&, rate = body_rate(std::max(turn_window_, mean_window_)),
+               more = more_in_mean(event.time_s)](const FilterMoment& at) {
+                return velocity_equations({at.filter, at.options, rate, at.first_constant}, *fix.velocity_ned_m_s,
+                                          fix.velocity_sd_m_s, late(event.time_s), more);
               },
               &velocity_gate_);
         }
@@ -225,12 +229,12 @@ class Driver {
   }
 
   [[nodiscard]] FilterMoment moment(const FilterOptions& options) const {
-    return {filter_, options, body_rate(), design_.first_constant()};
+    return {filter_, options, body_rate(turn_window_), design_.first_constant()};
   }
-  /// The turning rate of the vehicle around now: the mean of a tenth of a second, for vibration on a long arm is no
-  /// velocity that a receiver sees, less what the filter believes to be the gyroscope's error.
-  [[nodiscard]] Vector3 body_rate() const {
-    const std::size_t half = turn_window_;
+  /// The turning rate of the vehicle around now: the mean of `half` readings on each side, less what the filter
+  /// believes to be the gyroscope's error. They last a tenth of a second at least, for vibration on a long arm is no
+  /// velocity that a receiver sees.
+  [[nodiscard]] Vector3 body_rate(std::size_t half) const {
     const std::size_t first = done_ > half ? done_ - half : 0;
     const std::size_t last = std::min(done_ + half, readings_.size());
     Vector3 mean = Vector3::Zero();
@@ -244,6 +248,34 @@ class Driver {
       error = Vector3(newest[0], newest[1], newest[2]) - filter_.last_rate();
     }
     return mean - error - filter_.attitude().transpose() * earth_rate();
+  }
+
+  /// By how much the mean velocity over T = velocity_mean_s differs from that in its middle `time_s`, in body axes at
+  /// that moment: 1/T times the double integral of the force f, in which gravity cancels. After u seconds the force is
+  /// (I + u [w x]) f in those axes. Zero where readings do not reach.
+  [[nodiscard]] Vector3 more_in_mean(double time_s) const {
+    Vector3 more = Vector3::Zero();
+    const double half = 0.5 * mean_s_;
+    const double middle = time_s - run_.start_s;
+    const double last = static_cast<double>(readings_.size()) * run_.dt_s;
+    if (!(half > 0.0) || middle - half < 0.0 || middle + half > last) {
+      return more;
+    }
+    const Vector3 rate = body_rate(turn_window_);
+    // The weight of the acceleration at u is (half - |u|)/T with the sign of u; this is its integral from -half to u.
+    const auto weight_until = [&](double u) {
+      const double left = std::max(half - std::abs(u), 0.0);
+      return -0.5 * left * left / mean_s_;
+    };
+    const auto first = static_cast<std::size_t>((middle - half) / run_.dt_s);
+    const auto end = std::min(static_cast<std::size_t>((middle + half) / run_.dt_s) + 1, readings_.size());
+    for (std::size_t i = first; i < end; ++i) {
+      const double from = static_cast<double>(i) * run_.dt_s - middle;
+      const double weight = weight_until(from + run_.dt_s) - weight_until(from);
+      const Vector3 force(readings_[i][3], readings_[i][4], readings_[i][5]);
+      more += weight * (force + (from + 0.5 * run_.dt_s) * rate.cross(force));
+    }
+    return more;
   }
 
   /// How long ago a moment was, for the filter.
@@ -358,6 +390,8 @@ class Driver {
   std::size_t constraint_step_ = 0;
   std::size_t rest_step_ = 100;
   std::size_t turn_window_ = 5;  ///< readings on each side
+  double mean_s_ = 0.0;          ///< velocity_mean_s of the options
+  std::size_t mean_window_ = 0;  ///< half of it, in readings
   std::size_t taped_step_ = kTapedReadings;
   FixGate position_gate_, velocity_gate_;
   OutageStart begun_;

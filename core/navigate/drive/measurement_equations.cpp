@@ -62,18 +62,18 @@ std::array<WideMeasurement, 3> position_equations(const FilterMoment& at, const 
 }
 
 std::array<WideMeasurement, 3> velocity_equations(const FilterMoment& at, const Vector3& velocity_ned_m_s,
-                                                  const Vector3& sd_m_s, double late_s) {
+                                                  const Vector3& sd_m_s, double late_s, const Vector3& more_body_m_s) {
   const NavigationState& state = at.filter.state();
   const Matrix3& attitude = at.filter.attitude();
   const Matrix3 axes = ned_axes(state.position_ecef_m);
-  const Vector3 arm_velocity = attitude * at.body_rate.cross(at.options.lever_arm_m);
+  const Vector3 beside = attitude * (at.body_rate.cross(at.options.lever_arm_m) + more_body_m_s);
   const Vector3 gap =
-      axes * velocity_ned_m_s - (state.velocity_ecef_m_s + arm_velocity - late_s * at.filter.last_acceleration());
+      axes * velocity_ned_m_s - (state.velocity_ecef_m_s + beside - late_s * at.filter.last_acceleration());
   std::array<WideMeasurement, 3> measurements;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Vector3 axis = axes.col(k);
     WideMeasurement& m = measurements[static_cast<std::size_t>(k)];
-    m.navigation.h << Vector3::Zero(), axis, arm_velocity.cross(axis);
+    m.navigation.h << Vector3::Zero(), axis, beside.cross(axis);
     m.navigation.innovation = axis.dot(gap);
     m.navigation.variance = sd_m_s(k) * sd_m_s(k);
   }

@@ -63,9 +63,11 @@ template <class Equations>
 /// A fix's position [m], north, east, down, of a moment that is `late_s` ago.
 [[nodiscard]] std::array<WideMeasurement, 3> position_equations(const FilterMoment& at, const Fix& fix, double late_s);
 
-/// A fix's velocity [m/s], north, east, down, of a moment that is `late_s` ago.
+/// A fix's velocity [m/s], north, east, down, of a moment that is `late_s` ago. `more_body_m_s`, in body axes: by how
+/// much a receiver's velocity, which is a mean, differs from that of the moment.
 [[nodiscard]] std::array<WideMeasurement, 3> velocity_equations(const FilterMoment& at, const Vector3& velocity_ned_m_s,
-                                                                const Vector3& sd_m_s, double late_s);
+                                                                const Vector3& sd_m_s, double late_s,
+                                                                const Vector3& more_body_m_s = Vector3::Zero());
 
 /// A vehicle on its axle: velocity to the right and down [m/s], which measure `slip` where the truth has some.
 [[nodiscard]] std::array<WideMeasurement, 2> constraint_equations(const FilterMoment& at, const Constraint& constraint,

@@ -137,6 +137,7 @@ Result<SimulatedWorld> SimulatedWorld::make(const PreparedDrive& prepared, std::
   world.options_.imu_offset_s = 0.0;
   world.options_.position_latency_s = 0.0;
   world.options_.velocity_latency_s = 0.0;
+  world.options_.velocity_averaging = 0.0;
   world.options_.errors = {};
   world.options_.date_to_sample = false;
   world.options_.initial_heading_rad = 0.0;

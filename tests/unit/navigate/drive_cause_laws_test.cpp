@@ -43,6 +43,8 @@ FilterOptions all_in_use() {
   options.constraint.emplace();
   options.odometer = true;
   options.coloured.sigma_m = 0.5;
+  options.velocity_latency_s = 0.5;
+  options.velocity_averaging = 0.25;
   options.gyro_vibration = 0.25;
   options.force_vibration = 0.25;
   return options;
@@ -279,6 +281,7 @@ TEST(DriveCauseLaws, TheRivalsOfTheSpecificationAreNamed) {
       {"sample_clock", {"lattice", "stuck"}},
       {"imu_time_offset", {"speed", "late position", "same thing"}},
       {"gnss_velocity_latency", {"fixes alone"}},
+      {"gnss_velocity_averaging", {"delay", "arm"}},
       {"gnss_lever_arm", {"constant in the body", "turns", "slopes"}},
       {"gnss_coloured_noise", {"fixes at rest", "innovations", "level"}},
       {"mounting_angles", {"speed", "axle", "turning"}},

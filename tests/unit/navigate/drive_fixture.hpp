@@ -14,6 +14,7 @@ namespace driftlab::drive {
 struct Hidden {
   double imu_offset_s = 0.0;  ///< the unit's stamps must be shifted by this
   double velocity_latency_s = 0.0;
+  double velocity_mean_s = 0.0;  ///< velocities are means over this time, around the moment that they describe
   Vector3 lever_arm_m = Vector3::Zero();
   ReadingErrors errors = {};
   double noise_factor = 1.0;        ///< of the gyroscope's white noise
@@ -115,6 +116,15 @@ inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int 
               state.velocity_ecef_m_s + step * acceleration + state.attitude * rate.cross(antenna_m)};
     return antenna;
   };
+  const auto velocity_around = [&](double time_s) {
+    constexpr int kParts = 50;
+    Vector3 mean = Vector3::Zero();
+    for (int part = 0; part < kParts; ++part) {
+      const double share = (part + 0.5) / kParts - 0.5;
+      mean += at(time_s + share * hidden.velocity_mean_s).velocity / kParts;
+    }
+    return hidden.velocity_mean_s > 0.0 ? mean : at(time_s).velocity;
+  };
   for (int k = 2; k * 0.25 + 0.5 < 20.0 + 100.0 * laps; ++k) {
     Fix fix;
     fix.time_s = 0.25 * k + 0.0037;  // never on a sample
@@ -125,7 +135,7 @@ inline Drive simulated_drive(std::uint64_t seed, const Hidden& hidden = {}, int 
     const Vector3 error(noise.normal(), noise.normal(), noise.normal());
     const Vector3 of_velocity(noise.normal(), noise.normal(), noise.normal());
     fix.position_ecef_m = antenna.position + axes * fix.position_sd_m.cwiseProduct(error);
-    fix.velocity_ned_m_s = axes.transpose() * at(fix.time_s - hidden.velocity_latency_s).velocity +
+    fix.velocity_ned_m_s = axes.transpose() * velocity_around(fix.time_s - hidden.velocity_latency_s) +
                            fix.velocity_sd_m_s.cwiseProduct(of_velocity);
     fix.has_course = fix.velocity_ned_m_s->head<2>().norm() > 0.5;
     drive.fixes.push_back(fix);

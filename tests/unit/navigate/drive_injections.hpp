@@ -72,6 +72,18 @@ inline Drive shaken_drive(std::uint64_t seed, double ratio, int laps, std::size_
   return drive;
 }
 
+/// Velocities are means over a second times the root of `share`, half a second old in their middle, as the document
+/// says.
+inline Drive with_mean_velocities(std::uint64_t seed, double share, int laps) {
+  constexpr double kLate = 0.3;  // [s]
+  Hidden hidden;
+  hidden.velocity_latency_s = kLate;
+  hidden.velocity_mean_s = 2.0 * kLate * std::sqrt(share);
+  Drive drive = simulated_drive(seed, hidden, laps);
+  drive.document.gnss.velocity_latency_s = kLate;
+  return drive;
+}
+
 /// An odometer at 4 Hz that reads `scale` too much and slips for three seconds where `slip_m_s` is not 0.
 inline Drive with_odometer(std::uint64_t seed, double scale, double slip_m_s, int laps) {
   Drive drive = simulated_drive(seed, {}, laps);
@@ -135,6 +147,7 @@ inline std::vector<DriveInjection> drive_injections() {
        hide([](Hidden& h, double size) { h.imu_offset_s = size; })},
       {"gnss_velocity_latency", "delay_s", 0.1, 0.1, 0.02, false, "",
        hide([](Hidden& h, double size) { h.velocity_latency_s = size; })},
+      {"gnss_velocity_averaging", "share", 1.0, 100.0, 30.0, false, "", with_mean_velocities},
       {"gnss_lever_arm", "x", 0.8, 0.8, 0.1, false, "", hide([](Hidden& h, double size) { h.lever_arm_m.x() = size; })},
       {"gnss_lever_arm", "y", -0.8, -0.8, 0.1, false, "",
        hide([](Hidden& h, double size) { h.lever_arm_m.y() = size; })},

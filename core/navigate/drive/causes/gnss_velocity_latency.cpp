@@ -1,8 +1,7 @@
 /// gnss_velocity_latency: the velocities of fixes are older than their positions.
 ///
-/// A receiver's velocity can also be a mean over the time T before its fix. That is a delay of T/2 but for T^2/24 of
-/// the rate of change of the acceleration, 5 mm/s where a road vehicle changes its acceleration by 2 m/s^3 and T is
-/// 0.25 s: below the noise of velocities. Both are therefore offered as one value, and a filter needs no more.
+/// The fixes alone cannot tell it from a mean over twice the delay, which is as late in its middle
+/// (gnss_velocity_averaging): both are said.
 #include "core/navigate/drive/causes/cause.hpp"
 #include "core/navigate/drive/likelihood.hpp"
 #include "core/signal/significant.hpp"
@@ -45,8 +44,7 @@ std::optional<FromFiles> delay_in_files(const Drive& drive, const FilterOptions&
   finding.score = delay->score;
   finding.evidence = "the fixes alone";
   if (delay->delay_s > 0.0) {
-    finding.evidence +=
-        ", to which means over the " + significant(2.0 * delay->delay_s) + " s before them are the same";
+    finding.evidence += ", to which means over the " + significant(2.0 * delay->delay_s) + " s before them are as late";
   }
   return FromFiles{
       std::move(finding),

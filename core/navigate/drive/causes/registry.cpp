@@ -8,6 +8,7 @@
   CAUSE(sample_clock)                     \
   CAUSE(imu_time_offset)                  \
   CAUSE(gnss_velocity_latency)            \
+  CAUSE(gnss_velocity_averaging)          \
   CAUSE(gnss_lever_arm)                   \
   CAUSE(gyro_scale_factor_error)          \
   CAUSE(gyro_axis_misalignment)           \
