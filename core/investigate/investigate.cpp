@@ -15,8 +15,10 @@
 #include "core/investigate/search/join_axes.hpp"
 #include "core/investigate/search/right_recordings.hpp"
 #include "core/investigate/search/thresholds.hpp"
+#include "core/process/distributions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -174,7 +176,41 @@ struct Taken {
   std::vector<std::vector<double>> means;
   std::vector<MeasuredFigures> figures;
   std::vector<Remainder> remains;  ///< of all of them
+  std::vector<UnnamedFinding> unnamed;
+  std::vector<UnnamedFinding> densities;  ///< that differ where every check passes
 };
+
+/// Whether it is worth while to look for profiles: something of the channel fails, were it the only test of the study.
+bool leaves_something(const ChannelChecks& channel, const std::vector<Remainder>& remains) {
+  constexpr double kWorthwhile = 0.001;
+  return std::any_of(channel.checks.begin(), channel.checks.end(),
+                     [](const Check& check) { return check.p_after < kWorthwhile; }) ||
+         std::any_of(remains.begin(), remains.end(),
+                     [](const Remainder& one) { return one.places * std::exp(-one.observed) < kWorthwhile; });
+}
+
+/// The base beside the means that were found without a name. What is left of a process that had followed one of them,
+/// and lies below a fiftieth of the white density at every frequency of the longest recording, is left out.
+void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcome& outcome) {
+  std::vector<SlowComponent>& base = outcome.model.beside.noise.components;
+  double longest = 0.0;
+  for (const Series& residual : outcome.after.residual) {
+    longest = std::max(longest, static_cast<double>(residual.size()));
+  }
+  const double dt_s = outcome.after.dt_s;
+  const auto last = std::find_if(unnamed.rbegin(), unnamed.rend(), [](const auto& found) { return found.noise; });
+  if (last == unnamed.rend()) {
+    return;
+  }
+  for (std::size_t k = 0; k < std::min(base.size(), last->noise->size()); ++k) {
+    base[k].process = (*last->noise)[k].process;  // effects that are slow noise stand behind the base
+  }
+  std::erase_if(base, [&](const SlowComponent& component) {
+    SlowModel alone;
+    alone.components = {component};
+    return slow_density(alone, 0, 1.0 / (longest * dt_s), dt_s, longest) < 0.02 * outcome.model.beside.noise.white;
+  });
+}
 
 /// Takes what is needed of a channel whose search has ended, and lets its samples go but for the innovations, which are
 /// compared with those of other channels.
@@ -183,11 +219,74 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   taken.means.push_back(means_of(outcome.before));
   taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
   outcome.before = {};
-  outcome.after.residual.clear();
   if (outcome.usable && !stop.stop_requested()) {
     std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
+    bool fails = leaves_something(taken.checks.back(), remains);
+    if (!fails) {
+      const std::vector<UnnamedFinding> density = find_unnamed(group, outcome.after, UnnamedScope::SpectrumAlone);
+      fails = !density.empty();  // it may be a mean that nobody has taken off: all profiles are tried then
+      taken.densities.insert(taken.densities.end(), density.begin(), density.end());
+    }
+    std::vector<UnnamedFinding> unnamed =
+        fails ? find_unnamed(group, outcome.after, UnnamedScope::All) : std::vector<UnnamedFinding>{};
+    take_refitted_noise(unnamed, outcome);
+    taken.unnamed.insert(taken.unnamed.end(), std::make_move_iterator(unnamed.begin()),
+                         std::make_move_iterator(unnamed.end()));
     taken.remains.insert(taken.remains.end(), std::make_move_iterator(remains.begin()),
                          std::make_move_iterator(remains.end()));
+  }
+  outcome.after.residual.clear();
+}
+
+/// The check that a spectrum without a name has failed, and the sentence. An automatic base is whitened once more
+/// before the other checks are made (fullrate/full_rate.hpp), and they cannot see that its density is another.
+void report_density(const UnnamedFinding& found, Report& report) {
+  const double bands = static_cast<double>(found.effect.value.size());
+  Check check;
+  check.id = found.effect.column + ".density";
+  check.title = "density of the noise in " + std::to_string(found.effect.value.size()) + " bands";
+  check.channel = found.effect.column;
+  check.observed = found.chi_square;
+  check.q025 = chi_squared_quantile(0.025, bands);
+  check.median = chi_squared_quantile(0.5, bands);
+  check.q975 = chi_squared_quantile(0.975, bands);
+  check.p = chi_squared_tail(found.chi_square, bands);
+  check.p_adjusted = std::min(1.0, check.p * static_cast<double>(report.checks.size() + 1));
+  check.failed = true;
+  check.observed_after = check.observed;
+  check.p_after = check.p;
+  check.p_after_adjusted = check.p_adjusted;
+  check.failed_after = true;
+  check.end = CheckEnd::Unexplained;
+  ++report.failed_before;
+  ++report.failed_after;
+  report.checks.push_back(check);
+  report.unexplained.push_back(
+      {found.effect.column, found.sentence + ". No cause of the list explains it.", {check.id}});
+}
+
+/// Of the profiles those of channels in which something stays unexplained: where every check passes, the model is right
+/// for all that can be shown. A spectrum that differs much is shown by itself.
+void extend_without_names(std::vector<UnnamedFinding> unnamed, const std::vector<UnnamedFinding>& densities,
+                          Report& report) {
+  constexpr double kMuch = 0.1;
+  const auto is_unexplained = [&](const UnnamedFinding& one) {
+    return std::any_of(report.unexplained.begin(), report.unexplained.end(),
+                       [&](const Unexplained& left) { return left.channel == one.effect.column; });
+  };
+  for (const UnnamedFinding& one : densities) {
+    const bool much = std::any_of(one.effect.value.begin(), one.effect.value.end(),
+                                  [](double ratio) { return std::fabs(ratio - 1.0) > kMuch; });
+    if (much && !is_unexplained(one)) {
+      report_density(one, report);
+    }
+  }
+  std::erase_if(unnamed, [&](const UnnamedFinding& one) { return !is_unexplained(one); });
+  report.unnamed = std::move(unnamed);
+  for (const UnnamedFinding& one : report.unnamed) {
+    if (report.outages) {
+      report.outages->left_out.push_back("a profile without a name of " + one.effect.column);
+    }
   }
 }
 
@@ -210,6 +309,13 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   report.automatic = study.baseline.automatic;
   report.baseline = study.baseline;
   report.notes = study.notes;
+  for (const UnnamedEffect& effect : study.baseline.unnamed) {
+    if (effect.kind != UnnamedKind::Mean) {
+      report.notes.push_back("The baseline holds a profile of the " + std::string(name_of(effect.kind)) + " of " +
+                             effect.column +
+                             " without a name; it cannot be taken off a recording and may be found again.");
+    }
+  }
   const std::vector<ChannelGroup> groups = group_channels(study);
   std::vector<GroupOutcome> outcomes;
   Taken taken;
@@ -288,6 +394,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
     report.outages = *std::move(outages);
   }
   report_remains(remains, report);
+  extend_without_names(std::move(taken.unnamed), taken.densities, report);
   report_recordings(righted, report);
   report.summary = verdict_of(report);
   return report;

@@ -96,6 +96,10 @@ SimulatedCampaign::SimulatedCampaign(const Study& study, const Report& report, c
   for (const GivenEffect& effect : study.baseline.effects) {
     model_.effects.push_back(effect);
   }
+  model_.unnamed = study.baseline.unnamed;
+  for (const UnnamedFinding& found : report.unnamed) {
+    model_.unnamed.push_back(found.effect);
+  }
   for (const Finding& finding : report.findings) {
     if (acts_on(finding, column_) && !finding.evidence.ambiguous) {
       model_.effects.push_back(effect_of(finding, column_));

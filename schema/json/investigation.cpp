@@ -5,6 +5,7 @@
 #include "core/investigate/report/order.hpp"
 #include "schema/json/simulation_model.hpp"
 #include "schema/json/stored_channel.hpp"
+#include "schema/json/unnamed_effect.hpp"
 
 namespace driftlab {
 namespace {
@@ -183,6 +184,14 @@ Json to_json(const Report& report) {
   for (const auto& left : report.unexplained) {
     unexplained.push_back({{"channel", left.channel}, {"explanation", left.sentence}, {"checks", left.checks}});
   }
+  Json unnamed = Json::array();
+  for (const investigate::UnnamedFinding& found : report.unnamed) {
+    for (const investigate::ChannelModel& model : report.models) {
+      if (model.channel == found.effect.column) {
+        unnamed.push_back(to_json(found, model.unit));
+      }
+    }
+  }
   Json not_examined = Json::array();
   for (const auto& item : report.not_examined) {
     not_examined.push_back({{"cause", item.cause}, {"channel", item.channel}, {"needs", item.needs}});
@@ -207,6 +216,7 @@ Json to_json(const Report& report) {
                 {"explained", number(report.explained)},
                 {"outage_error_m", outages_json(report.outages)}}},
               {"unexplained", std::move(unexplained)},
+              {"unnamed", std::move(unnamed)},
               {"not_examined", std::move(not_examined)},
               {"notes", report.notes}};
 }

@@ -4,6 +4,7 @@
 #include "core/investigate/search/given_model.hpp"
 #include "core/process/parameter_unit.hpp"
 #include "schema/json/error_model.hpp"
+#include "schema/json/unnamed_effect.hpp"
 
 #include <algorithm>
 
@@ -194,6 +195,15 @@ Json given_effects_json(const Baseline& baseline, const Unit& channel) {
   return list;
 }
 
+/// Appends the profile of a channel to `document`.
+void append_unnamed(const investigate::UnnamedEffect& effect, const Report& report, Json& document) {
+  for (const ChannelModel& model : report.models) {
+    if (model.channel == effect.column) {
+      document["unnamed"].push_back(to_json(effect, model.unit));
+    }
+  }
+}
+
 Json found_effect_json(const Finding& finding) {
   std::vector<std::string> columns;
   std::vector<std::string> recordings;
@@ -233,6 +243,7 @@ Baseline simulation_model_from_json(const Json& document, const std::string& poi
   const Json* const channels = reader.member("channels");
   const Json* const deterministic = reader.member("deterministic");
   const Json* const effects = reader.member("effects");
+  const Json* const unnamed = reader.member("unnamed");
   if (processes == nullptr || !processes->is_array() || processes->empty()) {
     faults.add(pointer + "/processes", ErrorCode::InvalidArgument, "A model has at least one process.");
     return model;
@@ -251,6 +262,9 @@ Baseline simulation_model_from_json(const Json& document, const std::string& poi
   for (std::size_t i = 0; effects != nullptr && effects->is_array() && i < effects->size(); ++i) {
     read_effect((*effects)[i], pointer + "/effects/" + std::to_string(i), model, faults);
   }
+  for (std::size_t i = 0; unnamed != nullptr && unnamed->is_array() && i < unnamed->size(); ++i) {
+    read_unnamed_effect((*unnamed)[i], pointer + "/unnamed/" + std::to_string(i), model, faults);
+  }
   return model;
 }
 
@@ -258,7 +272,7 @@ Baseline baseline_from_json(const Json& document, const std::string& pointer, Fa
   ObjectReader reader(document, pointer, faults);
   const std::string kind = reader.required_text("kind");
   const bool stored = reader.member("id") != nullptr;
-  for (const char* const name : {"processes", "channels", "deterministic", "effects"}) {
+  for (const char* const name : {"processes", "channels", "deterministic", "effects", "unnamed"}) {
     (void)reader.member(name);
   }
   reader.reject_unknown();
@@ -304,6 +318,9 @@ Json bases_json(const Report& report, ChannelBase ChannelModel::* base) {
   if (!report.baseline.effects.empty()) {
     document["effects"] = given_effects_json(report.baseline, report.models.front().unit);
   }
+  for (const investigate::UnnamedEffect& effect : report.baseline.unnamed) {
+    append_unnamed(effect, report, document);
+  }
   return document;
 }
 
@@ -318,6 +335,9 @@ Json extended_json(const Report& report) {
     effects.push_back(found_effect_json(finding));
   }
   document["effects"] = std::move(effects);
+  for (const investigate::UnnamedFinding& found : report.unnamed) {
+    append_unnamed(found.effect, report, document);
+  }
   return document;
 }
 

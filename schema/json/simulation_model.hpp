@@ -4,7 +4,8 @@
 ///   {"processes": [{"process", "params": {name: {"value", "unit"}}}],      what every channel has, or the first one
 ///    "channels": {column: {"processes": [...]}},                           where channels differ
 ///    "deterministic": {column: {"bias": {...}, "drift": {...}}},        in units of the column's sensor
-///    "effects": [{"cause", "channels", "recordings", "params"}]}           what processes cannot hold
+///    "effects": [{"cause", "channels", "recordings", "params"}],           what processes cannot hold
+///    "unnamed": [...]}                                  profiles of what has no name (schema/json/unnamed_effect.hpp)
 ///
 /// The same members make the `baseline` of a study, where `channels` may be a list of columns that narrows it.
 #include "core/investigate/report/report.hpp"

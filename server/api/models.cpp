@@ -3,8 +3,12 @@
 #include "server/api/documents.hpp"
 #include "server/store/digest.hpp"
 
+#include <array>
+
 namespace driftlab::server {
 namespace {
+
+constexpr std::array kMembers{"processes", "channels", "deterministic", "effects", "unnamed"};
 
 Json to_json(const Model& model) {
   Json document{{"id", model.id},
@@ -15,7 +19,7 @@ Json to_json(const Model& model) {
                 {"deterministic", Json::object()},
                 {"effects", Json::array()}};
   const Json content = stored(model.document_json);
-  for (const char* const member : {"processes", "channels", "deterministic", "effects"}) {
+  for (const char* const member : kMembers) {
     if (content.contains(member)) {
       document[member] = content[member];
     }
@@ -63,10 +67,10 @@ Result<Response> create_model(ApiContext& context, const Request& request) {
   limit_text(model.name, "name_bytes", request.budgets->name_bytes, reader.pointer("name"), faults);
   limit_text(why.value_or(""), "note_bytes", request.budgets->note_bytes, reader.pointer("why"), faults);
   Json content = Json::object();
-  for (const char* const member : {"processes", "channels", "deterministic", "effects"}) {
+  for (const char* const member : kMembers) {
     if (const Json* const value = reader.member(member)) {
       content[member] = *value;
-      const bool list = member == std::string_view("processes") || member == std::string_view("effects");
+      const bool list = member != std::string_view("channels") && member != std::string_view("deterministic");
       if (list ? !value->is_array() : !value->is_object()) {
         faults.add(reader.pointer(member), ErrorCode::ParseError, list ? "This is a list." : "This is an object.");
       }

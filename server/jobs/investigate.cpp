@@ -8,6 +8,7 @@
 
 #include "schema/json/investigation.hpp"
 #include "schema/json/simulation_model.hpp"
+#include "schema/json/unnamed_effect.hpp"
 #include "server/jobs/attention.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_baseline.hpp"
@@ -49,7 +50,8 @@ class Rows {
     row.device_id = study_.device_id;
     row.study_id = study_.id;
     row.baseline_id = baseline_model(report, results);
-    row.model_id = report.findings.empty() ? row.baseline_id : extended_model(report, row.baseline_id, results);
+    const bool extended = !report.findings.empty() || !report.unnamed.empty();
+    row.model_id = extended ? extended_model(report, row.baseline_id, results) : row.baseline_id;
     row.summary_json = to_text(findings_summary(report));
     row.page = investigation_page(report);
     Json document = to_json(report);
@@ -107,6 +109,9 @@ class Rows {
     Json changes = Json::array();
     for (const auto& finding : report.findings) {
       changes.push_back(change_json(finding));
+    }
+    for (const auto& found : report.unnamed) {
+      changes.push_back(change_json(found));
     }
     from["changes"] = std::move(changes);
     model.provenance_json = to_text(from);

@@ -16,14 +16,14 @@ import tree
 
 # Module -> the modules it may include beside itself, directly; what these include follows by the same table.
 CORE = ["core/signal", "core/process", "core/variance", "core/fit"]
-INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "facts", "consistency", "causes", "search", "report")]  # lowest first
+INVESTIGATE = [f"core/investigate/{room}" for room in ("study", "slow", "fullrate", "facts", "consistency", "causes", "unnamed", "search", "report")]  # lowest first
 ANALYSIS = [*CORE, "core/datasheet", "core/campaign", "core/export", "core/calibrate", "core/navigate", "core/investigate", *INVESTIGATE]
 USE_CASES = [*ANALYSIS, "core/read", "core/analysis"]
 # What stands above the use cases holds no analysis of its own: it asks core/analysis, and reads results of campaigns.
 RESULTS = ["core/signal", "core/datasheet", "core/campaign", "core/export", "core/analysis", "schema/json", "schema/text", "schema/figure", "schema"]
 # Documents are of these: core/export writes no document of its own, and the other rooms of an investigation are its arithmetic.
 DOCUMENTED = [*CORE, "core/datasheet", "core/campaign", "core/calibrate", "core/navigate", "core/investigate",
-              *(f"core/investigate/{room}" for room in ("study", "causes", "search", "report")), "core/read", "core/analysis"]
+              *(f"core/investigate/{room}" for room in ("study", "causes", "unnamed", "search", "report")), "core/read", "core/analysis"]
 SERVER = ["core/signal", "server/store", "server/observe"]  # what every upper floor of the server may use
 FLOORS: dict[str, list[str]] = {
     "core/signal": [],
@@ -81,6 +81,7 @@ JSON_DOORS: dict[str, set[str]] = {
     "core/fit": {f"core/fit/{name}.hpp" for name in ("characterisation", "characterise", "noise_equivalents", "robust_efficiency")},
     "core/investigate/study": {"core/investigate/study/study.hpp"},
     "core/investigate/causes": {"core/investigate/causes/cause.hpp"},
+    "core/investigate/unnamed": {"core/investigate/unnamed/unnamed_effect.hpp", "core/investigate/unnamed/unnamed_search.hpp"},
     "core/investigate/search": {"core/investigate/search/given_model.hpp"},
     "core/read": {"core/read/text_shape.hpp"},
     "core/campaign": {f"core/campaign/{name}.hpp" for name in (

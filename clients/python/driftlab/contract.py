@@ -1405,6 +1405,8 @@ class Investigation(TypedDict):
     extended_model: InvestigationModel
     gain: InvestigationGain
     unexplained: list[InvestigationUnexplainedItem]
+    # Profiles of what no cause explains, which the extended model holds without a name.
+    unnamed: NotRequired[list[InvestigationUnnamedItem]]
     not_examined: NotRequired[list[InvestigationNotExaminedItem]]
     notes: NotRequired[list[str]]
     # Of reports that `driftlab plan` writes: the recordings to make next.
@@ -1607,6 +1609,7 @@ class InvestigationModel(TypedDict):
     deterministic: dict[str, Any]
     channels: NotRequired[dict[str, Any]]
     effects: NotRequired[list[InvestigationModelEffect]]
+    unnamed: NotRequired[ModelUnnamed]
 
 
 class InvestigationModelEffect(TypedDict):
@@ -1647,6 +1650,35 @@ class InvestigationUnexplainedItem(TypedDict):
     channel: str
     explanation: str
     checks: list[str]
+
+
+class InvestigationUnnamedItem(TypedDict):
+    kind: Literal['spectrum', 'variance', 'mean']
+    against: Literal['frequency', 'time', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    # The unit of the edges.
+    along: str
+    channel: str
+    # Where it acts; left out: everywhere.
+    recordings: NotRequired[list[str]]
+    edges: list[float | None]
+    # Drawn towards the model by as much as they are uncertain.
+    values: list[float | None]
+    # Of the values of a mean.
+    unit: NotRequired[str]
+    # Of the bins; of frequencies the geometric ones.
+    middles: list[float | None]
+    # Ends of 95 % intervals, as wide as those of the values before they are drawn.
+    q025: list[float | None]
+    q975: list[float | None]
+    gain: InvestigationUnnamedItemGain
+    explanation: str
+
+
+class InvestigationUnnamedItemGain(TypedDict):
+    # Log likelihood gained on data that the profile was not fitted to [nat].
+    log_score: float | None
+    log_score_per_sample: float | None
+    heldout_samples: float | None
 
 
 class IssuedToken(TypedDict):
@@ -2144,6 +2176,7 @@ class Model(TypedDict):
     channels: NotRequired[ModelChannels]
     deterministic: ModelDeterministic
     effects: ModelEffects
+    unnamed: NotRequired[ModelUnnamed]
     # Where it came from. `changes` of a child: what was added to its parent, and why.
     provenance: ModelProvenance
     created_at: str
@@ -2175,6 +2208,22 @@ class ModelNumber(TypedDict):
 class ModelProcess(TypedDict):
     process: str
     params: ModelNumbers
+
+
+class ModelProfile(TypedDict):
+    # Values are ratios to the model's density or to the power of its white noise; of a mean they are in `unit`.
+    kind: Literal['spectrum', 'variance', 'mean']
+    # What the profile goes with; a spectrum with frequency, the others with the rest.
+    against: Literal['frequency', 'time', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    # The unit of the edges: the one that belongs to `against`, whatever is written.
+    along: NotRequired[Literal['Hz', 's', 'deg/s', 'deg/s^2', 'degC', 'deg']]
+    channel: str
+    # Where it acts; left out: everywhere.
+    recordings: NotRequired[list[str]]
+    edges: list[float]
+    values: list[float]
+    # Of the values of a mean.
+    unit: NotRequired[str]
 
 
 class ModelProvenance(TypedDict):
@@ -2215,6 +2264,7 @@ class ModelRequest(TypedDict):
     channels: NotRequired[ModelChannels]
     deterministic: NotRequired[ModelDeterministic]
     effects: NotRequired[ModelEffects]
+    unnamed: NotRequired[ModelUnnamed]
 
 
 class NewDevice(TypedDict):
@@ -3925,6 +3975,7 @@ class StudyBaselineModel(TypedDict):
     channels: NotRequired[list[str] | ModelChannels]
     deterministic: NotRequired[ModelDeterministic]
     effects: NotRequired[ModelEffects]
+    unnamed: NotRequired[ModelUnnamed]
 
 
 class StudyRequest(TypedDict):
@@ -4171,6 +4222,7 @@ ModelDeterministic: TypeAlias = "dict[str, ModelDeterministicItem]"
 ModelEffects: TypeAlias = "list[ModelEffect]"
 ModelNumbers: TypeAlias = "dict[str, ModelNumber]"
 ModelProcesses: TypeAlias = "list[ModelProcess]"
+ModelUnnamed: TypeAlias = "list[ModelProfile]"
 OutageScenarioModel: TypeAlias = "list[OutageScenarioModelItem]"
 OutageScenarioSensor: TypeAlias = "OutageScenarioAxis | OutageScenarioSensor2"
 ProblemErrors: TypeAlias = "list[ProblemError]"

@@ -235,9 +235,9 @@ std::vector<std::vector<std::size_t>> noise_scopes(const ChannelGroup& group, bo
   return scopes;
 }
 
-void set_spectrum(FullRate& data, std::size_t r) {
+void set_spectrum(FullRate& data, std::size_t r, double f_low_hz) {
   Spectrum& s = data.spectrum[r];
-  s = estimate_spectrum(bridged(data.residual[r], data.used[r]), data.dt_s, 0.3);
+  s = estimate_spectrum(bridged(data.residual[r], data.used[r]), data.dt_s, f_low_hz);
   std::vector<double>& slow = data.slow[r];
   slow.clear();
   for (std::size_t j = 0; j < s.power.size(); ++j) {

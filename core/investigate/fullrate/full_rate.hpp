@@ -67,8 +67,8 @@ struct FullRateOptions {
                                          const FullRateOptions& options);
 
 /// Sets `spectrum` and `slow` of member r from its residual. Missing samples stand on a straight line between their
-/// neighbours; power is divided by what `raised` has added to the density.
-void set_spectrum(FullRate& data, std::size_t r);
+/// neighbours; power is divided by what `raised` has added to the density. `f_low_hz`: the lowest frequency.
+void set_spectrum(FullRate& data, std::size_t r, double f_low_hz = 0.3);
 /// The same for a member that has a spectrum already.
 void renew_spectrum(FullRate& data, std::size_t r);
 

@@ -73,6 +73,13 @@ void append_remains(const Report& report, std::string& page) {
     }
     page.append("\n");
   }
+  if (!report.unnamed.empty()) {
+    page.append("\nThe extended model holds, without a name:\n\n");
+  }
+  for (const UnnamedFinding& found : report.unnamed) {
+    page.append("- ").append(found.sentence).append(". On data that it was not fitted to this profile gains ");
+    page.append(significant(found.heldout_gain)).append(" nat.\n");
+  }
   std::vector<std::string> mended;
   for (const Check& check : report.checks) {
     if (check.end == CheckEnd::Mended) {

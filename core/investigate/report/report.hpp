@@ -4,6 +4,7 @@
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/search/channel_model.hpp"
 #include "core/investigate/study/study.hpp"
+#include "core/investigate/unnamed/unnamed_search.hpp"
 
 #include <optional>
 #include <string>
@@ -136,6 +137,7 @@ struct Report {
   std::optional<OutageGain>
       outages;  ///< nothing where no gyroscope or accelerometer axis was examined, or not asked for
   std::vector<Unexplained> unexplained;
+  std::vector<UnnamedFinding> unnamed;  ///< profiles without a name that the extended model holds
   std::vector<NotExamined> not_examined;
   std::vector<std::string> notes;
 };

@@ -7,6 +7,7 @@
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -104,6 +105,13 @@ Verdict verdict_of(const Report& report) {
   }
   for (const Unexplained& left : report.unexplained) {
     verdict.details.push_back(left.sentence);
+  }
+  std::string told;  // the channel whose first profile, the largest gain, has been told
+  for (const UnnamedFinding& found : report.unnamed) {
+    if (std::exchange(told, found.effect.column) == found.effect.column) {
+      continue;
+    }
+    verdict.details.push_back(found.sentence + ". The extended model holds this without a name.");
   }
   verdict.facts.emplace_back("/gain/checks_failed_before", static_cast<double>(report.failed_before));
   verdict.facts.emplace_back("/gain/checks_failed_after", static_cast<double>(report.failed_after));

@@ -1,6 +1,7 @@
 #include "core/investigate/search/given_model.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/unnamed/unnamed_effect.hpp"
 #include "core/process/constant_offset.hpp"
 #include "core/process/quantization_noise.hpp"
 #include "core/process/registry.hpp"
@@ -122,6 +123,28 @@ double given_quantization(const Baseline& baseline, const ChannelGroup& group) {
   return sum;
 }
 
+namespace {
+
+/// Takes the means off that a given model holds without a name.
+void take_unnamed_means(const Baseline& baseline, const ChannelGroup& group, std::vector<Series>& error) {
+  for (const UnnamedEffect& effect : baseline.unnamed) {
+    for (std::size_t r = 0; r < error.size() && effect.kind == UnnamedKind::Mean; ++r) {
+      const StudyRecording& recording = *group.members[r].recording;
+      const Series course = course_of(effect.against, recording, group.axis());
+      if (!acts_on(effect, group.column, recording.id) || course.empty()) {
+        continue;
+      }
+      std::vector<double> rest = error[r].values();
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        rest[i] -= value_at(effect, course[i]);
+      }
+      error[r] = std::move(rest);
+    }
+  }
+}
+
+}  // namespace
+
 void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::vector<Series>& error) {
   double drift = 0.0;
   for (const Process& process : processes_of(baseline, group)) {
@@ -156,6 +179,7 @@ void take_given_means(const Baseline& baseline, const ChannelGroup& group, std::
       error[r] = std::move(rest);
     }
   }
+  take_unnamed_means(baseline, group, error);
 }
 
 bool confirmed(const Baseline& baseline, const ChannelGroup& group, const Evidence& evidence) {

@@ -2,6 +2,7 @@
 
 #include "core/investigate/causes/draft.hpp"
 #include "core/investigate/search/given_model.hpp"
+#include "core/investigate/unnamed/unnamed_effect.hpp"
 #include "core/process/linear_drift.hpp"
 #include "core/process/registry.hpp"
 
@@ -45,6 +46,32 @@ std::string obstacle(const GivenEffect& effect, const Draft& draft) {
   return known ? "" : "it cannot be simulated";
 }
 
+/// Puts a profile into the draft; why it cannot act there, empty: it does.
+std::string add_unnamed(const UnnamedEffect& effect, Draft& draft) {
+  const StudyRecording& recording = *draft.recording;
+  if (!acts_on(effect, draft.group->column, recording.id)) {
+    return "it belongs to single recordings";
+  }
+  if (effect.kind == UnnamedKind::Spectrum) {
+    shape_spectrum(effect, recording.dt_s, draft.white);
+    shape_spectrum(effect, recording.dt_s, draft.slow);
+    return "";
+  }
+  const Series course = course_of(effect.against, recording, axis_index(draft.group->role.axis).value_or(2));
+  if (course.empty()) {
+    return "it needs " + std::string(words_of(effect.against));
+  }
+  for (std::size_t i = 0; i < recording.length; ++i) {
+    const double value = value_at(effect, course[i]);
+    if (effect.kind == UnnamedKind::Variance) {
+      draft.white[i] *= std::sqrt(std::max(value, 0.0));
+    } else {
+      draft.mean[i] += value;
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 SimulatedChannel simulate_channel(const Baseline& model, StudyRecording recording, const std::string& column,
@@ -83,6 +110,14 @@ SimulatedChannel simulate_channel(const Baseline& model, StudyRecording recordin
       result.left_out.push_back(effect.cause + ": " + why);
     } else {
       inject(*find_cause(effect.cause), draft, effect.values, random);
+    }
+  }
+  for (const UnnamedEffect& effect : model.unnamed) {
+    if (effect.column != column) {
+      continue;
+    }
+    if (const std::string why = add_unnamed(effect, draft); !why.empty()) {
+      result.left_out.push_back("a profile without a name: " + why);
     }
   }
   result.reading.resize(recording.length);

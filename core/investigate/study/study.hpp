@@ -92,6 +92,21 @@ struct GivenEffect {
   std::vector<double> values;           ///< SI, as `inject` takes them (core/investigate/causes/draft.hpp)
 };
 
+/// What a profile without a name is of, and what it goes with (unnamed_effect.hpp).
+enum class UnnamedKind { Spectrum, Variance, Mean };
+enum class Against { Frequency, Time, Rate, RateChange, Temperature, Angle };
+
+/// An effect that a model holds and nobody has a name for: a measured profile, `value[k]` between `edge[k]` and
+/// `edge[k + 1]`.
+struct UnnamedEffect {
+  UnnamedKind kind = UnnamedKind::Spectrum;
+  Against against = Against::Frequency;
+  std::string column;
+  std::vector<std::string> recordings;  ///< ids; empty: all
+  std::vector<double> edge;             ///< ascending, one more than values [SI]
+  std::vector<double> value;            ///< ratios; of a mean [SI]
+};
+
 /// A simulation model: the one that is criticised, or the one that is simulated.
 struct Baseline {
   bool automatic = true;
@@ -103,6 +118,7 @@ struct Baseline {
   std::map<std::string, double> drift;                  ///< by column [SI/s]
   std::map<std::string, double> bias;                   ///< by column [SI]; for simulations
   std::vector<GivenEffect> effects;
+  std::vector<UnnamedEffect> unnamed;
 };
 
 struct Study {

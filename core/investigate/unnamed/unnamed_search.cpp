@@ -1,0 +1,627 @@
+#include "core/investigate/unnamed/unnamed_search.hpp"
+
+#include "core/investigate/causes/evidence.hpp"
+#include "core/investigate/slow/slow_fit.hpp"
+#include "core/investigate/unnamed/profile_of_ratios.hpp"
+#include "core/process/dense.hpp"
+#include "core/process/distributions.hpp"
+#include "core/signal/significant.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr std::array<std::size_t, 2> kBands{14, 42};  ///< spec/trust-notes.md, section 7, as the next two
+constexpr std::size_t kQuantiles = 12;                ///< bins of a quantity
+constexpr double kAdopted = 6.0;                      ///< [nat], beside 2 ln(tried)
+constexpr double kPeriods = 4.0;                      ///< of the lowest frequency in half a recording
+constexpr std::size_t kTimeBins = 32;                 ///< chosen, not measured, as all that follow
+constexpr std::size_t kTurns = 8;                     ///< of the folds within a bin of time
+constexpr std::size_t kSegments = 128;                ///< of a single recording that take turns
+constexpr std::size_t kMostAdopted = 3;               ///< of a channel
+constexpr double kCut = 5.0;                          ///< innovations: gross values are no level
+constexpr double kBlockRateHz = 5.0;                  ///< of the means
+constexpr std::size_t kFewest = 2'000;                ///< samples that a profile is made of
+constexpr std::size_t kLooked = 20'000;               ///< values by which bins are placed
+
+constexpr std::array kQuantities{Against::Rate, Against::RateChange, Against::Temperature, Against::Angle};
+
+struct Candidate {
+  UnnamedEffect effect;
+  std::vector<double> se;
+  double chi_square = 0.0;
+  double gain = -1e300;
+  double samples = 0.0;
+  std::optional<SlowModel> noise = std::nullopt;  ///< the base beside it, where it was fitted again
+};
+
+/// What a quantity is in each member; empty where it is not known.
+struct Courses {
+  Against against = Against::Time;
+  std::vector<std::size_t> members;  ///< that have it
+  std::vector<Series> of;            ///< one per member of the group
+  std::vector<double> edge;
+};
+
+std::size_t bin_of(const std::vector<double>& edge, double x) {
+  const auto above = std::upper_bound(edge.begin(), edge.end(), x) - edge.begin();
+  return static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(edge.size()) - 2));
+}
+
+/// Between the values where there are few, else with equal numbers of them in each bin. Empty: all are alike.
+std::vector<double> edges_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::vector<double> distinct = values;
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  std::vector<double> edge;
+  if (distinct.size() < 2) {
+    return edge;
+  }
+  edge.push_back(distinct.front());
+  if (distinct.size() <= 2 * kQuantiles) {
+    for (std::size_t k = 1; k < distinct.size(); ++k) {
+      edge.push_back(0.5 * (distinct[k - 1] + distinct[k]));
+    }
+  } else {
+    for (std::size_t k = 1; k < kQuantiles; ++k) {
+      edge.push_back(values[k * values.size() / kQuantiles]);
+    }
+  }
+  edge.push_back(distinct.back());
+  edge.erase(std::unique(edge.begin(), edge.end()), edge.end());
+  return edge.size() > 2 ? edge : std::vector<double>{};
+}
+
+class UnnamedSearch {
+ public:
+  UnnamedSearch(const ChannelGroup& group, const FullRate& data, UnnamedScope scope)
+      : group_(group), data_(data), scope_(scope) {
+    if (scope == UnnamedScope::SpectrumAlone) {
+      return;
+    }
+    for (const Against against : kQuantities) {
+      if (Courses courses = courses_of(against); !courses.edge.empty()) {
+        courses_.push_back(std::move(courses));
+      }
+    }
+    tails_ = 1.0 + 0.5 * std::max(0.0, excess_kurtosis());
+  }
+
+  std::vector<UnnamedFinding> go() {
+    std::vector<UnnamedFinding> findings;
+    while (adopted_.size() < kMostAdopted && !data_.stopped()) {
+      std::vector<Candidate> all = candidates();
+      std::erase_if(all, [&](const Candidate& one) { return known(one.effect); });
+      if (adopted_.empty()) {
+        tried_ = static_cast<double>(std::max<std::size_t>(all.size(), 1));
+      }
+      std::erase_if(all, [&](const Candidate& one) { return one.gain < kAdopted + 2.0 * std::log(tried_); });
+      // A mean that is not taken off is in every spectrum and every variance: it comes first.
+      const auto best = std::max_element(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+        const bool mean_a = a.effect.kind == UnnamedKind::Mean;
+        const bool mean_b = b.effect.kind == UnnamedKind::Mean;
+        return mean_a != mean_b ? mean_b : a.gain < b.gain;
+      });
+      if (best == all.end()) {
+        break;
+      }
+      adopted_.push_back(best->effect);
+      if (best->noise) {
+        data_.model.components = in_all_members(*best);
+      }
+      findings.push_back(finding_of(*best));
+    }
+    return findings;
+  }
+
+ private:
+  [[nodiscard]] UnnamedFinding finding_of(const Candidate& candidate) const {
+    UnnamedFinding finding;
+    finding.effect = candidate.effect;
+    finding.heldout_gain = candidate.gain;
+    finding.chi_square = candidate.chi_square;
+    finding.samples = candidate.samples;
+    finding.sentence = sentence_of(candidate);
+    if (candidate.noise) {
+      finding.noise = in_all_members(candidate);
+    }
+    for (std::size_t k = 0; k < candidate.effect.value.size(); ++k) {
+      const double from = candidate.effect.edge[k];
+      const double to = candidate.effect.edge[k + 1];
+      const bool frequencies = candidate.effect.against == Against::Frequency;
+      finding.middle.push_back(frequencies ? std::sqrt(from * to) : 0.5 * (from + to));
+      finding.low.push_back(candidate.effect.value[k] - kNormal975 * candidate.se[k]);
+      finding.high.push_back(candidate.effect.value[k] + kNormal975 * candidate.se[k]);
+    }
+    return finding;
+  }
+
+  [[nodiscard]] bool known(const UnnamedEffect& effect) const {
+    return std::any_of(adopted_.begin(), adopted_.end(), [&](const UnnamedEffect& other) {
+      return other.kind == effect.kind && other.against == effect.against && other.recordings == effect.recordings;
+    });
+  }
+
+  [[nodiscard]] const StudyRecording& recording(std::size_t r) const { return *group_.members[r].recording; }
+
+  [[nodiscard]] double excess_kurtosis() const {
+    double count = 0.0;
+    double second = 0.0;
+    double fourth = 0.0;
+    for (std::size_t r = 0; r < data_.members(); ++r) {
+      for (std::size_t i = 0; i < data_.innovation[r].size(); ++i) {
+        if (data_.used[r][i] != 0) {
+          const double square = std::pow(std::clamp(data_.innovation[r][i], -kCut, kCut), 2.0);
+          count += 1.0;
+          second += square;
+          fourth += square * square;
+        }
+      }
+    }
+    return second > 0.0 ? fourth * count / (second * second) - 3.0 : 0.0;
+  }
+
+  [[nodiscard]] Courses courses_of(Against against) const {
+    Courses courses;
+    courses.against = against;
+    std::vector<double> looked;
+    for (std::size_t r = 0; r < group_.members.size(); ++r) {
+      const StudyRecording& own = recording(r);
+      const Series course = course_of(against, own, group_.axis());
+      courses.of.push_back(course.empty() ? Series() : course.part(own.begin, own.count()));
+      if (course.empty() || own.count() < kFewest) {
+        continue;
+      }
+      courses.members.push_back(r);
+      const std::size_t step = std::max<std::size_t>(1, own.count() * group_.members.size() / kLooked);
+      for (std::size_t i = 0; i < own.count(); i += step) {
+        looked.push_back(courses.of.back()[i]);
+      }
+    }
+    courses.edge = edges_of(std::move(looked));
+    return courses;
+  }
+
+  [[nodiscard]] Courses time_of(std::size_t r) const {
+    Courses courses;
+    courses.against = Against::Time;
+    courses.members = {r};
+    courses.of.resize(group_.members.size());
+    const StudyRecording& own = recording(r);
+    courses.of[r] = course_of(Against::Time, own, group_.axis()).part(own.begin, own.count());
+    for (std::size_t k = 0; k <= kTimeBins; ++k) {
+      courses.edge.push_back(own.time_s(own.begin) + static_cast<double>(k) / static_cast<double>(kTimeBins) *
+                                                         static_cast<double>(own.count()) * own.dt_s);
+    }
+    return courses;
+  }
+
+  [[nodiscard]] std::vector<Candidate> candidates() const {
+    std::vector<Candidate> all;
+    std::vector<std::size_t> whole(group_.members.size());
+    std::iota(whole.begin(), whole.end(), std::size_t{0});
+    for (const std::size_t bands : kBands) {
+      all.push_back(spectrum(whole, bands));
+    }
+    for (const Courses& courses : courses_) {
+      all.push_back(variance(courses));
+      all.push_back(mean(courses));
+    }
+    for (std::size_t r = 0; r < group_.members.size() && scope_ == UnnamedScope::All && !data_.stopped(); ++r) {
+      if (recording(r).count() < kFewest) {
+        continue;
+      }
+      const Courses time = time_of(r);
+      all.push_back(variance(time));
+      all.push_back(mean(time));
+      if (group_.members.size() > 1) {
+        all.push_back(spectrum({r}, kBands.front()));
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] UnnamedEffect effect_in(UnnamedKind kind, Against against,
+                                        const std::vector<std::size_t>& members) const {
+    UnnamedEffect effect;
+    effect.kind = kind;
+    effect.against = against;
+    effect.column = group_.column;
+    const bool one_of_them = members.size() < group_.members.size() || against == Against::Time;
+    for (const std::size_t r : members) {
+      if (one_of_them) {
+        effect.recordings.push_back(recording(r).id);
+      }
+    }
+    return effect;
+  }
+
+  /// The residual of a member less the means that were adopted.
+  [[nodiscard]] Series residual(std::size_t r) const {
+    std::vector<double> rest;
+    const StudyRecording& own = recording(r);
+    for (const UnnamedEffect& effect : adopted_) {
+      if (effect.kind != UnnamedKind::Mean || !acts_on(effect, group_.column, own.id)) {
+        continue;
+      }
+      const Series course = course_of(effect.against, own, group_.axis());
+      rest = rest.empty() ? data_.residual[r].values() : std::move(rest);
+      for (std::size_t i = 0; i < rest.size() && !course.empty(); ++i) {
+        rest[i] -= value_at(effect, course[own.begin + i]);
+      }
+    }
+    return rest.empty() ? data_.residual[r] : Series(std::move(rest));
+  }
+
+  /// Spectra of the halves of the members over those of the model.
+  [[nodiscard]] Candidate spectrum(const std::vector<std::size_t>& members, std::size_t bands) const {
+    Candidate candidate;
+    candidate.effect = effect_in(UnnamedKind::Spectrum, Against::Frequency, members);
+    double longest_s = 0.0;
+    for (const std::size_t r : members) {
+      longest_s = std::max(longest_s, 0.5 * data_.dt_s * static_cast<double>(data_.residual[r].size()));
+    }
+    const double low = kPeriods / longest_s;
+    const double high = 0.5 / data_.dt_s;
+    if (!(low < 0.5 * high)) {
+      return candidate;
+    }
+    std::vector<double>& edge = candidate.effect.edge;
+    for (std::size_t k = 0; k <= bands; ++k) {
+      edge.push_back(low * std::pow(high / low, static_cast<double>(k) / static_cast<double>(bands)));
+    }
+    std::array<std::vector<RatioBin>, 2> halves{std::vector<RatioBin>(bands), std::vector<RatioBin>(bands)};
+    for (const std::size_t r : members) {
+      if (data_.spectrum[r].power.empty() || data_.stopped()) {
+        continue;
+      }
+      const Series whole = residual(r);
+      const std::size_t half = whole.size() / 2;
+      for (std::size_t h = 0; h < 2; ++h) {
+        FullRate part = data_;
+        part.residual[r] = whole.part(h * half, half);
+        const auto first = data_.used[r].begin() + static_cast<std::ptrdiff_t>(h * half);
+        part.used[r].assign(first, first + static_cast<std::ptrdiff_t>(half));
+        set_spectrum(part, r, kPeriods / (static_cast<double>(half) * data_.dt_s));
+        add_ratios(part, r, edge, halves[h]);
+        candidate.samples += static_cast<double>(half);
+      }
+    }
+    judge(candidate, {halves.begin(), halves.end()});
+    return candidate;
+  }
+
+  void add_ratios(const FullRate& part, std::size_t r, const std::vector<double>& edge,
+                  std::vector<RatioBin>& bins) const {
+    const Spectrum& s = part.spectrum[r];
+    for (std::size_t j = 0; j < s.power.size(); ++j) {
+      const double limit =
+          part.colour.band_limited() ? butterworth_gain(s.f_hz[j], part.colour.corner_hz, part.dt_s) : 1.0;
+      const double rounding =
+          part.colour.band_limited() ? part.lattice_step * part.lattice_step / 12.0 * part.dt_s : 0.0;
+      double expected = part.model.white * limit + rounding + part.slow[r][j];
+      for (const UnnamedEffect& effect : adopted_) {
+        const bool shapes = effect.kind == UnnamedKind::Spectrum && acts_on(effect, group_.column, recording(r).id);
+        expected *= shapes ? value_at(effect, s.f_hz[j]) : 1.0;
+      }
+      bins[bin_of(edge, s.f_hz[j])] += {s.weight[j], s.weight[j] * s.power[j] / expected};
+    }
+  }
+
+  /// Fits to all parts but one and scores on that, for every part; then fits to all.
+  static void judge(Candidate& candidate, const std::vector<std::vector<RatioBin>>& parts) {
+    const auto sum_without = [&](std::size_t left_out) {
+      std::vector<RatioBin> sum(parts.front().size());
+      for (std::size_t p = 0; p < parts.size(); ++p) {
+        for (std::size_t b = 0; b < sum.size() && p != left_out; ++b) {
+          sum[b] += parts[p][b];
+        }
+      }
+      return sum;
+    };
+    candidate.gain = 0.0;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      candidate.gain += gain_of(profile_of(sum_without(p)), parts[p]);
+    }
+    const std::vector<RatioBin> whole = sum_without(parts.size());
+    for (const RatioBin& bin : whole) {
+      const double off = bin.weight > 0.0 ? bin.sum / bin.weight - 1.0 : 0.0;
+      candidate.chi_square += bin.weight * off * off;
+    }
+    RatioProfile all = profile_of(whole);
+    candidate.effect.value = std::move(all.value);
+    candidate.se = std::move(all.se);
+  }
+
+  /// Which part of a single recording a sample belongs to.
+  [[nodiscard]] static std::size_t part_of(const Courses& courses, std::size_t i, std::size_t count) {
+    const std::size_t segments = courses.against == Against::Time ? kTimeBins * kTurns : kSegments;
+    return i * segments / count % 2;
+  }
+
+  [[nodiscard]] Candidate variance(const Courses& courses) const {
+    Candidate candidate;
+    candidate.effect = effect_in(UnnamedKind::Variance, courses.against, courses.members);
+    candidate.effect.edge = courses.edge;
+    const std::size_t bins = courses.edge.size() - 1;
+    const bool alone = courses.members.size() == 1;
+    std::vector<std::vector<RatioBin>> parts(alone ? 2 : courses.members.size(), std::vector<RatioBin>(bins));
+    for (std::size_t m = 0; m < courses.members.size(); ++m) {
+      const std::size_t r = courses.members[m];
+      const StudyRecording& own = recording(r);
+      std::vector<std::pair<const UnnamedEffect*, Series>> taken;
+      for (const UnnamedEffect& effect : adopted_) {
+        if (effect.kind == UnnamedKind::Variance && acts_on(effect, group_.column, own.id)) {
+          taken.emplace_back(&effect, course_of(effect.against, own, group_.axis()).part(own.begin, own.count()));
+        }
+      }
+      const std::size_t count = data_.innovation[r].size();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (data_.used[r][i] == 0) {
+          continue;
+        }
+        const double e = std::clamp(data_.innovation[r][i], -kCut, kCut);
+        double square = e * e;
+        for (const auto& [effect, course] : taken) {
+          square /= value_at(*effect, course[i]);
+        }
+        // Two squares count as one ordinate, and those of a heavy tail for less.
+        parts[alone ? part_of(courses, i, count) : m][bin_of(courses.edge, courses.of[r][i])] +=
+            {0.5 / tails_, 0.5 / tails_ * square};
+        candidate.samples += 1.0;
+      }
+    }
+    judge(candidate, parts);
+    return candidate;
+  }
+
+  /// Amplitudes of the bins' means by generalised least squares, drawn towards 0 by their prior variance.
+  struct MeanFit {
+    Eigen::VectorXd amplitude;
+    Eigen::VectorXd se;
+  };
+  [[nodiscard]] static MeanFit fit_mean(const Eigen::MatrixXd& gram) {
+    const Eigen::Index bins = gram.rows() - 1;
+    Eigen::MatrixXd normal = gram.block(1, 1, bins, bins);
+    const double ridge = 1e-9 * std::max(normal.trace() / static_cast<double>(bins), 1e-300);
+    normal.diagonal().array() += ridge;
+    const Eigen::VectorXd moment = gram.col(0).segment(1, bins);
+    const Eigen::VectorXd plain = solve_symmetric(normal, moment);
+    // A constant in all bins is no profile, and has no information: of the error only what is orthogonal to it counts.
+    const Eigen::MatrixXd centre =
+        Eigen::MatrixXd::Identity(bins, bins) - Eigen::MatrixXd::Constant(bins, bins, 1.0 / static_cast<double>(bins));
+    const Eigen::VectorXd error = (centre * inverse(normal) * centre).diagonal().cwiseMax(0.0);
+    const Eigen::VectorXd centred = centre * plain;
+    const double prior = std::max(0.0, (centred.cwiseAbs2() - error).mean());
+    MeanFit fit{Eigen::VectorXd::Zero(bins), error.cwiseSqrt()};
+    if (prior > 0.0) {
+      normal.diagonal().array() += 1.0 / prior;
+      fit.amplitude = centre * solve_symmetric(normal, moment);
+    }
+    return fit;
+  }
+
+  /// Means of blocks of the residuals, and the bins that they lie in.
+  [[nodiscard]] Candidate mean(const Courses& courses) const {
+    Candidate candidate;
+    candidate.effect = effect_in(UnnamedKind::Mean, courses.against, courses.members);
+    candidate.effect.edge = courses.edge;
+    const std::size_t bins = courses.edge.size() - 1;
+    BlockSeries series;
+    series.dt_s = data_.dt_s;
+    series.block = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / (kBlockRateHz * data_.dt_s))));
+    BlockColumns columns;
+    columns.width = 1 + courses.members.size() + bins;  // the means, a constant of each recording, the bins
+    SlowModel noise = data_.model;
+    noise.white_scale.clear();
+    noise.white += 2.0 * data_.quantization / series.block_s();
+    for (SlowComponent& component : noise.components) {
+      component.in = in_members(component, courses.members);
+    }
+    for (std::size_t m = 0; m < courses.members.size(); ++m) {
+      add_blocks(courses, m, series, columns);
+      candidate.samples += static_cast<double>(data_.residual[courses.members[m]].size());
+    }
+    const BlockColumns without = narrowed(columns, 1 + courses.members.size());
+    SlowModel noise_without = noise;
+    // An automatic base has followed the effect as slow noise can: it is fitted again beside the profile.
+    if (!data_.given && courses.against != Against::Time && !noise.components.empty()) {
+      SlowFreedom freedom;
+      freedom.stop = data_.stop;
+      noise_without = fit_slow(series, without, noise, freedom).model;
+      noise = fit_slow(series, columns, noise, freedom).model;
+      candidate.noise = noise;
+    }
+    const std::vector<Eigen::MatrixXd> parts = parts_of(whiten(series, noise, columns), courses);
+    const Whitened plain = whiten(series, noise_without, without);
+    candidate.gain = 0.5 * (plain.sum_log_var - whiten(series, noise, without).sum_log_var);
+    for (const Eigen::MatrixXd& part : parts_of(plain, courses)) {
+      candidate.gain += 0.5 * part(0, 0);
+    }
+    const Eigen::Index size = static_cast<Eigen::Index>(bins) + 1;
+    const auto all = std::accumulate(parts.begin(), parts.end(), Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size)));
+    for (const Eigen::MatrixXd& part : parts) {
+      const Eigen::VectorXd a = fit_mean(all - part).amplitude;
+      candidate.gain += a.dot(part.col(0).segment(1, size - 1)) -
+                        0.5 * (part(0, 0) + a.dot(part.block(1, 1, size - 1, size - 1) * a));
+    }
+    const MeanFit fit = fit_mean(all);
+    candidate.effect.value.assign(fit.amplitude.begin(), fit.amplitude.end());
+    candidate.se.assign(fit.se.begin(), fit.se.end());
+    return candidate;
+  }
+
+  /// The first columns.
+  [[nodiscard]] static BlockColumns narrowed(const BlockColumns& columns, std::size_t width) {
+    BlockColumns first;
+    first.width = width;
+    for (const std::vector<double>& rows : columns.rows) {
+      std::vector<double>& own = first.rows.emplace_back();
+      for (std::size_t at = 0; at < rows.size(); at += columns.width) {
+        own.insert(own.end(), rows.begin() + static_cast<std::ptrdiff_t>(at),
+                   rows.begin() + static_cast<std::ptrdiff_t>(at + width));
+      }
+    }
+    return first;
+  }
+
+  /// Inner products of means and bins by the parts of the data, less what a constant of each part explains.
+  [[nodiscard]] static std::vector<Eigen::MatrixXd> parts_of(const Whitened& whitened, const Courses& courses) {
+    const bool alone = courses.members.size() == 1;
+    std::vector<Eigen::MatrixXd> parts;
+    for (std::size_t m = 0; m < courses.members.size(); ++m) {
+      for (std::size_t half = 0; half < (alone ? 2U : 1U); ++half) {
+        parts.push_back(centred_gram(
+            whitened.columns, m, courses.members.size(),
+            [&](std::size_t b, std::size_t blocks) { return !alone || part_of(courses, b, blocks) == half; }));
+      }
+    }
+    return parts;
+  }
+
+  /// The refitted components, in the recordings in which they acted before.
+  [[nodiscard]] std::vector<SlowComponent> in_all_members(const Candidate& candidate) const {
+    std::vector<SlowComponent> components = candidate.noise->components;
+    for (std::size_t k = 0; k < components.size(); ++k) {
+      components[k].in = data_.model.components[k].in;
+    }
+    return components;
+  }
+
+  [[nodiscard]] static std::vector<unsigned char> in_members(const SlowComponent& component,
+                                                             const std::vector<std::size_t>& members) {
+    std::vector<unsigned char> in;
+    for (const std::size_t r : members) {
+      in.push_back(component.acts_in(r) ? 1 : 0);
+    }
+    return in;
+  }
+
+  void add_blocks(const Courses& courses, std::size_t m, BlockSeries& series, BlockColumns& columns) const {
+    const std::size_t r = courses.members[m];
+    const Series values = residual(r);
+    const StudyRecording& own = recording(r);
+    const double noise = 1.0 + noise_of_reference(group_.members[r]);
+    const std::size_t constants = courses.members.size();
+    BlockRecording blocks;
+    blocks.first = own.begin;
+    blocks.start_s = own.time_s(own.begin);
+    blocks.pattern = series.recordings.size();
+    std::vector<double>& rows = columns.rows.emplace_back();
+    for (std::size_t from = 0; from + series.block <= values.size(); from += series.block) {
+      double sum = 0.0;
+      double count = 0.0;
+      for (std::size_t i = from; i < from + series.block; ++i) {
+        sum += data_.used[r][i] != 0 ? values[i] : 0.0;
+        count += data_.used[r][i] != 0 ? 1.0 : 0.0;
+      }
+      const double filled = count / static_cast<double>(series.block);
+      const bool counts = filled >= 0.25;
+      blocks.mean.push_back(counts ? sum / count : 0.0);
+      blocks.filled.push_back(counts ? filled / noise : 0.0);
+      const std::size_t row = rows.size();
+      rows.resize(row + columns.width, 0.0);
+      rows[row] = blocks.mean.back();
+      rows[row + 1 + m] = 1.0;
+      rows[row + 1 + constants + bin_of(courses.edge, courses.of[r][from + series.block / 2])] = 1.0;
+    }
+    series.recordings.push_back(std::move(blocks));
+  }
+
+  /// Inner products of means and bins over the rows of recording m that `takes` picks, less what the constant of these
+  /// rows explains: each recording has a bias of its own.
+  template <class Takes>
+  [[nodiscard]] static Eigen::MatrixXd centred_gram(const BlockColumns& whitened, std::size_t m, std::size_t constants,
+                                                    const Takes& takes) {
+    const auto width = static_cast<Eigen::Index>(whitened.width);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
+    const std::vector<double>& rows = whitened.rows[m];
+    const std::size_t blocks = rows.size() / whitened.width;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      if (takes(b, blocks)) {
+        const Eigen::Map<const Eigen::VectorXd> row(rows.data() + b * whitened.width, width);
+        gram.noalias() += row * row.transpose();
+      }
+    }
+    const auto constant = static_cast<Eigen::Index>(1 + m);
+    const double own = gram(constant, constant);
+    if (own > 0.0) {
+      gram -= Eigen::MatrixXd(gram.col(constant) * gram.row(constant) / own);
+    }
+    const Eigen::Index bins = width - 1 - static_cast<Eigen::Index>(constants);
+    Eigen::MatrixXd centred(bins + 1, bins + 1);
+    centred(0, 0) = gram(0, 0);
+    centred.block(0, 1, 1, bins) = gram.topRightCorner(1, bins);
+    centred.block(1, 0, bins, 1) = gram.bottomLeftCorner(bins, 1);
+    centred.block(1, 1, bins, bins) = gram.bottomRightCorner(bins, bins);
+    return centred;
+  }
+
+  /// Where the profile is most sure to be above the model and below it, and how large it is there.
+  [[nodiscard]] std::string sentence_of(const Candidate& candidate) const {
+    constexpr double kSure = 3.0;
+    const UnnamedEffect& effect = candidate.effect;
+    const bool mean = effect.kind == UnnamedKind::Mean;
+    const ProfileUnit along = unit_of(effect.against);
+    const LabUnit unit = level_unit(group_.unit);
+    std::vector<std::string> ends;
+    for (const double sign : {1.0, -1.0}) {
+      double surest = kSure;
+      std::string end;
+      for (std::size_t k = 0; k < effect.value.size(); ++k) {
+        const double z = sign * (effect.value[k] - (mean ? 0.0 : 1.0)) / candidate.se[k];
+        if (z > surest) {
+          surest = z;
+          end = mean ? significant(effect.value[k] * unit.per_si) + " " + unit.symbol : significant(effect.value[k]);
+          end += (mean ? " at " : " times at ") + significant(along.to_lab(effect.edge[k])) + " to " +
+                 significant(along.to_lab(effect.edge[k + 1])) + " " + along.symbol;
+        }
+      }
+      if (!end.empty()) {
+        ends.push_back(std::move(end));
+      }
+    }
+    const std::string of = "of " + effect.column + " " +
+                           (effect.recordings.empty()       ? "in all recordings"
+                            : effect.recordings.size() == 1 ? "in " + effect.recordings.front()
+                                                            : "in the recordings that tell it");
+    const std::string where = ends.empty()       ? "a little everywhere"
+                              : ends.size() == 1 ? ends[0]
+                                                 : ends[0] + " and " + ends[1];
+    switch (effect.kind) {
+      case UnnamedKind::Spectrum:
+        return "The noise " + of + " has another density than the model's: " + where;
+      case UnnamedKind::Variance:
+        return "The power of the noise " + of + " goes with " + std::string(words_of(effect.against)) +
+               ", over that of the model: " + where;
+      case UnnamedKind::Mean:
+        break;
+    }
+    return "The mean " + of + " goes with " + std::string(words_of(effect.against)) + ": " + where;
+  }
+
+  const ChannelGroup& group_;
+  FullRate data_;  ///< a copy, of which the base may be fitted again
+  UnnamedScope scope_;
+  std::vector<Courses> courses_;
+  std::vector<UnnamedEffect> adopted_;
+  double tails_ = 1.0;
+  double tried_ = 1.0;
+};
+
+}  // namespace
+
+std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data, UnnamedScope scope) {
+  return UnnamedSearch(group, data, scope).go();
+}
+
+}  // namespace driftlab::investigate
