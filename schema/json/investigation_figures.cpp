@@ -1,6 +1,7 @@
 #include "schema/json/investigation_figures.hpp"
 
 #include "core/analysis/drawn_values.hpp"
+#include "core/investigate/unnamed/unnamed_effect.hpp"
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
@@ -127,6 +128,28 @@ Figure course(const Json& series, const std::string& title, const std::string& u
                    "Means of the error over time in one recording, and the effect that was found.", {std::move(plot)});
 }
 
+/// A profile that the extended model holds without a name.
+Figure profile(const Json& found, const std::string& name) {
+  const auto kind = found.at("kind").get<std::string>();
+  const bool mean = kind == "mean";
+  Series bins{.name = "measured", .x = numbers_of(found.at("middles")), .y = values_of(found.at("values"))};
+  bins.low = values_of(found.at("q025"));
+  bins.high = values_of(found.at("q975"));
+  bins.mark = Mark::Dot;
+  const auto against = found.at("against").get<std::string>();
+  const auto known = investigate::unnamed_against(against);
+  Plot plot{.x = {against == "frequency" ? ScaleKind::Log : ScaleKind::Linear,
+                  (known ? std::string(words_of(*known)) : against) + ", " +
+                      printed_unit(found.at("along").get<std::string>())}};
+  plot.y = {ScaleKind::Linear, mean                 ? "mean, " + printed_unit(found.value("unit", ""))
+                               : kind == "variance" ? "power of the noise ÷ model"
+                                                    : "density ÷ model"};
+  plot.rules = {mean ? 0.0 : 1.0};
+  plot.series = {std::move(bins)};
+  plot.height = kHeight;
+  return figure_of(name + ": without a name", found.at("explanation").get<std::string>() + ".", {std::move(plot)});
+}
+
 }  // namespace
 
 std::vector<NamedFigure> figures_of_investigation(const Json& document, const std::string& channel) {
@@ -141,6 +164,15 @@ std::vector<NamedFigure> figures_of_investigation(const Json& document, const st
     figures.push_back({word(name + "-spectrum"), spectrum(series, name)});
     figures.push_back({word(name + "-wavelet"), wavelets(series, name)});
     figures.push_back({word(name + "-course"), course(series, name, unit)});
+  }
+  for (const Json& found : document.value("unnamed", Json::array())) {
+    const auto name = found.at("channel").get<std::string>();
+    if (channel.empty() || name == channel) {
+      figures.push_back(
+          {word(name + "-" + found.at("kind").get<std::string>() + "-" + found.at("against").get<std::string>() + "-" +
+                (found.contains("recordings") ? found.at("recordings").at(0).get<std::string>() : "all")),
+           profile(found, name)});
+    }
   }
   return figures;
 }

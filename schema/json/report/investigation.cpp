@@ -110,6 +110,11 @@ std::string investigation_html(const Json& document) {
     sentences.push_back(text_of(one, "explanation"));
   }
   text += sentences.empty() ? "" : "<h2>Unexplained</h2>\n" + list_html(sentences);
+  Json profiles = Json::array();
+  for (const Json& one : document.value("unnamed", Json::array())) {
+    profiles.push_back(text_of(one, "explanation"));
+  }
+  text += profiles.empty() ? "" : "<h2>In the extended model without a name</h2>\n" + list_html(profiles);
   text += figures_html(document) + checks_html(document.value("checks", Json::array())) +
           extended_html(document.value("extended_model", Json::object()));
   std::string unseen;

@@ -16,6 +16,7 @@ import {useTitle} from '../shell/title';
 import {Checks} from './investigation/Checks';
 import {axisOf, causeName, checkKind, columnOf, keyOf, type Finding, type Investigation} from './investigation/documents';
 import {Measured} from './investigation/Measured';
+import {Unnamed} from './investigation/Unnamed';
 
 const MOST_BAR = 1000;
 
@@ -97,6 +98,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
     {groups.map(([cause, list], i) => <Panel key={cause} title={capital(causeName(cause))} sub={`${list.every(finding => finding.status === 'identified') ? 'identified' : 'ambiguous'} · ${plural(list.length, 'finding')}`} tools={i === 0 ? <Tools title="The search" onCsv={table} curl={curlOf(`/v1/investigations/${found.id}`)} how={() => <p>Every listed cause is sought in the recordings, estimated, held out and compared with its rivals; checks compare the recordings with simulations of the baseline, corrected for their number. <a href="/docs/analysis">The manual</a> tells how.</p>} /> : undefined}>
       <ul class="rows plain">{list.map((finding, j) => <FindingRow key={j} finding={finding} id={keyOf(finding, found.findings)} names={names} total={ids.size} />)}</ul>
     </Panel>)}
+    <Unnamed found={found} />
     <div class="grid two">
       <Drawn name={`${found.id}-checks`} title="Checks" sub={`${found.checks.length} made, ${gain.checks_failed_before} failed`} source={`driftlab, ${found.id}`} curl={curlOf(`/v1/investigations/${found.id}`)} table={() => checkTable(found, names)}><Checks found={found} names={names} /></Drawn>
       <NotExamined found={found} />

@@ -15,11 +15,12 @@ export interface Finding {
 }
 export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean; failed_after?: boolean; end?: 'finding' | 'mended' | 'unexplained' | null }
 export interface Model { processes: {process: string; params: Record<string, Quantity>}[]; effects?: {cause: string; channels: string[]; params: Record<string, Quantity>}[] }
+export interface Profile { kind: 'spectrum' | 'variance' | 'mean'; against: string; along: string; channel: string; unit?: string; edges: number[]; middles: number[]; values: Nullable; q025: Nullable; q975: Nullable; gain: {log_score: number | null}; explanation: string }
 export interface Investigation {
   study: string; id: string; job: string; device: string; baseline_model?: string; model?: string; created_at: string; baseline: Model; extended_model: Model; checks: Check[]; findings: Finding[];
   summary?: {verdict: string; details: string[]; level: string}; figures?: SeriesDocument[];
   gain: {misfit_before: number | null; misfit_after: number | null; checks_failed_before: number; checks_failed_after: number; explained?: number | null; outage_error_m: {baseline: number | null; extended: number | null; measured: number | null; adopted?: number | null; ci95?: {baseline?: Nullable; extended?: Nullable; adopted?: Nullable}; left_out?: string[]}};
-  unexplained: {channel: string; explanation: string; checks: string[]}[]; not_examined?: {cause: string; channel: string; needs: string}[]; notes?: string[];
+  unexplained: {channel: string; explanation: string; checks: string[]}[]; unnamed?: Profile[]; not_examined?: {cause: string; channel: string; needs: string}[]; notes?: string[];
 }
 export interface InvestigationRow { id: string; job: string; device: string; study: string; created_at: string; findings: {cause: string; status: string; channels: string[]}[] }
 
