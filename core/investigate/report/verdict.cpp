@@ -111,7 +111,10 @@ Verdict verdict_of(const Report& report) {
     if (std::exchange(told, found.effect.column) == found.effect.column) {
       continue;
     }
-    verdict.details.push_back(found.sentence + ". The extended model holds this without a name.");
+    const bool said = std::any_of(report.unexplained.begin(), report.unexplained.end(),
+                                  [&](const Unexplained& left) { return left.sentence.starts_with(found.sentence); });
+    verdict.details.push_back(said ? "The extended model holds this of " + found.effect.column + " without a name."
+                                   : found.sentence + ". The extended model holds this without a name.");
   }
   verdict.facts.emplace_back("/gain/checks_failed_before", static_cast<double>(report.failed_before));
   verdict.facts.emplace_back("/gain/checks_failed_after", static_cast<double>(report.failed_after));

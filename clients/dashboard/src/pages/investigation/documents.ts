@@ -36,7 +36,9 @@ export const columnOf = (channel: string): string => channel.replace(/^rec_[0-9A
 export const axisOf = (channel: string): string => /(?:^|[^a-z])([xyz])(?:[^a-z]|$)/i.exec(columnOf(channel).replace(/_/g, ' '))?.[1]?.toLowerCase() ?? columnOf(channel);
 // The kind of a check: what follows the channel; scales are written as times.
 export function checkKind(check: Check): string {
-  const tail = check.id.slice(check.id.lastIndexOf(check.channel) + check.channel.length + 1);
+  // A column may be called "2", which a scale of 0.32 s holds too.
+  const stem = [`${check.recording}/${check.channel}.`, `${check.channel}.`].find(each => check.id.startsWith(each));
+  const tail = check.id.slice(stem?.length ?? check.id.lastIndexOf(check.channel) + check.channel.length + 1);
   const scale = /^wavelet_variance_(.+)s$/.exec(tail);
   return scale ? `${Number(scale[1]).toPrecision(2)} s` : causeName(tail);
 }
