@@ -15,7 +15,6 @@
 #include "core/investigate/search/join_axes.hpp"
 #include "core/investigate/search/right_recordings.hpp"
 #include "core/investigate/search/thresholds.hpp"
-#include "core/process/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -177,17 +176,7 @@ struct Taken {
   std::vector<MeasuredFigures> figures;
   std::vector<Remainder> remains;  ///< of all of them
   std::vector<UnnamedFinding> unnamed;
-  std::vector<UnnamedFinding> densities;  ///< that differ where every check passes
 };
-
-/// Whether it is worth while to look for profiles: something of the channel fails, were it the only test of the study.
-bool leaves_something(const ChannelChecks& channel, const std::vector<Remainder>& remains) {
-  constexpr double kWorthwhile = 0.001;
-  return std::any_of(channel.checks.begin(), channel.checks.end(),
-                     [](const Check& check) { return check.p_after < kWorthwhile; }) ||
-         std::any_of(remains.begin(), remains.end(),
-                     [](const Remainder& one) { return one.places * std::exp(-one.observed) < kWorthwhile; });
-}
 
 /// The base beside the means that were found without a name. What is left of a process that had followed one of them,
 /// and lies below a fiftieth of the white density at every frequency of the longest recording, is left out.
@@ -221,14 +210,7 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   outcome.before = {};
   if (outcome.usable && !stop.stop_requested()) {
     std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
-    bool fails = leaves_something(taken.checks.back(), remains);
-    if (!fails) {
-      const std::vector<UnnamedFinding> density = find_unnamed(group, outcome.after, UnnamedScope::SpectrumAlone);
-      fails = !density.empty();  // it may be a mean that nobody has taken off: all profiles are tried then
-      taken.densities.insert(taken.densities.end(), density.begin(), density.end());
-    }
-    std::vector<UnnamedFinding> unnamed =
-        fails ? find_unnamed(group, outcome.after, UnnamedScope::All) : std::vector<UnnamedFinding>{};
+    std::vector<UnnamedFinding> unnamed = find_unnamed(group, outcome.after);
     take_refitted_noise(unnamed, outcome);
     taken.unnamed.insert(taken.unnamed.end(), std::make_move_iterator(unnamed.begin()),
                          std::make_move_iterator(unnamed.end()));
@@ -238,24 +220,23 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   outcome.after.residual.clear();
 }
 
-/// The check that a spectrum without a name has failed, and the sentence. An automatic base is whitened once more
-/// before the other checks are made (fullrate/full_rate.hpp), and they cannot see that its density is another.
-void report_density(const UnnamedFinding& found, Report& report) {
-  const double bands = static_cast<double>(found.effect.value.size());
+/// The check that a profile without a name has failed, and the sentence.
+void report_profile(const UnnamedFinding& found, double chance, Report& report) {
   Check check;
-  check.id = found.effect.column + ".density";
-  check.title = "density of the noise in " + std::to_string(found.effect.value.size()) + " bands";
+  check.id = found.effect.column + ".";
+  check.id.append(name_of(found.effect.kind)).append("_").append(name_of(found.effect.against));
+  check.title = std::string(name_of(found.effect.kind)) + " by " + std::string(words_of(found.effect.against));
   check.channel = found.effect.column;
-  check.observed = found.chi_square;
-  check.q025 = chi_squared_quantile(0.025, bands);
-  check.median = chi_squared_quantile(0.5, bands);
-  check.q975 = chi_squared_quantile(0.975, bands);
-  check.p = chi_squared_tail(found.chi_square, bands);
-  check.p_adjusted = std::min(1.0, check.p * static_cast<double>(report.checks.size() + 1));
+  check.observed = found.heldout_gain;
+  const auto quantile = [&](double p) { return std::max(0.0, 2.0 * std::log(found.tried / (1.0 - p))); };
+  check.median = quantile(0.5);
+  check.q975 = quantile(0.975);
+  check.p = found.chance();
+  check.p_adjusted = chance;
   check.failed = true;
   check.observed_after = check.observed;
   check.p_after = check.p;
-  check.p_after_adjusted = check.p_adjusted;
+  check.p_after_adjusted = chance;
   check.failed_after = true;
   check.end = CheckEnd::Unexplained;
   ++report.failed_before;
@@ -265,20 +246,17 @@ void report_density(const UnnamedFinding& found, Report& report) {
       {found.effect.column, found.sentence + ". No cause of the list explains it.", {check.id}});
 }
 
-/// Of the profiles those of channels in which something stays unexplained: where every check passes, the model is right
-/// for all that can be shown. A spectrum that differs much is shown by itself.
-void extend_without_names(std::vector<UnnamedFinding> unnamed, const std::vector<UnnamedFinding>& densities,
-                          Report& report) {
-  constexpr double kMuch = 0.1;
+/// Of the profiles those of channels in which something stays unexplained, and those that show something by themselves:
+/// by their chance over all channels, and by their size.
+void extend_without_names(std::vector<UnnamedFinding> unnamed, std::size_t channels, Report& report) {
   const auto is_unexplained = [&](const UnnamedFinding& one) {
     return std::any_of(report.unexplained.begin(), report.unexplained.end(),
                        [&](const Unexplained& left) { return left.channel == one.effect.column; });
   };
-  for (const UnnamedFinding& one : densities) {
-    const bool much = std::any_of(one.effect.value.begin(), one.effect.value.end(),
-                                  [](double ratio) { return std::fabs(ratio - 1.0) > kMuch; });
-    if (much && !is_unexplained(one)) {
-      report_density(one, report);
+  for (const UnnamedFinding& one : unnamed) {
+    const double chance = std::min(1.0, one.chance() * static_cast<double>(channels));
+    if (chance < kShown && is_of_size(one) && !is_unexplained(one)) {
+      report_profile(one, chance, report);
     }
   }
   std::erase_if(unnamed, [&](const UnnamedFinding& one) { return !is_unexplained(one); });
@@ -373,7 +351,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   control.report("checks", 0.95);
   make_checks(groups, outcomes, taken.checks, examined, report);
   const std::vector<Remainder> remains = what_remains(groups, outcomes, seen, std::move(taken.remains));
-  doubt_what_is_not_earned(groups, taken.means, remains, report, found);
+  doubt_what_is_not_earned(groups, taken.means, remains, taken.unnamed, report, found);
   if (control.stop.stop_requested()) {
     return cancelled();
   }
@@ -394,7 +372,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
     report.outages = *std::move(outages);
   }
   report_remains(remains, report);
-  extend_without_names(std::move(taken.unnamed), taken.densities, report);
+  extend_without_names(std::move(taken.unnamed), groups.size(), report);
   report_recordings(righted, report);
   report.summary = verdict_of(report);
   return report;

@@ -60,6 +60,33 @@ std::string carried_by(const Evidence& evidence, const ChannelGroup& group, cons
   return own > kAlone * all ? group.members[most].recording->id : std::string();
 }
 
+/// What a profile is of is what the cause is of.
+bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
+  switch (kind) {
+    case UnnamedKind::Spectrum:
+      return cause.as<SpectralPeak>() != nullptr || cause.as<BandLimit>() != nullptr ||
+             cause.as<DifferencedNoise>() != nullptr || cause.as<SlowNoise>() != nullptr;
+    case UnnamedKind::Variance:
+      return cause.as<NoiseLevel>() != nullptr || cause.as<NoiseTails>() != nullptr;
+    case UnnamedKind::Mean:
+      break;
+  }
+  return cause.as<MeanEffect>() != nullptr || cause.as<SlowNoise>() != nullptr || cause.as<SpectralLine>() != nullptr;
+}
+
+/// What is left is a rival of a finding from this share of its gain on. Chosen, not measured.
+constexpr double kShare = 1.0 / 3.0;
+
+/// A profile that shows itself predicts as much.
+bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& unnamed,
+              std::size_t channels) {
+  return std::any_of(unnamed.begin(), unnamed.end(), [&](const UnnamedFinding& one) {
+    return one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) && is_of_size(one) &&
+           one.chance() * static_cast<double>(channels) < kShown &&
+           one.heldout_gain > kShare * std::max(evidence.heldout_gain, 0.0);
+  });
+}
+
 /// Why one finding is not earned; empty: it is.
 std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& means,
                      const std::vector<Remainder>& remains, const Report& report) {
@@ -79,7 +106,16 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
   const auto left = std::find_if(remains.begin(), remains.end(), [&](const Remainder& remainder) {
     return remainder.channel == group.column && remainder.in_time_or_frequency && remainder.p_study < kClear;
   });
-  return left != remains.end() ? "with it in the model the noise of " + group.column + " still changes" : std::string();
+  if (left != remains.end()) {
+    return "with it in the model the noise of " + group.column + " still changes";
+  }
+  const bool lopsided = std::any_of(remains.begin(), remains.end(), [&](const Remainder& remainder) {
+    return remainder.id == group.column + ".skewness" && remainder.p_study < kClear &&
+           remainder.observed > kShare * std::max(evidence.heldout_gain, 0.0);
+  });
+  return lopsided && evidence.cause->as<NoiseTails>() != nullptr
+             ? "errors of " + group.column + " to one side are larger than to the other"
+             : std::string();
 }
 
 }  // namespace
@@ -97,15 +133,25 @@ std::vector<double> means_of(const FullRate& before) {
 }
 
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
-                              const std::vector<Remainder>& remains, const Report& report,
-                              std::vector<Evidence>& found) {
+                              const std::vector<Remainder>& remains, const std::vector<UnnamedFinding>& unnamed,
+                              const Report& report, std::vector<Evidence>& found) {
   for (Evidence& evidence : found) {
     if (is_fact(*evidence.cause)) {
       continue;
     }
     evidence.doubt = doubt_of(evidence, groups[evidence.group], means[evidence.group], remains, report);
+    if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], unnamed, groups.size())) {
+      evidence.doubt = "a profile that has no name predicts the recordings beside it";
+    }
     evidence.ambiguous = evidence.ambiguous || !evidence.doubt.empty();
   }
+}
+
+bool is_of_size(const UnnamedFinding& found) {
+  constexpr double kMuch = 0.1;
+  return found.effect.kind == UnnamedKind::Mean ||
+         std::any_of(found.effect.value.begin(), found.effect.value.end(),
+                     [](double ratio) { return std::fabs(ratio - 1.0) > kMuch; });
 }
 
 }  // namespace driftlab::investigate

@@ -7,7 +7,10 @@
 ///   - a bias that differs from recording to recording differs in one alone, of four or more: more than 95 % of the sum
 ///     of squares about the median is one recording's;
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
-///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp).
+///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
+///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;
+///   - a profile without a name (unnamed/unnamed_search.hpp) of what the finding is of (the mean, the level or the
+///     spectrum of the noise) shows itself and predicts at least a third as much as the finding does.
 /// Facts of a file and faults of a recording are never doubted.
 #include "core/investigate/report/remains.hpp"
 #include "core/investigate/report/report.hpp"
@@ -22,7 +25,11 @@ namespace driftlab::investigate {
 /// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of
 /// failed checks.
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
-                              const std::vector<Remainder>& remains, const Report& report,
-                              std::vector<Evidence>& found);
+                              const std::vector<Remainder>& remains, const std::vector<UnnamedFinding>& unnamed,
+                              const Report& report, std::vector<Evidence>& found);
+
+/// Whether a profile without a name differs enough from the model to be told where every check passes: by 10 % of a
+/// density or of a power somewhere; a mean always does.
+[[nodiscard]] bool is_of_size(const UnnamedFinding& found);
 
 }  // namespace driftlab::investigate

@@ -11,6 +11,21 @@ constexpr double kLeast = 0.02;  ///< ratio: what is deeper is told as this deep
 
 }  // namespace
 
+double level_of(const std::vector<RatioBin>& bins) {
+  RatioBin all;
+  for (const RatioBin& bin : bins) {
+    all += bin;
+  }
+  return all.weight > 0.0 && all.sum > 0.0 ? all.sum / all.weight : 1.0;
+}
+
+std::vector<RatioBin> at_level(std::vector<RatioBin> bins, double level) {
+  for (RatioBin& bin : bins) {
+    bin.sum /= level;
+  }
+  return bins;
+}
+
 RatioProfile profile_of(const std::vector<RatioBin>& bins) {
   RatioProfile profile;
   double square = 0.0;

@@ -17,6 +17,11 @@ struct RatioBin {
   }
 };
 
+/// The mean ratio of all bins: under an automatic base a level that is no part of a profile.
+[[nodiscard]] double level_of(const std::vector<RatioBin>& bins);
+/// The bins of ratios over `level`.
+[[nodiscard]] std::vector<RatioBin> at_level(std::vector<RatioBin> bins, double level);
+
 struct RatioProfile {
   std::vector<double> value;  ///< drawn towards 1
   std::vector<double> se;     ///< of the plain ratios

@@ -19,25 +19,26 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr std::array<std::size_t, 2> kBands{14, 42};  ///< spec/trust-notes.md, section 7, as the next two
-constexpr std::size_t kQuantiles = 12;                ///< bins of a quantity
-constexpr double kAdopted = 6.0;                      ///< [nat], beside 2 ln(tried)
-constexpr double kPeriods = 4.0;                      ///< of the lowest frequency in half a recording
-constexpr std::size_t kTimeBins = 32;                 ///< chosen, not measured, as all that follow
-constexpr std::size_t kTurns = 8;                     ///< of the folds within a bin of time
-constexpr std::size_t kSegments = 128;                ///< of a single recording that take turns
-constexpr std::size_t kMostAdopted = 3;               ///< of a channel
-constexpr double kCut = 5.0;                          ///< innovations: gross values are no level
-constexpr double kBlockRateHz = 5.0;                  ///< of the means
-constexpr std::size_t kFewest = 2'000;                ///< samples that a profile is made of
-constexpr std::size_t kLooked = 20'000;               ///< values by which bins are placed
+constexpr std::array<int, 3> kBands{14, 42, -40};  ///< spec/trust-notes.md, section 7, as the next two
+constexpr std::size_t kQuantiles = 12;             ///< bins of a quantity
+constexpr double kAdopted = 6.0;                   ///< [nat], beside 2 ln(tried)
+constexpr double kPeriods = 4.0;                   ///< of the lowest frequency in half a recording
+constexpr std::size_t kTimeBins = 32;              ///< chosen, not measured, as all that follow
+constexpr std::size_t kTurns = 8;                  ///< of the folds within a bin of time
+constexpr std::size_t kSegments = 128;             ///< of a single recording that take turns
+constexpr std::size_t kMostAdopted = 3;            ///< of a channel
+constexpr double kCut = 5.0;                       ///< innovations: gross values are no level
+constexpr std::size_t kMostBlocks = 20'000;
+constexpr double kPassed = 0.05;  ///< of the white noise: what a band limit leaves less of is the last digit's rounding
+constexpr double kBlockRateHz = 5.0;     ///< of the means
+constexpr std::size_t kFewest = 2'000;   ///< samples that a profile is made of
+constexpr std::size_t kLooked = 20'000;  ///< values by which bins are placed
 
 constexpr std::array kQuantities{Against::Rate, Against::RateChange, Against::Temperature, Against::Angle};
 
 struct Candidate {
   UnnamedEffect effect;
   std::vector<double> se;
-  double chi_square = 0.0;
   double gain = -1e300;
   double samples = 0.0;
   std::optional<SlowModel> noise = std::nullopt;  ///< the base beside it, where it was fitted again
@@ -83,16 +84,13 @@ std::vector<double> edges_of(std::vector<double> values) {
 
 class UnnamedSearch {
  public:
-  UnnamedSearch(const ChannelGroup& group, const FullRate& data, UnnamedScope scope)
-      : group_(group), data_(data), scope_(scope) {
-    if (scope == UnnamedScope::SpectrumAlone) {
-      return;
-    }
+  UnnamedSearch(const ChannelGroup& group, const FullRate& data) : group_(group), data_(data) {
     for (const Against against : kQuantities) {
       if (Courses courses = courses_of(against); !courses.edge.empty()) {
         courses_.push_back(std::move(courses));
       }
     }
+    lines_.resize(group.members.size());
     tails_ = 1.0 + 0.5 * std::max(0.0, excess_kurtosis());
   }
 
@@ -115,6 +113,9 @@ class UnnamedSearch {
         break;
       }
       adopted_.push_back(best->effect);
+      if (best->effect.kind == UnnamedKind::Mean) {
+        lines_.assign(group_.members.size(), std::nullopt);
+      }
       if (best->noise) {
         data_.model.components = in_all_members(*best);
       }
@@ -128,7 +129,7 @@ class UnnamedSearch {
     UnnamedFinding finding;
     finding.effect = candidate.effect;
     finding.heldout_gain = candidate.gain;
-    finding.chi_square = candidate.chi_square;
+    finding.tried = tried_;
     finding.samples = candidate.samples;
     finding.sentence = sentence_of(candidate);
     if (candidate.noise) {
@@ -209,14 +210,14 @@ class UnnamedSearch {
     std::vector<Candidate> all;
     std::vector<std::size_t> whole(group_.members.size());
     std::iota(whole.begin(), whole.end(), std::size_t{0});
-    for (const std::size_t bands : kBands) {
+    for (const int bands : kBands) {
       all.push_back(spectrum(whole, bands));
     }
     for (const Courses& courses : courses_) {
       all.push_back(variance(courses));
       all.push_back(mean(courses));
     }
-    for (std::size_t r = 0; r < group_.members.size() && scope_ == UnnamedScope::All && !data_.stopped(); ++r) {
+    for (std::size_t r = 0; r < group_.members.size() && !data_.stopped(); ++r) {
       if (recording(r).count() < kFewest) {
         continue;
       }
@@ -263,7 +264,7 @@ class UnnamedSearch {
   }
 
   /// Spectra of the halves of the members over those of the model.
-  [[nodiscard]] Candidate spectrum(const std::vector<std::size_t>& members, std::size_t bands) const {
+  [[nodiscard]] Candidate spectrum(const std::vector<std::size_t>& members, int asked) const {
     Candidate candidate;
     candidate.effect = effect_in(UnnamedKind::Spectrum, Against::Frequency, members);
     double longest_s = 0.0;
@@ -276,14 +277,39 @@ class UnnamedSearch {
       return candidate;
     }
     std::vector<double>& edge = candidate.effect.edge;
+    const auto bands = static_cast<std::size_t>(std::abs(asked));
     for (std::size_t k = 0; k <= bands; ++k) {
-      edge.push_back(low * std::pow(high / low, static_cast<double>(k) / static_cast<double>(bands)));
+      const double share = static_cast<double>(k) / static_cast<double>(bands);
+      edge.push_back(asked > 0 ? low * std::pow(high / low, share) : low + (high - low) * share);
     }
-    std::array<std::vector<RatioBin>, 2> halves{std::vector<RatioBin>(bands), std::vector<RatioBin>(bands)};
+    std::vector<std::vector<RatioBin>> halves(2, std::vector<RatioBin>(bands));
     for (const std::size_t r : members) {
       if (data_.spectrum[r].power.empty() || data_.stopped()) {
         continue;
       }
+      const auto& lines = lines_of(r);
+      for (std::size_t h = 0; h < 2; ++h) {
+        for (const Line& line : lines[h]) {
+          halves[h][bin_of(edge, line.f_hz)] += {line.weight, line.weight * line.ratio / shaped(r, line.f_hz)};
+        }
+      }
+      candidate.samples += static_cast<double>(data_.residual[r].size());
+    }
+    judge(candidate, halves);
+    return candidate;
+  }
+
+  /// A bin of a spectrum: its ordinates, and their mean over the density of the model.
+  struct Line {
+    double f_hz, weight, ratio;
+  };
+  using Halves = std::array<std::vector<Line>, 2>;
+
+  /// The spectra of the halves of a member, worked out once for the means that were adopted.
+  const Halves& lines_of(std::size_t r) const {
+    std::optional<Halves>& lines = lines_[r];
+    if (!lines) {
+      lines.emplace();
       const Series whole = residual(r);
       const std::size_t half = whole.size() / 2;
       for (std::size_t h = 0; h < 2; ++h) {
@@ -292,33 +318,39 @@ class UnnamedSearch {
         const auto first = data_.used[r].begin() + static_cast<std::ptrdiff_t>(h * half);
         part.used[r].assign(first, first + static_cast<std::ptrdiff_t>(half));
         set_spectrum(part, r, kPeriods / (static_cast<double>(half) * data_.dt_s));
-        add_ratios(part, r, edge, halves[h]);
-        candidate.samples += static_cast<double>(half);
+        const Spectrum& s = part.spectrum[r];
+        for (std::size_t j = 0; j < s.power.size(); ++j) {
+          if (passed(part, s.f_hz[j]) >= kPassed) {
+            (*lines)[h].push_back({s.f_hz[j], s.weight[j], s.power[j] / expected(part, r, j)});
+          }
+        }
       }
     }
-    judge(candidate, {halves.begin(), halves.end()});
-    return candidate;
+    return *lines;
   }
 
-  void add_ratios(const FullRate& part, std::size_t r, const std::vector<double>& edge,
-                  std::vector<RatioBin>& bins) const {
-    const Spectrum& s = part.spectrum[r];
-    for (std::size_t j = 0; j < s.power.size(); ++j) {
-      const double limit =
-          part.colour.band_limited() ? butterworth_gain(s.f_hz[j], part.colour.corner_hz, part.dt_s) : 1.0;
-      const double rounding =
-          part.colour.band_limited() ? part.lattice_step * part.lattice_step / 12.0 * part.dt_s : 0.0;
-      double expected = part.model.white * limit + rounding + part.slow[r][j];
-      for (const UnnamedEffect& effect : adopted_) {
-        const bool shapes = effect.kind == UnnamedKind::Spectrum && acts_on(effect, group_.column, recording(r).id);
-        expected *= shapes ? value_at(effect, s.f_hz[j]) : 1.0;
-      }
-      bins[bin_of(edge, s.f_hz[j])] += {s.weight[j], s.weight[j] * s.power[j] / expected};
+  /// The share of the white noise that a band limit passes.
+  [[nodiscard]] static double passed(const FullRate& part, double f_hz) {
+    return part.colour.band_limited() ? butterworth_gain(f_hz, part.colour.corner_hz, part.dt_s) : 1.0;
+  }
+
+  /// The density of the model in a bin.
+  [[nodiscard]] static double expected(const FullRate& part, std::size_t r, std::size_t j) {
+    return part.model.white * passed(part, part.spectrum[r].f_hz[j]) + part.slow[r][j];
+  }
+
+  /// What the spectra that were adopted make of a density.
+  [[nodiscard]] double shaped(std::size_t r, double f_hz) const {
+    double factor = 1.0;
+    for (const UnnamedEffect& effect : adopted_) {
+      const bool shapes = effect.kind == UnnamedKind::Spectrum && acts_on(effect, group_.column, recording(r).id);
+      factor *= shapes ? value_at(effect, f_hz) : 1.0;
     }
+    return factor;
   }
 
   /// Fits to all parts but one and scores on that, for every part; then fits to all.
-  static void judge(Candidate& candidate, const std::vector<std::vector<RatioBin>>& parts) {
+  void judge(Candidate& candidate, const std::vector<std::vector<RatioBin>>& parts) const {
     const auto sum_without = [&](std::size_t left_out) {
       std::vector<RatioBin> sum(parts.front().size());
       for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -330,14 +362,12 @@ class UnnamedSearch {
     };
     candidate.gain = 0.0;
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      candidate.gain += gain_of(profile_of(sum_without(p)), parts[p]);
+      const std::vector<RatioBin> others = sum_without(p);
+      const double level = data_.given ? 1.0 : level_of(others);
+      candidate.gain += gain_of(profile_of(at_level(others, level)), at_level(parts[p], level));
     }
     const std::vector<RatioBin> whole = sum_without(parts.size());
-    for (const RatioBin& bin : whole) {
-      const double off = bin.weight > 0.0 ? bin.sum / bin.weight - 1.0 : 0.0;
-      candidate.chi_square += bin.weight * off * off;
-    }
-    RatioProfile all = profile_of(whole);
+    RatioProfile all = profile_of(at_level(whole, data_.given ? 1.0 : level_of(whole)));
     candidate.effect.value = std::move(all.value);
     candidate.se = std::move(all.se);
   }
@@ -418,7 +448,12 @@ class UnnamedSearch {
     const std::size_t bins = courses.edge.size() - 1;
     BlockSeries series;
     series.dt_s = data_.dt_s;
-    series.block = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / (kBlockRateHz * data_.dt_s))));
+    std::size_t longest = 0;
+    for (const std::size_t r : courses.members) {
+      longest = std::max(longest, data_.residual[r].size());
+    }
+    series.block = std::max<std::size_t>(
+        {1, static_cast<std::size_t>(std::lround(1.0 / (kBlockRateHz * data_.dt_s))), longest / kMostBlocks});
     BlockColumns columns;
     columns.width = 1 + courses.members.size() + bins;  // the means, a constant of each recording, the bins
     SlowModel noise = data_.model;
@@ -611,17 +646,19 @@ class UnnamedSearch {
 
   const ChannelGroup& group_;
   FullRate data_;  ///< a copy, of which the base may be fitted again
-  UnnamedScope scope_;
   std::vector<Courses> courses_;
   std::vector<UnnamedEffect> adopted_;
+  mutable std::vector<std::optional<Halves>> lines_;  ///< by member; it is for one thread
   double tails_ = 1.0;
   double tried_ = 1.0;
 };
 
 }  // namespace
 
-std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data, UnnamedScope scope) {
-  return UnnamedSearch(group, data, scope).go();
+double UnnamedFinding::chance() const { return std::min(1.0, tried * std::exp(-0.5 * heldout_gain)); }
+
+std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data) {
+  return UnnamedSearch(group, data).go();
 }
 
 }  // namespace driftlab::investigate

@@ -103,7 +103,8 @@ class World:
             columns = {"t": {"quantity": "time", "unit": "s"}} if stamps else {}
             for name in names:
                 quantity = "angular_rate" if name[0] == "g" else "reference_angular_rate"
-                columns[name] = {"quantity": quantity, "axis": name[1], "unit": "deg/s"}
+                columns[name] = {"quantity": "temperature", "unit": "degC"} if name == "T" else {
+                    "quantity": quantity, "axis": name[1], "unit": "deg/s"}
             entries.append({"id": recording["name"], "file": recording["name"] + ".csv.gz", "rate_hz": recording.get("rate_hz", self.rate), "columns": columns,
                             "condition": recording["condition"], "trim": {"start_s": 0, "end_s": 0}})
         baseline: dict = {"kind": "auto"}

@@ -25,7 +25,7 @@ class Earned : public testing::Test {
   /// Why `evidence` is not earned beside what the test has set; empty: it is.
   std::string doubt(Evidence evidence) {
     std::vector<Evidence> found{std::move(evidence)};
-    doubt_what_is_not_earned(groups_, {means_}, remains_, report_, found);
+    doubt_what_is_not_earned(groups_, {means_}, remains_, {}, report_, found);
     EXPECT_EQ(found[0].ambiguous, !found[0].doubt.empty());
     return found[0].doubt;
   }
@@ -145,7 +145,7 @@ TEST_F(Earned, IsAskedOfEachFindingInItsOwnChannel) {
   found[2].group = 1;
   found[2].cause = find_cause("random_walk");
   found[2].ambiguous = true;
-  doubt_what_is_not_earned(groups_, {means_, {0.0, 0.0, 1.0, 0.0, 0.0}}, remains_, report_, found);
+  doubt_what_is_not_earned(groups_, {means_, {0.0, 0.0, 1.0, 0.0, 0.0}}, remains_, {}, report_, found);
   EXPECT_EQ(found[0].doubt, "");
   EXPECT_FALSE(found[0].ambiguous);
   EXPECT_EQ(found[1].doubt, "it is carried by r2 alone");
