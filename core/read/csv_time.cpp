@@ -24,8 +24,9 @@ bool is_counter(std::string_view name) {
 }  // namespace
 
 TimeFromRate::TimeFromRate(const ColumnNames& names, double rate_hz) : needed_(true), rate_hz_(rate_hz) {
+  const std::vector<ColumnRole> roles = infer_roles(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    needed_ = needed_ && infer_role(names[i]).quantity != Quantity::Time;
+    needed_ = needed_ && roles[i].quantity != Quantity::Time;
     if (!counter_ && is_counter(names[i])) {
       counter_ = i;
       counter_name_ = names[i];

@@ -49,9 +49,19 @@ std::string column_name(const Variable& variable, std::size_t column) {
   return variable.name + "_" + (variable.columns.size() == 3 ? std::string(1, kAxes[column]) : std::to_string(column));
 }
 
-bool is_sensor_column(const std::string& name) {
-  const Quantity quantity = infer_role(name).quantity;
-  return quantity == Quantity::AngularRate || quantity == Quantity::SpecificForce;
+bool is_sensor(const ColumnRole& role) {
+  return role.quantity == Quantity::AngularRate || role.quantity == Quantity::SpecificForce;
+}
+
+/// The names of all columns, arrays one after the other.
+ColumnNames column_names(const std::vector<Variable>& variables) {
+  ColumnNames names;
+  for (const Variable& variable : variables) {
+    for (std::size_t c = 0; c < variable.columns.size(); ++c) {
+      names.push_back(column_name(variable, c));
+    }
+  }
+  return names;
 }
 
 /// The length of the arrays that make the recording: that of the most columns whose names are those of a sensor, of
@@ -63,11 +73,15 @@ std::size_t common_length(const std::vector<Variable>& variables) {
     auto operator<=>(const Weight&) const = default;
   };
   std::map<std::size_t, Weight> weights;
+  const std::vector<ColumnRole> roles = infer_roles(column_names(variables));
+  auto role = roles.begin();
   for (const Variable& variable : variables) {
     const std::size_t length = rows_of(variable);
-    for (std::size_t c = 0; c < variable.columns.size() && length >= 2; ++c) {
-      weights[length].numbers += length;
-      weights[length].sensors += is_sensor_column(column_name(variable, c)) ? 1 : 0;
+    for (std::size_t c = 0; c < variable.columns.size(); ++c, ++role) {
+      if (length >= 2) {
+        weights[length].numbers += length;
+        weights[length].sensors += is_sensor(*role) ? 1 : 0;
+      }
     }
   }
   std::size_t best = 0;
@@ -111,6 +125,9 @@ Status deliver_variables(std::vector<Variable> variables, const DecodeLimits& li
   }
   if (!left_out.empty()) {
     sink.note("Arrays of another length than " + std::to_string(length) + " are left out: " + left_out + ".");
+  }
+  for (const std::string& name : inertial_structs(recorded.names)) {
+    sink.note("'" + name + "' is a struct of NaveGo by its members t, wb and fb: in s, rad/s and m/s^2.");
   }
   return deliver(recorded, limits, sink);
 }

@@ -66,6 +66,24 @@ constexpr std::array kUnitPhrases{
 constexpr std::array<std::string_view, 9> kPlainWords{"raw", "imu", "imu1",       "sens",        "sensor",
                                                       "all", "cal", "calibrated", "uncalibrated"};
 
+/// The members that make a struct one of NaveGo's.
+struct StructMember {
+  std::string_view name;
+  Quantity quantity;
+  std::string_view axis;
+  std::string_view unit;
+};
+
+constexpr std::array kStructMembers{
+    StructMember{".t", Quantity::Time, "", "s"},
+    StructMember{".wb_x", Quantity::AngularRate, "x", "rad/s"},
+    StructMember{".wb_y", Quantity::AngularRate, "y", "rad/s"},
+    StructMember{".wb_z", Quantity::AngularRate, "z", "rad/s"},
+    StructMember{".fb_x", Quantity::SpecificForce, "x", "m/s^2"},
+    StructMember{".fb_y", Quantity::SpecificForce, "y", "m/s^2"},
+    StructMember{".fb_z", Quantity::SpecificForce, "z", "m/s^2"},
+};
+
 /// What may stand in brackets without being a unit: raw numbers, and clocks behind a time.
 constexpr std::array<std::string_view, 20> kNoUnits{
     "raw",  "lsb",   "lsbs", "count", "counts", "adc",      "digit",         "digits", "bit",  "bits",
@@ -247,6 +265,37 @@ Status check_bracketed_unit(std::string_view written) {
                 {{"column", std::string(written)}, {"unit", std::string(bracket)}});
   }
   return {};
+}
+
+std::vector<std::string> inertial_structs(const ColumnNames& names) {
+  std::vector<std::string> structs;
+  for (const std::string& name : names) {
+    if (!name.ends_with(".t")) {
+      continue;
+    }
+    const std::string of = name.substr(0, name.size() - 2);
+    if (std::all_of(kStructMembers.begin(), kStructMembers.end(), [&](const StructMember& member) {
+          return std::find(names.begin(), names.end(), of + std::string(member.name)) != names.end();
+        })) {
+      structs.push_back(of);
+    }
+  }
+  return structs;
+}
+
+std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
+  const std::vector<std::string> structs = inertial_structs(names);
+  std::vector<ColumnRole> roles;
+  for (const std::string& name : names) {
+    const std::size_t dot = std::min(name.rfind('.'), name.size());
+    const auto member = std::find_if(kStructMembers.begin(), kStructMembers.end(),
+                                     [&](const StructMember& known) { return known.name == name.substr(dot); });
+    const bool known = member != kStructMembers.end() &&
+                       std::find(structs.begin(), structs.end(), name.substr(0, dot)) != structs.end();
+    roles.push_back(known ? ColumnRole{member->quantity, std::string(member->axis), known_unit(member->unit)}
+                          : infer_role(name));
+  }
+  return roles;
 }
 
 ColumnRole infer_role(std::string_view written) {

@@ -2,7 +2,9 @@
 /// What a column measures, guessed from its name alone.
 #include "core/signal/recording.hpp"
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace driftlab {
 
@@ -20,6 +22,14 @@ namespace driftlab {
 /// Leading words that change nothing are skipped: raw_acceleration_x_gs, imu_gyr_x and imu.wb_z are understood;
 /// GyroscopeUncalibrated is not. A bare axis letter takes its quantity from the unit: `X (rad/s)` is an angular rate.
 [[nodiscard]] ColumnRole infer_role(std::string_view name);
+
+/// The structs of NaveGo among the columns of a file, by their names: those with the members `t`, `wb_x`, `wb_y`,
+/// `wb_z`, `fb_x`, `fb_y` and `fb_z` (`imu_planetary.t`, ...), in the order of their times. Source: R. Gonzalez,
+/// NaveGo, `imu_structure`: times in s, angular rates in rad/s, specific forces in m/s^2.
+[[nodiscard]] std::vector<std::string> inertial_structs(const ColumnNames& names);
+
+/// The role of each column of a file: that of its struct, else that of its own name.
+[[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 
 /// Refuses a name that states a quantity, but with a unit in brackets that is not known: to analyse `gz [furlong]` in
 /// unit 1 would give a wrong answer. Words for raw numbers are not taken as units (`gz (LSB)`, `acc_x [counts]`, `time

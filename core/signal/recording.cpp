@@ -94,8 +94,9 @@ void add_time_by_name(const ColumnNames& names, std::vector<std::optional<Column
   }
   std::vector<std::optional<ColumnRole>> guessed(names.size());
   std::size_t times = 0;
+  std::vector<ColumnRole> inferred = infer_roles(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    ColumnRole role = infer_role(names[i]);
+    ColumnRole& role = inferred[i];
     if (!roles[i] && role.quantity == Quantity::Time && role.unit && role.unit->dimension == Dimension::Time) {
       guessed[i] = std::move(role);
       ++times;
@@ -147,15 +148,15 @@ Status check_role(const std::string& column, const ColumnRole& role) {
 Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec, const ColumnNames& names) {
   std::vector<std::optional<ColumnRole>> roles;
   if (spec.columns.empty()) {
-    for (const std::string& name : names) {
-      if (auto status = check_bracketed_unit(name); !status) {
+    std::vector<ColumnRole> inferred = infer_roles(names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (auto status = check_bracketed_unit(names[i]); !status) {
         return fail(status.error());
       }
-      ColumnRole role = infer_role(name);
-      if (auto status = check_role(name, role); !status) {
+      if (auto status = check_role(names[i], inferred[i]); !status) {
         return fail(status.error());
       }
-      roles.emplace_back(std::move(role));
+      roles.emplace_back(std::move(inferred[i]));
     }
     keep_one_time_column(roles);
   } else {

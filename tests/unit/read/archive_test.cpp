@@ -1,6 +1,7 @@
 /// Formats of several tables: .npz, MATLAB 5, the exports of phone applications, and the board that writes hexadecimal
 /// words.
 #include "core/signal/missing.hpp"
+#include "core/signal/recording.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -106,6 +107,37 @@ TEST(Mat5, ReadsStructsAndIntegersAndLeavesOutTheRest) {
   EXPECT_THAT(outcome.decoded.names, ElementsAre("imu.t", "imu.fb_x", "imu.fb_y", "imu.fb_z"));
   EXPECT_THAT(column(outcome, 0), ElementsAre(1.0, -1.0, 3.0));
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'unit' (char)")));
+}
+
+/// A struct of NaveGo with its rate, its parameters left out.
+std::string navego_struct(const std::string& name) {
+  const std::string names = std::string("t\0\0\0\0wb\0\0\0fb\0\0\0freq\0", 20);
+  return mat_element(14, mat_head(2, 1, 1, name) + word(4U << 16U | 5U, 4) + word(5, 4) + mat_element(1, names) +
+                             mat_matrix("", 4, 1, {0.0, 0.01, 0.02, 0.03}) + mat_matrix("", 4, 3, ramp(12)) +
+                             mat_matrix("", 4, 3, ramp(12)) + mat_matrix("", 1, 1, {100.0}));
+}
+
+TEST(Mat5, KnowsAStructOfNavegoByItsMembersUnderAnyName) {
+  for (const std::string name : {"imu", "imu1", "imu_planetary", "adis16488"}) {
+    const Outcome outcome = decode_bytes(mat_file({navego_struct(name), mat_matrix("other", 5, 4, ramp(20))}));
+    ASSERT_FALSE(outcome.error) << outcome.message;
+    EXPECT_THAT(outcome.decoded.names, ElementsAre(name + ".t", name + ".wb_x", name + ".wb_y", name + ".wb_z",
+                                                   name + ".fb_x", name + ".fb_y", name + ".fb_z"))
+        << "its time is the time, and its length that of the recording";
+    EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'" + name + "' is a struct of NaveGo")));
+    const auto roles = assign_roles({}, outcome.decoded.names);
+    ASSERT_TRUE(roles) << roles.error().message;
+    const auto said = [&](std::size_t i) {
+      const ColumnRole role = (*roles)[i].value_or(ColumnRole{});
+      return std::string(name_of(role.quantity)) + " " + role.axis + " " + role.unit.value_or(Unit{}).symbol;
+    };
+    EXPECT_EQ(said(0), "time  s");
+    EXPECT_EQ(said(2), "angular_rate y rad/s");
+    EXPECT_EQ(said(6), "specific_force z m/s^2");
+  }
+  const auto apart = assign_roles({}, {"unit.t", "unit.wb_x", "unit.wb_y", "unit.wb_z"});
+  ASSERT_TRUE(apart) << apart.error().message;
+  EXPECT_EQ((*apart)[1]->quantity, Quantity::Unspecified) << "half of the members say nothing";
 }
 
 TEST(Mat5, KeepsNanAsAMissingSample) {
