@@ -221,10 +221,15 @@ Status deliver_sensors(std::vector<Sensor> sensors, const std::optional<PhoneFix
   return deliver(recorded, limits, sink);
 }
 
+/// True for what phyphox says of the phone and of the start and end of the recording: `meta/device.csv`.
+bool is_about_the_export(std::string_view path) {
+  return path.starts_with("meta/") || path.find("/meta/") != std::string_view::npos;
+}
+
 /// One table of the export, if it is wanted.
 Status take_file(const std::string& path, ByteSource& content, const DecodeLimits& limits, std::size_t& budget,
                  const RunControl& control, std::vector<MemoryTable>& tables) {
-  if (!path.ends_with(".csv") && !path.ends_with(".CSV")) {
+  if ((!path.ends_with(".csv") && !path.ends_with(".CSV")) || is_about_the_export(path)) {
     return {};
   }
   MemoryTable table;

@@ -214,6 +214,22 @@ TEST(PhoneExport, SetsTheSensorsOfPhyphoxSideBySideByTheirTime) {
   EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'Linear Accelerometer'")));
 }
 
+TEST(PhoneExport, ReadsTheOneTableOfPhyphoxBesideWhatItSaysOfThePhone) {
+  const std::string names = "\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\"";
+  for (const std::string folder : {"", "Gyroscope 2025-06-14/"}) {
+    const Outcome outcome = decode_bytes(zip(
+        {{folder + "Raw Data.csv", table(names, 0.0, 0.01, 50)},
+         {folder + "meta/device.csv", "\"property\",\"value\"\n\"version\",\"1.1.11\"\n\"depthFrontSensor\",\"0\"\n"},
+         {folder + "meta/time.csv",
+          "\"event\",\"experiment time\",\"system "
+          "time\"\n\"START\",0.0E0,1690000000.123\n\"PAUSE\",2.0E1,1690000020.1\n"}}));
+    ASSERT_FALSE(outcome.error) << outcome.message;
+    EXPECT_THAT(outcome.decoded.names,
+                ElementsAre("Time (s)", "Gyroscope x (rad/s)", "Gyroscope y (rad/s)", "Gyroscope z (rad/s)"));
+    EXPECT_EQ(outcome.decoded.rows, 50U);
+  }
+}
+
 TEST(PhoneExport, ReadsTheDelimitersAndDecimalCommaOfPhyphox) {
   std::string gyro = table(header("rad/s", ';'), 0.0, 0.01, 50, ';');
   std::replace(gyro.begin(), gyro.end(), '.', ',');
