@@ -1,4 +1,5 @@
 #include "core/read/column_file.hpp"
+#include "core/read/euroc.hpp"
 #include "core/read/format.hpp"
 #include "core/read/kitti.hpp"
 #include "core/read/phone_export.hpp"
@@ -114,12 +115,14 @@ Result<Decoded> decode_tables(const std::filesystem::path& folder, std::unique_p
   const ByteSource source(std::move(nothing));
   WatchingSink watching(sink, source, limits, control);
   const bool kitti = is_kitti_folder(folder);
-  auto status =
-      kitti ? decode_kitti_folder(folder, limits, watching, control) : decode_folder(folder, limits, watching, control);
+  const auto euroc = kitti ? std::nullopt : find_euroc_table(folder);
+  auto status = kitti   ? decode_kitti_folder(folder, limits, watching, control)
+                : euroc ? decode_euroc_table(*euroc, limits, watching, control)
+                        : decode_folder(folder, limits, watching, control);
   if (!status) {
     return fail(sound_error(status.error()));
   }
-  watching.decoded().format = kitti ? "kitti_folder" : "phone_folder";
+  watching.decoded().format = kitti ? "kitti_folder" : euroc ? "euroc_folder" : "phone_folder";
   control.report("decode", 1.0);
   return watching.finished();
 }

@@ -21,6 +21,7 @@
   FORMAT(kGeneactiv) /* geneactiv.cpp */ \
   FORMAT(kRosbag2)  /* rosbag2.cpp */ \
   FORMAT(kEuroc)    /* euroc.cpp */ \
+  FORMAT(kEurocZip) /* euroc.cpp */ \
   FORMAT(kRostopic) /* rostopic.cpp */ \
   FORMAT(kKfGins)   /* kf_gins.cpp */ \
   FORMAT(kRtklibPos) /* rtklib_pos.cpp */ \

@@ -253,7 +253,9 @@ Status take_file(const std::string& path, ByteSource& content, const DecodeLimit
 }
 
 int sniff_zip(std::string_view head) {
-  return zip_holds(head, ".csv") && !zip_holds(head, ".npy") && !zip_holds(head, "[Content_Types].xml") ? 100 : 0;
+  const bool another =
+      zip_holds(head, ".npy") || zip_holds(head, "[Content_Types].xml") || formats::kEurocZip.sniff(head) > 0;
+  return zip_holds(head, ".csv") && !another ? 100 : 0;
 }
 
 Status decode_zip(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {

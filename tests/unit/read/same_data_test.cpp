@@ -1,5 +1,6 @@
 // The same made-up numbers, written in a format by its published layout and as CSV, are the same columns: to the bit
 // where the format holds binary floats, within its own step where it holds counts or decimals.
+#include "core/read/column_file.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -276,6 +277,44 @@ TEST(SameData, InTheLayoutOfEurocAsInCsvToTheBit) {
     EXPECT_EQ(file.bits[c], table.bits[c]) << file.decoded.names[c];
   }
   expect_same(table, file, 1e-12);  // nanoseconds as seconds
+}
+
+TEST(SameData, InASequenceOfEurocAsInItsImuTableToTheBit) {
+  const std::string content = euroc(inertial_rows(kRows));
+  const Outcome alone = decoded(content, "euroc");
+  const std::string camera = "#timestamp [ns],filename\n1700000000000000000,1700000000000000000.png\n";
+  const std::string truth = "#timestamp, p_RS_R_x [m]\n1700000000000000000,0.5\n1700000000005000000,0.5\n";
+  const std::vector<std::pair<std::string, std::string>> files{{"mav0/cam0/data.csv", camera},
+                                                               {"mav0/imu0/data.csv", content},
+                                                               {"mav0/imu0/sensor.yaml", "rate_hz: 200\n"},
+                                                               {"mav0/state_groundtruth_estimate0/data.csv", truth}};
+  const Outcome archive = decoded(zip(files), "euroc_zip");
+  EXPECT_EQ(archive.decoded.names, alone.decoded.names);
+  EXPECT_EQ(archive.bits, alone.bits);
+  const TemporaryDirectory directory;
+  for (const auto& [path, bytes] : files) {
+    std::filesystem::create_directories((directory / path).parent_path());
+    write_file(directory / path, bytes);
+  }
+  for (const std::string folder : {".", "mav0", "mav0/imu0"}) {
+    const auto read = decode_file(directory / folder, directory / "columns");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->format, "euroc_folder");
+    EXPECT_EQ(read->names, alone.decoded.names);
+    const auto columns = ColumnFile::open(directory / "columns");
+    ASSERT_TRUE(columns);
+    for (std::size_t c = 0; c < alone.bits.size(); ++c) {
+      const auto values = columns->column(c);
+      ASSERT_EQ(values.size(), kRows);
+      for (std::size_t i = 0; i < kRows; ++i) {
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(values[i]), alone.bits[c][i]) << folder << " " << c << " " << i;
+      }
+    }
+  }
+  auto twice = files;
+  twice.emplace_back("other/mav0/imu0/data.csv", content);
+  EXPECT_THAT(decode_bytes(zip(twice)).message, HasSubstr("several sequences"));
+  EXPECT_THAT(decode_bytes(zip({{"mav0/imu0/data.csv", "t,x\n1,2\n"}})).message, HasSubstr("send that file alone"));
 }
 
 TEST(SameData, OfHdf5AndMatlab73IsThatOfMatlab5NumpyAndCsvToTheBit) {
