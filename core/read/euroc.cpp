@@ -51,9 +51,9 @@ Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const R
   if (auto stream = streams.add("imu", Inertial::Both, inertial_columns(Inertial::Both)); !stream) {
     return fail(stream.error());
   }
-  auto status = text::for_each_line(source, kLongestLine, control, [&](std::string_view line, std::uint64_t number) {
-    return take_line(line, number, streams);
-  });
+  auto status =
+      text::for_each_row(source, kLongestLine, control, sink,
+                         [&](std::string_view line, std::uint64_t number) { return take_line(line, number, streams); });
   return status ? streams.finish("The file has a header and no sample under it.") : status;
 }
 

@@ -130,9 +130,9 @@ Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const R
     return status;
   }
   IncrementDecoder decoder(sink);
-  auto status = text::for_each_line(source, kLongestLine, control, [&](std::string_view line, std::uint64_t number) {
-    return decoder.take(line, number);
-  });
+  auto status =
+      text::for_each_row(source, kLongestLine, control, sink,
+                         [&](std::string_view line, std::uint64_t number) { return decoder.take(line, number); });
   status = status ? decoder.flush() : status;
   if (!status) {
     return status;

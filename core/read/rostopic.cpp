@@ -92,9 +92,9 @@ class EchoDecoder {
 
 Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const RunControl& control) {
   EchoDecoder decoder(sink);
-  auto status = text::for_each_line(source, kLongestLine, control, [&](std::string_view line, std::uint64_t number) {
-    return decoder.take(line, number);
-  });
+  auto status =
+      text::for_each_row(source, kLongestLine, control, sink,
+                         [&](std::string_view line, std::uint64_t number) { return decoder.take(line, number); });
   return status ? decoder.finish() : status;
 }
 

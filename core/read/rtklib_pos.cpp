@@ -94,14 +94,15 @@ class SolutionDecoder {
     if (!moment) {
       return text::not_a_number(number, words[0]);
     }
-    batch_.push_back(*moment);
+    row_.assign(1, *moment);
     for (std::size_t i = 2; i < words.size(); ++i) {
       const auto value = text::number_of(words[i]);
       if (!value) {
         return text::not_a_number(number, words[i]);
       }
-      batch_.push_back(std::isfinite(*value) ? *value : missing_sample(Missing::Nan, number));
+      row_.push_back(std::isfinite(*value) ? *value : missing_sample(Missing::Nan, number));
     }
+    batch_.insert(batch_.end(), row_.begin(), row_.end());
     return batch_.size() < width_ * 1024 ? Status{} : flush();
   }
 
@@ -130,15 +131,16 @@ class SolutionDecoder {
 
   ColumnSink& sink_;
   std::size_t width_ = 0;
+  std::vector<double> row_;
   std::vector<double> batch_;
   bool delivered_ = false;
 };
 
 Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const RunControl& control) {
   SolutionDecoder decoder(sink);
-  auto status = text::for_each_line(source, kLongestPosLine, control, [&](std::string_view line, std::uint64_t number) {
-    return decoder.take(line, number);
-  });
+  auto status =
+      text::for_each_row(source, kLongestPosLine, control, sink,
+                         [&](std::string_view line, std::uint64_t number) { return decoder.take(line, number); });
   status = status ? decoder.flush() : status;
   if (!status) {
     return status;

@@ -4,12 +4,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bit>
 
 namespace driftlab {
 namespace {
 
 using namespace driftlab::testing;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -45,6 +47,31 @@ TEST(ImuText, TakesNanAsAMissingSampleAndRefusesWordsByTheirLine) {
     const Outcome refused = decode_bytes(bytes);
     EXPECT_EQ(refused.error, code) << refused.message;
     EXPECT_EQ(refused.field("row"), row) << refused.message;
+  }
+}
+
+TEST(ImuText, ReadsAFileThatEndsWithinARowUpToThere) {
+  const std::string head = "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n";
+  std::string solution = head;
+  for (int i = 0; i < 10; ++i) {
+    solution += "2374 24325" + std::to_string(i) + ".499 48.5 9.25 300.125 1 21\n";
+  }
+  for (const std::string& text :
+       {euroc(inertial_rows(10)), rostopic(inertial_rows(10)), kf_gins(inertial_rows(10)), solution}) {
+    const std::size_t last = text.rfind('\n', text.size() - 2) + 1;
+    const Outcome before = decode_bytes(text.substr(0, last));
+    ASSERT_FALSE(before.error) << before.message;
+    const std::string line = std::to_string(std::count(text.begin(), text.end(), '\n'));
+    // In the first cell, in the second, and where a cell cut to its sign is the last one of a whole row.
+    const std::size_t cell = text.find_last_of(", ");
+    for (const std::string& torn :
+         {text.substr(0, last + 4), text.substr(0, last + 30), text.substr(0, cell + 1) + "-"}) {
+      const Outcome outcome = decode_bytes(torn);
+      ASSERT_FALSE(outcome.error) << outcome.message;
+      EXPECT_EQ(outcome.bits, before.bits);
+      EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("ends within a row (line " + line + ")")));
+    }
+    EXPECT_TRUE(decode_bytes(text.substr(0, last + 30) + "\n").error) << "a whole line is refused";
   }
 }
 
