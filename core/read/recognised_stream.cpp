@@ -1,6 +1,7 @@
 #include "core/read/recognised_stream.hpp"
 
 #include "core/read/text_shape.hpp"
+#include "core/read/zip_entries.hpp"
 
 #include <memory>
 #include <set>
@@ -67,8 +68,16 @@ Result<RecognisedStream> recognise_stream(std::unique_ptr<ByteReader> reader, co
   if (head->empty()) {
     return fail(ErrorCode::EmptyInput, "The " + std::string(name_of(compression)) + " file holds no bytes.");
   }
-  const std::string_view seen = head->substr(0, kSniffBytes);
-  const Format* const format = recognise(seen);
+  const std::string seen(head->substr(0, kSniffBytes));
+  std::string files;
+  if (is_zip(seen)) {
+    auto headers = zip_headers(source);
+    if (!headers) {
+      return fail(headers.error());
+    }
+    files = std::move(*headers);
+  }
+  const Format* const format = recognise(files.empty() ? seen : files);
   if (format == nullptr) {
     const std::string looks = describe_unknown(seen);
     return fail(ErrorCode::UnsupportedFormat, "This looks like " + looks + ".", {{"looks_like", looks}});

@@ -18,6 +18,15 @@ namespace driftlab {
     ByteSource& source, const DecodeLimits& limits,
     const std::function<Status(const std::string& path, ByteSource& content)>& take);
 
+/// True if `head` starts a ZIP archive.
+[[nodiscard]] bool is_zip(std::string_view head);
+
+/// The names of the files of an archive, as local headers without contents, for zip_holds(): an image of a megabyte may
+/// come before the first table. From the first kSniffBytes and, where `source` is a file, the archive's directory;
+/// else, or where that cannot be read, as far as the first 16 MiB show. At most twice 16 MiB. Errors: those of
+/// `source`.
+[[nodiscard]] Result<std::string> zip_headers(ByteSource& source);
+
 /// True if `head` starts a ZIP archive and one of the paths in it ends with `suffix`, as far as `head` shows.
 [[nodiscard]] bool zip_holds(std::string_view head, std::string_view suffix);
 

@@ -298,6 +298,59 @@ TEST(PhoneExport, CallsADirectoryWithoutSensorsADirectory) {
   EXPECT_THAT(said(), HasSubstr("The directory holds 2 tables"));
 }
 
+/// Bytes that do not compress, as those of a picture.
+std::string picture(std::size_t size) {
+  std::string bytes;
+  std::uint64_t state = 1;
+  while (bytes.size() < size) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    bytes += static_cast<char>(state >> 56U);
+  }
+  return bytes;
+}
+
+TEST(Zip, IsRecognisedBehindPicturesThatComeFirst) {
+  const testing::TemporaryDirectory directory;
+  const std::string gyro = table(header("rad/s", ','), 0.0, 0.01, 50);
+  auto drive = testing::kitti_files(3);
+  drive.insert(drive.begin(), {"2011_09_26/drive/image_00/data/0000000000.png", picture(200'000)});
+  const std::vector<std::pair<std::string, std::string>> archives{
+      {"phone_zip", zip({{"Camera/1.jpg", picture(200'000)}, {"Gyroscope.csv", gyro}})},
+      {"kitti", zip(drive)},
+      {"npz", zip({{"picture.jpg", picture(200'000)}, {"gyro.npy", array("(4, 3)", 12)}})}};
+  for (const auto& [format, bytes] : archives) {
+    const Outcome streamed = decode_bytes(testing::xz(bytes));
+    EXPECT_FALSE(streamed.error) << streamed.message;
+    EXPECT_EQ(streamed.decoded.format, format);
+    testing::write_file(directory / "in", bytes);
+    const auto decoded = decode_file(directory / "in", directory / "out");
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(decoded->format, format);
+  }
+  // Behind more than is looked through, the directory at the end says it.
+  testing::write_file(directory / "in", zip({{"film.mp4", picture(17U << 20U)}, {"Gyroscope.csv", gyro}}));
+  const auto decoded = decode_file(directory / "in", directory / "out");
+  ASSERT_TRUE(decoded) << decoded.error().message;
+  EXPECT_EQ(decoded->rows, 50U);
+}
+
+TEST(Zip, IsRecognisedByItsFilesWhereItsDirectoryIsDamaged) {
+  const testing::TemporaryDirectory directory;
+  const std::string whole = zip({{"Gyroscope.csv", table(header("rad/s", ','), 0.0, 0.01, 50)}});
+  const std::size_t entry = whole.find("PK\x01\x02");
+  const std::size_t end = whole.find("PK\x05\x06");
+  for (const std::size_t at : {entry, entry + 28, end, end + 16, end + 19}) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x7F);
+    testing::write_file(directory / "in", damaged);
+    const auto decoded = decode_file(directory / "in", directory / "out");
+    if (!decoded) {
+      EXPECT_NE(decoded.error().code, ErrorCode::Internal) << decoded.error().message;
+      EXPECT_NE(decoded.error().code, ErrorCode::UnsupportedFormat) << at << decoded.error().message;
+    }
+  }
+}
+
 TEST(Zip, NamesWhatItCannotRead) {
   EXPECT_THAT(decode_bytes(zip({{"a.csv", "x\n1\n"}, {"b.csv", "x\n1\n"}})).message, HasSubstr("holds 2 tables"));
   EXPECT_EQ(decode_bytes(zip({{"only.csv", "t,gx\n0,1\n1,2\n"}})).decoded.rows, 2U);
