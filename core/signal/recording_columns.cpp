@@ -4,6 +4,7 @@
 #include "core/signal/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -102,6 +103,21 @@ std::string RecordingColumns::note_of_time() const {
   return index && !guessed_ && !time_stated_
              ? "No column is stated to be the time; '" + name(*index) + "' is taken for it by its name."
              : "";
+}
+
+bool RecordingColumns::are_fixes() const {
+  using Pair = std::pair<std::string_view, std::string_view>;
+  constexpr std::array<Pair, 5> kOfReceivers{Pair{"latitude(deg)", "Q"},
+                                             {"x-ecef(m)", "Q"},
+                                             {"latitude (deg)", "hdop"},
+                                             {"lat (deg)", "fixType"},
+                                             {"gnss_latitude (deg)", "gnss_longitude (deg)"}};
+  const auto named = [&](std::string_view name) {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  };
+  return guessed_ && !has_inertial() && std::any_of(kOfReceivers.begin(), kOfReceivers.end(), [&](const Pair& pair) {
+           return named(pair.first) && named(pair.second);
+         });
 }
 
 bool RecordingColumns::has_inertial() const {

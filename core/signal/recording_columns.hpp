@@ -74,6 +74,10 @@ class RecordingColumns {
   /// Survey of a sensor column; a row whose reference is missing is unsound as well.
   [[nodiscard]] ChannelSurvey survey(std::size_t index, const Passed& passed = {}) const;
 
+  /// Whether these are the fixes of a receiver alone, by the names that the readers of .pos, NMEA and UBX and of logs
+  /// give them: other tables with a latitude may be those of a vehicle, whose sensors have names of their own.
+  [[nodiscard]] bool are_fixes() const;
+
   /// Sentences for the recording's notes: a column that would be the time but for its text, or is it by its name alone
   /// beside stated ones (empty: neither), and those that use_of() passes over (empty: none).
   [[nodiscard]] std::string note_of_time() const;

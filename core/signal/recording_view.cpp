@@ -224,6 +224,12 @@ Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnName
   if (!read) {
     return fail(read.error());
   }
+  if (use == ViewUse::Analysis && read->are_fixes()) {
+    return fail(ErrorCode::UnknownColumn,
+                "These are a receiver's fixes, whose scatter is no noise of an inertial sensor: name the file as the "
+                "`gnss` of a drive (`driftlab drive draft IMU --gnss FILE`), or state in `columns` what to analyse.",
+                {{"parameter", "columns"}});
+  }
   const auto time = read->time();
   const std::vector<std::size_t> repeated =
       time ? repeated_rows(read->samples(*time), read->count(), column) : std::vector<std::size_t>();

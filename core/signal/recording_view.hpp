@@ -56,8 +56,8 @@ enum class ViewUse {
 
 /// `column(i)` gives the samples of column i of the file in its own unit; they must outlive the view.
 /// Errors: those of assign_roles, plan_window and, for sensor columns, check_holes; TooFewSamples; UnknownColumn (no
-/// sensor column at all). O(rows) time; O(rows) memory per channel with a moving reference or rows left out inside,
-/// none otherwise.
+/// sensor column at all, or the fixes of a receiver alone where roles come from names; a survey takes those). O(rows)
+/// time; O(rows) memory per channel with a moving reference or rows left out inside, none otherwise.
 [[nodiscard]] Result<RecordingView> view_recording(const RecordingSpec& spec, const ColumnNames& names,
                                                    std::size_t rows,
                                                    const std::function<std::span<const double>(std::size_t)>& column,

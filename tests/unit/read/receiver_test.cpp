@@ -1,5 +1,6 @@
 // Logs of receivers alone: NMEA sentences and u-blox frames, each an epoch a row.
 #include "core/signal/missing.hpp"
+#include "core/signal/recording_view.hpp"
 #include "tests/unit/read/samples.hpp"
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using namespace driftlab::testing;
 
 TEST(Nmea, PutsTheSentencesOfAMomentIntoOneRowAndGoesOnOverMidnight) {
@@ -53,6 +55,34 @@ TEST(Nmea, DatesRowsThatCameBeforeTheDate) {
   ASSERT_FALSE(outcome.error) << outcome.message;
   ASSERT_EQ(outcome.decoded.rows, 3U);
   EXPECT_DOUBLE_EQ(cell(outcome, 0, 0), 1672531198.0);
+}
+
+TEST(Receiver, IsNoSensorWhoseNoiseIsCharacterised) {
+  const std::string earth = "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns\n";
+  for (const std::string& log :
+       {nmea(), ubx_pvt(3), rtklib_pos(), earth + "2374 1.0 4e6 6e5 5e6 1 9\n2374 2.0 4e6 6e5 5e6 1 9\n"}) {
+    const Outcome outcome = decode_bytes(log);
+    ASSERT_FALSE(outcome.error) << outcome.message;
+    const auto view_of = [&](const RecordingSpec& spec, ViewUse use) {
+      std::vector<std::vector<double>> columns;
+      for (std::size_t c = 0; c < outcome.bits.size(); ++c) {
+        columns.emplace_back();
+        for (std::size_t i = 0; i < outcome.decoded.rows; ++i) {
+          columns.back().push_back(cell(outcome, c, i));
+        }
+      }
+      const auto view = view_recording(
+          spec, outcome.decoded.names, outcome.decoded.rows,
+          [&](std::size_t i) { return std::span<const double>(columns[i]); }, use);
+      return view ? std::string() : view.error().message;
+    };
+    EXPECT_THAT(view_of({}, ViewUse::Analysis), HasSubstr("`driftlab drive draft")) << outcome.decoded.format;
+    EXPECT_THAT(view_of({}, ViewUse::Survey), Not(HasSubstr("drive"))) << "the log of a drive is uploaded";
+    RecordingSpec stated;
+    stated.columns["time (s)"] = {Quantity::Time, "", *parse_unit("s")};
+    stated.columns[outcome.decoded.names[1]] = {};
+    EXPECT_THAT(view_of(stated, ViewUse::Analysis), Not(HasSubstr("drive"))) << "who states columns wants them";
+  }
 }
 
 TEST(Ubx, ReadsNavPvtOnGpsTime) {
