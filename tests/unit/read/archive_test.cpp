@@ -334,6 +334,25 @@ TEST(Zip, IsRecognisedBehindPicturesThatComeFirst) {
   EXPECT_EQ(decoded->rows, 50U);
 }
 
+TEST(Zip, IsRecognisedByADirectoryOf64Bits) {
+  const testing::TemporaryDirectory directory;
+  const std::string whole =
+      zip({{"film.mp4", picture(200'000)}, {"Gyroscope.csv", table(header("rad/s", ','), 0.0, 0.01, 50)}});
+  const std::size_t begin = whole.find("PK\x01\x02");
+  const std::size_t end = whole.rfind("PK\x05\x06");
+  const std::string record = "PK\x06\x06" + word(44, 8) + word(45, 2) + word(45, 2) + word(0, 8) + word(2, 8) +
+                             word(2, 8) + word(end - begin, 8) + word(begin, 8);
+  for (const std::uint64_t place : {std::uint64_t{end}, ~std::uint64_t{0}}) {
+    const std::string locator = "PK\x06\x07" + word(0, 4) + word(place, 8) + word(1, 4);
+    std::string last = whole.substr(end);
+    last.replace(16, 4, word(0xFFFFFFFF, 4));
+    testing::write_file(directory / "in", whole.substr(0, end) + record + locator + last);
+    const auto decoded = decode_file(directory / "in", directory / "out");
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(decoded->rows, 50U) << "by the files themselves where the record lies nowhere";
+  }
+}
+
 TEST(Zip, IsRecognisedByItsFilesWhereItsDirectoryIsDamaged) {
   const testing::TemporaryDirectory directory;
   const std::string whole = zip({{"Gyroscope.csv", table(header("rad/s", ','), 0.0, 0.01, 50)}});
