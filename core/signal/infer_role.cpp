@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -269,14 +271,14 @@ Status check_bracketed_unit(std::string_view written) {
 
 std::vector<std::string> inertial_structs(const ColumnNames& names) {
   std::vector<std::string> structs;
+  const std::set<std::string_view> known(names.begin(), names.end());
   for (const std::string& name : names) {
     if (!name.ends_with(".t")) {
       continue;
     }
     const std::string of = name.substr(0, name.size() - 2);
-    if (std::all_of(kStructMembers.begin(), kStructMembers.end(), [&](const StructMember& member) {
-          return std::find(names.begin(), names.end(), of + std::string(member.name)) != names.end();
-        })) {
+    if (std::all_of(kStructMembers.begin(), kStructMembers.end(),
+                    [&](const StructMember& member) { return known.contains(of + std::string(member.name)); })) {
       structs.push_back(of);
     }
   }
@@ -284,14 +286,14 @@ std::vector<std::string> inertial_structs(const ColumnNames& names) {
 }
 
 std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
-  const std::vector<std::string> structs = inertial_structs(names);
+  const std::vector<std::string> found = inertial_structs(names);
+  const std::set<std::string, std::less<>> structs(found.begin(), found.end());
   std::vector<ColumnRole> roles;
   for (const std::string& name : names) {
     const std::size_t dot = std::min(name.rfind('.'), name.size());
     const auto member = std::find_if(kStructMembers.begin(), kStructMembers.end(),
                                      [&](const StructMember& known) { return known.name == name.substr(dot); });
-    const bool known = member != kStructMembers.end() &&
-                       std::find(structs.begin(), structs.end(), name.substr(0, dot)) != structs.end();
+    const bool known = member != kStructMembers.end() && structs.contains(name.substr(0, dot));
     roles.push_back(known ? ColumnRole{member->quantity, std::string(member->axis), known_unit(member->unit)}
                           : infer_role(name));
   }
