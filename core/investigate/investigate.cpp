@@ -9,6 +9,7 @@
 #include "core/investigate/report/outage_gain.hpp"
 #include "core/investigate/report/recording_findings.hpp"
 #include "core/investigate/report/remains.hpp"
+#include "core/investigate/report/unnamed_report.hpp"
 #include "core/investigate/report/verdict.hpp"
 #include "core/investigate/search/given_model.hpp"
 #include "core/investigate/search/group_search.hpp"
@@ -17,7 +18,6 @@
 #include "core/investigate/search/thresholds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -220,54 +220,6 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   outcome.after.residual.clear();
 }
 
-/// The check that a profile without a name has failed, and the sentence.
-void report_profile(const UnnamedFinding& found, double chance, Report& report) {
-  Check check;
-  check.id = found.effect.column + ".";
-  check.id.append(name_of(found.effect.kind)).append("_").append(name_of(found.effect.against));
-  check.title = std::string(name_of(found.effect.kind)) + " by " + std::string(words_of(found.effect.against));
-  check.channel = found.effect.column;
-  check.observed = found.heldout_gain;
-  const auto quantile = [&](double p) { return std::max(0.0, 2.0 * std::log(found.tried / (1.0 - p))); };
-  check.median = quantile(0.5);
-  check.q975 = quantile(0.975);
-  check.p = found.chance();
-  check.p_adjusted = chance;
-  check.failed = true;
-  check.observed_after = check.observed;
-  check.p_after = check.p;
-  check.p_after_adjusted = chance;
-  check.failed_after = true;
-  check.end = CheckEnd::Unexplained;
-  ++report.failed_before;
-  ++report.failed_after;
-  report.checks.push_back(check);
-  report.unexplained.push_back(
-      {found.effect.column, found.sentence + ". No cause of the list explains it.", {check.id}});
-}
-
-/// Of the profiles those of channels in which something stays unexplained, and those that show something by themselves:
-/// by their chance over all channels, and by their size.
-void extend_without_names(std::vector<UnnamedFinding> unnamed, std::size_t channels, Report& report) {
-  const auto is_unexplained = [&](const UnnamedFinding& one) {
-    return std::any_of(report.unexplained.begin(), report.unexplained.end(),
-                       [&](const Unexplained& left) { return left.channel == one.effect.column; });
-  };
-  for (const UnnamedFinding& one : unnamed) {
-    const double chance = std::min(1.0, one.chance() * static_cast<double>(channels));
-    if (chance < kShown && is_of_size(one) && !is_unexplained(one)) {
-      report_profile(one, chance, report);
-    }
-  }
-  std::erase_if(unnamed, [&](const UnnamedFinding& one) { return !is_unexplained(one); });
-  report.unnamed = std::move(unnamed);
-  for (const UnnamedFinding& one : report.unnamed) {
-    if (report.outages) {
-      report.outages->left_out.push_back("a profile without a name of " + one.effect.column);
-    }
-  }
-}
-
 tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "The investigation was stopped."); }
 
 }  // namespace
@@ -372,7 +324,7 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
     report.outages = *std::move(outages);
   }
   report_remains(remains, report);
-  extend_without_names(std::move(taken.unnamed), groups.size(), report);
+  report_unnamed(std::move(taken.unnamed), groups.size(), report);
   report_recordings(righted, report);
   report.summary = verdict_of(report);
   return report;

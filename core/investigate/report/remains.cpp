@@ -373,19 +373,22 @@ void report_remains(const std::vector<Remainder>& remains, Report& report) {
     check.q975 = quantile(0.975);
     check.p = std::min(1.0, remainder.places * std::exp(-remainder.observed));
     check.p_adjusted = remainder.p_study;
-    check.failed = true;
     check.title = "what is left in the innovations";
-    check.observed_after = check.observed;
-    check.p_after = check.p;
-    check.p_after_adjusted = check.p_adjusted;
-    check.failed_after = true;
-    check.end = CheckEnd::Unexplained;
-    ++report.failed_before;
-    ++report.failed_after;
-    report.checks.push_back(check);
-    report.unexplained.push_back(
-        {remainder.channel, remainder.sentence + ". No cause of the list explains it.", {check.id}});
+    report_unexplained(std::move(check), remainder.sentence, report);
   }
+}
+
+void report_unexplained(Check check, const std::string& sentence, Report& report) {
+  check.failed = true;
+  check.observed_after = check.observed;
+  check.p_after = check.p;
+  check.p_after_adjusted = check.p_adjusted;
+  check.failed_after = true;
+  check.end = CheckEnd::Unexplained;
+  ++report.failed_before;
+  ++report.failed_after;
+  report.unexplained.push_back({check.channel, sentence + ". No cause of the list explains it.", {check.id}});
+  report.checks.push_back(std::move(check));
 }
 
 }  // namespace driftlab::investigate

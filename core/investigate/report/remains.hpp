@@ -57,6 +57,10 @@ struct Remainder {
                                                   const std::vector<Evidence>& found,
                                                   std::vector<Remainder> of_channels);
 
+/// Adds a check that fails before and after, and the sentence of what it shows. `check` has its observation and
+/// chances.
+void report_unexplained(Check check, const std::string& sentence, Report& report);
+
 /// Adds a check and an entry of `unexplained` for each departure below kShown, at most three of a channel.
 void report_remains(const std::vector<Remainder>& remains, Report& report);
 
