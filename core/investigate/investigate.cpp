@@ -187,12 +187,15 @@ void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcom
     longest = std::max(longest, static_cast<double>(residual.size()));
   }
   const double dt_s = outcome.after.dt_s;
-  const auto last = std::find_if(unnamed.rbegin(), unnamed.rend(), [](const auto& found) { return found.noise; });
-  if (last == unnamed.rend()) {
+  std::vector<SlowComponent> refitted;
+  for (const UnnamedFinding& found : unnamed) {
+    refitted = found.noise ? *found.noise : std::move(refitted);  // the last one's is beside all of them
+  }
+  if (refitted.empty()) {
     return;
   }
-  for (std::size_t k = 0; k < std::min(base.size(), last->noise->size()); ++k) {
-    base[k].process = (*last->noise)[k].process;  // effects that are slow noise stand behind the base
+  for (std::size_t k = 0; k < std::min(base.size(), refitted.size()); ++k) {
+    base[k].process = refitted[k].process;  // effects that are slow noise stand behind the base
   }
   std::erase_if(base, [&](const SlowComponent& component) {
     SlowModel alone;

@@ -117,7 +117,7 @@ class UnnamedSearch {
         lines_.assign(group_.members.size(), std::nullopt);
       }
       if (best->noise) {
-        data_.model.components = in_all_members(*best);
+        data_.model.components = in_all_members(best->noise->components);
       }
       findings.push_back(finding_of(*best));
     }
@@ -133,7 +133,7 @@ class UnnamedSearch {
     finding.samples = candidate.samples;
     finding.sentence = sentence_of(candidate);
     if (candidate.noise) {
-      finding.noise = in_all_members(candidate);
+      finding.noise = in_all_members(candidate.noise->components);
     }
     for (std::size_t k = 0; k < candidate.effect.value.size(); ++k) {
       const double from = candidate.effect.edge[k];
@@ -524,8 +524,7 @@ class UnnamedSearch {
   }
 
   /// The refitted components, in the recordings in which they acted before.
-  [[nodiscard]] std::vector<SlowComponent> in_all_members(const Candidate& candidate) const {
-    std::vector<SlowComponent> components = candidate.noise->components;
+  [[nodiscard]] std::vector<SlowComponent> in_all_members(std::vector<SlowComponent> components) const {
     for (std::size_t k = 0; k < components.size(); ++k) {
       components[k].in = data_.model.components[k].in;
     }
