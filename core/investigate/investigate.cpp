@@ -189,7 +189,9 @@ void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcom
   const double dt_s = outcome.after.dt_s;
   std::vector<SlowComponent> refitted;
   for (const UnnamedFinding& found : unnamed) {
-    refitted = found.noise ? *found.noise : std::move(refitted);  // the last one's is beside all of them
+    if (found.noise) {
+      refitted = *found.noise;  // the last one's is beside all of them
+    }
   }
   if (refitted.empty()) {
     return;

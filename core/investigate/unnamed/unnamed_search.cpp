@@ -116,8 +116,8 @@ class UnnamedSearch {
       if (best->effect.kind == UnnamedKind::Mean) {
         lines_.assign(group_.members.size(), std::nullopt);
       }
-      if (best->noise) {
-        data_.model.components = in_all_members(best->noise->components);
+      if (const std::optional<SlowModel>& refitted = best->noise) {
+        data_.model.components = in_all_members(refitted->components);
       }
       findings.push_back(finding_of(*best));
     }
