@@ -81,9 +81,8 @@ constexpr double kShare = 1.0 / 3.0;
 bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& unnamed,
               std::size_t channels) {
   return std::any_of(unnamed.begin(), unnamed.end(), [&](const UnnamedFinding& one) {
-    return one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) && is_of_size(one) &&
-           one.chance() * static_cast<double>(channels) < kShown &&
-           one.heldout_gain > kShare * std::max(evidence.heldout_gain, 0.0);
+    return one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) &&
+           shows_itself(one, channels) && one.heldout_gain > kShare * std::max(evidence.heldout_gain, 0.0);
   });
 }
 
@@ -147,11 +146,12 @@ void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std
   }
 }
 
-bool is_of_size(const UnnamedFinding& found) {
+bool shows_itself(const UnnamedFinding& found, std::size_t channels) {
   constexpr double kMuch = 0.1;
-  return found.effect.kind == UnnamedKind::Mean ||
-         std::any_of(found.effect.value.begin(), found.effect.value.end(),
-                     [](double ratio) { return std::fabs(ratio - 1.0) > kMuch; });
+  const bool of_size = found.effect.kind == UnnamedKind::Mean ||
+                       std::any_of(found.effect.value.begin(), found.effect.value.end(),
+                                   [](double ratio) { return std::fabs(ratio - 1.0) > kMuch; });
+  return of_size && found.chance(channels) < kShown;
 }
 
 }  // namespace driftlab::investigate

@@ -28,8 +28,8 @@ void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std
                               const std::vector<Remainder>& remains, const std::vector<UnnamedFinding>& unnamed,
                               const Report& report, std::vector<Evidence>& found);
 
-/// Whether a profile without a name differs enough from the model to be told where every check passes: by 10 % of a
-/// density or of a power somewhere; a mean always does.
-[[nodiscard]] bool is_of_size(const UnnamedFinding& found);
+/// Whether a profile without a name shows something where every check passes: its chance over all `channels` is below
+/// kShown, and a density or a power differs by 10 % somewhere; a mean always does.
+[[nodiscard]] bool shows_itself(const UnnamedFinding& found, std::size_t channels);
 
 }  // namespace driftlab::investigate

@@ -11,7 +11,7 @@ namespace driftlab::investigate {
 namespace {
 
 /// The check that a profile without a name has failed, and the sentence.
-void report_profile(const UnnamedFinding& found, double chance, Report& report) {
+void report_profile(const UnnamedFinding& found, std::size_t channels, Report& report) {
   Check check;
   check.id = found.effect.column + ".";
   check.id.append(name_of(found.effect.kind)).append("_").append(name_of(found.effect.against));
@@ -21,8 +21,8 @@ void report_profile(const UnnamedFinding& found, double chance, Report& report) 
   const auto quantile = [&](double p) { return std::max(0.0, 2.0 * std::log(found.tried / (1.0 - p))); };
   check.median = quantile(0.5);
   check.q975 = quantile(0.975);
-  check.p = found.chance();
-  check.p_adjusted = chance;
+  check.p = found.chance(1);
+  check.p_adjusted = found.chance(channels);
   report_unexplained(std::move(check), found.sentence, report);
 }
 
@@ -34,9 +34,8 @@ void report_unnamed(std::vector<UnnamedFinding> unnamed, std::size_t channels, R
                        [&](const Unexplained& left) { return left.channel == one.effect.column; });
   };
   for (const UnnamedFinding& one : unnamed) {
-    const double chance = std::min(1.0, one.chance() * static_cast<double>(channels));
-    if (chance < kShown && is_of_size(one) && !is_unexplained(one)) {
-      report_profile(one, chance, report);
+    if (shows_itself(one, channels) && !is_unexplained(one)) {
+      report_profile(one, channels, report);
     }
   }
   std::erase_if(unnamed, [&](const UnnamedFinding& one) { return !is_unexplained(one); });

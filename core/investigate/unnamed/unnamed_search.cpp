@@ -654,7 +654,9 @@ class UnnamedSearch {
 
 }  // namespace
 
-double UnnamedFinding::chance() const { return std::min(1.0, tried * std::exp(-0.5 * heldout_gain)); }
+double UnnamedFinding::chance(std::size_t channels) const {
+  return std::min(1.0, static_cast<double>(channels) * tried * std::exp(-0.5 * heldout_gain));
+}
 
 std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data) {
   return UnnamedSearch(group, data).go();

@@ -39,11 +39,11 @@ struct UnnamedFinding {
   double samples = 0.0;           ///< of those data
   double tried = 1.0;             ///< profiles, of which this is the best
 
-  /// Bound of the chance of such a gain where the model is right. On data that it was not fitted to, the likelihood
-  /// ratio of a profile has a mean of 1 under the model, so that its logarithm exceeds g with a chance of exp(-g) at
-  /// most (Ville); here it is the sum over two roles of the data, which are not independent: exp(-g/2), times those
-  /// tried.
-  [[nodiscard]] double chance() const;
+  /// Bound of the chance of such a gain in one of `channels` where the model is right. On data that it was not fitted
+  /// to, the likelihood ratio of a profile has a mean of 1 under the model, so that its logarithm exceeds g with a
+  /// chance of exp(-g) at most (Ville); here it is the sum over roles of the data that are not independent: exp(-g/2),
+  /// times the profiles tried.
+  [[nodiscard]] double chance(std::size_t channels) const;
   std::string sentence;  ///< for people: where it is and how large
   /// The slow part of an automatic base as it is beside a mean, which it had followed; nothing: as it was.
   std::optional<std::vector<SlowComponent>> noise;
