@@ -2,10 +2,11 @@
 
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
+#include "core/investigate/unnamed/profile_bins.hpp"
+#include "core/investigate/unnamed/profile_of_means.hpp"
 #include "core/investigate/unnamed/profile_of_ratios.hpp"
-#include "core/process/dense.hpp"
+#include "core/investigate/unnamed/profile_words.hpp"
 #include "core/process/distributions.hpp"
-#include "core/signal/significant.hpp"
 
 #include <Eigen/Core>
 
@@ -20,7 +21,6 @@ namespace driftlab::investigate {
 namespace {
 
 constexpr std::array<int, 3> kBands{14, 42, -40};  ///< spec/trust-notes.md, section 7, as the next two
-constexpr std::size_t kQuantiles = 12;             ///< bins of a quantity
 constexpr double kAdopted = 6.0;                   ///< [nat], beside 2 ln(tried)
 constexpr double kPeriods = 4.0;                   ///< of the lowest frequency in half a recording
 constexpr std::size_t kTimeBins = 32;              ///< chosen, not measured, as all that follow
@@ -51,36 +51,6 @@ struct Courses {
   std::vector<Series> of;            ///< one per member of the group
   std::vector<double> edge;
 };
-
-std::size_t bin_of(const std::vector<double>& edge, double x) {
-  const auto above = std::upper_bound(edge.begin(), edge.end(), x) - edge.begin();
-  return static_cast<std::size_t>(
-      std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(edge.size()) - 2));
-}
-
-/// Between the values where there are few, else with equal numbers of them in each bin. Empty: all are alike.
-std::vector<double> edges_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  std::vector<double> distinct = values;
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-  std::vector<double> edge;
-  if (distinct.size() < 2) {
-    return edge;
-  }
-  edge.push_back(distinct.front());
-  if (distinct.size() <= 2 * kQuantiles) {
-    for (std::size_t k = 1; k < distinct.size(); ++k) {
-      edge.push_back(0.5 * (distinct[k - 1] + distinct[k]));
-    }
-  } else {
-    for (std::size_t k = 1; k < kQuantiles; ++k) {
-      edge.push_back(values[k * values.size() / kQuantiles]);
-    }
-  }
-  edge.push_back(distinct.back());
-  edge.erase(std::unique(edge.begin(), edge.end()), edge.end());
-  return edge.size() > 2 ? edge : std::vector<double>{};
-}
 
 class UnnamedSearch {
  public:
@@ -131,7 +101,7 @@ class UnnamedSearch {
     finding.heldout_gain = candidate.gain;
     finding.tried = tried_;
     finding.samples = candidate.samples;
-    finding.sentence = sentence_of(candidate);
+    finding.sentence = sentence_of(candidate.effect, candidate.se, level_unit(group_.unit));
     if (candidate.noise) {
       finding.noise = in_all_members(candidate.noise->components);
     }
@@ -414,32 +384,6 @@ class UnnamedSearch {
     return candidate;
   }
 
-  /// Amplitudes of the bins' means by generalised least squares, drawn towards 0 by their prior variance.
-  struct MeanFit {
-    Eigen::VectorXd amplitude;
-    Eigen::VectorXd se;
-  };
-  [[nodiscard]] static MeanFit fit_mean(const Eigen::MatrixXd& gram) {
-    const Eigen::Index bins = gram.rows() - 1;
-    Eigen::MatrixXd normal = gram.block(1, 1, bins, bins);
-    const double ridge = 1e-9 * std::max(normal.trace() / static_cast<double>(bins), 1e-300);
-    normal.diagonal().array() += ridge;
-    const Eigen::VectorXd moment = gram.col(0).segment(1, bins);
-    const Eigen::VectorXd plain = solve_symmetric(normal, moment);
-    // A constant in all bins is no profile, and has no information: of the error only what is orthogonal to it counts.
-    const Eigen::MatrixXd centre =
-        Eigen::MatrixXd::Identity(bins, bins) - Eigen::MatrixXd::Constant(bins, bins, 1.0 / static_cast<double>(bins));
-    const Eigen::VectorXd error = (centre * inverse(normal) * centre).diagonal().cwiseMax(0.0);
-    const Eigen::VectorXd centred = centre * plain;
-    const double prior = std::max(0.0, (centred.cwiseAbs2() - error).mean());
-    MeanFit fit{Eigen::VectorXd::Zero(bins), error.cwiseSqrt()};
-    if (prior > 0.0) {
-      normal.diagonal().array() += 1.0 / prior;
-      fit.amplitude = centre * solve_symmetric(normal, moment);
-    }
-    return fit;
-  }
-
   /// Means of blocks of the residuals, and the bins that they lie in.
   [[nodiscard]] Candidate mean(const Courses& courses) const {
     Candidate candidate;
@@ -485,28 +429,14 @@ class UnnamedSearch {
     const Eigen::Index size = static_cast<Eigen::Index>(bins) + 1;
     const auto all = std::accumulate(parts.begin(), parts.end(), Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size)));
     for (const Eigen::MatrixXd& part : parts) {
-      const Eigen::VectorXd a = fit_mean(all - part).amplitude;
+      const Eigen::VectorXd a = fit_bin_means(all - part).amplitude;
       candidate.gain += a.dot(part.col(0).segment(1, size - 1)) -
                         0.5 * (part(0, 0) + a.dot(part.block(1, 1, size - 1, size - 1) * a));
     }
-    const MeanFit fit = fit_mean(all);
+    const BinMeans fit = fit_bin_means(all);
     candidate.effect.value.assign(fit.amplitude.begin(), fit.amplitude.end());
     candidate.se.assign(fit.se.begin(), fit.se.end());
     return candidate;
-  }
-
-  /// The first columns.
-  [[nodiscard]] static BlockColumns narrowed(const BlockColumns& columns, std::size_t width) {
-    BlockColumns first;
-    first.width = width;
-    for (const std::vector<double>& rows : columns.rows) {
-      std::vector<double>& own = first.rows.emplace_back();
-      for (std::size_t at = 0; at < rows.size(); at += columns.width) {
-        own.insert(own.end(), rows.begin() + static_cast<std::ptrdiff_t>(at),
-                   rows.begin() + static_cast<std::ptrdiff_t>(at + width));
-      }
-    }
-    return first;
   }
 
   /// Inner products of means and bins by the parts of the data, less what a constant of each part explains.
@@ -569,78 +499,6 @@ class UnnamedSearch {
       rows[row + 1 + constants + bin_of(courses.edge, courses.of[r][from + series.block / 2])] = 1.0;
     }
     series.recordings.push_back(std::move(blocks));
-  }
-
-  /// Inner products of means and bins over the rows of recording m that `takes` picks, less what the constant of these
-  /// rows explains: each recording has a bias of its own.
-  template <class Takes>
-  [[nodiscard]] static Eigen::MatrixXd centred_gram(const BlockColumns& whitened, std::size_t m, std::size_t constants,
-                                                    const Takes& takes) {
-    const auto width = static_cast<Eigen::Index>(whitened.width);
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
-    const std::vector<double>& rows = whitened.rows[m];
-    const std::size_t blocks = rows.size() / whitened.width;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      if (takes(b, blocks)) {
-        const Eigen::Map<const Eigen::VectorXd> row(rows.data() + b * whitened.width, width);
-        gram.noalias() += row * row.transpose();
-      }
-    }
-    const auto constant = static_cast<Eigen::Index>(1 + m);
-    const double own = gram(constant, constant);
-    if (own > 0.0) {
-      gram -= Eigen::MatrixXd(gram.col(constant) * gram.row(constant) / own);
-    }
-    const Eigen::Index bins = width - 1 - static_cast<Eigen::Index>(constants);
-    Eigen::MatrixXd centred(bins + 1, bins + 1);
-    centred(0, 0) = gram(0, 0);
-    centred.block(0, 1, 1, bins) = gram.topRightCorner(1, bins);
-    centred.block(1, 0, bins, 1) = gram.bottomLeftCorner(bins, 1);
-    centred.block(1, 1, bins, bins) = gram.bottomRightCorner(bins, bins);
-    return centred;
-  }
-
-  /// Where the profile is most sure to be above the model and below it, and how large it is there.
-  [[nodiscard]] std::string sentence_of(const Candidate& candidate) const {
-    constexpr double kSure = 3.0;
-    const UnnamedEffect& effect = candidate.effect;
-    const bool mean = effect.kind == UnnamedKind::Mean;
-    const ProfileUnit along = unit_of(effect.against);
-    const LabUnit unit = level_unit(group_.unit);
-    std::vector<std::string> ends;
-    for (const double sign : {1.0, -1.0}) {
-      double surest = kSure;
-      std::string end;
-      for (std::size_t k = 0; k < effect.value.size(); ++k) {
-        const double z = sign * (effect.value[k] - (mean ? 0.0 : 1.0)) / candidate.se[k];
-        if (z > surest) {
-          surest = z;
-          end = mean ? significant(effect.value[k] * unit.per_si) + " " + unit.symbol : significant(effect.value[k]);
-          end += (mean ? " at " : " times at ") + significant(along.to_lab(effect.edge[k])) + " to " +
-                 significant(along.to_lab(effect.edge[k + 1])) + " " + along.symbol;
-        }
-      }
-      if (!end.empty()) {
-        ends.push_back(std::move(end));
-      }
-    }
-    const std::string of = "of " + effect.column + " " +
-                           (effect.recordings.empty()       ? "in all recordings"
-                            : effect.recordings.size() == 1 ? "in " + effect.recordings.front()
-                                                            : "in the recordings that tell it");
-    const std::string where = ends.empty()       ? "a little everywhere"
-                              : ends.size() == 1 ? ends[0]
-                                                 : ends[0] + " and " + ends[1];
-    switch (effect.kind) {
-      case UnnamedKind::Spectrum:
-        return "The noise " + of + " has another density than the model's: " + where;
-      case UnnamedKind::Variance:
-        return "The power of the noise " + of + " goes with " + std::string(words_of(effect.against)) +
-               ", over that of the model: " + where;
-      case UnnamedKind::Mean:
-        break;
-    }
-    return "The mean " + of + " goes with " + std::string(words_of(effect.against)) + ": " + where;
   }
 
   const ChannelGroup& group_;
