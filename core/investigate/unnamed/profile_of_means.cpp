@@ -10,7 +10,11 @@ namespace driftlab::investigate {
 BinMeans fit_bin_means(const Eigen::MatrixXd& gram) {
   const Eigen::Index bins = gram.rows() - 1;
   Eigen::MatrixXd normal = gram.block(1, 1, bins, bins);
-  const double ridge = 1e-9 * std::max(normal.trace() / static_cast<double>(bins), 1e-300);
+  double trace = 0.0;  // GCC 12 takes Eigen's for one of no element
+  for (Eigen::Index b = 0; b < bins; ++b) {
+    trace += normal(b, b);
+  }
+  const double ridge = 1e-9 * std::max(trace / static_cast<double>(bins), 1e-300);
   normal.diagonal().array() += ridge;
   const Eigen::VectorXd moment = gram.col(0).segment(1, bins);
   const Eigen::VectorXd plain = solve_symmetric(normal, moment);
