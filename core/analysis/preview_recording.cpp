@@ -3,6 +3,7 @@
 #include "core/analysis/growing_recording.hpp"
 #include "core/datasheet/plausible_units.hpp"
 #include "core/signal/angle.hpp"
+#include "core/signal/infer_role.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/recording_columns.hpp"
 #include "core/signal/recording_view.hpp"
@@ -176,9 +177,11 @@ RecordingPreview preview_recording(const PreviewRequest& request, const DecodeLi
   for (std::size_t i = 0; i < preview.head.names.size(); ++i) {
     const std::span<const double> values = preview.head.columns[i];
     const auto first = values.first(std::min(kFirst, values.size()));
-    const RoleOrigin from = !request.spec.columns.empty() ? RoleOrigin::Stated
-                            : preview.head.has_header     ? RoleOrigin::Header
-                                                          : RoleOrigin::Number;
+    const bool time = (*roles)[i] && (*roles)[i]->quantity == Quantity::Time;
+    const bool stated = !request.spec.columns.empty() && (time || !reads_names(request.spec));
+    const RoleOrigin from = stated                    ? RoleOrigin::Stated
+                            : preview.head.has_header ? RoleOrigin::Header
+                                                      : RoleOrigin::Number;
     preview.columns.push_back({preview.head.names[i], (*roles)[i], from, {first.begin(), first.end()}, spread(values)});
   }
   preview.time = guess_time(preview.head.names, *roles,

@@ -18,8 +18,9 @@ bool holds_no_sensor(const RecordingSpec& spec) {
                       [](const auto& column) { return is_sensor(column.second.quantity); });
 }
 
-/// Of a recording none of whose columns is a sensor.
-Result<RecordingSurvey> survey_fixes(const SurveyRequest& request) {
+/// Of a recording none of whose columns is a sensor; nothing where the time alone is stated and the names of others are
+/// those of a gyroscope or an accelerometer.
+Result<std::optional<RecordingSurvey>> survey_fixes(const SurveyRequest& request) {
   const auto file = ColumnFile::open(request.columns);
   if (!file) {
     return fail(file.error());
@@ -28,11 +29,17 @@ Result<RecordingSurvey> survey_fixes(const SurveyRequest& request) {
   if (!read) {
     return fail(read.error());
   }
+  for (std::size_t i = 0; i < read->count(); ++i) {
+    const Quantity quantity = read->role(i).value_or(ColumnRole{}).quantity;
+    if (quantity == Quantity::AngularRate || quantity == Quantity::SpecificForce) {
+      return std::optional<RecordingSurvey>();
+    }
+  }
   RecordingSurvey survey;
   survey.quality.samples = file->rows();
   survey.quality.notes.emplace_back(
       "No column is a sensor: the recording is for drives, and nothing in it is characterised.");
-  return survey;
+  return std::optional(std::move(survey));
 }
 
 std::vector<Gap> longest_of(std::vector<Gap> gaps) {
@@ -85,7 +92,13 @@ Result<RecordingSurvey> survey_recording(const SurveyRequest& request) {
   const RecordingSpec& spec = request.spec;
   const bool calibrated = !spec.calibration.empty();
   if (!calibrated && holds_no_sensor(spec)) {
-    return survey_fixes(request);
+    auto fixes = survey_fixes(request);
+    if (!fixes) {
+      return fail(fixes.error());
+    }
+    if (*fixes) {
+      return std::move(**fixes);
+    }
   }
   auto opened = open_recording(request.columns, spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);
   if (!opened) {

@@ -285,6 +285,11 @@ std::vector<std::string> inertial_structs(const ColumnNames& names) {
   return structs;
 }
 
+bool reads_names(const RecordingSpec& spec) {
+  return std::all_of(spec.columns.begin(), spec.columns.end(),
+                     [](const auto& stated) { return stated.second.quantity == Quantity::Time; });
+}
+
 std::vector<ColumnRole> infer_roles(const ColumnNames& names) {
   const std::vector<std::string> found = inertial_structs(names);
   const std::set<std::string, std::less<>> structs(found.begin(), found.end());

@@ -28,6 +28,10 @@ namespace driftlab {
 /// NaveGo, `imu_structure`: times in s, angular rates in rad/s, specific forces in m/s^2.
 [[nodiscard]] std::vector<std::string> inertial_structs(const ColumnNames& names);
 
+/// True where the columns of a recording mean what their names say: none is stated, or the time alone, which says
+/// nothing of the others.
+[[nodiscard]] bool reads_names(const RecordingSpec& spec);
+
 /// The role of each column of a file: that of its struct, else that of its own name.
 [[nodiscard]] std::vector<ColumnRole> infer_roles(const ColumnNames& names);
 

@@ -17,4 +17,15 @@ namespace driftlab {
   return fail(ErrorCode::InconsistentSampling, std::move(message), {{"parameter", "rate_hz"}});
 }
 
+/// Of a time column `column` whose unit nobody says, without a stated rate; `guess`: the unit that its steps speak for.
+[[nodiscard]] inline tl::unexpected<Error> time_without_unit(const std::string& column,
+                                                             const std::optional<TimeGuess>& guess = {}) {
+  std::string message = "The time column '" + column + "' has no unit and no rate is stated: give its unit (columns " +
+                        column + "=time:s, or ms, us, ns) or rate_hz.";
+  if (guess && guess->column == column) {
+    message += " In " + guess->unit.symbol + " its rate would be " + short_text(guess->rate_hz) + " Hz.";
+  }
+  return fail(ErrorCode::InconsistentSampling, std::move(message), {{"parameter", "rate_hz"}, {"column", column}});
+}
+
 }  // namespace driftlab

@@ -146,28 +146,31 @@ Status check_role(const std::string& column, const ColumnRole& role) {
 }
 
 Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec, const ColumnNames& names) {
-  std::vector<std::optional<ColumnRole>> roles;
-  if (spec.columns.empty()) {
-    std::vector<ColumnRole> inferred = infer_roles(names);
+  auto stated = stated_roles(spec, names);
+  if (!stated) {
+    return stated;
+  }
+  std::vector<std::optional<ColumnRole>> roles = std::move(*stated);
+  if (reads_names(spec)) {
+    const bool time_stated = !spec.columns.empty();
+    std::vector<ColumnRole> by_name = infer_roles(names);
     for (std::size_t i = 0; i < names.size(); ++i) {
+      if (roles[i] || (time_stated && by_name[i].quantity == Quantity::Time)) {
+        continue;
+      }
       if (auto status = check_bracketed_unit(names[i]); !status) {
         return fail(status.error());
       }
-      if (auto status = check_role(names[i], inferred[i]); !status) {
+      if (auto status = check_role(names[i], by_name[i]); !status) {
         return fail(status.error());
       }
-      roles.emplace_back(std::move(inferred[i]));
+      roles[i] = std::move(by_name[i]);
     }
-    keep_one_time_column(roles);
-  } else {
-    auto stated = stated_roles(spec, names);
-    if (!stated) {
-      return stated;
+    if (!time_stated) {
+      keep_one_time_column(roles);
     }
-    roles = std::move(*stated);
-    if (!spec.rate_hz) {
-      add_time_by_name(names, roles);
-    }
+  } else if (!spec.rate_hz) {
+    add_time_by_name(names, roles);
   }
   if (auto status = check_distinct(names, roles); !status) {
     return fail(status.error());

@@ -59,7 +59,8 @@ struct RecordingSpec {
 using ColumnNames = std::vector<std::string>;
 
 /// A role for each column of the file, in file order; nothing for a column that is not needed. With `spec.columns`: the
-/// names must exist, no two columns may have the same (quantity, axis), and each role must check. Without: names such
+/// names must exist, no two columns may have the same (quantity, axis), and each role must check. Without, and for the
+/// other columns where `spec.columns` names the time alone: names such
 /// as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood; other columns become
 /// unspecified channels in unit `1`. Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names
 /// the column.

@@ -1,5 +1,6 @@
 #include "core/signal/recording_columns.hpp"
 
+#include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
 #include "core/signal/text.hpp"
 
@@ -55,7 +56,7 @@ Result<RecordingColumns> RecordingColumns::read(const RecordingSpec& spec, const
   }
   const bool time_stated = std::any_of(spec.columns.begin(), spec.columns.end(),
                                        [](const auto& stated) { return stated.second.quantity == Quantity::Time; });
-  return RecordingColumns(names, std::move(*roles), std::move(column), spec.columns.empty(), time_stated);
+  return RecordingColumns(names, std::move(*roles), std::move(column), reads_names(spec), time_stated);
 }
 
 Unit RecordingColumns::unit(std::size_t index, const Unit& otherwise) const {

@@ -169,6 +169,9 @@ Result<RecordingView> view_rows(const RecordingSpec& spec, const RecordingColumn
   if (!time && !spec.rate_hz) {
     return neither_time_nor_rate(columns.guessed_time());
   }
+  if (time && columns.unit(*time).dimension != Dimension::Time && !spec.rate_hz) {
+    return time_without_unit(columns.name(*time), columns.guessed_time());
+  }
   auto window = plan_window(spec, rows, time ? columns.samples(*time) : std::span<const double>(),
                             time ? columns.unit(*time) : Unit{});
   if (!window) {

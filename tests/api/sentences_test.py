@@ -34,7 +34,7 @@ BROKEN: dict[str, tuple[str | bytes, str, str]] = {
     "ragged.csv": (HEAD + "".join(ROWS[:9]) + "0.09,1,1,1\n" + "".join(ROWS[10:]), "Line 11 has 4 values", "correct or delete that line"),
     "backward.csv": (HEAD + "".join(row(i if i % 7 else i // 2) for i in range(2000)), "steps back", "sort the rows"),
     "rate.csv": ("gx [deg/s],gy [deg/s]\n" + "".join(line.split(",", 1)[1] for line in ROWS), "no stated rate", "--rate-hz"),
-    "unit.csv": (GOOD.replace("t [s]", "t"), "The time column has no unit", "--rate-hz"),
+    "unit.csv": (GOOD.replace("t [s]", "t"), "The time column 't' has no unit", "--rate-hz"),
     "cut.csv.gz": (gzip.compress(GOOD.encode())[:9000], "gzip stream ends before it is complete", "copy the file again"),
     "cut.npy": (b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000, 6), }".ljust(117) + b"\n" + bytes(800),
                 "1000 x 6 numbers", "cut short"),

@@ -65,6 +65,21 @@ TEST(GuessTime, ARecordingWithoutATimeIsToldOfIt) {
   ASSERT_FALSE(view);
   EXPECT_NE(view.error().message.find("Column '0' rises as a time at 100 Hz does: 0=time:ms."), std::string::npos)
       << view.error().message;
+  spec.columns["0"] = {Quantity::Time, "", *parse_unit("ms")};  // what it says, done
+  const auto told = view_recording(spec, {"0", "1"}, 200, [&](std::size_t i) { return std::span(columns[i]); });
+  ASSERT_TRUE(told) << told.error().message;
+  EXPECT_EQ(told->channels.size(), 1U);
+  EXPECT_NEAR(told->window.time.rate_hz(), 100.0, 1e-9);
+}
+
+TEST(GuessTime, ATimeWithoutAUnitIsNamed) {
+  const Columns columns{rising(10.0), std::vector<double>(200, 0.5)};
+  const auto view = view_recording({}, {"timestamp", "gx"}, 200, [&](std::size_t i) { return std::span(columns[i]); });
+  ASSERT_FALSE(view);
+  EXPECT_EQ(
+      view.error().message,
+      "The time column 'timestamp' has no unit and no rate is stated: give its unit (columns timestamp=time:s, or "
+      "ms, us, ns) or rate_hz. In ms its rate would be 100 Hz.");
 }
 
 }  // namespace

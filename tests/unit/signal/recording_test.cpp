@@ -170,6 +170,20 @@ TEST(AssignRoles, TakesAColumnByItsNumberUnderAHeaderToo) {
   EXPECT_EQ(failure(assign_roles(spec, {"a", "b"})), "duplicate_column column=b");
 }
 
+TEST(AssignRoles, ReadsTheNamesOfTheRestWhereTheTimeAloneIsStated) {
+  // "6=time:ms", as the refusal had asked for, gave "None of the columns is a sensor".
+  RecordingSpec spec;
+  spec.columns = {{"2", {Quantity::Time, "", unit("ms")}}};
+  const auto roles = assign_roles(spec, {"gx [deg/s]", "ax (g)", "stamp", "time (s)", "state"});
+  ASSERT_TRUE(roles) << roles.error().message;
+  EXPECT_EQ(described(*roles->at(0)), "angular_rate x [deg/s]");
+  EXPECT_EQ(described(*roles->at(1)), "specific_force x [g]");
+  EXPECT_EQ(described(*roles->at(2)), "time [ms]");
+  EXPECT_FALSE(roles->at(3)) << "another time than the stated one";
+  EXPECT_EQ(described(*roles->at(4)), "unspecified [-]");
+  EXPECT_EQ(failure(assign_roles(spec, {"gz [furlong]", "b", "c"})), "unknown_unit column=gz [furlong] unit=furlong");
+}
+
 TEST(AssignRoles, KnowsTheRatesOfRollPitchAndYaw) {
   const auto roles = assign_roles({}, {"rollrate", "pitch_rate [deg/s]", "YawRate", "roll"});
   ASSERT_TRUE(roles) << roles.error().message;

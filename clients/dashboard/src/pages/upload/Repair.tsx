@@ -27,7 +27,7 @@ function RateField({each}: {each: Pending}): JSX.Element {
 
 export function Repair({each, code, detail, fields}: {each: Pending; code: string; detail: string; fields: Record<string, unknown>}): JSX.Element | null {
   const column = typeof fields.column === 'string' ? fields.column : null;
-  const time = /time column has no unit/i.test(detail) ? each.look?.document?.columns.find(one => one.quantity === 'time')?.name : undefined;
+  const time = /time column .*has no unit/i.test(detail) ? each.look?.document?.columns.find(one => one.quantity === 'time')?.name : undefined;
   return <>
     {column && /unit/.test(code) && <UnitField each={each} column={column} quantities={GIVEN} />}
     {time && <UnitField each={each} column={time} quantities={['time']} />}
