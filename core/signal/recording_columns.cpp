@@ -20,6 +20,9 @@ bool holds_text(std::span<const double> values) {
 bool sounds_inertial(std::string_view name) {
   const std::string lower = lower_case(name);
   const auto holds = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  if (lower.starts_with("absolute")) {  // the length of the vector beside its axes, as phyphox writes it
+    return false;
+  }
   return holds("gyr") || (holds("acc") && !holds("accuracy")) || holds("omega") || holds("angular");
 }
 

@@ -75,6 +75,15 @@ TEST(RecordingColumns, ATimeByItsNameServesWhereTheStatedColumnsHaveNone) {
   EXPECT_FALSE(RecordingColumns::read(spec, {"gz", "time (s)"}, samples)->time()) << "the rate is the time base";
 }
 
+TEST(RecordingColumns, TheLengthOfAVectorBesideItsAxesIsPassedOver) {
+  const auto samples = [](std::size_t) { return std::span<const double>(kBlank); };
+  const auto columns =
+      RecordingColumns::read({}, {"Acceleration x (m/s^2)", "Absolute acceleration (m/s^2)", "acc_l_x"}, samples);
+  ASSERT_TRUE(columns);
+  EXPECT_FALSE(columns->use_of(1)->examined);
+  EXPECT_TRUE(columns->use_of(2)->examined) << "which axis it is, its name does not say";
+}
+
 TEST(StatedRate, IsTheConditionsOwn) {
   EXPECT_EQ(stated_rate(*parse_condition("static"), "z", 5.0), 0.0);
   const Condition turning = *parse_condition("constant_rate:z:9:rad/s");
