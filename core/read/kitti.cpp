@@ -181,19 +181,38 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
   return status ? drive.deliver_to(sink) : status;
 }
 
+/// The drives in the folder of a date.
+std::vector<std::filesystem::path> drives_of_date(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> drives;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (std::filesystem::exists(entry.path() / kStamps, ignored)) {
+      drives.push_back(entry.path());
+    }
+  }
+  return drives;
+}
+
 }  // namespace
 
 bool is_kitti_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   const bool is_it = folder.filename() == "oxts" || folder.parent_path().filename() == "oxts";
   return std::filesystem::exists(folder / kStamps, ignored) ||
-         (is_it && std::filesystem::exists(folder / "timestamps.txt", ignored));
+         (is_it && std::filesystem::exists(folder / "timestamps.txt", ignored)) || !drives_of_date(folder).empty();
 }
 
 Status decode_kitti_folder(const std::filesystem::path& folder, const DecodeLimits& limits, ColumnSink& sink,
                            const RunControl& control) {
+  const auto drives = drives_of_date(folder);
+  if (drives.size() > 1) {
+    return fail(ErrorCode::UnsupportedFormat, "The directory '" + folder.filename().string() + "' holds " +
+                                                  std::to_string(drives.size()) +
+                                                  " KITTI drives; name the directory of one of them.");
+  }
+  const auto& drive_folder = drives.empty() ? folder : drives.front();
   std::error_code error;
-  const auto unit = std::filesystem::exists(folder / kStamps, error) ? folder / "oxts" : folder;
+  const auto unit = std::filesystem::exists(drive_folder / kStamps, error) ? drive_folder / "oxts" : drive_folder;
   std::vector<std::pair<std::string, std::filesystem::path>> files{{std::string(kStamps), unit / "timestamps.txt"}};
   for (const auto& entry : std::filesystem::directory_iterator(unit / "data", error)) {
     if (entry.is_regular_file(error)) {

@@ -13,10 +13,11 @@
 
 namespace driftlab {
 
-/// True for a folder that holds `oxts`, or is it.
+/// True for a folder that holds `oxts`, or is it, and for that of a date, whose folders hold it.
 [[nodiscard]] bool is_kitti_folder(const std::filesystem::path& folder);
 
-/// The drive of such a folder. Errors: those of its files; NoSamples, NotFound, Io.
+/// The drive of such a folder. Errors: those of its files; NoSamples, NotFound, Io; UnsupportedFormat for a date of
+/// several drives.
 [[nodiscard]] Status decode_kitti_folder(const std::filesystem::path& folder, const DecodeLimits& limits,
                                          ColumnSink& sink, const RunControl& control);
 

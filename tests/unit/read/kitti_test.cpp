@@ -81,5 +81,24 @@ TEST(Kitti, ReadsTheSameFromAFolder) {
   }
 }
 
+TEST(Kitti, ReadsTheFolderOfADateWithOneDriveAndAsksWhichOfTwo) {
+  const TemporaryDirectory directory;
+  const auto write = [&](const std::string& drive) {
+    for (const auto& [path, content] : kitti_files(5, "2011_09_26/" + drive + "/")) {
+      std::filesystem::create_directories((directory / path).parent_path());
+      write_file(directory / path, content);
+    }
+  };
+  write("2011_09_26_drive_0001_sync");
+  const auto one = decode_file(directory / "2011_09_26", directory / "columns");
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->format, "kitti_folder");
+  EXPECT_EQ(one->rows, 5U);
+  write("2011_09_26_drive_0002_sync");
+  const auto two = decode_file(directory / "2011_09_26", directory / "columns");
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().message, "The directory '2011_09_26' holds 2 KITTI drives; name the directory of one of them.");
+}
+
 }  // namespace
 }  // namespace driftlab
