@@ -6,6 +6,7 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +47,7 @@ class Walk {
   Status group(hid_t id, const std::string& path, int depth);
 
  private:
+  void stated_rates(hid_t id, const std::string& path);
   Status dataset(hid_t id, const std::string& path);
   Status array(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, bool turned, const std::string& path);
   void left_out(const std::string& path, const std::string& why) {
@@ -74,7 +76,52 @@ std::optional<std::string> link_name(hid_t group, hsize_t index) {
   return name;
 }
 
+/// What `object` states of the rate of its samples, as arrays of one number under the names of the attributes.
+void Walk::stated_rates(hid_t object, const std::string& path) {
+  for (const char* const name : {"sampling_rate", "sample_rate", "samplerate", "rate_hz", "fs", "Fs"}) {
+    if (H5Aexists(object, name) <= 0) {
+      continue;
+    }
+    const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+    const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+    double value = 0.0;
+    const H5T_class_t kind = H5Tget_class(type.get());
+    if ((kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Sget_simple_extent_npoints(space.get()) == 1 &&
+        H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0) {
+      const std::vector<double> one{value};
+      writer_.variable(path.empty() ? name : path + "." + name, std::span(&one, 1));
+      return;
+    }
+  }
+}
+
+/// The name of the first filter of an array that the library does not have; nothing where it has all.
+std::optional<std::string> unknown_filter(hid_t creation) {
+  const int filters = std::max(H5Pget_nfilters(creation), 0);
+  for (int i = 0; i < filters; ++i) {
+    std::array<char, 64> name{};
+    unsigned flags = 0;
+    unsigned configuration = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values, nullptr,
+                                               name.size() - 1, name.data(), &configuration);
+    if (filter < 0 || H5Zfilter_avail(filter) <= 0) {
+      // By the HDF Group's list of registered filters; the name in the file is what its writer put there.
+      constexpr std::array kRegistered{std::pair{32000, "lzf"}, std::pair{32001, "blosc"}, std::pair{32004, "lz4"},
+                                       std::pair{32008, "bitshuffle"}, std::pair{32015, "zstd"}};
+      const auto known = std::find_if(kRegistered.begin(), kRegistered.end(),
+                                      [&](const auto& registered) { return registered.first == filter; });
+      return known != kRegistered.end() ? known->second
+             : name.front() != '\0'     ? std::string(name.data())
+                                        : "number " + std::to_string(filter);
+    }
+  }
+  return std::nullopt;
+}
+
 Status Walk::group(hid_t id, const std::string& path, int depth) {
+  stated_rates(id, path);
   H5G_info_t info{};
   if (H5Gget_info(id, &info) < 0) {
     return damaged(path);
@@ -142,6 +189,13 @@ Status Walk::dataset(hid_t id, const std::string& path) {
     left_out(path, "its samples are in another file");
     return {};
   }
+  if (const auto filter = unknown_filter(creation.get())) {
+    left_out(path, "it is packed with the filter '" + *filter +
+                       "', which is not read; write the file anew with h5repack -f GZIP=4");
+    return {};
+  }
+  const std::size_t point = path.rfind('.');
+  stated_rates(id, point == std::string::npos ? "" : path.substr(0, point));
   std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   if (rank > 0 && H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr) < 0) {
     return damaged(path);

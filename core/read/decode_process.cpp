@@ -156,10 +156,17 @@ Status decode_apart(const std::string& format, const std::string& what, ByteSour
                                               " cannot be read: it is damaged, or takes more memory or time than one "
                                               "decoding may.");
   }
+  const std::string first = stream->notes.empty() ? "" : stream->notes.front();
   for (std::string& note : stream->notes) {
     sink.note(std::move(note));
   }
-  return deliver_variables(std::move(stream->variables), limits, sink);
+  auto status = deliver_variables(std::move(stream->variables), limits, sink);
+  if (!status && status.error().code == ErrorCode::NoSamples && !first.empty()) {  // why there is none
+    Error error = status.error();
+    error.message = "The " + what + " holds no array that is read: " + first;
+    return fail(std::move(error));
+  }
+  return status;
 }
 
 }  // namespace driftlab

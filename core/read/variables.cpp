@@ -10,6 +10,7 @@
 #include <compare>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace driftlab {
 namespace {
@@ -39,6 +40,35 @@ bool is_rate_name(const std::string& name) {
   constexpr std::array<std::string_view, 8> kNames{"rate",       "rate_hz",       "fs",          "freq",
                                                    "samplerate", "sampling_rate", "sample_rate", "frequency"};
   return std::find(kNames.begin(), kNames.end(), last) != kNames.end();
+}
+
+/// Levels of groups that `rate` shares with an array `name` where it says something of it: a rate speaks for the arrays
+/// beside and below it. 0 where it lies elsewhere.
+std::size_t nearness(const std::string& rate, const std::string& name) {
+  const std::size_t point = rate.rfind('.');
+  const std::string group = point == std::string::npos ? "" : rate.substr(0, point + 1);
+  return name.starts_with(group) ? 1 + group.size() : 0;
+}
+
+/// The rate that is stated nearest to the first array; nothing where two as near differ.
+std::optional<double> nearest_rate(const std::vector<std::pair<std::string, double>>& rates, const std::string& name,
+                                   ColumnSink& sink) {
+  std::size_t nearest = 0;
+  for (const auto& [rate, value] : rates) {
+    nearest = std::max(nearest, nearness(rate, name));
+  }
+  std::optional<double> found;
+  for (const auto& [rate, value] : rates) {
+    if (nearness(rate, name) != nearest) {
+      continue;
+    }
+    if (found && *found != value) {
+      sink.note("The file states several rates (" + rates.front().first + ", ...); none is used.");
+      return std::nullopt;
+    }
+    found = value;
+  }
+  return found;
 }
 
 std::string column_name(const Variable& variable, std::size_t column) {
@@ -106,6 +136,7 @@ Status deliver_variables(std::vector<Variable> variables, const DecodeLimits& li
     return fail(ErrorCode::NoSamples, "The file holds no array of two samples or more.");
   }
   Recorded recorded;
+  std::vector<std::pair<std::string, double>> rates;
   std::string left_out;
   for (const Variable& variable : variables) {
     if (rows_of(variable) == length) {
@@ -117,12 +148,13 @@ Status deliver_variables(std::vector<Variable> variables, const DecodeLimits& li
     }
     const double value = rows_of(variable) == 1 && variable.columns.size() == 1 ? variable.columns[0][0] : 0.0;
     if (is_sampling_rate(value) && is_rate_name(variable.name)) {
-      recorded.rate_hz = value;
+      rates.emplace_back(variable.name, value);
       continue;
     }
     left_out += (left_out.empty() ? "'" : ", '") + variable.name + "' (" + std::to_string(rows_of(variable)) + " x " +
                 std::to_string(variable.columns.size()) + ")";
   }
+  recorded.rate_hz = nearest_rate(rates, recorded.names.front(), sink);
   if (!left_out.empty()) {
     sink.note("Arrays of another length than " + std::to_string(length) + " are left out: " + left_out + ".");
   }

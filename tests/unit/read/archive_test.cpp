@@ -66,6 +66,34 @@ TEST(Hdf5, ReadsArraysAndThoseOfMatlabTheOtherWayRound) {
   EXPECT_EQ(column(matlab, 1)[2], 7.0);
 }
 
+TEST(Hdf5, ReadsTheRateOfTheRootAndLeavesOutAnArrayBehindAnUnknownFilter) {
+  // The rate of the shared recording of BROAD is an attribute; and one array of lzf made the file a damaged one.
+  const Outcome outcome = decode_bytes(testing::unfolded(testing::kHdf5UnknownFilter));
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("gyro_x", "gyro_y", "gyro_z", "time (s)"));
+  EXPECT_DOUBLE_EQ(column(outcome, 3)[3], 3.0 / 285.5);
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("'acc' is left out: it is packed with the filter 'lzf'")));
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("states 285.5 Hz")));
+  const Outcome alone = decode_bytes(testing::unfolded(testing::kHdf5UnknownFilterAlone));
+  EXPECT_EQ(alone.error, ErrorCode::NoSamples);
+  EXPECT_THAT(alone.message, HasSubstr("h5repack -f GZIP=4"));
+}
+
+TEST(Hdf5, ReadsTheRateOfTheGroupOfItsArrays) {
+  const Outcome outcome = decode_bytes(testing::unfolded(testing::kHdf5RatesOfGroups));
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("imu.gyro_x", "imu.gyro_y", "imu.gyro_z", "time (s)"));
+  EXPECT_DOUBLE_EQ(column(outcome, 3)[3], 3.0 / 50.0);
+}
+
+TEST(Mat5, UsesNoneOfTwoRatesThatContradictEachOther) {
+  const Outcome outcome = decode_bytes(
+      mat_file({mat_matrix("w", 20, 1, ramp(20)), mat_matrix("fs", 1, 1, {100.0}), mat_matrix("rate", 1, 1, {50.0})}));
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(outcome.decoded.names, ElementsAre("w"));
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("states several rates")));
+}
+
 TEST(Hdf5, RefusesWhatIsCutOffInASentence) {
   const std::string whole = testing::unfolded(testing::kHdf5File);
   const Outcome cut = decode_bytes(whole.substr(0, whole.size() / 3));
