@@ -144,6 +144,7 @@ class DataflashDecoder {
   std::array<std::optional<Layout>, 256> layouts_;
   std::array<std::optional<FixLayout>, 256> fix_layouts_;
   std::uint64_t damaged_bytes_ = 0;
+  std::uint64_t batch_messages_ = 0;
   std::optional<std::uint64_t> torn_at_;
 };
 
@@ -178,6 +179,8 @@ Result<bool> DataflashDecoder::next_message() {
     }
   } else if (std::optional<FixLayout>& layout = fix_layouts_[number]) {
     take_fix(*layout, names_[number], view->substr(0, size));
+  } else if (names_[number] == "ISBH" || names_[number] == "ISBD") {
+    ++batch_messages_;
   }
   source_.consume(size);
   return true;
@@ -290,7 +293,14 @@ Status DataflashDecoder::run() {
     sink_.note("The log ends within the message at byte " + std::to_string(*torn_at_) +
                ", as after a loss of power; what is before it is read.");
   }
-  return streams_.finish("The DataFlash log holds no IMU, ACC or GYR message that can be read.");
+  if (batch_messages_ > 0) {
+    sink_.note(with_count(batch_messages_, "message of raw batches (ISBH, ISBD) is left out.",
+                          "messages of raw batches (ISBH, ISBD), in which the unit is sampled fastest, are left out."));
+  }
+  return streams_.finish(batch_messages_ > 0
+                             ? "The DataFlash log holds inertial samples in raw batches (ISBH, ISBD) alone, which are "
+                               "not read; have the autopilot log IMU messages (LOG_BITMASK)."
+                             : "The DataFlash log holds no IMU, ACC or GYR message that can be read.");
 }
 
 int sniff(std::string_view head) { return head.starts_with("\xA3\x95\x80"sv) ? 100 : 0; }

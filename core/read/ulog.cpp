@@ -103,6 +103,8 @@ class UlogDecoder {
   std::uint64_t dropout_ms_ = 0;
   std::uint64_t damaged_bytes_ = 0;
   std::uint64_t short_messages_ = 0;
+  std::map<std::size_t, std::string> burst_topics_;      ///< by message id
+  std::map<std::string, std::uint64_t> burst_messages_;  ///< by topic
   std::optional<std::uint64_t> torn_at_;
 };
 
@@ -296,6 +298,10 @@ Status UlogDecoder::subscribe(std::string_view body) {
   const auto topic =
       std::find_if(kTopics.begin(), kTopics.end(), [name](const InertialTopic& known) { return known.name == name; });
   const std::string label = std::string(name) + " " + std::to_string(static_cast<unsigned char>(body[0]));
+  if (name == "sensor_gyro_fifo" || name == "sensor_accel_fifo") {
+    burst_topics_.insert_or_assign(id, std::string(name));
+    return {};
+  }
   if (topic == kTopics.end()) {
     subscribe_fixes(id, name, label);
     return {};
@@ -358,6 +364,9 @@ Status UlogDecoder::take_data(std::string_view body) {
   if (const auto found = fixes_.find(id); found != fixes_.end()) {
     take_fix(found->second.first, found->second.second, body.substr(2));
   }
+  if (const auto burst = burst_topics_.find(id); burst != burst_topics_.end()) {
+    ++burst_messages_[burst->second];
+  }
   return {};
 }
 
@@ -399,6 +408,10 @@ void UlogDecoder::note_quality() {
     sink_.note(with_count(short_messages_, "data message is shorter than its format and left out.",
                           "data messages are shorter than their format and left out."));
   }
+  for (const auto& [topic, count] : burst_messages_) {
+    sink_.note(with_count(count, "burst", "bursts") + " of " + topic +
+               ", in which the sensor is sampled fastest, are left out.");
+  }
   if (torn_at_) {
     sink_.note("The log ends within the message at byte " + std::to_string(*torn_at_) +
                ", as after a loss of power; what is before it is read.");
@@ -426,7 +439,11 @@ Status UlogDecoder::run() {
                                           ", before any inertial sample.");
   }
   note_quality();
-  return streams_.finish("The ULog file holds no sample of sensor_combined, vehicle_imu, sensor_gyro or sensor_accel.");
+  return streams_.finish(
+      burst_messages_.empty()
+          ? "The ULog file holds no sample of sensor_combined, vehicle_imu, sensor_gyro or sensor_accel."
+          : "The ULog file holds inertial samples in bursts (" + burst_messages_.begin()->first +
+                ") alone, which are not read; have the logger write sensor_combined or vehicle_imu.");
 }
 
 int sniff(std::string_view head) { return head.starts_with(kMagic) ? 100 : 0; }

@@ -65,6 +65,17 @@ TEST(Dataflash, SkipsWhatIsNoMessageAndNotesATornTail) {
                                                  HasSubstr("as after a loss of power")));
 }
 
+TEST(Dataflash, NamesTheRawBatchesThatItLeavesOut) {
+  const std::string declared = dataflash_format(9, 12, "ISBD", "QHH", "TimeUS,N,seqno");
+  const std::string batch = dataflash_message(9, word(1000, 8) + word(1, 2) + word(0, 2));
+  const Outcome outcome = decode_bytes(dataflash(inertial_rows()) + declared + batch + batch);
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_THAT(outcome.decoded.notes, ElementsAre(HasSubstr("2 messages of raw batches (ISBH, ISBD)")));
+  const Outcome alone = decode_bytes(dataflash_front() + declared + batch);
+  EXPECT_EQ(alone.error, ErrorCode::NoSamples);
+  EXPECT_THAT(alone.message, HasSubstr("raw batches (ISBH, ISBD) alone"));
+}
+
 TEST(Dataflash, RefusesALogWithoutInertialSamples) {
   EXPECT_EQ(decode_bytes(dataflash_front()).error, ErrorCode::NoSamples);
   EXPECT_EQ(decode_bytes(dataflash_front().substr(0, 50)).error, ErrorCode::Truncated);

@@ -44,6 +44,24 @@ TEST(Ulog, ReadsSensorCombinedInSiFromItsFirstSampleOn) {
   EXPECT_THAT(outcome.decoded.notes, ElementsAre("The logger dropped messages once, for 30 ms together."));
 }
 
+TEST(Ulog, NamesTheBurstsThatItLeavesOut) {
+  const std::string topic =
+      ulog_topic("sensor_gyro_fifo:uint64_t timestamp;uint64_t timestamp_sample;float dt;float scale;uint8_t samples;");
+  const std::string burst = ulog_message('D', word(3, 2) + word(9, 8) + word(5000, 8) + word(0, 9));
+  const Outcome alone = decode_bytes(ulog_front() + topic + burst + burst);
+  EXPECT_EQ(alone.error, ErrorCode::NoSamples);
+  EXPECT_THAT(alone.message, HasSubstr("in bursts (sensor_gyro_fifo) alone"));
+  const std::string combined = ulog(inertial_rows());  // message 3 is sensor_combined there
+  std::string subscribed = ulog_message(
+      'F', "sensor_accel_fifo:uint64_t timestamp;uint64_t timestamp_sample;float dt;float scale;uint8_t samples;");
+  subscribed += ulog_message('A', word(0, 1) + word(9, 2) + "sensor_accel_fifo");
+  const Outcome both =
+      decode_bytes(combined + subscribed + ulog_message('D', word(9, 2) + word(9, 8) + word(5000, 8) + word(0, 9)));
+  ASSERT_FALSE(both.error) << both.message;
+  EXPECT_EQ(both.bits, decode_bytes(combined).bits);
+  EXPECT_THAT(both.decoded.notes, Contains(HasSubstr("1 burst of sensor_accel_fifo")));
+}
+
 TEST(Ulog, ReadsIncrementsAsMeanRatesOverTheirOwnInterval) {
   const std::string file = ulog_front() +
                            ulog_topic(
