@@ -1,6 +1,9 @@
 /// A solution of RTKLIB (`.pos`): comment lines that begin with %, of which the last names the columns, then one
-/// position a line, dated `2025/07/08 19:34:18.499` or by GPS week and seconds of the week. Source: RTKLIB 2.4.2
-/// manual, "Positioning solution file".
+/// position a line, dated `2025/07/08 19:34:18.499` or by GPS week and seconds of the week, between blanks, commas or
+/// semicolons. Source: RTKLIB 2.4.2 manual, "Positioning solution file".
+///
+/// Baselines in east, north and up do not say where they begin, and angles in degrees, minutes and seconds are three
+/// cells of one column; both are refused with the option of RTKLIB that writes positions.
 ///
 /// The date becomes the first column, seconds since 1970 on the time scale that the header names (GPST, UTC); the
 /// others keep their names, units included.
@@ -23,9 +26,10 @@ constexpr double kGpsWeek = 604800.0;
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(" \t"); at != std::string_view::npos;
-       at = line.find_first_not_of(" \t", at)) {
-    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+  constexpr std::string_view kBetween = " \t,;";
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;
+       at = line.find_first_not_of(kBetween, at)) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
     words.push_back(line.substr(at, end - at));
     at = end;
   }
@@ -39,7 +43,8 @@ std::optional<std::vector<std::string_view>> header_of(std::string_view line) {
   }
   auto words = words_of(line.substr(1));
   const bool scale = words.size() > 3 && (words[0] == "GPST" || words[0] == "UTC" || words[0] == "JST");
-  const bool place = scale && (words[1].starts_with("latitude") || words[1].starts_with("x-ecef"));
+  const bool place = scale && (words[1].starts_with("latitude") || words[1].starts_with("x-ecef") ||
+                               words[1].starts_with("e-baseline"));
   return place ? std::optional(std::move(words)) : std::nullopt;
 }
 
@@ -119,6 +124,16 @@ class SolutionDecoder {
     if (width_ > 0) {  // joined files repeat it
       return header.size() == width_ ? Status{}
                                      : fail(ErrorCode::ShapeMismatch, "The RTKLIB solution changes its columns.");
+    }
+    if (header[1].starts_with("e-baseline")) {
+      return fail(ErrorCode::UnsupportedType,
+                  "The RTKLIB solution holds baselines, which do not say where they begin; write it with the solution "
+                  "format lat/lon/height (out-solformat = llh).");
+    }
+    if (header[1] == "latitude(d'\")") {
+      return fail(ErrorCode::UnsupportedType,
+                  "The RTKLIB solution holds angles in degrees, minutes and seconds; write it with the lat/lon format "
+                  "ddd.ddddddd (out-degform = deg).");
     }
     width_ = header.size();
     ColumnLayout layout{{"time (s)"}, true};

@@ -129,6 +129,30 @@ TEST(RtklibPos, DatesItsPositionsInSecondsSince1970) {
   EXPECT_DOUBLE_EQ(std::bit_cast<double>(outcome.bits[3].back()), 300.5);
 }
 
+TEST(RtklibPos, ReadsTheSameBetweenCommas) {
+  // The option "field separator" of RTKLIB made a table without a time of the solution.
+  const Outcome blanks = decode_bytes(rtklib_pos());
+  const std::string head = "%  GPST                  ,latitude(deg),longitude(deg), height(m),  Q, ns\n";
+  const Outcome commas = decode_bytes(head + "2025/07/08 19:34:18.499,  48.5,   9.25,  300.125,  1, 21\n");
+  ASSERT_FALSE(commas.error) << commas.message;
+  EXPECT_EQ(commas.decoded.format, "rtklib_pos");
+  EXPECT_EQ(commas.decoded.names, blanks.decoded.names);
+  const Outcome spaced = decode_bytes(
+      "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n"
+      "2025/07/08 19:34:18.499 48.5 9.25 300.125 1 21\n");
+  EXPECT_EQ(commas.bits, spaced.bits);
+}
+
+TEST(RtklibPos, NamesTheOptionThatWritesPositions) {
+  const auto said = [](const std::string& columns, const std::string& row) {
+    return decode_bytes("%  GPST                  " + columns + " Q ns\n2025/07/08 19:34:18.499 " + row + " 1 21\n")
+        .message;
+  };
+  EXPECT_THAT(said("latitude(d'\") longitude(d'\")  height(m)", "48 30 0.0 9 15 0.0 300"),
+              HasSubstr("out-degform = deg"));
+  EXPECT_THAT(said("e-baseline(m)  n-baseline(m)  u-baseline(m)", "1 2 3"), HasSubstr("out-solformat = llh"));
+}
+
 TEST(RtklibPos, TakesWeeksAndRefusesARaggedLine) {
   const std::string head = "%  GPST latitude(deg) longitude(deg) height(m) Q ns\n";
   const Outcome week = decode_bytes(head + "2374 243258.499 48.5 9.25 300.125 1 21\n");
