@@ -149,10 +149,12 @@ Result<DraftSource> unit_of(const DraftFile& file) {
 }
 
 /// The scale of a receiver's file by its format: what the readers of fixes say of their times.
-drive::TimeScale scale_of(const std::string& format) {
-  return format == "nmea"                            ? drive::TimeScale::Utc
-         : format == "rtklib_pos" || format == "ubx" ? drive::TimeScale::Gps
-                                                     : drive::TimeScale::Boot;
+drive::TimeScale scale_of(const DraftFile& file) {
+  // A u-blox log without NAV-PVT is read by its NMEA sentences, whose times are UTC.
+  const bool sentences = std::find(file.names.begin(), file.names.end(), "hdop") != file.names.end();
+  return file.format == "nmea" || (file.format == "ubx" && sentences) ? drive::TimeScale::Utc
+         : file.format == "rtklib_pos" || file.format == "ubx"        ? drive::TimeScale::Gps
+                                                                      : drive::TimeScale::Boot;
 }
 
 /// Takes the altitude for the height where there is no height, and leaves it out where there is. True: it was taken.
@@ -174,7 +176,7 @@ bool take_altitude_for_height(DraftSource& source) {
 /// The first stream of fixes among the columns; `beside`: the unit's own columns stand among them. A table in which no
 /// column names a stream holds fixes in the rows of the unit, and at their times.
 Result<DraftSource> receiver_of(const DraftFile& file, bool beside, DriveDraft& draft) {
-  DraftSource source{file.file, {}, "", "s", beside ? drive::TimeScale::Boot : scale_of(file.format), std::nullopt};
+  DraftSource source{file.file, {}, "", "s", beside ? drive::TimeScale::Boot : scale_of(file), std::nullopt};
   const auto roles = assign_roles(file.spec, file.names);
   if (!roles) {
     return fail(roles.error());

@@ -4,7 +4,8 @@
 ///
 /// Read is NAV-PVT, a row each: position, velocity and what the receiver believes of both. The time is the GPS time of
 /// the week, exact to the millisecond, in the week that the date of the message names, as seconds since 1970; rows
-/// before the date is known are left out. Frames with a wrong checksum are counted and skipped.
+/// before the date is known are left out. Frames with a wrong checksum are counted and skipped. A log without a dated
+/// NAV-PVT is read by its NMEA sentences, where it holds some; one of raw measurements is led to RTKLIB.
 #include "core/read/formats.hpp"
 #include "core/read/little_endian.hpp"
 #include "core/signal/with_count.hpp"
@@ -85,15 +86,58 @@ std::optional<double> moment_of(std::string_view pvt) {
   return kGpsEpoch + kGpsWeek * std::round((utc - kGpsEpoch - of_week) / kGpsWeek) + of_week;
 }
 
+/// The sentences among the bytes between frames: from a dollar sign to the end of its line, printable, at most as long
+/// as a sentence with room to spare.
+class SentenceCollector {
+ public:
+  explicit SentenceCollector(std::size_t budget_bytes) : budget_(budget_bytes) {}
+
+  void take(std::string_view bytes) {
+    for (const char c : bytes) {
+      if (c == '$') {
+        line_ = "$";
+      } else if (c == '\n' && !line_.empty()) {
+        end_line();
+      } else if (!line_.empty()) {
+        if (line_.size() < kLongest && (c == '\r' || (c >= ' ' && c <= '~'))) {
+          line_ += c;
+        } else {
+          line_.clear();
+        }
+      }
+    }
+  }
+  /// No more are wanted.
+  void close() {
+    budget_ = 0;
+    sentences_.clear();
+    sentences_.shrink_to_fit();
+  }
+  [[nodiscard]] const std::string& sentences() const { return sentences_; }
+
+ private:
+  static constexpr std::size_t kLongest = 256;
+
+  void end_line() {
+    line_ += '\n';
+    if (line_.size() <= budget_) {
+      budget_ -= line_.size();
+      sentences_ += line_;
+    }
+    line_.clear();
+  }
+
+  std::size_t budget_;
+  std::string line_;
+  std::string sentences_;
+};
+
 class UbxDecoder {
  public:
-  explicit UbxDecoder(ColumnSink& sink) : sink_(sink) {}
+  UbxDecoder(ColumnSink& sink, const DecodeLimits& limits, const RunControl& control)
+      : sink_(sink), limits_(limits), control_(control), between_(limits.max_tables_bytes) {}
 
-  Status begin() {
-    ColumnLayout layout{{}, true};
-    layout.names.assign(kNames.begin(), kNames.end());
-    return sink_.begin(layout);
-  }
+  void take_between(std::string_view bytes) { between_.take(bytes); }
 
   Status take(std::string_view frame) {
     if (!is_sound(frame)) {
@@ -101,6 +145,7 @@ class UbxDecoder {
       return {};
     }
     const std::string_view payload = frame.substr(kHead, frame.size() - kHead - kChecksum);
+    raw_ = raw_ || (frame[2] == '\x02' && (frame[3] == '\x15' || frame[3] == '\x10'));
     if (frame[2] != '\x01' || frame[3] != '\x07' || payload.size() < kLeastPvt) {
       return {};
     }
@@ -124,14 +169,10 @@ class UbxDecoder {
       return status;
     }
     if (!delivered_) {
-      return fail(ErrorCode::NoSamples,
-                  "The u-blox log holds no dated NAV-PVT message; have the receiver write them (UBX-NAV-PVT).");
+      return finish_without_pvt();
     }
     sink_.note("Times are GPST, in seconds since 1970.");
-    if (damaged_ > 0) {
-      sink_.note(with_count(damaged_, "message has a wrong checksum and is left out.",
-                            "messages have a wrong checksum and are left out."));
-    }
+    note_damaged();
     if (undated_ > 0) {
       sink_.note(with_count(undated_, "message from before the receiver knew the date is left out.",
                             "messages from before the receiver knew the date are left out."));
@@ -140,7 +181,36 @@ class UbxDecoder {
   }
 
  private:
+  void note_damaged() {
+    if (damaged_ > 0) {
+      sink_.note(with_count(damaged_, "message has a wrong checksum and is left out.",
+                            "messages have a wrong checksum and are left out."));
+    }
+  }
+  Status finish_without_pvt() {
+    ByteSource sentences(make_memory_reader(between_.sentences()));
+    if (kNmea.sniff(between_.sentences()) > 0) {
+      auto status = kNmea.decode(sentences, limits_, sink_, control_);
+      if (status) {
+        sink_.note("The u-blox log holds no dated NAV-PVT message; its NMEA sentences are read.");
+        note_damaged();
+      }
+      return status;
+    }
+    return fail(ErrorCode::NoSamples,
+                raw_ ? "The u-blox log holds raw measurements and no position (UBX-NAV-PVT): compute positions with "
+                       "RTKLIB (convbin, then rnx2rtkp) and send its .pos file."
+                     : "The u-blox log holds no dated NAV-PVT message; have the receiver write them (UBX-NAV-PVT).");
+  }
   Status flush() {
+    if (!rows_.empty() && !delivered_) {
+      ColumnLayout layout{{}, true};
+      layout.names.assign(kNames.begin(), kNames.end());
+      if (auto status = sink_.begin(layout); !status) {
+        return status;
+      }
+      between_.close();
+    }
     auto status = rows_.empty() ? Status{} : sink_.rows(rows_);
     delivered_ = delivered_ || !rows_.empty();
     rows_.clear();
@@ -148,17 +218,18 @@ class UbxDecoder {
   }
 
   ColumnSink& sink_;
+  const DecodeLimits& limits_;
+  const RunControl& control_;
+  SentenceCollector between_;  ///< the frames
   std::vector<double> rows_;
   std::size_t damaged_ = 0, undated_ = 0;
   bool delivered_ = false;
+  bool raw_ = false;  ///< it holds RXM-RAWX or RXM-RAW
 };
 
-Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const RunControl& control) {
+Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {
   constexpr std::size_t kLongestFrame = kHead + 65535 + kChecksum;
-  UbxDecoder decoder(sink);
-  if (auto status = decoder.begin(); !status) {
-    return status;
-  }
+  UbxDecoder decoder(sink, limits, control);
   while (true) {
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
@@ -176,9 +247,11 @@ Status decode(ByteSource& source, const DecodeLimits&, ColumnSink& sink, const R
       std::size_t next = view->find(kSync, at);
       if (next == std::string_view::npos) {  // half a sync may stand at the end
         next = view->size() > 1 && view->back() == kSync.front() ? view->size() - 1 : view->size();
+        decoder.take_between(view->substr(at, next - at));
         at = next;
         break;
       }
+      decoder.take_between(view->substr(at, next - at));
       const std::size_t whole = frame_at(view->substr(next));
       if (whole == 0 && next > 0) {
         at = next;

@@ -100,6 +100,35 @@ TEST(Ubx, ReadsNavPvtOnGpsTime) {
   EXPECT_DOUBLE_EQ(cell(outcome, 13, 0), 90.0);
 }
 
+TEST(Ubx, ReadsTheSentencesOfALogWithoutNavPvt) {
+  // A receiver that writes its positions as NMEA and the rest as UBX was refused.
+  const Outcome sentences = decode_bytes(nmea());
+  const std::string other = ubx_frame(1, 3, std::string(16, '\x05'));
+  const std::string text = nmea();
+  std::string log = other;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at) + 1;
+    log += text.substr(at, end - at) + other + "\xD3\x01$correction\x02";
+    at = end;
+  }
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{1} << 20}) {
+    const Outcome mixed = decode_bytes(log, piece);
+    ASSERT_FALSE(mixed.error) << mixed.message;
+    EXPECT_EQ(mixed.decoded.format, "ubx");
+    EXPECT_EQ(mixed.decoded.names, sentences.decoded.names);
+    EXPECT_EQ(mixed.bits, sentences.bits);
+    EXPECT_THAT(mixed.decoded.notes, Contains(HasSubstr("its NMEA sentences are read")));
+  }
+  const Outcome both = decode_bytes(ubx_pvt(3) + log);
+  EXPECT_EQ(both.bits, decode_bytes(ubx_pvt(3)).bits) << "NAV-PVT says more than the sentences";
+}
+
+TEST(Ubx, LeadsRawMeasurementsToRtklib) {
+  const Outcome raw = decode_bytes(ubx_frame(2, 0x15, std::string(16, '\0')) + ubx_frame(2, 0x13, "12345678"));
+  EXPECT_EQ(raw.error, ErrorCode::NoSamples);
+  EXPECT_THAT(raw.message, HasSubstr("convbin, then rnx2rtkp"));
+}
+
 TEST(Ubx, SkipsDamagedFramesAndSaysWhatIsMissing) {
   std::string log = ubx_pvt(4);
   log[80] = static_cast<char>(log[80] ^ 1);  // in the first NAV-PVT
