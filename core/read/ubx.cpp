@@ -41,27 +41,46 @@ std::size_t frame_at(std::string_view bytes) {
   return whole <= bytes.size() ? whole : 0;
 }
 
-/// Fletcher's checksum over class, number, length and payload.
-bool is_sound(std::string_view frame) {
-  std::uint8_t a = 0;
-  std::uint8_t b = 0;
-  for (const char c : frame.substr(2, frame.size() - 2 - kChecksum)) {
-    a = static_cast<std::uint8_t>(a + static_cast<std::uint8_t>(c));
-    b = static_cast<std::uint8_t>(b + a);
+/// Fletcher's checksums of any frame among `bytes`, in constant time each: bytes that look like the beginnings of long
+/// frames, one behind the other, would otherwise be added up tens of thousands of times.
+///
+/// With A_k the sum of the first k bytes and B_k that of A_1 to A_k, all modulo 256, the two checksums of n bytes from
+/// i on are A_(i+n) - A_i and B_(i+n) - B_i - n A_i.
+class FletcherSums {
+ public:
+  explicit FletcherSums(std::string_view bytes) : bytes_(bytes), sums_(bytes.size() + 1) {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      const auto a = static_cast<std::uint8_t>(sums_[i].a + static_cast<std::uint8_t>(bytes[i]));
+      sums_[i + 1] = {a, static_cast<std::uint8_t>(sums_[i].b + a)};
+    }
   }
-  return static_cast<std::uint8_t>(frame[frame.size() - 2]) == a && static_cast<std::uint8_t>(frame.back()) == b;
-}
+  /// Of the frame of `whole` bytes at `at`: over class, number, length and payload.
+  [[nodiscard]] bool is_sound(std::size_t at, std::size_t whole) const {
+    const Sums before = sums_[at + kSync.size()];
+    const std::size_t end = at + whole - kChecksum;
+    const std::size_t count = end - at - kSync.size();
+    return static_cast<std::uint8_t>(sums_[end].a - before.a) == static_cast<std::uint8_t>(bytes_[end]) &&
+           static_cast<std::uint8_t>(sums_[end].b - before.b - count * before.a) ==
+               static_cast<std::uint8_t>(bytes_[end + 1]);
+  }
+
+ private:
+  struct Sums {
+    std::uint8_t a = 0;
+    std::uint8_t b = 0;
+  };
+  std::string_view bytes_;
+  std::vector<Sums> sums_;
+};
 
 int sniff(std::string_view head) {
+  const FletcherSums sums(head);
   std::size_t sound = 0;
   for (std::size_t at = head.find(kSync); at != std::string_view::npos && sound < 2; at = head.find(kSync, at)) {
     const std::size_t whole = frame_at(head.substr(at));
-    if (whole > 0 && is_sound(head.substr(at, whole))) {
-      ++sound;
-      at += whole;
-    } else {
-      ++at;
-    }
+    const bool frame = whole > 0 && sums.is_sound(at, whole);
+    sound += frame ? 1 : 0;
+    at += frame ? whole : 1;
   }
   return sound == 2 || (sound == 1 && head.starts_with(kSync)) ? 100 : 0;
 }
@@ -139,11 +158,10 @@ class UbxDecoder {
 
   void take_between(std::string_view bytes) { between_.take(bytes); }
 
+  void take_damaged() { ++damaged_; }
+
+  /// A frame whose checksum is right.
   Status take(std::string_view frame) {
-    if (!is_sound(frame)) {
-      ++damaged_;
-      return {};
-    }
     const std::string_view payload = frame.substr(kHead, frame.size() - kHead - kChecksum);
     raw_ = raw_ || (frame[2] == '\x02' && (frame[3] == '\x15' || frame[3] == '\x10'));
     if (frame[2] != '\x01' || frame[3] != '\x07' || payload.size() < kLeastPvt) {
@@ -227,47 +245,59 @@ class UbxDecoder {
   bool raw_ = false;  ///< it holds RXM-RAWX or RXM-RAW
 };
 
+/// Takes the frames that are whole among `bytes` and what stands between them; how many bytes that were. A frame that
+/// runs over the end is left, unless nothing follows.
+Result<std::size_t> take_frames(std::string_view bytes, bool nothing_follows, UbxDecoder& decoder) {
+  const FletcherSums sums(bytes);
+  std::size_t at = 0;
+  while (at < bytes.size()) {
+    std::size_t next = bytes.find(kSync, at);
+    if (next == std::string_view::npos) {  // half a sync may stand at the end
+      next = bytes.size() - (!nothing_follows && bytes.back() == kSync.front() ? 1 : 0);
+      decoder.take_between(bytes.substr(at, next - at));
+      return next;
+    }
+    decoder.take_between(bytes.substr(at, next - at));
+    const std::size_t whole = frame_at(bytes.substr(next));
+    if (whole == 0 && !nothing_follows) {
+      return next;
+    }
+    at = next + 1;
+    if (whole == 0) {
+      continue;
+    }
+    if (!sums.is_sound(next, whole)) {
+      decoder.take_damaged();
+      continue;
+    }
+    if (auto status = decoder.take(bytes.substr(next, whole)); !status) {
+      return fail(status.error());
+    }
+    at = next + whole;
+  }
+  return at;
+}
+
 Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, const RunControl& control) {
   constexpr std::size_t kLongestFrame = kHead + 65535 + kChecksum;
+  constexpr std::size_t kLook = 4 * kLongestFrame;  // what a frame over its end leaves is looked at twice
   UbxDecoder decoder(sink, limits, control);
   while (true) {
     if (control.stop.stop_requested()) {
       return fail(ErrorCode::Cancelled, "Decoding was cancelled.");
     }
-    auto view = source.view(kLongestFrame);
+    auto view = source.view(kLook);
     if (!view) {
       return fail(view.error());
     }
     if (view->empty()) {
       return decoder.finish();
     }
-    // All frames that are whole in what is there; a frame that runs over its end comes again with more behind it.
-    std::size_t at = 0;
-    while (at < view->size()) {
-      std::size_t next = view->find(kSync, at);
-      if (next == std::string_view::npos) {  // half a sync may stand at the end
-        next = view->size() > 1 && view->back() == kSync.front() ? view->size() - 1 : view->size();
-        decoder.take_between(view->substr(at, next - at));
-        at = next;
-        break;
-      }
-      decoder.take_between(view->substr(at, next - at));
-      const std::size_t whole = frame_at(view->substr(next));
-      if (whole == 0 && next > 0) {
-        at = next;
-        break;
-      }
-      if (whole == 0) {  // it does not fit although all that there is was seen
-        at = 1;
-        continue;
-      }
-      const std::string_view frame = view->substr(next, whole);
-      if (auto status = decoder.take(frame); !status) {
-        return status;
-      }
-      at = next + (is_sound(frame) ? whole : 1);
+    auto taken = take_frames(*view, view->size() < kLook, decoder);
+    if (!taken) {
+      return fail(taken.error());
     }
-    source.consume(at);
+    source.consume(*taken);
   }
 }
 

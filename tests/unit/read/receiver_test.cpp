@@ -123,6 +123,33 @@ TEST(Ubx, ReadsTheSentencesOfALogWithoutNavPvt) {
   EXPECT_EQ(both.bits, decode_bytes(ubx_pvt(3)).bits) << "NAV-PVT says more than the sentences";
 }
 
+TEST(Ubx, WhatOnlyLooksLikeBeginningsOfFramesCostsNoMoreThanItsBytes) {
+  // Each pair of bytes claims a frame of 25,269 bytes, whose checksum was added up: minutes for 8 MB.
+  std::string log = ubx_pvt(3);
+  while (log.size() < (std::size_t{8} << 20U)) {
+    log += "\xB5\x62";
+  }
+  const Outcome outcome = decode_bytes(log + ubx_pvt(2));
+  ASSERT_FALSE(outcome.error) << outcome.message;
+  EXPECT_EQ(outcome.decoded.rows, 5U);
+  EXPECT_THAT(outcome.decoded.notes, Contains(HasSubstr("have a wrong checksum")));
+}
+
+TEST(Ubx, TakesFramesWhereverTheWindowOntoTheLogEnds) {
+  std::string log = ubx_pvt(2);
+  for (int i = 0; i < 40; ++i) {  // the longest frames there are, of any contents
+    std::string payload(65535, static_cast<char>(i));
+    payload.replace(300, 2, "\xB5\x62");
+    log += ubx_frame(0x0A, 4, payload) + std::string(static_cast<std::size_t>(i), '\xB5') + ubx_pvt(1);
+  }
+  for (const std::size_t piece : {std::size_t{4096}, std::size_t{65537}, log.size()}) {
+    const Outcome outcome = decode_bytes(log, piece);
+    ASSERT_FALSE(outcome.error) << outcome.message;
+    EXPECT_EQ(outcome.decoded.rows, 42U);
+    EXPECT_THAT(outcome.decoded.notes, Not(Contains(HasSubstr("checksum"))));
+  }
+}
+
 TEST(Ubx, LeadsRawMeasurementsToRtklib) {
   const Outcome raw = decode_bytes(ubx_frame(2, 0x15, std::string(16, '\0')) + ubx_frame(2, 0x13, "12345678"));
   EXPECT_EQ(raw.error, ErrorCode::NoSamples);
