@@ -1,4 +1,5 @@
-/// NumPy .npy, versions 1 to 3: float32 or float64 of either byte order, 1-D or samples x channels, C or Fortran order.
+/// NumPy .npy, versions 1 to 3: float32, float64 or whole numbers of 8 to 64 bits (rounded to float64 beyond 2^53), of
+/// either byte order, 1-D or samples x channels, C or Fortran order.
 /// Source: numpy/lib/format.py, "Format Version 1.0" to "3.0" of the NumPy manual (NEP 1).
 #include "core/read/formats.hpp"
 #include "core/read/npy_header.hpp"
@@ -28,18 +29,38 @@ Word byte_swapped(Word word) {
 }
 
 /// The numbers in `bytes` (any alignment) as doubles. Returns whether all are finite.
-template <class Float, class Word>
+template <class Number, class Word>
 bool convert(std::string_view bytes, bool swap, double* into) {
   bool finite = true;
   const std::size_t count = bytes.size() / sizeof(Word);
   for (std::size_t i = 0; i < count; ++i) {
     Word word = 0;
     std::memcpy(&word, bytes.data() + i * sizeof word, sizeof word);
-    const auto value = static_cast<double>(std::bit_cast<Float>(swap ? byte_swapped(word) : word));
+    const auto value = static_cast<double>(std::bit_cast<Number>(swap ? byte_swapped(word) : word));
     finite = finite && std::isfinite(value);
     into[i] = value;
   }
   return finite;
+}
+
+using Converter = bool (*)(std::string_view bytes, bool swap, double* into);
+
+/// For the elements that a header declares.
+Converter converter_of(const NpyHeader& header) {
+  if (header.kind == NpyKind::Float) {
+    return header.item_bytes == 8 ? convert<double, std::uint64_t> : convert<float, std::uint32_t>;
+  }
+  const bool is_signed = header.kind == NpyKind::Signed;
+  switch (header.item_bytes) {
+    case 1:
+      return is_signed ? convert<std::int8_t, std::uint8_t> : convert<std::uint8_t, std::uint8_t>;
+    case 2:
+      return is_signed ? convert<std::int16_t, std::uint16_t> : convert<std::uint16_t, std::uint16_t>;
+    case 4:
+      return is_signed ? convert<std::int32_t, std::uint32_t> : convert<std::uint32_t, std::uint32_t>;
+    default:
+      return is_signed ? convert<std::int64_t, std::uint64_t> : convert<std::uint64_t, std::uint64_t>;
+  }
 }
 
 class NpyDecoder {
@@ -63,6 +84,7 @@ class NpyDecoder {
 };
 
 Status NpyDecoder::run() {
+  const Converter converter = converter_of(header_);
   // Whole rows in C order, so that every batch is a block of rows.
   const std::size_t unit = header_.fortran_order ? 1 : header_.columns;
   std::vector<double> batch(std::max<std::size_t>(kBatchBytes / header_.item_bytes / unit, 1) * unit);
@@ -81,8 +103,7 @@ Status NpyDecoder::run() {
     std::size_t count = std::min<std::uint64_t>({view->size() / header_.item_bytes, batch.size(), left});
     count -= count % unit;
     const std::string_view bytes = view->substr(0, count * header_.item_bytes);
-    const bool finite = header_.item_bytes == 8 ? convert<double, std::uint64_t>(bytes, header_.swap, batch.data())
-                                                : convert<float, std::uint32_t>(bytes, header_.swap, batch.data());
+    const bool finite = converter(bytes, header_.swap, batch.data());
     const std::span<double> values(batch.data(), count);
     if (!finite) {
       mark_missing(values);
@@ -161,6 +182,6 @@ Status decode(ByteSource& source, const DecodeLimits& limits, ColumnSink& sink, 
 
 }  // namespace
 
-const Format kNpy{"npy", "NumPy array of float32 or float64, one- or two-dimensional", sniff, decode};
+const Format kNpy{"npy", "NumPy array of floats or whole numbers, one- or two-dimensional", sniff, decode};
 
 }  // namespace driftlab::formats

@@ -187,16 +187,20 @@ Result<std::string> take_dictionary(ByteSource& source) {
 }
 
 Status apply_descr(const std::string& descr, bool structured, NpyHeader& header) {
-  const bool is_float = !structured && descr.size() == 3 &&
-                        std::string_view("<>=").find(descr[0]) != std::string_view::npos && descr[1] == 'f' &&
-                        (descr[2] == '4' || descr[2] == '8');
-  if (!is_float) {
+  const auto one_of = [&](std::size_t at, std::string_view letters) {
+    return letters.find(descr[at]) != std::string_view::npos;
+  };
+  const bool sized = !structured && descr.size() == 3 && one_of(0, "<>=|") && one_of(2, "1248");
+  const bool known = sized && (descr[1] == 'f' ? one_of(2, "48") : one_of(1, "iu"));
+  if (!known || (descr[0] == '|' && descr[2] != '1')) {
     return fail(ErrorCode::UnsupportedType,
                 "The NumPy file holds elements of type " + text::excerpt(descr) +
-                    "; float32 and float64 ('<f4', '<f8', '>f4', '>f8') are read.",
+                    "; float32, float64 and whole numbers of 8 to 64 bits ('<f8', '<i2', ...) are read: convert it, "
+                    "as with array.astype(float).",
                 {{"type", text::excerpt(descr)}});
   }
-  header.item_bytes = descr[2] == '4' ? 4 : 8;
+  header.kind = descr[1] == 'f' ? NpyKind::Float : descr[1] == 'i' ? NpyKind::Signed : NpyKind::Unsigned;
+  header.item_bytes = static_cast<std::size_t>(descr[2] - '0');
   header.swap = descr[0] == (std::endian::native == std::endian::little ? '>' : '<');
   return {};
 }

@@ -9,10 +9,13 @@
 
 namespace driftlab::formats {
 
+enum class NpyKind { Float, Signed, Unsigned };
+
 /// What the header declares, checked: rows * columns * item_bytes does not overflow, columns is within the limits.
 /// Nothing may be allocated from `rows`.
 struct NpyHeader {
-  std::size_t item_bytes = 8;  ///< 4 or 8
+  NpyKind kind = NpyKind::Float;
+  std::size_t item_bytes = 8;  ///< of a float 4 or 8, of a whole number 1, 2, 4 or 8
   bool swap = false;           ///< the other byte order than this machine
   bool fortran_order = false;  ///< column by column; false where there is one column
   std::uint64_t rows = 0;

@@ -169,7 +169,7 @@ const std::vector<ProblemType>& problem_types() {
        "compressed by gzip, "
        "xz or zstd."},
       {"unsupported-type", 415, "Unsupported element type", false,
-       "The format is known, but its element type or layout is not read. Save as float32 or float64."},
+       "The format is known, but its element type or layout is not read. Save as floats or whole numbers."},
       {"corrupt-compression", 422, "Compressed data are damaged", false, "The compressed stream does not decompress."},
       {"decompression-limit", 413, "Expands beyond its budget", false,
        "The compressed stream expands far beyond what recordings do, and was given up. Upload it uncompressed if it is "

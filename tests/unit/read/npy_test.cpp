@@ -53,6 +53,30 @@ TEST(Npy, ReadsEveryElementTypeOrderAndVersion) {
   }
 }
 
+template <class Number>
+void expect_whole_numbers(const std::string& descr) {
+  const std::vector<double> values{static_cast<double>(std::numeric_limits<Number>::min()),        0.0, 1.0, 2.0, 100.0,
+                                   static_cast<double>(std::numeric_limits<Number>::max() / 2 + 1)};
+  for (const bool big_endian : {false, true}) {
+    const std::string order = sizeof(Number) == 1 ? "|" : big_endian ? ">" : "<";
+    const Outcome read =
+        decode_bytes(npy(npy_dictionary(order + descr, false, "(6,)"), number_bytes<Number>(values, big_endian)));
+    ASSERT_FALSE(read.error) << descr << ": " << read.message;
+    EXPECT_EQ(column(read, 0), values) << descr;
+  }
+}
+
+TEST(Npy, ReadsWholeNumbersAsARawLoggerWritesThem) {
+  expect_whole_numbers<std::int8_t>("i1");
+  expect_whole_numbers<std::uint8_t>("u1");
+  expect_whole_numbers<std::int16_t>("i2");
+  expect_whole_numbers<std::uint16_t>("u2");
+  expect_whole_numbers<std::int32_t>("i4");
+  expect_whole_numbers<std::uint32_t>("u4");
+  expect_whole_numbers<std::int64_t>("i8");
+  expect_whole_numbers<std::uint64_t>("u8");
+}
+
 TEST(Npy, ReadsOneDimensionAsOneColumn) {
   const Outcome outcome = decode_shape("(4,)", 4);
   EXPECT_EQ(outcome.decoded.rows, 4U);
@@ -86,7 +110,7 @@ TEST(Npy, CatchesAHeaderThatLiesAboutItsShape) {
 }
 
 TEST(Npy, NamesTheElementTypeItRefuses) {
-  for (const std::string descr : {"<i4", "|u1", "<f2", "<c16", "|O", "<f16", "|S8", "f8", ""}) {
+  for (const std::string descr : {"|i4", "<i3", "<f2", "|b1", "<M8", "<c16", "|O", "<f16", "|S8", "f8", ""}) {
     const Outcome outcome = decode_bytes(npy(npy_dictionary(descr, false, "(4,)"), std::string(64, '\0')));
     EXPECT_EQ(outcome.error, ErrorCode::UnsupportedType) << descr;
     EXPECT_THAT(outcome.message, HasSubstr("'" + descr + "'"));
