@@ -1,10 +1,18 @@
 #pragma once
-/// The refusal of a recording whose samples lie nowhere in time, said alike by every use of a recording.
+/// The refusal of a recording whose samples lie nowhere in time, or at two rates, said alike by every use of a
+/// recording.
 #include "core/signal/guess_time.hpp"
 #include "core/signal/number.hpp"
 #include "core/signal/result.hpp"
 
+#include <cmath>
+#include <string>
+#include <utility>
+
 namespace driftlab {
+
+/// Stated and measured rates may differ by this much: more is another rate, not a clock error.
+inline constexpr double kRateTolerance = 0.01;
 
 /// Of a recording with neither a time column nor a stated rate; `guess`: a column that looks like one.
 [[nodiscard]] inline tl::unexpected<Error> neither_time_nor_rate(const std::optional<TimeGuess>& guess = {}) {
@@ -26,6 +34,25 @@ namespace driftlab {
     message += " In " + guess->unit.symbol + " its rate would be " + short_text(guess->rate_hz) + " Hz.";
   }
   return fail(ErrorCode::InconsistentSampling, std::move(message), {{"parameter", "rate_hz"}, {"column", column}});
+}
+
+/// Of a stated rate and a time column that differ by more than kRateTolerance. A column without a unit was read in
+/// seconds; another unit in which it would agree is named.
+[[nodiscard]] inline tl::unexpected<Error> rates_disagree(double stated_hz, double measured_hz, bool unit_known) {
+  std::string message = "The stated rate is " + short_text(stated_hz) + " Hz, but the time column" +
+                        (unit_known ? "" : ", read in seconds,") + " says " + short_text(measured_hz) + " Hz.";
+  if (unit_known) {
+    message += " Leave the rate out to go by the time column.";
+  } else {
+    for (const auto& [symbol, per_second] : {std::pair{"ms", 1e3}, std::pair{"us", 1e6}, std::pair{"ns", 1e9}}) {
+      if (std::abs(measured_hz * per_second / stated_hz - 1.0) <= kRateTolerance) {
+        message += " In " + std::string(symbol) + " it would agree: state that unit.";
+      }
+    }
+  }
+  return fail(
+      ErrorCode::InconsistentSampling, std::move(message),
+      {{"parameter", "rate_hz"}, {"stated_hz", short_text(stated_hz)}, {"measured_hz", short_text(measured_hz)}});
 }
 
 }  // namespace driftlab

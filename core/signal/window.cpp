@@ -17,9 +17,6 @@
 namespace driftlab {
 namespace {
 
-/// Stated and measured rates may differ by this much: more is another rate, not a clock error.
-constexpr double kRateTolerance = 0.01;
-
 /// Within this the stamps confirm the stated rate and 1/rate_hz is the sample interval; decimal stamps round that much.
 constexpr double kRateConfirmed = 1e-6;
 
@@ -114,19 +111,6 @@ Stretch stretch_between(std::size_t first, std::size_t last, const std::vector<s
   return best;
 }
 
-std::string hint_for_unit(double measured_hz, double stated_hz) {
-  struct Candidate {
-    const char* symbol;
-    double factor;
-  };
-  for (const Candidate candidate : {Candidate{"ms", 1e3}, Candidate{"us", 1e6}, Candidate{"ns", 1e9}}) {
-    if (std::abs(measured_hz * candidate.factor / stated_hz - 1.0) <= kRateTolerance) {
-      return std::string(" In ") + candidate.symbol + " it would agree: state that unit.";
-    }
-  }
-  return "";
-}
-
 /// Compares the rate of the analysed stretch with the stated one and settles the sample interval.
 Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_dt_s, Window& window) {
   const bool unit_known = unit.dimension == Dimension::Time;
@@ -144,13 +128,7 @@ Status settle_rate(const RecordingSpec& spec, const Unit& unit, double measured_
   window.quality.clock_ratio = measured_hz / *spec.rate_hz;
   const double difference = std::abs(measured_hz / *spec.rate_hz - 1.0);
   if (difference > kRateTolerance) {
-    const std::string read_as = unit_known ? "" : ", read in seconds,";
-    return fail(
-        ErrorCode::InconsistentSampling,
-        "The stated rate is " + short_text(*spec.rate_hz) + " Hz, but the time column" + read_as + " says " +
-            short_text(measured_hz) + " Hz." +
-            (unit_known ? " Leave the rate out to go by the time column." : hint_for_unit(measured_hz, *spec.rate_hz)),
-        {{"parameter", "rate_hz"}, {"stated_hz", short_text(*spec.rate_hz)}, {"measured_hz", short_text(measured_hz)}});
+    return rates_disagree(*spec.rate_hz, measured_hz, unit_known);
   }
   if (difference <= kRateConfirmed) {
     window.time.dt_s = 1.0 / *spec.rate_hz;

@@ -164,10 +164,18 @@ Result<TimeGrid> grid_of(const RecordingSpec& spec, std::size_t rows, const Reco
                 "The recording has " + with_count(rows, "sample") + "; an investigation needs at least 16.");
   }
   if (const auto index = columns.time()) {
+    const bool unit_known = columns.unit(*index).dimension == Dimension::Time;
+    if (!unit_known && !spec.rate_hz) {
+      return time_without_unit(columns.name(*index), columns.guessed_time());
+    }
     std::vector<double> stamps = columns.si(*index, Unit{"s", Dimension::Time});
     const double start = stamps[0];
     std::transform(stamps.begin(), stamps.end(), stamps.begin(), [&](double t) { return t - start; });
-    return fit_time_grid(stamps, spec.rate_hz);
+    auto grid = fit_time_grid(stamps, spec.rate_hz);
+    if (grid && !unit_known && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > kRateTolerance) {
+      return rates_disagree(*spec.rate_hz, 1.0 / grid->dt_s, unit_known);
+    }
+    return grid;
   }
   if (!spec.rate_hz) {
     return neither_time_nor_rate(columns.guessed_time());
@@ -233,9 +241,7 @@ Result<StudyRecording> make_study_recording(const RecordingSpec& spec, const Col
   recording.dt_s = grid->dt_s;
   recording.length = grid->length;
   recording.stamps = grid->stamps;
-  // Relative, as for every recording (core/signal/window.cpp): more is another rate, not a clock error.
-  constexpr double kContradicts = 0.01;
-  if (spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > kContradicts) {
+  if (spec.rate_hz && std::fabs(grid->dt_s * *spec.rate_hz - 1.0) > kRateTolerance) {
     recording.notes.push_back("The stated rate of " + short_text(*spec.rate_hz) +
                               " Hz and the time column contradict each other: it was measured as " +
                               short_text(1.0 / grid->dt_s) + " Hz, which is used.");

@@ -177,6 +177,32 @@ TEST(StudyAndView, AHoleInAReferenceIsNoZeroRate) {
   EXPECT_EQ(study->rate[2][50], 1.0);
 }
 
+TEST(StudyAndView, ATimeWithoutAUnitIsSecondsOnlyWhereTheRateSaysSo) {
+  const auto stamped = [](double unit_s, std::optional<double> rate_hz) {
+    File file;
+    file.spec.rate_hz = rate_hz;
+    std::vector<double> stamps(kRows);
+    for (std::size_t i = 0; i < kRows; ++i) {
+      stamps[i] = kDt * static_cast<double>(i) / unit_s;
+    }
+    file.add("t", stamps, ColumnRole{Quantity::Time, "", std::nullopt});
+    file.add("gz", noise(5), role(Quantity::AngularRate, "z", "rad/s"));
+    return file;
+  };
+  const File seconds = stamped(1.0, 1.0 / kDt);
+  ASSERT_TRUE(seconds.study());
+  EXPECT_NEAR(seconds.study()->dt_s, kDt, 1e-9);
+  for (const File& file : {stamped(1e-3, 1.0 / kDt), stamped(1.0, std::nullopt), stamped(1e-3, std::nullopt)}) {
+    const auto study = file.study();
+    const auto view = file.view();
+    ASSERT_FALSE(study);
+    ASSERT_FALSE(view);
+    EXPECT_EQ(study.error().code, ErrorCode::InconsistentSampling);
+    EXPECT_EQ(study.error().message, view.error().message);
+  }
+  EXPECT_NE(stamped(1e-3, 1.0 / kDt).study().error().message.find("In ms it would agree"), std::string::npos);
+}
+
 TEST(StudyAndView, RefuseTheSameColumns) {
   File text;
   text.add("gz", noise(7), role(Quantity::AngularRate, "z", "deg/s"));
