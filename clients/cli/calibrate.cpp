@@ -55,6 +55,8 @@ void add_calibrate(CLI::App& app, Command& chosen) {
   command->add_option("FILE", flags->files, "One study.json of positions, or one recording with rests")->required();
   command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
   command->add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. 1=specific_force:x");
+  command->add_option("--stream", flags->file.stream,
+                      "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command->add_option("--condition", flags->file.condition, "Condition of a bare recording")->capture_default_str();
   command->add_option("--gravity", flags->options.gravity_m_s2, "Local gravity [m/s^2]")->capture_default_str();
   command->add_flag("--misalignment", flags->options.misalignment,

@@ -121,6 +121,8 @@ void add_characterise(CLI::App& app, Command& chosen) {
       "--columns", flags->file.columns,
       "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s; columns without names are 0, 1, …; counts have "
       "their scale and offset with the unit: gx=angular_rate:x:deg/s/131,temp=temperature::degC/340+36.53");
+  command->add_option("--stream", flags->file.stream,
+                      "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
       ->capture_default_str();
   command->add_option("--device", flags->file.device,

@@ -160,6 +160,8 @@ void add_export(CLI::App& app, Command& chosen) {
   command->add_option("--output", flags->output, "Write to this file instead of the terminal");
   command->add_option("--rate-hz", flags->file.rate_hz, "Sampling rate; needed without a time column");
   command->add_option("--columns", flags->file.columns, "NAME=QUANTITY:AXIS:UNIT,… as for characterise");
+  command->add_option("--stream", flags->file.stream,
+                      "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command->add_option("--condition", flags->file.condition, "static, constant_rate:z:9:deg/s, …")
       ->capture_default_str();
   command->add_option("--device", flags->file.device, "Name of the device; with --server the device to export");

@@ -36,6 +36,7 @@ Result<RecordingSpec> spec_from_flags(const FileFlags& flags) {
     return fail(condition.error());
   }
   spec.condition = *condition;
+  spec.stream = flags.stream;
   spec.calibration = flags.calibration;
   return spec;
 }

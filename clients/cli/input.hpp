@@ -17,6 +17,7 @@ namespace driftlab::cli {
 struct FileFlags {
   std::string rate_hz;
   std::string columns;
+  std::string stream;
   std::string condition = "static";
   std::string device;
   std::string calibration;

@@ -210,6 +210,8 @@ void add_regress_flags(CLI::App& command, RegressFlags& flags) {
   command.add_option("--device", flags.file.device, "Name of the device");
   command.add_option("--rate-hz", flags.file.rate_hz, "Sampling rate; needed without a time column");
   command.add_option("--columns", flags.file.columns, "NAME=QUANTITY:AXIS:UNIT,… e.g. gz=angular_rate:z:deg/s");
+  command.add_option("--stream", flags.file.stream,
+                     "Of the units of a log or table the one that is meant, as its columns begin, e.g. imu2");
   command.add_option("--condition", flags.file.condition, "static, constant_rate:z:9:deg/s, …")->capture_default_str();
   command.add_option("--skip-lines", flags.file.skip_lines, "Lines at the front of a text that are no table");
   command.add_option("--comment", flags.file.comment, "What begins a line that is no row, e.g. ';'");

@@ -29,6 +29,9 @@ std::string upload_target(const std::string& device, const RecordingSpec& spec, 
   if (!spec.columns.empty()) {
     target += "&columns=" + percent_encode(columns_text(spec.columns));
   }
+  if (!spec.stream.empty()) {
+    target += "&stream=" + percent_encode(spec.stream);
+  }
   if (spec.trim.start_s > 0.0) {
     target += "&trim_start_s=" + to_text(spec.trim.start_s);
   }

@@ -5,12 +5,18 @@
 /// Every such format uses one rule. Among the streams with gyroscope and accelerometer the one with the most samples is
 /// taken, which is the one with the highest rate, since all are counted over the same stretch of the file. Without such
 /// a stream the rule is applied to streams with a gyroscope alone, then to those with an accelerometer alone. If
-/// several streams tie, the first in the file is taken. A note names the other inertial streams. Fixes and odometers of
-/// the same journey are written beside the chosen stream (core/read/beside_streams.hpp); a file that holds only those
-/// becomes a table of them.
+/// several streams tie, the first in the file is taken.
+///
+/// The other inertial streams stand in the table in columns of their own, `imu2_time (s)`, `imu2_gyro_x (rad/s)`, ...,
+/// `imu3_...`, in the order of the file: the recording whose `stream` is `imu2` is that of the second unit
+/// (core/signal/column_streams.hpp). Their times count from their own first sample. They have as many rows as the
+/// chosen stream: behind a shorter one its sensors have ended while its time goes on at its mean step, and of a longer
+/// one the rest is left out, with a note. Fixes and odometers of the same journey stand behind them
+/// (core/read/beside_streams.hpp); a file that holds only those becomes a table of them.
 ///
 /// The rule is applied at the end of the file or when 16 MiB of samples are waiting, whichever is first: from there on
-/// the chosen stream passes through and the others are counted. Memory: those 16 MiB.
+/// the streams pass through, and those that begin later are counted. Memory: those 16 MiB, and as much for rows of
+/// streams that run ahead of the chosen one.
 #include "core/read/beside_streams.hpp"
 #include "core/read/format.hpp"
 
@@ -80,12 +86,24 @@ class InertialStreams {
     std::vector<double> waiting;  ///< rows until the choice is made, and a batch of them afterwards
     std::uint64_t first = 0;
     std::uint64_t samples = 0;
+    std::string heading = {};  ///< of another stream that is in the table: `imu2`
+    std::size_t column = 0;    ///< its first one in the table
+    std::size_t rows = 0;      ///< delivered
+    double last_s = 0.0;       ///< time of the last of them
+    bool full = false;         ///< no more rows are taken
+
+    [[nodiscard]] std::size_t width() const { return columns.size() + 1; }
+    [[nodiscard]] std::size_t waiting_rows() const { return waiting.size() / width(); }
   };
   [[nodiscard]] Status choose();
-  [[nodiscard]] Status flush(Stream& stream);
+  [[nodiscard]] std::size_t best() const;
+  [[nodiscard]] Status advance(Stream& stream);
+  [[nodiscard]] Status flush(Stream& stream, std::size_t count);
   [[nodiscard]] Status flush_rows(const Stream& stream);
-  [[nodiscard]] Status flush_columns(const Stream& stream);
+  [[nodiscard]] Status flush_columns(const Stream& stream, std::size_t count);
+  [[nodiscard]] Status finish_other(Stream& stream);
   [[nodiscard]] Status finish_alone();
+  void note_others();
 
   ColumnSink& sink_;
   double ticks_per_s_;
@@ -94,6 +112,7 @@ class InertialStreams {
   bool alone_ = true;  ///< the table holds nothing beside the chosen stream
   std::size_t chosen_ = static_cast<std::size_t>(-1);
   std::size_t waiting_bytes_ = 0;
+  std::size_t beside_column_ = 0;  ///< the first of what is beside the inertial streams
   std::uint64_t samples_ = 0;
 };
 

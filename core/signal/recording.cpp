@@ -1,5 +1,6 @@
 #include "core/signal/recording.hpp"
 
+#include "core/signal/column_streams.hpp"
 #include "core/signal/find_column.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/number.hpp"
@@ -67,6 +68,18 @@ Result<std::vector<std::optional<ColumnRole>>> stated_roles(const RecordingSpec&
                   {{"column", column}});
     }
     roles[place] = role;
+  }
+  return roles;
+}
+
+/// The roles by name, of a stream's columns by what they are called within it.
+std::vector<ColumnRole> infer_roles_within(std::string_view stream, const ColumnNames& names) {
+  std::vector<ColumnRole> roles = infer_roles(names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto within = name_within(stream, names[i]);
+    if (within && roles[i].quantity == Quantity::Unspecified) {
+      roles[i] = infer_role(*within);
+    }
   }
   return roles;
 }
@@ -146,6 +159,9 @@ Status check_role(const std::string& column, const ColumnRole& role) {
 }
 
 Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec, const ColumnNames& names) {
+  if (auto status = check_stream(spec, names); !status) {
+    return fail(status.error());
+  }
   auto stated = stated_roles(spec, names);
   if (!stated) {
     return stated;
@@ -153,9 +169,10 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
   std::vector<std::optional<ColumnRole>> roles = std::move(*stated);
   if (reads_names(spec)) {
     const bool time_stated = !spec.columns.empty();
-    std::vector<ColumnRole> by_name = infer_roles(names);
+    std::vector<ColumnRole> by_name = infer_roles_within(spec.stream, names);
+    const std::vector<bool> other = of_other_streams(spec, names);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (roles[i] || (time_stated && by_name[i].quantity == Quantity::Time)) {
+      if (roles[i] || other[i] || (time_stated && by_name[i].quantity == Quantity::Time)) {
         continue;
       }
       if (auto status = check_bracketed_unit(names[i]); !status) {
@@ -168,6 +185,9 @@ Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec&
     }
     if (!time_stated) {
       keep_one_time_column(roles);
+    }
+    if (!spec.stream.empty() && !spec.rate_hz) {
+      add_time_by_name(names, roles);
     }
   } else if (!spec.rate_hz) {
     add_time_by_name(names, roles);

@@ -40,11 +40,13 @@ struct Trim {
 [[nodiscard]] constexpr bool is_sampling_rate(double rate_hz) { return rate_hz >= 1e-6 && rate_hz <= 1e9; }
 
 /// What the user says about a file. `columns` is keyed by the file's own column names, or by column number from "0". If
-/// it is empty, the roles are inferred from names and units in the header (core/signal/infer_role.hpp).
+/// it is empty, the roles are inferred from names and units in the header (core/signal/infer_role.hpp), of the columns
+/// of `stream` alone where one is stated (core/signal/column_streams.hpp).
 struct RecordingSpec {
   std::string id;                 ///< the user's name for the recording; may be empty
   std::optional<double> rate_hz;  ///< nominal rate; needed where there is no time column
   std::map<std::string, ColumnRole> columns;
+  std::string stream;  ///< of the units in the table the one that is meant, as its columns begin: `imu2`; may be empty
   Condition condition;
   Trim trim;
   std::string calibration;  ///< reference to the calibration of the readings: a file or an id; empty: none
@@ -62,7 +64,7 @@ using ColumnNames = std::vector<std::string>;
 /// names must exist, no two columns may have the same (quantity, axis), and each role must check. Without, and for the
 /// other columns where `spec.columns` names the time alone: names such
 /// as `gx`, `gyro_x`, `wx [deg/s]`, `acc_z (m/s^2)`, `temp`, `t`, `time (s)` are understood; other columns become
-/// unspecified channels in unit `1`. Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names
+/// unspecified channels in unit `1`, and those of other streams have no role. Errors: UnknownColumn, DuplicateColumn, UnitMismatch, InvalidArgument; each names
 /// the column.
 [[nodiscard]] Result<std::vector<std::optional<ColumnRole>>> assign_roles(const RecordingSpec& spec,
                                                                           const ColumnNames& names);

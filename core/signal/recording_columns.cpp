@@ -1,5 +1,6 @@
 #include "core/signal/recording_columns.hpp"
 
+#include "core/signal/column_streams.hpp"
 #include "core/signal/infer_role.hpp"
 #include "core/signal/missing.hpp"
 #include "core/signal/text.hpp"
@@ -59,7 +60,9 @@ Result<RecordingColumns> RecordingColumns::read(const RecordingSpec& spec, const
   }
   const bool time_stated = std::any_of(spec.columns.begin(), spec.columns.end(),
                                        [](const auto& stated) { return stated.second.quantity == Quantity::Time; });
-  return RecordingColumns(names, std::move(*roles), std::move(column), reads_names(spec), time_stated);
+  RecordingColumns columns(names, std::move(*roles), std::move(column), reads_names(spec), time_stated);
+  columns.of_others_ = of_other_streams(spec, names);
+  return columns;
 }
 
 Unit RecordingColumns::unit(std::size_t index, const Unit& otherwise) const {
@@ -149,7 +152,7 @@ std::string RecordingColumns::note_of_skipped() const {
 
 Result<ColumnUse> RecordingColumns::use_of(std::size_t index, const Passed& passed) const {
   const std::optional<ColumnRole>& role = roles_[index];
-  if (is_skipped(index)) {
+  if (is_skipped(index) || (!role && of_others_[index])) {
     return ColumnUse{};
   }
   if (!role) {

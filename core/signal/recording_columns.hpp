@@ -93,8 +93,9 @@ class RecordingColumns {
   ColumnNames names_;
   std::vector<std::optional<ColumnRole>> roles_;
   Samples column_;
-  bool guessed_;      ///< the roles come from names
-  bool time_stated_;  ///< the time column is stated, not guessed
+  bool guessed_;                 ///< the roles come from names
+  bool time_stated_;             ///< the time column is stated, not guessed
+  std::vector<bool> of_others_;  ///< columns of other streams
 };
 
 /// The rate about `axis` [rad/s] that a condition states at `time_s` after the first sample of the file: the constant

@@ -126,6 +126,9 @@ Json to_json(const RecordingSpec& spec) {
     }
     document["columns"] = std::move(columns);
   }
+  if (!spec.stream.empty()) {
+    document["stream"] = spec.stream;
+  }
   document["condition"] = to_json(spec.condition);
   if (spec.trim.start_s != 0.0 || spec.trim.end_s != 0.0) {
     document["trim"] = Json{{"start_s", spec.trim.start_s}, {"end_s", spec.trim.end_s}};
@@ -156,6 +159,7 @@ RecordingSpec recording_spec_from_json(const Json& document, const std::string& 
       }
     }
   }
+  spec.stream = reader.text("stream").value_or("");
   if (const Json* const condition = reader.member("condition")) {
     spec.condition = condition_from_json(*condition, reader.pointer("condition"), faults);
   } else if (document.is_object()) {

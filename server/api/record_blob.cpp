@@ -213,8 +213,9 @@ Status require_space(const ApiContext& context) {
 }
 
 std::vector<std::string_view> metadata_parameters() {
-  return {"device",  "id",           "condition",  "axis",        "value",  "unit",    "direction",   "rate_hz",
-          "columns", "trim_start_s", "trim_end_s", "calibration", "labels", "session", "recorded_at", "file_name"};
+  return {"device",      "id",      "condition", "axis",        "value",        "unit",
+          "direction",   "rate_hz", "columns",   "stream",      "trim_start_s", "trim_end_s",
+          "calibration", "labels",  "session",   "recorded_at", "file_name"};
 }
 
 }  // namespace driftlab::server

@@ -24,7 +24,7 @@ void check_metadata(const Json& entry, const Recording& recording, const std::st
     whole[member] = value;
   }
   const Json said_document = driftlab::to_json(recording_spec_from_json(whole, pointer, faults));
-  for (const char* const member : {"condition", "trim", "rate_hz", "columns", "calibration"}) {
+  for (const char* const member : {"condition", "trim", "rate_hz", "columns", "stream", "calibration"}) {
     if (entry.contains(member) && said_document.value(member, Json()) != metadata.value(member, Json())) {
       faults.add(pointer + "/" + member, ErrorCode::Conflict,
                  "The recording " + recording.id + " has another " + member +

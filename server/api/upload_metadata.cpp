@@ -151,6 +151,7 @@ Result<UploadMetadata> metadata_from_query(const Request& request) {
   metadata.spec.condition = *condition;
   metadata.spec.id = request.parameter("id").value_or("");
   metadata.file_name = shown_file_name(request.parameter("file_name").value_or(""));
+  metadata.spec.stream = request.parameter("stream").value_or("");
   metadata.spec.calibration = request.parameter("calibration").value_or("");
   auto rate = number_of(request, "rate_hz", false);
   auto start = number_of(request, "trim_start_s", true);

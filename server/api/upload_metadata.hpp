@@ -21,7 +21,7 @@ struct UploadMetadata {
 /// A fault for each label, session and time beyond the budgets, which `pointer` leads to.
 void limit_tags(const RecordingTags& tags, const Budgets& budgets, const std::string& pointer, Faults& faults);
 
-/// `?device=…&condition=…&rate_hz=…&columns=…&id=…&trim_start_s=…&trim_end_s=…`
+/// `?device=…&condition=…&rate_hz=…&columns=…&stream=…&id=…&trim_start_s=…&trim_end_s=…`
 /// and `&labels=firmware=1.5.0&session=…&recorded_at=…&file_name=…`; the condition in its compact form
 /// (`constant_rate:z:9:deg/s`) or its parts as `condition`, `axis`, `value`, `unit`, `direction`.
 /// Errors: those of core/signal, with field "parameter".

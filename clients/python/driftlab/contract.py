@@ -2311,6 +2311,9 @@ class NewLiveRecording(TypedDict):
     # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
     # a note.
     columns: dict[str, RecordingColumn]
+    # Of a table with the columns of several units the one that is meant, as its columns begin: `imu2` of `imu2_time
+    # (s)`, `imu2_gyro_x (rad/s)`. Beside it no columns but a time are stated.
+    stream: NotRequired[str]
     condition: Condition
     # Seconds to leave out at the ends.
     trim: NotRequired[RecordingTrim]
@@ -3129,6 +3132,9 @@ class Recording(TypedDict):
     # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
     # a note.
     columns: NotRequired[dict[str, RecordingColumn]]
+    # Of a table with the columns of several units the one that is meant, as its columns begin: `imu2` of `imu2_time
+    # (s)`, `imu2_gyro_x (rad/s)`. Beside it no columns but a time are stated.
+    stream: NotRequired[str]
     condition: Condition
     # Seconds to leave out at the ends.
     trim: NotRequired[RecordingTrim]
@@ -3279,6 +3285,9 @@ class RecordingMembers(TypedDict):
     # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
     # a note.
     columns: NotRequired[dict[str, RecordingColumn]]
+    # Of a table with the columns of several units the one that is meant, as its columns begin: `imu2` of `imu2_time
+    # (s)`, `imu2_gyro_x (rad/s)`. Beside it no columns but a time are stated.
+    stream: NotRequired[str]
     condition: Condition
     # Seconds to leave out at the ends.
     trim: NotRequired[RecordingTrim]
@@ -3380,6 +3389,9 @@ class RecordingUploadMetadata(TypedDict):
     # Keyed by the file's own column names, or by column number from "0". Columns that are not named are left out, with
     # a note.
     columns: NotRequired[dict[str, RecordingColumn]]
+    # Of a table with the columns of several units the one that is meant, as its columns begin: `imu2` of `imu2_time
+    # (s)`, `imu2_gyro_x (rad/s)`. Beside it no columns but a time are stated.
+    stream: NotRequired[str]
     condition: Condition
     # Seconds to leave out at the ends.
     trim: NotRequired[RecordingTrim]
@@ -4002,6 +4014,7 @@ class StudyRequestRecording(TypedDict):
     id: NotRequired[str]
     rate_hz: NotRequired[float]
     columns: NotRequired[dict[str, Any]]
+    stream: NotRequired[str]
     condition: NotRequired[Condition]
     trim: NotRequired[dict[str, Any]]
     calibration: NotRequired[str]
@@ -4280,8 +4293,8 @@ OPERATIONS: dict[str, Operation] = {
         (), ('application/json',)),
     'uploadRecording': Operation(
         'POST', '/v1/recordings',
-        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
+        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'stream',
+         'trim_start_s', 'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
         ('Idempotency-Key', 'Repr-Digest'), ('application/json',)),
     'previewRecording': Operation(
         'POST', '/v1/recordings/preview',
@@ -4319,8 +4332,8 @@ OPERATIONS: dict[str, Operation] = {
         'DELETE', '/v1/uploads/{id}', (), ('Tus-Resumable',), ()),
     'recordUpload': Operation(
         'POST', '/v1/uploads/{id}/recording',
-        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'trim_start_s',
-         'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
+        ('device', 'id', 'condition', 'axis', 'value', 'unit', 'direction', 'rate_hz', 'columns', 'stream',
+         'trim_start_s', 'trim_end_s', 'calibration', 'labels', 'session', 'recorded_at', 'file_name'),
         ('Idempotency-Key',), ('application/json',)),
     'createLiveRecording': Operation(
         'POST', '/v1/live-recordings', (), ('Idempotency-Key',), ('application/json',)),

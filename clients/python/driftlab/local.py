@@ -108,14 +108,14 @@ def as_files(files: Files | Document, folder: PathName) -> Iterator[list[str]]:
             yield [str(Path(each).resolve()) for each in several]
 
 
-def characterise(files: Files | Study, *, rate_hz: float | None = None, columns: Columns | None = None,
+def characterise(files: Files | Study, *, rate_hz: float | None = None, columns: Columns | None = None, stream: str | None = None,
                  condition: str | Condition | None = None, device: str | None = None, calibration: PathName | None = None,
                  models: Sequence[str] | None = None, stepwise: bool = False, bootstrap: int = 0, seed: int = 1,
                  also: Sequence[Literal["total", "theo1", "psd"]] = (), taus: int = 0,
                  folder: PathName = ".", program: PathName | None = None) -> Characterisation:
     """Variances, Allan coefficients and ranked models of recordings: files that share what is said of them, an array whose rows are
     samples, or a study (its file, or its document, whose recordings are then looked for below `folder`)."""
-    said = options(rate_hz=rate_hz, columns=columns_text(columns), condition=condition_text(condition) if condition else None,
+    said = options(rate_hz=rate_hz, columns=columns_text(columns), stream=stream, condition=condition_text(condition) if condition else None,
                    device=device, calibration=str(Path(calibration).resolve()) if calibration else None,
                    models=",".join(models) if models else None, stepwise=stepwise, bootstrap=bootstrap or None, seed=seed,
                    total="total" in also, theo1="theo1" in also, psd="psd" in also, taus=taus or None)

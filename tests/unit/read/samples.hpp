@@ -31,6 +31,7 @@ class KeepingSink final : public ColumnSink {
  public:
   Status begin(const ColumnLayout& layout) override {
     columns.resize(layout.names.size());
+    names = layout.names;
     return {};
   }
   Status rows(std::span<const double> values) override {
@@ -43,9 +44,11 @@ class KeepingSink final : public ColumnSink {
     columns.at(index).insert(columns.at(index).end(), values.begin(), values.end());
     return {};
   }
-  void note(std::string) override {}
+  void note(std::string sentence) override { notes.push_back(std::move(sentence)); }
 
+  ColumnNames names;
   std::vector<std::vector<double>> columns;
+  std::vector<std::string> notes;
 };
 
 /// What came out of some bytes: the samples bit by bit, or the error.

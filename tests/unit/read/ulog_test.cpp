@@ -93,8 +93,11 @@ TEST(Ulog, TakesTheFastestStreamWithBothSensorsAndNamesTheOthers) {
   EXPECT_EQ(outcome.decoded.rows, 6U);
   EXPECT_THAT(outcome.decoded.notes,
               ElementsAre("Of several inertial streams 'sensor_combined 1' is read (gyroscope and accelerometer, 6 "
-                          "samples); left out: 'sensor_combined 0' (gyroscope and accelerometer, 3 samples), "
-                          "'sensor_gyro 0' (gyroscope alone, 12 samples)."));
+                          "samples). State another one as `stream` to have it read: imu2 is 'sensor_combined 0' "
+                          "(gyroscope and accelerometer, 3 samples), imu3 is 'sensor_gyro 0' (gyroscope alone, 12 "
+                          "samples).",
+                          "Of 'sensor_gyro 0' the last 6 rows are left out. It is longer than the inertial stream that "
+                          "it stands beside."));
 }
 
 TEST(Ulog, ReadsAGyroscopeAloneWithItsTemperature) {

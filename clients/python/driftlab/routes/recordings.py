@@ -121,7 +121,8 @@ class RecordingRoutes(UploadRoutes):
 
     @operation("uploadRecording")
     def upload(self, source: Source, *, device: str, condition: str | Condition = "static", rate_hz: float | None = None,
-               columns: Columns | None = None, id: str | None = None, trim_start_s: float | None = None, trim_end_s: float | None = None,
+               columns: Columns | None = None, stream: str | None = None, id: str | None = None, trim_start_s: float | None = None,
+               trim_end_s: float | None = None,
                calibration: str | None = None, axis: str | None = None, value: float | None = None, unit: str | None = None,
                direction: str | None = None, labels: Mapping[str, str] | None = None, session: str | None = None,
                recorded_at: str | None = None, file_name: str | None = None, progress: Progress | None = None,
@@ -138,10 +139,10 @@ class RecordingRoutes(UploadRoutes):
         upload = Upload(source, progress)
         if upload.size >= self.resumable_from:
             return self.record_upload(self._sent_in_pieces(upload), device=device, condition=condition, rate_hz=rate_hz, columns=columns,
-                                      name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
+                                      stream=stream, name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
                                       value=value, unit=unit, direction=direction, labels=labels, session=session,
                                       recorded_at=recorded_at, file_name=file_name or upload.name, idempotency_key=idempotency_key)
-        query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns),
+        query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns), "stream": stream,
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
                                  "value": value, "unit": unit, "direction": direction,
                                  "file_name": file_name or upload.name, **condition_query(condition),

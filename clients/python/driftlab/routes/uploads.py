@@ -44,13 +44,13 @@ class UploadRoutes(Routes):
 
     @operation("recordUpload")
     def record_upload(self, id: str, *, device: str, condition: str | Condition = "static", rate_hz: float | None = None,
-                      columns: Columns | None = None, name: str | None = None, trim_start_s: float | None = None,
+                      columns: Columns | None = None, stream: str | None = None, name: str | None = None, trim_start_s: float | None = None,
                       trim_end_s: float | None = None, calibration: str | None = None, axis: str | None = None,
                       value: float | None = None, unit: str | None = None, direction: str | None = None,
                       labels: Mapping[str, str] | None = None, session: str | None = None, recorded_at: str | None = None,
                       file_name: str | None = None, idempotency_key: str | None = None) -> StoredRecording:
         """Makes a recording of a complete upload, which `name` names; the rest is as in `upload`. Refused, the upload stays."""
-        query: dict[str, Any] = {"device": device, "id": name, "rate_hz": rate_hz, "columns": columns_text(columns),
+        query: dict[str, Any] = {"device": device, "id": name, "rate_hz": rate_hz, "columns": columns_text(columns), "stream": stream,
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
                                  "value": value, "unit": unit, "direction": direction, "file_name": file_name, **condition_query(condition),
                                  **tag_query(labels, session, recorded_at)}
