@@ -2,9 +2,11 @@
 
 #include "core/investigate/causes/cause.hpp"
 #include "core/process/constant_offset.hpp"
+#include "core/signal/with_count.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace driftlab::investigate {
@@ -60,6 +62,36 @@ std::string carried_by(const Evidence& evidence, const ChannelGroup& group, cons
   return own > kAlone * all ? group.members[most].recording->id : std::string();
 }
 
+/// How many times a turn a line comes, where in each of its recordings it is a whole number of times; 0: it is no line,
+/// or one of its own. A bias that goes with the angle is such a line in a recording that turns evenly.
+int times_a_turn(const Evidence& evidence, const ChannelGroup& group) {
+  constexpr int kMost = 12;             // Chosen, not measured.
+  constexpr double kFewestTurns = 3.0;  // Chosen: lines a turn apart are told apart then.
+  constexpr double kRateError = 5e-4;   // Of a stated rate. Chosen, not measured.
+  const auto frequency = std::find_if(evidence.parameters.begin(), evidence.parameters.end(),
+                                      [](const FoundParameter& parameter) { return parameter.name == "frequency_hz"; });
+  if (evidence.cause->as<SpectralLine>() == nullptr || frequency == evidence.parameters.end()) {
+    return 0;
+  }
+  const auto& [value, interval] = frequency->estimate;
+  const double within = 1.5 * interval.half_width() + kRateError * value;  // three standard errors
+  double times = 0.0;
+  for (const std::size_t r : evidence.members) {
+    const StudyRecording& recording = *group.members[r].recording;
+    if (recording.angle.empty()) {
+      return 0;
+    }
+    const double seconds = static_cast<double>(recording.count() - 1) * recording.dt_s;
+    const double turns =
+        std::fabs(recording.angle[recording.end - 1] - recording.angle[recording.begin]) / (2.0 * std::numbers::pi);
+    times = std::round(value * seconds / std::max(turns, 1e-9));
+    if (turns < kFewestTurns || times < 1.0 || times > kMost || std::fabs(value - times * turns / seconds) > within) {
+      return 0;
+    }
+  }
+  return static_cast<int>(times);
+}
+
 /// What a profile is of is what the cause is of.
 bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
   switch (kind) {
@@ -98,6 +130,9 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
   }
   if (const std::string alone = carried_by(evidence, group, means); !alone.empty()) {
     return "it is carried by " + alone + " alone";
+  }
+  if (const int times = times_a_turn(evidence, group); times > 0) {
+    return "it comes " + how_often(times) + " a turn, as what goes with the angle does";
   }
   if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
     return std::to_string(report.failed_after) + " checks still fail with it";

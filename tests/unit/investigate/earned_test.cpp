@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,6 +92,39 @@ TEST_F(Earned, ABiasOfEveryRecordingThatIsOneRecordingsIsNot) {
   EXPECT_EQ(doubt(biases), "") << "of three one always lies far from the median";
   means_ = {0.0, 1.0, 0.0, 0.0};
   EXPECT_EQ(doubt(biases), "it is carried by r1 alone");
+}
+
+TEST_F(Earned, ALineThatComesAWholeNumberOfTimesATurnIsNot) {
+  // 4 turns in 20 s, and 2 in the recordings half as long.
+  const auto turning = [&](std::size_t r, double turns_per_s) {
+    StudyRecording& recording = noise_.recordings[r];
+    std::vector<double> angle(recording.length);
+    for (std::size_t i = 0; i < recording.length; ++i) {
+      angle[i] = 2.0 * std::numbers::pi * turns_per_s * recording.time_s(i);
+    }
+    recording.angle = std::move(angle);
+  };
+  const auto line = [&](double frequency_hz, double half_width, std::vector<std::size_t> members) {
+    Evidence evidence = evidence_of("periodic_disturbance");
+    evidence.members = std::move(members);
+    evidence.parameters.push_back(
+        {"frequency_hz", {frequency_hz, {frequency_hz - half_width, frequency_hz + half_width}}, {"Hz", 1.0}});
+    return doubt(evidence);
+  };
+  EXPECT_EQ(line(0.8, 0.001, {0}), "") << "nothing turns";
+  turning(0, 0.2);
+  EXPECT_EQ(line(0.8, 0.001, {0}), "it comes 4 times a turn, as what goes with the angle does");
+  EXPECT_EQ(line(0.2, 0.001, {0}), "it comes once a turn, as what goes with the angle does");
+  EXPECT_EQ(line(0.9, 0.001, {0}), "") << "four times and a half";
+  EXPECT_EQ(line(0.8 + 0.0015, 0.001, {0}).substr(0, 8), "it comes");
+  EXPECT_EQ(line(0.8 + 0.0025, 0.001, {0}), "") << "beyond three standard errors";
+  EXPECT_EQ(line(2.4, 0.001, {0}).substr(0, 8), "it comes");
+  EXPECT_EQ(line(2.6, 0.001, {0}), "") << "more than twelve times";
+  EXPECT_EQ(line(0.8, 0.001, {0, 1}), "") << "it is there without a turn too";
+  turning(1, 0.2);
+  EXPECT_EQ(line(0.8, 0.001, {0, 1}), "") << "of a turn or two nothing can be said";
+  turning(1, 0.4);
+  EXPECT_EQ(line(0.8, 0.001, {0, 1}), "it comes 2 times a turn, as what goes with the angle does");
 }
 
 TEST_F(Earned, WhatLeavesAtLeastThreeChecksAndHalfOfThemFailingIsNot) {
