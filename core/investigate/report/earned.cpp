@@ -62,6 +62,13 @@ std::string carried_by(const Evidence& evidence, const ChannelGroup& group, cons
   return own > kAlone * all ? group.members[most].recording->id : std::string();
 }
 
+/// How far a recording turned, with its sign [turns].
+double turns_of(const StudyRecording& recording) {
+  return recording.angle.empty()
+             ? 0.0
+             : (recording.angle[recording.end - 1] - recording.angle[recording.begin]) / (2.0 * std::numbers::pi);
+}
+
 /// How many times a turn a line comes, where in each of its recordings it is a whole number of times; 0: it is no line,
 /// or one of its own. A bias that goes with the angle is such a line in a recording that turns evenly.
 int times_a_turn(const Evidence& evidence, const ChannelGroup& group) {
@@ -90,6 +97,28 @@ int times_a_turn(const Evidence& evidence, const ChannelGroup& group) {
     }
   }
   return static_cast<int>(times);
+}
+
+/// A level of noise that is that of the recordings, two and more, that turn one way, and of no other, though others
+/// turn the other way: it may go with the sign of the rate.
+bool goes_one_way(const Evidence& evidence, const ChannelGroup& group) {
+  constexpr std::size_t kFewest = 2;
+  constexpr double kTurns = 1.0;  // Chosen, not measured.
+  if (evidence.cause->as<NoiseLevel>() == nullptr || evidence.members.size() < kFewest) {
+    return false;
+  }
+  const double way = turns_of(*group.members[evidence.members.front()].recording);
+  bool other_way = false;
+  for (std::size_t r = 0; r < group.members.size(); ++r) {
+    const double turns = turns_of(*group.members[r].recording);
+    const bool same = std::fabs(turns) >= kTurns && turns * way > 0.0;
+    const bool has_it = std::find(evidence.members.begin(), evidence.members.end(), r) != evidence.members.end();
+    if (same != has_it) {
+      return false;
+    }
+    other_way = other_way || (std::fabs(turns) >= kTurns && turns * way < 0.0);
+  }
+  return other_way;
 }
 
 /// What a profile is of is what the cause is of.
@@ -133,6 +162,9 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
   }
   if (const int times = times_a_turn(evidence, group); times > 0) {
     return "it comes " + how_often(times) + " a turn, as what goes with the angle does";
+  }
+  if (goes_one_way(evidence, group)) {
+    return "it is that of the recordings that turn one way";
   }
   if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
     return std::to_string(report.failed_after) + " checks still fail with it";

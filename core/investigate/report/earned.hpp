@@ -7,6 +7,7 @@
 ///   - a bias that differs from recording to recording differs in one alone, of four or more: more than 95 % of the sum
 ///     of squares about the median is one recording's;
 ///   - a line comes a whole number of times a turn, up to twelve, in each of its recordings, which turn;
+///   - a level of noise is that of the recordings that turn one way, though others turn the other way;
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
 ///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;

@@ -127,6 +127,33 @@ TEST_F(Earned, ALineThatComesAWholeNumberOfTimesATurnIsNot) {
   EXPECT_EQ(line(0.8, 0.001, {0, 1}), "it comes 2 times a turn, as what goes with the angle does");
 }
 
+TEST_F(Earned, ALevelOfTheRecordingsThatTurnOneWayIsNot) {
+  const auto turning = [&](std::size_t r, double turns) {
+    StudyRecording& recording = noise_.recordings[r];
+    std::vector<double> angle(recording.length);
+    for (std::size_t i = 0; i < recording.length; ++i) {
+      angle[i] = 2.0 * std::numbers::pi * turns * static_cast<double>(i) / static_cast<double>(recording.length - 1);
+    }
+    recording.angle = std::move(angle);
+  };
+  const auto level = [&](std::vector<std::size_t> members) {
+    Evidence evidence = evidence_of("white_noise_level");
+    evidence.members = std::move(members);
+    return doubt(evidence);
+  };
+  const std::string one_way = "it is that of the recordings that turn one way";
+  turning(1, 5.0);
+  turning(2, 3.0);
+  EXPECT_EQ(level({1, 2}), "") << "no recording turns the other way";
+  turning(3, -5.0);
+  EXPECT_EQ(level({1, 2}), one_way);
+  EXPECT_EQ(level({1}), "") << "one recording may be louder by itself";
+  EXPECT_EQ(level({0, 1, 2}), "") << "it is louder at rest too";
+  EXPECT_EQ(level({1, 2, 3}), "") << "it is louder both ways";
+  turning(4, 5.0);
+  EXPECT_EQ(level({1, 2}), "") << "one that turns this way is not louder";
+}
+
 TEST_F(Earned, WhatLeavesAtLeastThreeChecksAndHalfOfThemFailingIsNot) {
   const Evidence evidence = evidence_of("white_noise_level");
   const auto failing = [&](std::size_t before, std::size_t after) {
