@@ -17,6 +17,7 @@ constexpr std::size_t kBatch = 8192;
 constexpr std::size_t kLongestName = 80;
 constexpr std::size_t kMostNames = 12;
 constexpr std::size_t kMostInTable = 16;
+constexpr std::uint64_t kMostTimesSlower = 20;
 
 std::string_view contents_of(Inertial holds) {
   switch (holds) {
@@ -121,7 +122,7 @@ Status InertialStreams::choose() {
     if (&stream == &chosen) {
       continue;
     }
-    if (stream.samples == 0 || units == kMostInTable) {
+    if (stream.samples == 0 || kMostTimesSlower * stream.samples < chosen.samples || units == kMostInTable) {
       stream.full = true;
       std::vector<double>().swap(stream.waiting);
       continue;

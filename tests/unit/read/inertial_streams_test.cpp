@@ -112,6 +112,23 @@ TEST(InertialStreams, AShorterUnitHasEndedWhileItsTimeGoesOn) {
   EXPECT_TRUE(std::isfinite(at("imu3_acc_z (m/s^2)")[199]));
 }
 
+TEST(InertialStreams, AMuchSlowerUnitIsNamedAndLeftOut) {
+  KeepingSink sink;
+  InertialStreams streams(sink, 1e6);
+  const std::size_t both = *streams.add("both", Inertial::Both, inertial_columns(Inertial::Both));
+  const std::size_t slow = *streams.add("slow", Inertial::Both, inertial_columns(Inertial::Both));
+  const std::array<double, 6> zeros{};
+  for (std::size_t i = 0; i < 2100; ++i) {
+    ASSERT_TRUE(streams.take(both, 10'000 * i, zeros));
+    if (i % 21 == 0) {
+      ASSERT_TRUE(streams.take(slow, 10'000 * i, zeros));
+    }
+  }
+  ASSERT_TRUE(streams.finish("Nothing."));
+  EXPECT_EQ(sink.names.size(), 7U);
+  EXPECT_THAT(sink.notes, ElementsAre(HasSubstr("Left out: 'slow' (gyroscope and accelerometer, 100 samples).")));
+}
+
 TEST(InertialStreams, OfAFasterUnitThereIsAsMuchAsOfTheRecording) {
   KeepingSink sink;
   InertialStreams streams(sink, 1e6);
