@@ -179,7 +179,8 @@ struct Taken {
 };
 
 /// The base beside the means that were found without a name. What is left of a process that had followed one of them,
-/// and lies below a fiftieth of the white density at every frequency of the longest recording, is left out.
+/// and lies below a fiftieth of the white density at every frequency of the longest recording, is left out. A given
+/// base stays as it is.
 void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcome& outcome) {
   std::vector<SlowComponent>& base = outcome.model.beside.noise.components;
   double longest = 0.0;
@@ -193,7 +194,7 @@ void take_refitted_noise(const std::vector<UnnamedFinding>& unnamed, GroupOutcom
       refitted = *found.noise;  // the last one's is beside all of them
     }
   }
-  if (refitted.empty()) {
+  if (refitted.empty() || outcome.after.given) {
     return;
   }
   for (std::size_t k = 0; k < std::min(base.size(), refitted.size()); ++k) {
@@ -215,7 +216,8 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   outcome.before = {};
   if (outcome.usable && !stop.stop_requested()) {
     std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
-    std::vector<UnnamedFinding> unnamed = find_unnamed(group, outcome.after);
+    std::vector<UnnamedFinding> unnamed =
+        find_unnamed(group, outcome.after, outcome.model.beside.noise.components.size());
     take_refitted_noise(unnamed, outcome);
     taken.unnamed.insert(taken.unnamed.end(), std::make_move_iterator(unnamed.begin()),
                          std::make_move_iterator(unnamed.end()));

@@ -54,7 +54,8 @@ struct Courses {
 
 class UnnamedSearch {
  public:
-  UnnamedSearch(const ChannelGroup& group, const FullRate& data) : group_(group), data_(data) {
+  UnnamedSearch(const ChannelGroup& group, const FullRate& data, std::size_t base)
+      : group_(group), data_(data), first_free_(data.given ? base : 0) {
     for (const Against against : kQuantities) {
       if (Courses courses = courses_of(against); !courses.edge.empty()) {
         courses_.push_back(std::move(courses));
@@ -412,9 +413,12 @@ class UnnamedSearch {
     }
     const BlockColumns without = narrowed(columns, 1 + courses.members.size());
     SlowModel noise_without = noise;
-    // An automatic base has followed the effect as slow noise can: it is fitted again beside the profile.
-    if (!data_.given && courses.against != Against::Time && !noise.components.empty()) {
+    // An automatic base, and slow noise that was found, have followed the effect as they can: they are fitted again
+    // beside the profile.
+    if (courses.against != Against::Time && noise.components.size() > first_free_) {
       SlowFreedom freedom;
+      freedom.white = !data_.given;
+      freedom.first_free = first_free_;
       freedom.stop = data_.stop;
       noise_without = fit_slow(series, without, noise, freedom).model;
       noise = fit_slow(series, columns, noise, freedom).model;
@@ -503,6 +507,7 @@ class UnnamedSearch {
 
   const ChannelGroup& group_;
   FullRate data_;  ///< a copy, of which the base may be fitted again
+  std::size_t first_free_;
   std::vector<Courses> courses_;
   std::vector<UnnamedEffect> adopted_;
   mutable std::vector<std::optional<Halves>> lines_;  ///< by member; it is for one thread
@@ -516,8 +521,8 @@ double UnnamedFinding::chance(std::size_t channels) const {
   return std::min(1.0, static_cast<double>(channels) * tried * std::exp(-0.5 * heldout_gain));
 }
 
-std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data) {
-  return UnnamedSearch(group, data).go();
+std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data, std::size_t base) {
+  return UnnamedSearch(group, data, base).go();
 }
 
 }  // namespace driftlab::investigate

@@ -45,14 +45,16 @@ struct UnnamedFinding {
   /// times the profiles tried.
   [[nodiscard]] double chance(std::size_t channels) const;
   std::string sentence;  ///< for people: where it is and how large
-  /// The slow part of an automatic base as it is beside a mean, which it had followed; nothing: as it was.
+  /// The slow part as it is beside a mean, which it had followed; nothing: as it was. A given base stays as it is.
   std::optional<std::vector<SlowComponent>> noise;
 
   [[nodiscard]] double per_sample() const { return samples > 0.0 ? heldout_gain / samples : 0.0; }
 };
 
 /// Profiles of what is left in a channel after its findings, in the order in which they are adopted; mostly none.
-/// `data`: the channel under the extended model. Deterministic. O(samples log samples).
-[[nodiscard]] std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data);
+/// `data`: the channel under the extended model, of whose slow components the first `base` are the baseline's and the
+/// others were found. Deterministic. O(samples log samples).
+[[nodiscard]] std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data,
+                                                       std::size_t base);
 
 }  // namespace driftlab::investigate
