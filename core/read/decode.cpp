@@ -1,3 +1,4 @@
+#include "core/read/bag_folder.hpp"
 #include "core/read/column_file.hpp"
 #include "core/read/euroc.hpp"
 #include "core/read/format.hpp"
@@ -149,8 +150,14 @@ Result<Decoded> decode_stream(std::unique_ptr<ByteReader> reader, ColumnSink& si
 Result<Decoded> decode_file(const std::filesystem::path& input, const std::filesystem::path& output,
                             const DecodeLimits& limits, const RunControl& control) {
   std::error_code none;
-  const bool folder = std::filesystem::is_directory(input, none);
-  auto reader = folder ? Result<std::unique_ptr<ByteReader>>(make_memory_reader("")) : open_file_reader(input);
+  const bool directory = std::filesystem::is_directory(input, none);
+  const auto bag = directory ? find_bag_file(input) : Result<std::optional<std::filesystem::path>>(std::nullopt);
+  if (!bag) {
+    return fail(bag.error());
+  }
+  const bool folder = directory && !*bag;
+  auto reader =
+      folder ? Result<std::unique_ptr<ByteReader>>(make_memory_reader("")) : open_file_reader(bag->value_or(input));
   if (!reader) {
     return fail(reader.error());
   }

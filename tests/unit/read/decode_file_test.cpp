@@ -175,5 +175,22 @@ TEST(RealRecordings, AreDecodedOrRefusedWithASentence) {
   EXPECT_GE(decoded_files, 30U);
 }
 
+TEST(DecodeFile, TheFolderOfARos2BagIsItsFile) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path bag = directory / "drive";
+  std::filesystem::create_directory(bag);
+  write_file(bag / "metadata.yaml", "rosbag2_bagfile_information:\n");
+  write_file(bag / "drive_0.db3", testing::journey_bag2());
+  const auto alone = decode_file(bag, directory / "out");
+  ASSERT_TRUE(alone) << alone.error().message;
+  EXPECT_EQ(alone->format, "rosbag2");
+  EXPECT_EQ(alone->rows, 40U);
+  write_file(bag / "drive_1.db3", testing::journey_bag2());
+  const auto split = decode_file(bag, directory / "out");
+  ASSERT_FALSE(split);
+  EXPECT_EQ(split.error().code, ErrorCode::UnsupportedFormat);
+  EXPECT_THAT(split.error().message, HasSubstr("split into 2 files, 'drive_0.db3', 'drive_1.db3'"));
+}
+
 }  // namespace
 }  // namespace driftlab
