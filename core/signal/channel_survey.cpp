@@ -65,35 +65,44 @@ class DistinctValues {
   std::size_t count_ = 0;
 };
 
-/// Runs of one value: the longest and the one after it.
+/// Runs of one value among the sound samples: the longest and the one after it.
 class Runs {
  public:
   void take(std::size_t row, bool same) {
     if (!same) {
-      close(row);
-      begin_ = row;
+      close();
+      run_ = {row, row, 0};
     }
+    run_.end = row + 1;
+    ++run_.samples;
+    ++samples_;
   }
-  void close(std::size_t row) {
-    const std::size_t length = row - begin_;
-    if (length > longest_.second - longest_.first) {
-      second_ = longest_.second - longest_.first;
-      longest_ = {begin_, row};
+  void close() {
+    if (run_.samples > longest_.samples) {
+      second_ = longest_.samples;
+      longest_ = run_;
     } else {
-      second_ = std::max(second_, length);
+      second_ = std::max(second_, run_.samples);
     }
-    begin_ = row;
+    run_ = {};
   }
-  [[nodiscard]] std::pair<std::size_t, std::size_t> frozen(std::size_t rows) const {
-    const std::size_t length = longest_.second - longest_.first;
-    const bool stuck = length >= kShortestFrozen && length > kFrozenToOthers * second_ && length < rows;
-    return stuck ? longest_ : std::pair<std::size_t, std::size_t>{0, 0};
+  /// Rows of the stretch; none where it is all that there is, or no longer than others.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> frozen() const {
+    const bool stuck = longest_.samples >= kShortestFrozen && longest_.samples > kFrozenToOthers * second_ &&
+                       longest_.samples < samples_;
+    return stuck ? std::pair(longest_.begin, longest_.end) : std::pair<std::size_t, std::size_t>{0, 0};
   }
 
  private:
-  std::size_t begin_ = 0;
-  std::pair<std::size_t, std::size_t> longest_{0, 0};
+  struct Run {
+    std::size_t begin = 0;
+    std::size_t end = 0;  ///< behind its last sound sample
+    std::size_t samples = 0;
+  };
+  Run run_;
+  Run longest_;
   std::size_t second_ = 0;
+  std::size_t samples_ = 0;
 };
 
 bool suspicious(double value) {
@@ -191,9 +200,9 @@ void walk(std::span<const double> values, const Pieces& pieces, ChannelSurvey& s
     first = false;
     before = value;
   }
-  runs.close(values.size());
+  runs.close();
   quality.distinct = distinct.count();
-  survey.frozen = runs.frozen(values.size());
+  survey.frozen = runs.frozen();
   const bool varied = !quality.distinct || *quality.distinct >= kVaried;
   quality.saturated = high.value == -low.value ? 0 : high.saturated(varied) + low.saturated(varied);
 }

@@ -44,7 +44,7 @@ TEST(Npz, SetsTheArraysOfOneLengthSideBySide) {
   const Outcome outcome = decode_bytes(zip({{"gyro.npy", array("(4, 3)", 12)},
                                             {"t.npy", array("(4,)", 4)},
                                             {"other.npy", array("(7,)", 7)},
-                                            {"n.npy", array("(4,)", 4, "<i8")}}));
+                                            {"n.npy", array("(4,)", 4, "<M8")}}));
   ASSERT_FALSE(outcome.error) << outcome.message;
   EXPECT_THAT(outcome.decoded.names, ElementsAre("gyro_x", "gyro_y", "gyro_z", "t"));
   EXPECT_THAT(column(outcome, 1), ElementsAre(-2.75, -2.0, -1.25, -0.5));

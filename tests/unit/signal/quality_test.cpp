@@ -194,6 +194,21 @@ TEST(Quality, LeavesOutASensorThatIsFrozenThroughoutTheWindow) {
   EXPECT_THAT(seen->window.quality.notes, Contains(HasSubstr("It is left out.")));
 }
 
+TEST(Quality, ASensorThatHasEndedIsNotFrozen) {
+  // Its last sample was taken for a stretch of one value, as long as what is missing behind it, and left out.
+  std::vector<double> values = noise(6000, 3);
+  for (std::size_t i = 4000; i < values.size(); ++i) {
+    values[i] = missing_sample(Missing::Ended, i + 1);
+  }
+  const ChannelSurvey survey = survey_channel("gz", values);
+  EXPECT_EQ(survey.quality.frozen, 0U);
+  EXPECT_EQ(survey.quality.missing, 2000U);
+  std::fill(values.begin() + 3000, values.begin() + 4000, 0.25);
+  values[3500] = missing_sample(Missing::Empty, 3501);
+  const ChannelSurvey stuck = survey_channel("gz", values);
+  EXPECT_EQ(stuck.frozen, (std::pair<std::size_t, std::size_t>{3000, 4000})) << "a hole within does not end it";
+}
+
 TEST(Quality, DoesNotTakeCoarseStepsForAFrozenSensor) {
   // Noise of half a step: three values, runs of up to some tens of samples.
   std::vector<double> values = noise(50000);
