@@ -30,7 +30,7 @@ class Problems(DaemonTest):
             upload(b"gz\n", rate_hz=100), upload(b"gz\n1\n", rate_hz=100), upload(b"gz\n1\n2,3\n", rate_hz=100), upload(b"gz\n1\nx\n", rate_hz=100),
             upload(b"gz\n1\nnan\n", rate_hz=100), upload(b"gz\n1\n1e999\n", rate_hz=100), upload(b"t,gz\n1,1\n0,2\n2,3\n", columns="t=time::s,gz=angular_rate:z:deg/s"),
             upload(csv()), upload(samples.npy(samples.noise(99))[:-8], rate_hz=100), upload(samples.npy(samples.noise(99)) + b"01234567", rate_hz=100),
-            upload(b"\x89PNG\r\n\x1a\n" + bytes(64), rate_hz=100), upload(samples.npy(samples.noise(9)).replace(b"<f8", b"<i8"), rate_hz=100),
+            upload(b"\x89PNG\r\n\x1a\n" + bytes(64), rate_hz=100), upload(samples.npy(samples.noise(9)).replace(b"<f8", b"<M8"), rate_hz=100),
             upload(samples.COMPRESSIONS["gzip"](csv())[:-8] + bytes(8), rate_hz=100), upload(b"gz\n" + b"1" * (2 << 20), rate_hz=100), d.post("/v1/jobs", b"{"),
             d.get("/v1/devices/nobody"), upload(csv(seed=1), rate_hz=50), d.get("/nix"), d.request("DELETE", "/v1/devices"),
             d.get("/v1/parameter-tables?device=a", Accept="image/png"), d.post("/v1/devices", big), d.get("/v1/devices?page=2"),

@@ -3155,6 +3155,7 @@ class RecordingChange(TypedDict):
     file: NotRequired[str | None]
     rate_hz: NotRequired[float | None]
     columns: NotRequired[RecordingMembersColumns | None]
+    stream: NotRequired[str | None]
     condition: NotRequired[Condition]
     trim: NotRequired[RecordingMembersTrim | None]
     calibration: NotRequired[str | None]

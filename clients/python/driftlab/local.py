@@ -115,8 +115,9 @@ def characterise(files: Files | Study, *, rate_hz: float | None = None, columns:
                  folder: PathName = ".", program: PathName | None = None) -> Characterisation:
     """Variances, Allan coefficients and ranked models of recordings: files that share what is said of them, an array whose rows are
     samples, or a study (its file, or its document, whose recordings are then looked for below `folder`)."""
-    said = options(rate_hz=rate_hz, columns=columns_text(columns), stream=stream, condition=condition_text(condition) if condition else None,
-                   device=device, calibration=str(Path(calibration).resolve()) if calibration else None,
+    said = options(rate_hz=rate_hz, columns=columns_text(columns), stream=stream,
+                   condition=condition_text(condition) if condition else None, device=device,
+                   calibration=str(Path(calibration).resolve()) if calibration else None,
                    models=",".join(models) if models else None, stepwise=stepwise, bootstrap=bootstrap or None, seed=seed,
                    total="total" in also, theo1="theo1" in also, psd="psd" in also, taus=taus or None)
     with as_files(files, folder) as names:

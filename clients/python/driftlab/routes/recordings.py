@@ -139,8 +139,8 @@ class RecordingRoutes(UploadRoutes):
         upload = Upload(source, progress)
         if upload.size >= self.resumable_from:
             return self.record_upload(self._sent_in_pieces(upload), device=device, condition=condition, rate_hz=rate_hz, columns=columns,
-                                      stream=stream, name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration, axis=axis,
-                                      value=value, unit=unit, direction=direction, labels=labels, session=session,
+                                      stream=stream, name=id, trim_start_s=trim_start_s, trim_end_s=trim_end_s, calibration=calibration,
+                                      axis=axis, value=value, unit=unit, direction=direction, labels=labels, session=session,
                                       recorded_at=recorded_at, file_name=file_name or upload.name, idempotency_key=idempotency_key)
         query: dict[str, Any] = {"device": device, "id": id, "rate_hz": rate_hz, "columns": columns_text(columns), "stream": stream,
                                  "trim_start_s": trim_start_s, "trim_end_s": trim_end_s, "calibration": calibration, "axis": axis,
