@@ -176,6 +176,7 @@ struct Taken {
   std::vector<MeasuredFigures> figures;
   std::vector<Remainder> remains;  ///< of all of them
   std::vector<UnnamedFinding> unnamed;
+  std::vector<UnnamedFinding> instead;  ///< of levels of noise that were found
 };
 
 /// The base beside the means that were found without a name. What is left of a process that had followed one of them,
@@ -213,6 +214,13 @@ void take_from(const ChannelGroup& group, GroupOutcome& outcome, const std::stop
   taken.checks.push_back(check_channel(group, outcome));
   taken.means.push_back(means_of(outcome.before));
   taken.figures.push_back(outcome.usable ? measure_figures(group, outcome) : MeasuredFigures{});
+  const bool levels = std::any_of(outcome.found.begin(), outcome.found.end(),
+                                  [](const Evidence& evidence) { return evidence.cause->as<NoiseLevel>() != nullptr; });
+  if (levels && outcome.usable && !stop.stop_requested()) {
+    std::vector<UnnamedFinding> instead = find_levels_instead(group, outcome.before);
+    taken.instead.insert(taken.instead.end(), std::make_move_iterator(instead.begin()),
+                         std::make_move_iterator(instead.end()));
+  }
   outcome.before = {};
   if (outcome.usable && !stop.stop_requested()) {
     std::vector<Remainder> remains = remains_of_channel(group, outcome.after);
@@ -310,7 +318,8 @@ Result<Report> investigate(const Study& given, const InvestigateOptions& options
   control.report("checks", 0.95);
   make_checks(groups, outcomes, taken.checks, examined, report);
   const std::vector<Remainder> remains = what_remains(groups, outcomes, seen, std::move(taken.remains));
-  doubt_what_is_not_earned(groups, taken.means, remains, taken.unnamed, report, found);
+  doubt_what_is_not_earned(groups, taken.means, remains, {taken.unnamed, taken.instead, suspects_of(study, found)},
+                           report, found);
   if (control.stop.stop_requested()) {
     return cancelled();
   }

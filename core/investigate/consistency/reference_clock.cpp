@@ -286,7 +286,7 @@ Interval times_within(const Best& best, const std::vector<double>& times, double
 
 }  // namespace
 
-std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index) {
+std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index, double least) {
   const StudyRecording& recording = study.recordings[index];
   std::vector<BlockMeans> raw;
   for (std::size_t c = 0; c < recording.channels.size(); ++c) {
@@ -316,7 +316,7 @@ std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t index
   }
   const std::array<Best, 2> best{best_of(white, kKinds[0], times), best_of(white, kKinds[1], times)};
   const std::size_t k = best[0].statistic > best[1].statistic ? 0 : 1;
-  if (best.at(k).statistic < kClockBreaks) {
+  if (best.at(k).statistic < least) {
     return std::nullopt;
   }
   const double step = white.front().block_s;

@@ -31,8 +31,13 @@ struct ClockFault {
 /// The statistic from which a break of the clock is named: far above what a recording without one reaches.
 inline constexpr double kClockBreaks = 60.0;
 
-/// The break of the clock of a recording; nothing where the statistic stays below kClockBreaks. O(samples).
-[[nodiscard]] std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t recording);
+/// The statistic from which a break is not ruled out where something else of the clock is found: the largest over all
+/// t0 of what has one degree of freedom each. Chosen, not measured.
+inline constexpr double kClockMayBreak = 25.0;
+
+/// The break of the clock of a recording; nothing where the statistic stays below `least`. O(samples).
+[[nodiscard]] std::optional<ClockFault> find_clock_fault(const Study& study, std::size_t recording,
+                                                         double least = kClockBreaks);
 
 /// The time at which the reference must be read, for every grid place, if a recording's clock breaks so.
 [[nodiscard]] std::vector<double> reading_times(const StudyRecording& recording, ClockBreak kind, double size,

@@ -1,6 +1,7 @@
 #include "core/investigate/report/earned.hpp"
 
 #include "core/investigate/causes/cause.hpp"
+#include "core/investigate/consistency/reference_clock.hpp"
 #include "core/process/constant_offset.hpp"
 #include "core/signal/with_count.hpp"
 
@@ -138,6 +139,27 @@ bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
 /// What is left is a rival of a finding from this share of its gain on. Chosen, not measured.
 constexpr double kShare = 1.0 / 3.0;
 
+/// Whether a fault of recordings declares the cause a rival.
+bool rivals_a_fault(const Cause& cause) {
+  return std::any_of(cause_registry().begin(), cause_registry().end(), [&](const Cause& fault) {
+    return fault.as<RecordingFault>() != nullptr &&
+           std::find(fault.rivals.begin(), fault.rivals.end(), cause.name) != fault.rivals.end();
+  });
+}
+
+/// The recording of a finding that is a suspect of a fault; nullptr: none.
+const StudyRecording* suspect_of(const Evidence& evidence, const ChannelGroup& group,
+                                 const std::vector<const StudyRecording*>& suspects) {
+  if (rivals_a_fault(*evidence.cause)) {
+    for (const std::size_t r : evidence.members) {
+      if (std::find(suspects.begin(), suspects.end(), group.members[r].recording) != suspects.end()) {
+        return group.members[r].recording;
+      }
+    }
+  }
+  return nullptr;
+}
+
 /// A profile that shows itself predicts as much.
 bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& unnamed,
               std::size_t channels) {
@@ -145,6 +167,19 @@ bool rivalled(const Evidence& evidence, const ChannelGroup& group, const std::ve
     return one.effect.column == group.column && are_of_one_kind(*evidence.cause, one.effect.kind) &&
            shows_itself(one, channels) && one.heldout_gain > kShare * std::max(evidence.heldout_gain, 0.0);
   });
+}
+
+/// A profile in place of a level, that of recordings or of parts of them, predicts more. A level that itself goes with
+/// a quantity is not asked.
+bool surpassed(const Evidence& evidence, const ChannelGroup& group, const std::vector<UnnamedFinding>& levels) {
+  constexpr double kMore = 3.0;      // [nat], as the next chosen, not measured: a profile is measured on more of the
+  constexpr double kByShare = 1.15;  // data than a cause is that halves judge.
+  const NoiseLevel* const level = evidence.cause->as<NoiseLevel>();
+  const bool of_recordings = level != nullptr && (level->replaces_white || level->within_recording);
+  return of_recordings && evidence.heldout && std::any_of(levels.begin(), levels.end(), [&](const UnnamedFinding& one) {
+           return one.effect.column == group.column &&
+                  one.heldout_gain > kByShare * std::max(evidence.heldout_gain, 0.0) + kMore;
+         });
 }
 
 /// Why one finding is not earned; empty: it is.
@@ -198,16 +233,37 @@ std::vector<double> means_of(const FullRate& before) {
   return means;
 }
 
+std::vector<const StudyRecording*> suspects_of(const Study& study, const std::vector<Evidence>& found) {
+  std::vector<const StudyRecording*> suspects;
+  if (std::none_of(found.begin(), found.end(),
+                   [](const Evidence& evidence) { return rivals_a_fault(*evidence.cause); })) {
+    return suspects;
+  }
+  for (std::size_t r = 0; r < study.recordings.size(); ++r) {
+    if (find_clock_fault(study, r, kClockMayBreak)) {
+      suspects.push_back(&study.recordings[r]);
+    }
+  }
+  return suspects;
+}
+
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
-                              const std::vector<Remainder>& remains, const std::vector<UnnamedFinding>& unnamed,
-                              const Report& report, std::vector<Evidence>& found) {
+                              const std::vector<Remainder>& remains, const Instead& instead, const Report& report,
+                              std::vector<Evidence>& found) {
   for (Evidence& evidence : found) {
     if (is_fact(*evidence.cause)) {
       continue;
     }
     evidence.doubt = doubt_of(evidence, groups[evidence.group], means[evidence.group], remains, report);
-    if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], unnamed, groups.size())) {
+    if (evidence.doubt.empty() && rivalled(evidence, groups[evidence.group], instead.beside, groups.size())) {
       evidence.doubt = "a profile that has no name predicts the recordings beside it";
+    }
+    if (evidence.doubt.empty() && surpassed(evidence, groups[evidence.group], instead.levels)) {
+      evidence.doubt = "noise that goes with a quantity predicts the recordings better";
+    }
+    const StudyRecording* const suspect = suspect_of(evidence, groups[evidence.group], instead.suspects);
+    if (evidence.doubt.empty() && suspect != nullptr) {
+      evidence.doubt = "the clock of " + suspect->id + " may break instead";
     }
     evidence.ambiguous = evidence.ambiguous || !evidence.doubt.empty();
   }

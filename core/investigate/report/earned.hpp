@@ -8,6 +8,9 @@
 ///     of squares about the median is one recording's;
 ///   - a line comes a whole number of times a turn, up to twelve, in each of its recordings, which turn;
 ///   - a level of noise is that of the recordings that turn one way, though others turn the other way;
+///   - a level of noise predicts the recordings worse than a profile of the noise's power against a quantity does that
+///     was measured without it;
+///   - a clock that is off all the time is found where one that breaks is not ruled out (`kClockMayBreak`);
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
 ///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;
@@ -24,11 +27,20 @@ namespace driftlab::investigate {
 /// Mean residual of each recording of a channel under the base model alone [SI].
 [[nodiscard]] std::vector<double> means_of(const FullRate& before);
 
+/// Recordings of which a fault that declares what was found a rival is not ruled out.
+[[nodiscard]] std::vector<const StudyRecording*> suspects_of(const Study& study, const std::vector<Evidence>& found);
+
+/// What may be there instead of what was found.
+struct Instead {
+  std::vector<UnnamedFinding> beside;                ///< profiles beside the findings (find_unnamed)
+  std::vector<UnnamedFinding> levels;                ///< in place of levels of noise (find_levels_instead)
+  std::vector<const StudyRecording*> suspects = {};  ///< suspects_of
+};
+
 /// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of
 /// failed checks.
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
-                              const std::vector<Remainder>& remains, const std::vector<UnnamedFinding>& unnamed,
-                              const Report& report, std::vector<Evidence>& found);
+                              const std::vector<Remainder>& remains, const Instead& instead, const Report& report, std::vector<Evidence>& found);
 
 /// Whether a profile without a name shows something where every check passes: its chance over all `channels` is below
 /// kShown, and a density or a power differs by 10 % somewhere; a mean always does.

@@ -95,6 +95,18 @@ class UnnamedSearch {
     return findings;
   }
 
+  std::vector<UnnamedFinding> levels() {
+    std::vector<UnnamedFinding> findings;
+    tried_ = static_cast<double>(std::max<std::size_t>(courses_.size(), 1));
+    for (const Courses& courses : courses_) {
+      const Candidate candidate = variance(courses);
+      if (candidate.gain > kAdopted + 2.0 * std::log(tried_)) {
+        findings.push_back(finding_of(candidate));
+      }
+    }
+    return findings;
+  }
+
  private:
   [[nodiscard]] UnnamedFinding finding_of(const Candidate& candidate) const {
     UnnamedFinding finding;
@@ -523,6 +535,10 @@ double UnnamedFinding::chance(std::size_t channels) const {
 
 std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data, std::size_t base) {
   return UnnamedSearch(group, data, base).go();
+}
+
+std::vector<UnnamedFinding> find_levels_instead(const ChannelGroup& group, const FullRate& data) {
+  return UnnamedSearch(group, data, data.model.components.size()).levels();
 }
 
 }  // namespace driftlab::investigate

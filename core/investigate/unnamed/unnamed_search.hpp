@@ -57,4 +57,9 @@ struct UnnamedFinding {
 [[nodiscard]] std::vector<UnnamedFinding> find_unnamed(const ChannelGroup& group, const FullRate& data,
                                                        std::size_t base);
 
+/// Profiles of the noise's power against rate, angular acceleration, temperature and angle that predict recordings as
+/// they are without the findings, `data`: what may be there in place of a level that was found. Those that would be
+/// adopted.
+[[nodiscard]] std::vector<UnnamedFinding> find_levels_instead(const ChannelGroup& group, const FullRate& data);
+
 }  // namespace driftlab::investigate

@@ -26,7 +26,7 @@ class Earned : public testing::Test {
   /// Why `evidence` is not earned beside what the test has set; empty: it is.
   std::string doubt(Evidence evidence) {
     std::vector<Evidence> found{std::move(evidence)};
-    doubt_what_is_not_earned(groups_, {means_}, remains_, {}, report_, found);
+    doubt_what_is_not_earned(groups_, {means_}, remains_, instead_, report_, found);
     EXPECT_EQ(found[0].ambiguous, !found[0].doubt.empty());
     return found[0].doubt;
   }
@@ -48,6 +48,7 @@ class Earned : public testing::Test {
   std::vector<ChannelGroup> groups_{noise_.group};
   std::vector<double> means_ = std::vector<double>(5, 0.0);
   std::vector<Remainder> remains_;
+  Instead instead_;
   Report report_;
 };
 
@@ -125,6 +126,38 @@ TEST_F(Earned, ALineThatComesAWholeNumberOfTimesATurnIsNot) {
   EXPECT_EQ(line(0.8, 0.001, {0, 1}), "") << "of a turn or two nothing can be said";
   turning(1, 0.4);
   EXPECT_EQ(line(0.8, 0.001, {0, 1}), "it comes 2 times a turn, as what goes with the angle does");
+}
+
+TEST_F(Earned, AClockThatIsOffIsNotWhereItMayBreakInstead) {
+  const auto off = [&](const char* cause, std::vector<std::size_t> members) {
+    Evidence evidence = evidence_of(cause);
+    evidence.members = std::move(members);
+    return doubt(evidence);
+  };
+  EXPECT_EQ(off("reference_clock_drift", {0, 1}), "");
+  instead_.suspects = {&noise_.recordings[1]};
+  EXPECT_EQ(off("reference_clock_drift", {0, 1}), "the clock of r1 may break instead");
+  EXPECT_EQ(off("reference_clock_drift", {0}), "");
+  EXPECT_EQ(off("scale_factor_error", {0, 1}), "") << "no fault of a clock declares it a rival";
+}
+
+TEST_F(Earned, ALevelThatAProfileSurpassesIsNot) {
+  Evidence level = evidence_of("white_noise_level");
+  level.heldout = true;
+  level.heldout_gain = 40.0;
+  UnnamedFinding profile;
+  profile.effect.kind = UnnamedKind::Variance;
+  profile.effect.column = "gz";
+  profile.heldout_gain = 48.0;
+  instead_.levels = {profile};
+  EXPECT_EQ(doubt(level), "") << "no more than by chance";
+  instead_.levels[0].heldout_gain = 50.0;
+  EXPECT_EQ(doubt(level), "noise that goes with a quantity predicts the recordings better");
+  Evidence with_rate = level;
+  with_rate.cause = find_cause("rate_dependent_noise");
+  EXPECT_EQ(doubt(with_rate), "") << "it goes with a quantity itself";
+  instead_.levels[0].effect.column = "gx";
+  EXPECT_EQ(doubt(level), "") << "another channel's";
 }
 
 TEST_F(Earned, ALevelOfTheRecordingsThatTurnOneWayIsNot) {
@@ -206,7 +239,7 @@ TEST_F(Earned, IsAskedOfEachFindingInItsOwnChannel) {
   found[2].group = 1;
   found[2].cause = find_cause("random_walk");
   found[2].ambiguous = true;
-  doubt_what_is_not_earned(groups_, {means_, {0.0, 0.0, 1.0, 0.0, 0.0}}, remains_, {}, report_, found);
+  doubt_what_is_not_earned(groups_, {means_, {0.0, 0.0, 1.0, 0.0, 0.0}}, remains_, instead_, report_, found);
   EXPECT_EQ(found[0].doubt, "");
   EXPECT_FALSE(found[0].ambiguous);
   EXPECT_EQ(found[1].doubt, "it is carried by r2 alone");
