@@ -139,18 +139,20 @@ bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
 /// What is left is a rival of a finding from this share of its gain on. Chosen, not measured.
 constexpr double kShare = 1.0 / 3.0;
 
-/// Whether a fault of recordings declares the cause a rival.
-bool rivals_a_fault(const Cause& cause) {
-  return std::any_of(cause_registry().begin(), cause_registry().end(), [&](const Cause& fault) {
-    return fault.as<RecordingFault>() != nullptr &&
-           std::find(fault.rivals.begin(), fault.rivals.end(), cause.name) != fault.rivals.end();
-  });
+/// Whether a finding is of how a recording was made, as the time of its reference is, and not of the sensor, and a
+/// fault of recordings declares it a rival: the breaks of a clock do.
+bool rivals_a_break(const Cause& cause) {
+  return cause.concern == Concern::Recording &&
+         std::any_of(cause_registry().begin(), cause_registry().end(), [&](const Cause& fault) {
+           return fault.as<RecordingFault>() != nullptr &&
+                  std::find(fault.rivals.begin(), fault.rivals.end(), cause.name) != fault.rivals.end();
+         });
 }
 
-/// The recording of a finding that is a suspect of a fault; nullptr: none.
+/// The recording of a finding whose clock may break instead; nullptr: none.
 const StudyRecording* suspect_of(const Evidence& evidence, const ChannelGroup& group,
                                  const std::vector<const StudyRecording*>& suspects) {
-  if (rivals_a_fault(*evidence.cause)) {
+  if (rivals_a_break(*evidence.cause)) {
     for (const std::size_t r : evidence.members) {
       if (std::find(suspects.begin(), suspects.end(), group.members[r].recording) != suspects.end()) {
         return group.members[r].recording;
@@ -236,7 +238,7 @@ std::vector<double> means_of(const FullRate& before) {
 std::vector<const StudyRecording*> suspects_of(const Study& study, const std::vector<Evidence>& found) {
   std::vector<const StudyRecording*> suspects;
   if (std::none_of(found.begin(), found.end(),
-                   [](const Evidence& evidence) { return rivals_a_fault(*evidence.cause); })) {
+                   [](const Evidence& evidence) { return rivals_a_break(*evidence.cause); })) {
     return suspects;
   }
   for (std::size_t r = 0; r < study.recordings.size(); ++r) {

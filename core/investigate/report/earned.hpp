@@ -27,7 +27,7 @@ namespace driftlab::investigate {
 /// Mean residual of each recording of a channel under the base model alone [SI].
 [[nodiscard]] std::vector<double> means_of(const FullRate& before);
 
-/// Recordings of which a fault that declares what was found a rival is not ruled out.
+/// Recordings whose clock may break, where something was found that a break declares a rival.
 [[nodiscard]] std::vector<const StudyRecording*> suspects_of(const Study& study, const std::vector<Evidence>& found);
 
 /// What may be there instead of what was found.
