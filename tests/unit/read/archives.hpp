@@ -14,7 +14,7 @@ namespace driftlab::testing {
 inline std::string word(std::uint64_t value, int bytes) {
   std::string text;
   for (int i = 0; i < bytes; ++i) {
-    text += static_cast<char>((value >> (8 * i)) & 0xFFU);
+    text += static_cast<char>(i < 8 ? (value >> (8 * i)) & 0xFFU : 0U);
   }
   return text;
 }
