@@ -47,8 +47,9 @@ struct Cell {
   int cases = 0, named = 0, wrong = 0, open = 0, further = 0;
 };
 
-/// Shares of all studies in which the first finding may have another name, and in which something further may be
-/// claimed beside a right one; share of the intervals that may miss their truth. Written on tests/hidden/RESULTS.md.
+/// Shares of all studies in which the first finding may have another name with confidence, and in which something
+/// further may be claimed beside a right one; share of the intervals that may miss their truth. Written on
+/// tests/hidden/RESULTS.md.
 constexpr double kWrong = 0.02;
 constexpr double kFurther = 0.025;
 constexpr double kMissing = 0.07;
