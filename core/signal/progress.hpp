@@ -2,12 +2,18 @@
 /// Progress, cancellation and threads as arguments, so that core/ neither prints, reads a clock nor starts threads.
 #include "core/signal/executor.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <stop_token>
 #include <string_view>
 #include <utility>
 
 namespace driftlab {
+
+/// Whether a loop over many cheap turns ends at turn `i`: looks at the token every 16,384th.
+[[nodiscard]] inline bool polled(const std::stop_token& stop, std::size_t i) {
+  return i % 16384 == 0 && stop.stop_requested();
+}
 
 /// Called with a stage name ("variance", "fit WN+GM", ...) and the fraction of the whole call done, 0 to 1, never
 /// falling. Called from the calling thread only.

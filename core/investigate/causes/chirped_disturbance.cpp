@@ -71,7 +71,7 @@ Map map_of(const FullRate& data, std::size_t r) {
 }
 
 /// The straight line along which the maps of a scope hold most; nothing where chance would hold as much on one.
-std::optional<Sweep> coarse(const std::vector<const Map*>& maps, double seconds) {
+std::optional<Sweep> coarse(const std::vector<const Map*>& maps, double seconds, const std::stop_token& stop) {
   // In logarithms of the chance over all lines looked along. Chosen, not measured.
   constexpr double kBeyondChance = 3.0;
   const double df = maps.front()->df_hz;
@@ -86,7 +86,7 @@ std::optional<Sweep> coarse(const std::vector<const Map*>& maps, double seconds)
     pieces += map->pieces;
   }
   Sweep best;
-  for (std::size_t a = first; a < bins; ++a) {
+  for (std::size_t a = first; a < bins && !stop.stop_requested(); ++a) {
     for (std::size_t b = first; b < bins; ++b) {
       if ((a > b ? a - b : b - a) < run) {
         continue;
@@ -154,7 +154,7 @@ Followed follow(const FullRate& data, const std::vector<std::size_t>& scope, con
     const double centre_a = best_a;
     const double centre_b = best_b;
     best = -1.0;
-    for (int i = -half; i <= half; ++i) {
+    for (int i = -half; i <= half && !data.stopped(); ++i) {
       for (int j = -half; j <= half; ++j) {
         const double a = centre_a + i * step;
         const double b = centre_b + j * step;
@@ -236,7 +236,7 @@ std::vector<Evidence> examine(const FullRate& data) {
         longest = std::max(longest, length_s(data, r));
       }
     }
-    const auto start = of_scope.size() == scope.size() ? coarse(of_scope, longest) : std::nullopt;
+    const auto start = of_scope.size() == scope.size() ? coarse(of_scope, longest, data.stop) : std::nullopt;
     if (!start) {
       continue;
     }

@@ -3,6 +3,7 @@
 #include "core/investigate/causes/units.hpp"
 #include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/slow/profile.hpp"
+#include "core/signal/progress.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +80,10 @@ LineSpectra line_spectra(const FullRate& data) {
   spectra.df_hz = 1.0 / (static_cast<double>(length) * data.dt_s);
   spectra.bins = length / 2 + 1;
   for (const Series& e : data.innovation) {
+    if (data.stopped()) {
+      spectra.bins = 0;  // no line is looked for
+      break;
+    }
     if (!spectra.x.empty()) {
       spectra.x.back() = spectra.memory.emplace_back(spectra.x.back().begin(), spectra.x.back().end());
       spectra.last = {};
@@ -142,7 +147,7 @@ Phasor measure(const FullRate& data, std::size_t r, double f_hz, double level) {
   for (const double y : data.residual[r]) {
     mean += y / static_cast<double>(n);
   }
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n && !polled(data.stop, i); ++i) {
     if (data.used[r][i] == 0) {
       continue;
     }
@@ -165,6 +170,9 @@ Phasor measure(const FullRate& data, std::size_t r, double f_hz, double level) {
 
 /// Density of the residual around f, without the line itself [SI^2 s].
 double density_near(const FullRate& data, std::size_t r, double f_hz) {
+  if (data.stopped()) {
+    return 1.0;
+  }
   const std::size_t n = fast_length(data.residual[r].size());
   const auto z = transform(data.residual[r].part(0, n));
   const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
@@ -336,6 +344,12 @@ std::vector<Evidence> find_lines(const FullRate& data) {
 
 Evidence line_near(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz, double within_hz) {
   const LineSpectra spectra = line_spectra(data);
+  if (data.stopped()) {
+    Evidence nothing;
+    nothing.members = scope;
+    nothing.parameters.resize(2);
+    return nothing;
+  }
   double total = 0.0;
   for (const std::size_t r : scope) {
     total += spectra.samples[r];

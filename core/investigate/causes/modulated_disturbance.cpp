@@ -90,7 +90,7 @@ Triple triple_about(const FullRate& data, const std::vector<std::size_t>& scope,
   const double step = 0.3 / longest;
   double most = 0.0;
   double at = 0.0;
-  for (double fm = 2.0 / longest; fm < kFarthest; fm += step) {
+  for (double fm = 2.0 / longest; fm < kFarthest && !data.stopped(); fm += step) {
     const double x = std::min(near(fm), 1e300) + near(-fm);
     if (x > most) {
       most = x;

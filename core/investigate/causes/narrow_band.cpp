@@ -1,6 +1,7 @@
 #include "core/investigate/causes/narrow_band.hpp"
 
 #include "core/process/distributions.hpp"
+#include "core/signal/progress.hpp"
 #include "core/signal/turns.hpp"
 
 #include <Eigen/Dense>
@@ -16,7 +17,7 @@ Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t
   Beaten beaten;
   beaten.step_s = static_cast<double>(block) * data.dt_s;
   beaten.sums.resize(e.size() / block + (e.size() % block != 0 ? 1 : 0));
-  for (std::size_t i = 0; i < e.size(); ++i) {
+  for (std::size_t i = 0; i < e.size() && !polled(data.stop, i); ++i) {
     if (data.used[r][i] != 0) {
       const double clipped = std::clamp(e[i], -6.0, 6.0);
       beaten.sums[i / block] += std::polar(clipped, -sweep.phase(static_cast<double>(i) * data.dt_s));
@@ -27,6 +28,9 @@ Beaten beat(const FullRate& data, std::size_t r, const Sweep& sweep, std::size_t
 }
 
 double excess_between(const FullRate& data, std::size_t r, double low_hz, double high_hz) {
+  if (data.stopped()) {
+    return 1.0;
+  }
   const std::size_t n = fast_length(data.innovation[r].size());
   const auto z = transform(data.innovation[r].part(0, n));
   const double df = 1.0 / (static_cast<double>(n) * data.dt_s);
@@ -80,7 +84,7 @@ PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep
       row(static_cast<Eigen::Index>(2 * k + 1)) = std::sin(phase);
     }
   };
-  for (std::size_t i = 0; i < y.size(); ++i) {
+  for (std::size_t i = 0; i < y.size() && !polled(data.stop, i); ++i) {
     if (data.used[r][i] != 0) {
       fill(i);
       gram.noalias() += row * row.transpose();
@@ -98,7 +102,7 @@ PhaseFit fit_phases(const FullRate& data, std::size_t r, const std::vector<Sweep
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
     fit.amplitude[k] = {solved(static_cast<Eigen::Index>(2 * k)), -solved(static_cast<Eigen::Index>(2 * k + 1))};
   }
-  for (std::size_t i = 0; i < y.size(); ++i) {
+  for (std::size_t i = 0; i < y.size() && !polled(data.stop, i); ++i) {
     fill(i);
     fit.values[i] = row.dot(solved);
   }

@@ -107,6 +107,9 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
   } else if (effect.refinement.refined()) {
     const auto which = static_cast<std::size_t>(mine - accepted_.begin());
     const auto at = [&](double shape) {
+      if (stop_.stop_requested()) {
+        return 0.0;
+      }
       std::vector<Regressor> moved = accepted_;
       moved[which].shape = effect.refinement.nearest(shape);
       SlowFreedom quick = freedom();
@@ -125,6 +128,9 @@ void SlowSearch::describe_mean(Evidence& evidence) const {
 
 /// The time of a step at single samples: posterior under a flat prior, equal tails of 2.5 %.
 void SlowSearch::place_step(Evidence& evidence) const {
+  if (stop_.stop_requested()) {
+    return;
+  }
   const std::size_t r = evidence.members.front();
   const StudyRecording& recording = *group_.members[r].recording;
   const auto position = regressor_of(evidence);
@@ -153,7 +159,7 @@ void SlowSearch::place_step(Evidence& evidence) const {
     columns.rows[0][2 * i] = rest[i] + (begin + i >= start ? amplitude : 0.0);
     columns.rows[0][2 * i + 1] = 1e-9;  // the bias is known from all recordings
   }
-  const StepScan scan(single.series, single.model, columns);
+  const StepScan scan(single.series, single.model, columns, stop_);
   std::vector<double> gain = scan.steps_in(0).gain;
   // Only the neighbourhood of the block found: elsewhere another step would have been accepted.
   const double reach = 40.0 / recording.dt_s;

@@ -44,7 +44,7 @@ SlowFit SlowSearch::fit_extra(const ProcessKind& kind, const std::vector<std::si
     for (const double share : {0.003, 0.03, 0.3}) {
       SlowModel trial = base;
       trial.components.push_back(slow_component(kind, first_level(kind, share, 0.3, level), beta, in));
-      const double l = evaluate_slow(series_, columns, trial).log_likelihood;
+      const double l = stop_.stop_requested() ? top : evaluate_slow(series_, columns, trial).log_likelihood;
       if (l > top) {
         top = l;
         best = trial;
@@ -202,7 +202,7 @@ std::vector<Evidence> SlowSearch::examine() {
     }
   }
   std::vector<Evidence> found(chosen.size());
-  parallel_for(threads_, chosen.size(), [&](std::size_t i) { found[i] = fit_jointly(chosen[i]); });
+  parallel_for(threads_, chosen.size(), [&](std::size_t i) { found[i] = fit_jointly(chosen[i]); }, stop_);
   if (stop_.stop_requested()) {
     return {};
   }

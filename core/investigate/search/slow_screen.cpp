@@ -53,6 +53,9 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
   const auto moving = moving_members(group_);
   const auto singles = group_.members.size();
   for (const Templates& templates : templates_) {
+    if (stop_.stop_requested()) {
+      return;
+    }
     const MeanEffect& effect = *templates.cause->as<MeanEffect>();
     BlockColumns columns = BlockColumns::zeros(series_, fixed_width + templates.blocks.size());
     for (std::size_t r = 0; r < series_.recordings.size(); ++r) {
@@ -91,7 +94,7 @@ void SlowSearch::screen(const SlowModel& base, double base_score, std::vector<Sc
 }
 
 void SlowSearch::screen_steps(const SlowModel& base, double base_score, std::vector<Screened>& best) const {
-  const StepScan scan(series_, base, columns_with(accepted_));
+  const StepScan scan(series_, base, columns_with(accepted_), stop_);
   for (const Cause& cause : cause_registry()) {
     if (cause.as<MeanEffect>() == nullptr || !cause.as<MeanEffect>()->change_point) {
       continue;
@@ -112,6 +115,9 @@ double SlowSearch::step_penalty(const MeanEffect& effect, double search_cost) co
 
 void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) const {
   const auto at = [&](double shape) {
+    if (stop_.stop_requested()) {
+      return 0.0;
+    }
     std::vector<Regressor> with = accepted_;
     with.push_back(regressor);
     with.back().shape = shape;
@@ -120,7 +126,7 @@ void SlowSearch::refine_shape(Regressor& regressor, const SlowModel& model) cons
   const MeanEffect& effect = *regressor.cause->as<MeanEffect>();
   regressor.shape = effect.refinement.best_near(regressor.shape, at);
   if (effect.change_point) {
-    const StepScan scan(series_, model, columns_with(accepted_));
+    const StepScan scan(series_, model, columns_with(accepted_), stop_);
     const std::size_t r = regressor.members.front();
     const StepScan::Best step = scan.best_in(r);
     regressor.shape = series_.recordings[r].start_s + static_cast<double>(step.block) * series_.block_s();
@@ -170,6 +176,9 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
     starts.push_back(null_.model);
   }
   for (const SlowModel& start : starts) {
+    if (stop_.stop_requested()) {
+      return evidence;
+    }
     with.back().shape = candidate.shape;
     SlowFit fit = fit_slow(series_, columns_with(with), start, freedom());
     const MeanEffect& effect = *candidate.cause->as<MeanEffect>();
@@ -192,7 +201,7 @@ Evidence SlowSearch::fit_jointly(const Screened& candidate) const {
   evidence.gain = best - null_score_;
   double penalty = candidate.penalty;
   if (candidate.cause->as<MeanEffect>()->change_point) {
-    const StepScan scan(series_, best_fit.model, columns_with(accepted_));
+    const StepScan scan(series_, best_fit.model, columns_with(accepted_), stop_);
     penalty = step_penalty(*candidate.cause->as<MeanEffect>(), scan.best_in(candidate.members.front()).search_cost);
   }
   evidence.score = evidence.gain - penalty;

@@ -143,8 +143,9 @@ void SlowSearch::build_templates() {
     }
   }
   templates_.resize(wanted.size());
-  parallel_for(threads_, wanted.size(),
-               [&](std::size_t i) { templates_[i] = make_templates(wanted[i].cause, wanted[i].shape); });
+  parallel_for(
+      threads_, wanted.size(), [&](std::size_t i) { templates_[i] = make_templates(wanted[i].cause, wanted[i].shape); },
+      stop_);
 }
 
 const SlowSearch::Templates* SlowSearch::find_templates(const Cause* cause, double shape) const {
@@ -226,7 +227,7 @@ std::vector<SlowModel> SlowSearch::starting_orders(const BlockColumns& columns) 
       for (const double share : {0.01, 0.1, 1.0}) {
         SlowModel trial = base;
         trial.components.push_back(slow_component(kind, first_level(kind, share, 0.1, level), beta));
-        const double l = evaluate_slow(series_, columns, trial).log_likelihood;
+        const double l = stop_.stop_requested() ? top : evaluate_slow(series_, columns, trial).log_likelihood;
         if (l > top) {
           top = l;
           best = trial;

@@ -2,11 +2,13 @@
 
 #include "core/investigate/slow/whitening_walk.hpp"
 #include "core/process/dense.hpp"
+#include "core/signal/progress.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace driftlab::investigate {
 namespace {
@@ -19,7 +21,7 @@ constexpr std::size_t kMargin = 5;  ///< blocks at either end where a step is no
 class Norms {
  public:
   /// The recording has two blocks or more.
-  explicit Norms(const SingleRecording& single) {
+  Norms(const SingleRecording& single, const std::stop_token& stop) {
     const std::vector<double>& filled = single.series.recordings[0].filled;
     const std::size_t blocks = filled.size();
     std::array<std::size_t, kPlaces> from{};
@@ -35,7 +37,7 @@ class Norms {
     }
     const BlockStates states = block_states(single.model, single.series, 0);
     WhiteningWalk walk(states, std::equal(filled.begin() + 1, filled.end(), filled.begin()), 2 * kPlaces);
-    for (std::size_t i = 0; i < blocks; ++i) {
+    for (std::size_t i = 0; i < blocks && !polled(stop, i); ++i) {
       walk.next(filled[i]);
       for (std::size_t k = 0; k < kPlaces; ++k) {
         const double step = walk.whitened(k, i >= from[k] ? 1.0 : 0.0);
@@ -77,8 +79,11 @@ SingleRecording take_recording(const BlockSeries& series, const SlowModel& model
   return single;
 }
 
-StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns)
-    : series_(series), model_(model) {
+StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns, std::stop_token stop)
+    : series_(series), model_(model), stop_(std::move(stop)) {
+  if (stop_.stop_requested()) {
+    return;
+  }
   const Whitened whitened = whiten(series, model, columns);
   const auto p = static_cast<Eigen::Index>(columns.width) - 1;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(p + 1, p + 1);
@@ -92,7 +97,7 @@ StepScan::StepScan(const BlockSeries& series, const SlowModel& model, const Bloc
   }
   inverse_ = inverse(b);
   const Eigen::VectorXd amplitude = inverse_ * gram.col(0).tail(p);
-  for (std::size_t r = 0; r < series.recordings.size(); ++r) {
+  for (std::size_t r = 0; r < series.recordings.size() && !stop_.stop_requested(); ++r) {
     const auto& rows = whitened.columns.rows[r];
     const std::size_t blocks = rows.size() / columns.width;
     std::vector<std::vector<double>> sums;
@@ -121,13 +126,13 @@ StepScan::Steps StepScan::steps_in(std::size_t r) const {
   Steps result;
   result.gain.assign(blocks, 0.0);
   result.turnover.assign(blocks, 0.0);
-  if (blocks < 4 * kMargin) {
+  if (blocks < 4 * kMargin || stop_.stop_requested() || tail_sum_.size() <= r) {
     return result;
   }
-  const Norms norms(take_recording(series_, model_, r));
+  const Norms norms(take_recording(series_, model_, r), stop_);
   const auto p = inverse_.rows();
   Eigen::VectorXd cross(p);
-  for (std::size_t i = kMargin; i + kMargin < blocks; ++i) {
+  for (std::size_t i = kMargin; i + kMargin < blocks && !polled(stop_, i); ++i) {
     for (Eigen::Index c = 0; c < p; ++c) {
       cross[c] = tail_sum_[r][static_cast<std::size_t>(c) + 1][i];
     }

@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -25,8 +26,8 @@ namespace driftlab::investigate {
 /// of a whitened impulse vary smoothly and are computed at 24 places.
 class StepScan {
  public:
-  /// `columns`: data, then regressors. O(blocks) per recording and regressor.
-  StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns);
+  /// `columns`: data, then regressors. O(blocks) per recording and regressor. Once `stop` is asked no step is found.
+  StepScan(const BlockSeries& series, const SlowModel& model, const BlockColumns& columns, std::stop_token stop = {});
   struct Best {
     std::size_t block = 0;
     double gain = 0.0;
@@ -42,6 +43,7 @@ class StepScan {
  private:
   const BlockSeries& series_;
   const SlowModel& model_;
+  std::stop_token stop_;
   Eigen::MatrixXd inverse_;                                 ///< (B'B)^-1
   std::vector<std::vector<std::vector<double>>> tail_sum_;  ///< recording, column (0: residual), block
 };
