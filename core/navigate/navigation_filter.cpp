@@ -6,7 +6,7 @@ namespace driftlab {
 namespace {
 
 /// [u x] M.
-Matrix3 crossed(const Vector3& u, const Matrix3& m) {
+inline Matrix3 crossed(const Vector3& u, const Matrix3& m) {
   Matrix3 out;
   out.row(0) = u.y() * m.row(2) - u.z() * m.row(1);
   out.row(1) = u.z() * m.row(0) - u.x() * m.row(2);
@@ -14,26 +14,21 @@ Matrix3 crossed(const Vector3& u, const Matrix3& m) {
   return out;
 }
 
-/// Directions in which the integrals I1, I2, I3 of one axis's error enter (r, v, phi); see navigation_filter.hpp.
-struct AxisEffect {
-  Vector3 first = Vector3::Zero();   ///< of I1: on phi for a gyroscope, on v for an accelerometer
-  Vector3 second = Vector3::Zero();  ///< of I2: on v, on r
-  Vector3 third = Vector3::Zero();   ///< of I3: on r; accelerometers have none
-  bool gyroscope = true;
-
-  /// Column of a 9-row matrix for the weights of I1, I2, I3.
-  [[nodiscard]] Eigen::Matrix<double, 9, 1> column(double w1, double w2, double w3) const {
-    Eigen::Matrix<double, 9, 1> out;
-    if (gyroscope) {
-      out << third * w3, second * w2, first * w1;
-    } else {
-      out << second * w2, first * w1, Vector3::Zero();
-    }
-    return out;
-  }
-};
+/// U diag(d) V^T.
+Matrix3 weighted(const Matrix3& u, const Vector3& d, const Matrix3& v) {
+  return (u.array().rowwise() * d.transpose().array()).matrix().lazyProduct(v.transpose());
+}
 
 }  // namespace
+
+/// Directions in which the integrals I1, I2, I3 of the axes' errors enter (r, v, phi), one column an axis; see
+/// navigation_filter.hpp. I1 = T, I2 = T^2/2, I3 = T^3/6 for a constant error: the sums over a step are what such an
+/// error of 1 does.
+struct NavigationFilter::TriadEffect {
+  Matrix3 first = Matrix3::Zero();   ///< of I1: on phi for gyroscopes, on v for accelerometers
+  Matrix3 second = Matrix3::Zero();  ///< of I2: on v, on r
+  Matrix3 third = Matrix3::Zero();   ///< of I3: on r; accelerometers have none
+};
 
 NavigationFilter::NavigationFilter(const FilterDesign& design, const NavigationState& start)
     : design_(&design),
@@ -132,51 +127,67 @@ void NavigationFilter::prepare(NavigationTransition& navigation, SensorTransitio
   navigation.gravity_step = t * gravity_gradient(strapdown_.state().position_ecef_m);
   navigation.velocity = velocity_;
   navigation.position = position_;
-  const auto stride = static_cast<std::size_t>(covariance_.stride());
   for (int constant = design_->first_constant(); constant < design_->sensor_states(); ++constant) {
     sensors.phi[static_cast<std::size_t>(constant)] = remembered(constant, t);
   }
+  const Matrix3 turned = turned_ * (-1.0 / t);
+  const TriadEffect gyroscopes{turned, forced_ * (2.0 / (t * t)), forced_twice_ * (6.0 / (t * t * t))};
+  const TriadEffect accelerometers{turned, turned_twice_ * (-2.0 / (t * t))};
+  const auto stride = static_cast<std::size_t>(covariance_.stride());
   for (std::size_t c = 0; c < kImuChannels; ++c) {
-    const auto k = static_cast<Eigen::Index>(c % 3);
-    AxisEffect effect;
-    effect.gyroscope = c < 3;
-    // I1 = T, I2 = T^2/2, I3 = T^3/6 for a constant error: the sums below are what such an error of 1 does.
-    effect.first = -turned_.col(k) / t;
-    if (effect.gyroscope) {
-      effect.second = forced_.col(k) * (2.0 / (t * t));
-      effect.third = forced_twice_.col(k) * (6.0 / (t * t * t));
-    } else {
-      effect.second = -turned_twice_.col(k) * (2.0 / (t * t));
-    }
     const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_) - 1];
+    const auto k = static_cast<Eigen::Index>(c % 3);
     for (int i = 0; i < active_[c]->states; ++i) {
       const auto column = static_cast<std::size_t>(design_->first_state(c)) + static_cast<std::size_t>(i);
-      const auto gain = effect.column(step.gain(0, i), step.gain(1, i), step.gain(2, i));
-      const auto noise = effect.column(step.cross_noise(0, i), step.cross_noise(1, i), step.cross_noise(2, i));
-      for (std::size_t row = 0; row < 9; ++row) {
-        sensors.gain[row * stride + column] = gain(static_cast<Eigen::Index>(row));
-        sensors.cross_noise[row * stride + column] = noise(static_cast<Eigen::Index>(row));
-      }
+      const auto enter = [&](const AxisGains& weight, double* rows) {
+        for (Eigen::Index row = 0; row < 3; ++row) {
+          double* const of_r = rows + static_cast<std::size_t>(row) * stride + column;
+          if (c < 3) {
+            of_r[0] = gyroscopes.third(row, k) * weight(2, i);
+            of_r[3 * stride] = gyroscopes.second(row, k) * weight(1, i);
+            of_r[6 * stride] = gyroscopes.first(row, k) * weight(0, i);
+          } else {
+            of_r[0] = accelerometers.second(row, k) * weight(1, i);
+            of_r[3 * stride] = accelerometers.first(row, k) * weight(0, i);
+          }
+        }
+      };
+      enter(step.gain, sensors.gain.data());
+      enter(step.cross_noise, sensors.cross_noise.data());
       sensors.phi[column] = active_[c]->diagonal ? step.phi(i, i) : 1.0;
     }
-    // L q L^T with L the three columns; two products of small matrices.
-    Eigen::Matrix<double, 9, 3> columns;
-    columns << effect.column(1.0, 0.0, 0.0), effect.column(0.0, 1.0, 0.0), effect.column(0.0, 0.0, 1.0);
-    Matrix3 integral_noise = step.integral_noise;
+  }
+  prepare_noise(gyroscopes, accelerometers, sensors.noise);
+}
+
+/// L q L^T summed over the axes, q the covariance of an axis's integrals: with q(a, b) of the three axes of a triad on
+/// a diagonal, the blocks of (r, v, phi) are products of three matrices of 3 x 3.
+void NavigationFilter::prepare_noise(const TriadEffect& gyroscopes, const TriadEffect& accelerometers,
+                                     ErrorCovariance::Navigation& noise) const {
+  std::array<Matrix3, kImuChannels> q;
+  const std::size_t last = static_cast<std::size_t>(pending_) - 1;
+  for (std::size_t c = 0; c < kImuChannels; ++c) {
+    q[c] = active_[c]->steps[last].integral_noise;
     if (extra_noise_[c] > 0.0) {
-      integral_noise +=
-          extra_noise_[c] * design_->unit_white().steps[static_cast<std::size_t>(pending_) - 1].integral_noise;
-    }
-    const Eigen::Matrix<double, 9, 3> weighted = columns.lazyProduct(integral_noise);
-    for (int i = 0; i < 9; ++i) {
-      for (int j = i; j < 9; ++j) {
-        sensors.noise(i, j) += weighted.row(i).dot(columns.row(j));
-      }
+      q[c] += extra_noise_[c] * design_->unit_white().steps[last].integral_noise;
     }
   }
+  const auto of_gyroscopes = [&](int a, int b) { return Vector3(q[0](a, b), q[1](a, b), q[2](a, b)); };
+  const auto of_accelerometers = [&](int a, int b) { return Vector3(q[3](a, b), q[4](a, b), q[5](a, b)); };
+  const TriadEffect& g = gyroscopes;
+  const TriadEffect& f = accelerometers;
+  noise.block<3, 3>(0, 0) =
+      weighted(g.third, of_gyroscopes(2, 2), g.third) + weighted(f.second, of_accelerometers(1, 1), f.second);
+  noise.block<3, 3>(0, 3) =
+      weighted(g.third, of_gyroscopes(2, 1), g.second) + weighted(f.second, of_accelerometers(1, 0), f.first);
+  noise.block<3, 3>(0, 6) = weighted(g.third, of_gyroscopes(2, 0), g.first);
+  noise.block<3, 3>(3, 3) =
+      weighted(g.second, of_gyroscopes(1, 1), g.second) + weighted(f.first, of_accelerometers(0, 0), f.first);
+  noise.block<3, 3>(3, 6) = weighted(g.second, of_gyroscopes(1, 0), g.first);
+  noise.block<3, 3>(6, 6) = weighted(g.first, of_gyroscopes(0, 0), g.first);
   for (int i = 0; i < 9; ++i) {
     for (int j = 0; j < i; ++j) {
-      sensors.noise(i, j) = sensors.noise(j, i);
+      noise(i, j) = noise(j, i);
     }
   }
 }
@@ -186,9 +197,8 @@ void NavigationFilter::close_step() {
     return;
   }
   NavigationTransition navigation;
-  SensorTransition sensors;
-  prepare(navigation, sensors);
-  covariance_.propagate(navigation, sensors);
+  prepare(navigation, step_);
+  covariance_.propagate(navigation, step_);
   for (std::size_t c = 0; c < kImuChannels; ++c) {
     const ChannelStep& step = active_[c]->steps[static_cast<std::size_t>(pending_) - 1];
     const int first = design_->first_state(c);
@@ -202,7 +212,7 @@ void NavigationFilter::close_step() {
     }
   }
   forget_constants();
-  covariance_.add_noise(sensors);
+  covariance_.add_noise(step_);
   choose_bands();
   pending_ = 0;
   turned_.setZero();

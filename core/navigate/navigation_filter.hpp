@@ -122,9 +122,13 @@ class NavigationFilter {
   [[nodiscard]] Eigen::MatrixXd pending_transition() const;
 
  private:
+  struct TriadEffect;
   void sample(const ImuSample& reading);
   void close_step();
+  /// Writes the transition of the open step; entries that no model has are left as they are, 0.
   void prepare(NavigationTransition& navigation, SensorTransition& sensors) const;
+  void prepare_noise(const TriadEffect& gyroscopes, const TriadEffect& accelerometers,
+                     ErrorCovariance::Navigation& noise) const;
   void apply(const ErrorCovariance::State& correction);
   void constrain();
   void choose_bands();
@@ -136,6 +140,7 @@ class NavigationFilter {
   Strapdown strapdown_;
   ErrorCovariance covariance_;
   Eigen::VectorXd sensors_;
+  SensorTransition step_;  ///< work space: what one step has written the next overwrites
   std::array<std::size_t, kImuChannels> bands_{};
   std::array<const ChannelDynamics*, kImuChannels> active_{};
   Vector3 last_rate_ = Vector3::Zero();
