@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace driftlab::drive {
 namespace {
@@ -239,10 +240,10 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   }
 
   control.report("held-out outages", 0.5);
-  FoldOptions fitted;
-  for (std::size_t fold = 0; fold < fitted.size(); ++fold) {
-    fitted[fold] = fitted_on(drive, fold, search->options, knobs, control);
-  }
+  FoldOptions fitted{search->options, search->options};
+  parallel_for(
+      control.threads, fitted.size(),
+      [&](std::size_t fold) { fitted[fold] = fitted_on(drive, fold, search->options, knobs, control); }, control.stop);
   explanation.rungs.push_back(
       rung_of(as_stamped, "as stamped, the document's model", {unmended, unmended}, control, FoldValues::Alike));
   explanation.rungs.push_back(rung_of(drive,
@@ -282,11 +283,13 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   const double whole = held_out_score(explanation.rungs.back());
   FoldOptions mended = current;
   bool dropped = false;
+  const double without_last = held_out_score(*std::prev(explanation.rungs.end(), turned.empty() ? 1 : 2));
   for (DriveFinding* const finding : turned) {
     FoldOptions without = current;
     set(without, *finding, false);
     finding->judged = true;
-    finding->held_out_gain = whole - held_out_score(rung_of(drive, "", without, control));
+    finding->held_out_gain =
+        whole - (finding == turned.back() ? without_last : held_out_score(rung_of(drive, "", without, control)));
     finding->kept = finding->held_out_gain > 0.0;
     if (!finding->kept) {
       set(mended, *finding, false);
