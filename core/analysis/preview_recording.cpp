@@ -177,12 +177,13 @@ RecordingPreview preview_recording(const PreviewRequest& request, const DecodeLi
   for (std::size_t i = 0; i < preview.head.names.size(); ++i) {
     const std::span<const double> values = preview.head.columns[i];
     const auto first = values.first(std::min(kFirst, values.size()));
-    const bool time = (*roles)[i] && (*roles)[i]->quantity == Quantity::Time;
+    const std::optional<ColumnRole>& role = (*roles)[i];
+    const bool time = role && role->quantity == Quantity::Time;
     const bool stated = !request.spec.columns.empty() && (time || !reads_names(request.spec));
     const RoleOrigin from = stated                    ? RoleOrigin::Stated
                             : preview.head.has_header ? RoleOrigin::Header
                                                       : RoleOrigin::Number;
-    preview.columns.push_back({preview.head.names[i], (*roles)[i], from, {first.begin(), first.end()}, spread(values)});
+    preview.columns.push_back({preview.head.names[i], role, from, {first.begin(), first.end()}, spread(values)});
   }
   preview.time = guess_time(preview.head.names, *roles,
                             [&](std::size_t i) { return std::span<const double>(preview.head.columns[i]); });

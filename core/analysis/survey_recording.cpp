@@ -96,8 +96,8 @@ Result<RecordingSurvey> survey_recording(const SurveyRequest& request) {
     if (!fixes) {
       return fail(fixes.error());
     }
-    if (*fixes) {
-      return std::move(**fixes);
+    if (std::optional<RecordingSurvey>& found = *fixes; found) {
+      return *std::move(found);
     }
   }
   auto opened = open_recording(request.columns, spec, calibrated ? ViewUse::Analysis : ViewUse::Survey);

@@ -372,9 +372,10 @@ TEST(Zip, IsRecognisedByADirectoryOf64Bits) {
                              word(2, 8) + word(end - begin, 8) + word(begin, 8);
   for (const std::uint64_t place : {std::uint64_t{end}, ~std::uint64_t{0}}) {
     const std::string locator = "PK\x06\x07" + word(0, 4) + word(place, 8) + word(1, 4);
-    std::string last = whole.substr(end);
-    last.replace(16, 4, word(0xFFFFFFFF, 4));
-    testing::write_file(directory / "in", whole.substr(0, end) + record + locator + last);
+    std::string file = whole;
+    file.replace(end + 16, 4, word(0xFFFFFFFF, 4));
+    file.insert(end, record + locator);
+    testing::write_file(directory / "in", file);
     const auto decoded = decode_file(directory / "in", directory / "out");
     ASSERT_TRUE(decoded) << decoded.error().message;
     EXPECT_EQ(decoded->rows, 50U) << "by the files themselves where the record lies nowhere";

@@ -55,8 +55,13 @@ TEST(Npy, ReadsEveryElementTypeOrderAndVersion) {
 
 template <class Number>
 void expect_whole_numbers(const std::string& descr) {
-  const std::vector<double> values{static_cast<double>(std::numeric_limits<Number>::min()),        0.0, 1.0, 2.0, 100.0,
-                                   static_cast<double>(std::numeric_limits<Number>::max() / 2 + 1)};
+  const std::vector<double> values{
+      static_cast<double>(std::numeric_limits<Number>::min()),
+      0.0,
+      1.0,
+      2.0,
+      100.0,
+      static_cast<double>(static_cast<Number>(std::numeric_limits<Number>::max() / 2 + 1))};
   for (const bool big_endian : {false, true}) {
     const std::string order = sizeof(Number) == 1 ? "|" : big_endian ? ">" : "<";
     const Outcome read =

@@ -29,7 +29,7 @@ export interface Quality {
   samples: number; analysed: number; missing?: number; gaps: number; repeated_stamps: number; backward_steps?: number; counter_wraps?: number;
   longest_gap_s: number | null; measured_rate_hz: number | null; jitter_s?: number; channels?: ChannelQuality[]; notes: string[];
 }
-export interface Metadata { id?: string; rate_hz?: number; condition: Condition; columns?: Record<string, {quantity: string; axis?: string; unit?: string}>; calibration?: string; labels?: Record<string, string> }
+export interface Metadata { id?: string; rate_hz?: number; condition: Condition; columns?: Record<string, {quantity: string; axis?: string; unit?: string}>; calibration?: string; stream?: string; labels?: Record<string, string> }
 export interface Recording {
   id: string; device: string; revision: number; metadata: Metadata; quality: Quality; created_at: string; rate_hz: number | null; duration_s: number | null; latest_job: string | null;
   file: {sha256: string; name: string | null; bytes?: number; format?: string; compression?: string; rows?: number; columns?: string[]; notes?: string[]};

@@ -99,6 +99,7 @@ export function FilePanel({recording, result}: {recording: Recording; result?: C
       {recording.metadata.id && <tr><th scope="row">name</th><td>{recording.metadata.id}</td></tr>}
       <tr><th scope="row">labels</th><td><LabelsOf recording={recording} /></td></tr>
       <tr><th scope="row">format</th><td>{file.format ?? '–'}{file.compression && file.compression !== 'none' ? `, ${file.compression}` : ''}{file.bytes ? `, ${writeBytes(file.bytes)}` : ''}</td></tr>
+      {recording.metadata.stream && <tr><th scope="row">stream</th><td>{recording.metadata.stream}</td></tr>}
       {file.rows && <tr><th scope="row">rows</th><td>{writeCount(file.rows)}</td></tr>}
       {file.columns && <tr><th scope="row">columns</th><td><code>{file.columns.slice(0, 12).join(', ')}{file.columns.length > 12 ? ' …' : ''}</code></td></tr>}
       <tr><th scope="row">SHA-256</th><td><button type="button" class="link no-print" onClick={() => copy(file.sha256, 'The hash is')}><code>{file.sha256.slice(0, 16)}…</code></button><code class="print-only">{file.sha256}</code></td></tr>
