@@ -39,10 +39,11 @@ FoundParameter samples(const StudyRecording& /*recording*/, std::size_t every) {
   return {"samples", {m, {m, m}}, units::one({})};
 }
 
-std::vector<FaultyRecordings> find(const Study& study) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
   return resampled_recordings(
       study, look, samples,
-      "every value is a mean over several samples, for the spectrum has the zeros and the shape of a running mean");
+      "every value is a mean over several samples, for the spectrum has the zeros and the shape of a running mean",
+      stop);
 }
 
 /// A mean over samples from before the first is that of those there are.

@@ -13,7 +13,7 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<FaultyRecordings> find(const Study& study) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
   FaultyRecordings fault;
   std::vector<std::size_t> recordings;
   std::vector<std::string> ids;

@@ -9,9 +9,9 @@
 namespace driftlab::investigate {
 
 std::vector<FaultyRecordings> clock_faults(const Study& study, ClockBreak kind, const std::string& parameter,
-                                           const LabUnit& unit) {
+                                           const LabUnit& unit, const std::stop_token& stop) {
   std::vector<FaultyRecordings> faults;
-  for (std::size_t r = 0; r < study.recordings.size(); ++r) {
+  for (std::size_t r = 0; r < study.recordings.size() && !stop.stop_requested(); ++r) {
     const auto found = find_clock_fault(study, r);
     if (!found || found->kind != kind) {
       continue;

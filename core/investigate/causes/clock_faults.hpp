@@ -13,7 +13,8 @@ namespace driftlab::investigate {
 
 /// The breaks of one kind in all recordings, one fault each; the size is reported as `parameter`.
 [[nodiscard]] std::vector<FaultyRecordings> clock_faults(const Study& study, ClockBreak kind,
-                                                         const std::string& parameter, const LabUnit& unit);
+                                                         const std::string& parameter, const LabUnit& unit,
+                                                         const std::stop_token& stop);
 
 /// Adds the effect of a break to the mean of a draft: the rate at the times of the broken clock less the rate at the
 /// right ones. `values` are size and t0.

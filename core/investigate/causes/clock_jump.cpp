@@ -7,8 +7,8 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<FaultyRecordings> find(const Study& study) {
-  return clock_faults(study, ClockBreak::Jump, "delta_s", units::seconds({}));
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
+  return clock_faults(study, ClockBreak::Jump, "delta_s", units::seconds({}), stop);
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& /*random*/) {

@@ -18,7 +18,7 @@ struct Copies {
   std::vector<CopiedBlock> blocks;
 };
 
-std::vector<CopiedBlock> blocks_of(const StudyRecording& recording) {
+std::vector<CopiedBlock> blocks_of(const StudyRecording& recording, const std::stop_token& stop) {
   std::vector<std::span<const double>> columns;
   for (const Channel& channel : recording.channels) {
     const auto [low, high] = std::minmax_element(channel.rows.begin(), channel.rows.end());
@@ -26,7 +26,7 @@ std::vector<CopiedBlock> blocks_of(const StudyRecording& recording) {
       columns.push_back(channel.rows);
     }
   }
-  return find_copied_blocks(columns);
+  return find_copied_blocks(columns, stop);
 }
 
 /// The grid places of the copies.
@@ -98,10 +98,10 @@ FaultyRecordings describe(const Study& study, const std::vector<Copies>& copies)
   return fault;
 }
 
-std::vector<FaultyRecordings> find(const Study& study) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
   std::vector<Copies> copies;
   for (std::size_t r = 0; r < study.recordings.size(); ++r) {
-    Copies copy{r, blocks_of(study.recordings[r])};
+    Copies copy{r, blocks_of(study.recordings[r], stop)};
     if (!copy.blocks.empty()) {
       copies.push_back(std::move(copy));
     }

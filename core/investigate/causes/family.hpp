@@ -13,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <variant>
 #include <vector>
@@ -163,7 +164,8 @@ struct FaultyRecordings {
 /// Causes of this family are examined in the order of the registry, each on the recordings as repaired by those before
 /// it. They are facts: nothing is held out.
 struct RecordingFault {
-  std::vector<FaultyRecordings> (*find)(const Study& study);
+  /// Once `stop` is asked it ends early, and what it gives counts for nothing.
+  std::vector<FaultyRecordings> (*find)(const Study& study, const std::stop_token& stop);
 };
 
 using Family = std::variant<MeanEffect, SlowNoise, NoiseLevel, DifferencedNoise, BandLimit, SpectralPeak, NoiseTails,

@@ -34,10 +34,10 @@ FoundParameter source_rate(const StudyRecording& recording, std::size_t every) {
   return {"source_rate_hz", {rate, {rate * (1.0 - 1e-4), rate * (1.0 + 1e-4)}}, units::hertz({})};
 }
 
-std::vector<FaultyRecordings> find(const Study& study) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
   return resampled_recordings(
       study, look, source_rate,
-      "recorded at a lower rate and interpolated, for between samples every value lies on a straight line");
+      "recorded at a lower rate and interpolated, for between samples every value lies on a straight line", stop);
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& /*random*/) {

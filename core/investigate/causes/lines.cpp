@@ -80,16 +80,16 @@ LineSpectra line_spectra(const FullRate& data) {
   spectra.df_hz = 1.0 / (static_cast<double>(length) * data.dt_s);
   spectra.bins = length / 2 + 1;
   for (const Series& e : data.innovation) {
-    if (data.stopped()) {
-      spectra.bins = 0;  // no line is looked for
-      break;
-    }
     if (!spectra.x.empty()) {
       spectra.x.back() = spectra.memory.emplace_back(spectra.x.back().begin(), spectra.x.back().end());
       spectra.last = {};
     }
-    spectra.last =
-        half_spectrum(length, [&](std::size_t i) { return i < e.size() ? std::clamp(e[i], -6.0, 6.0) : 0.0; });
+    spectra.last = half_spectrum(
+        length, [&](std::size_t i) { return i < e.size() ? std::clamp(e[i], -6.0, 6.0) : 0.0; }, kWholeTransform,
+        data.stop);
+    if (data.stopped()) {
+      break;  // no line will be looked for
+    }
     const auto n = static_cast<double>(e.size());
     const std::span<double> x = moduli_in_place(spectra.last, 2.0, n);
     put_against_neighbours(x, 1.0 / spectra.df_hz, static_cast<double>(length) / n);

@@ -110,10 +110,11 @@ void set_aside(StudyRecording& recording) {
 
 std::vector<FaultyRecordings> resampled_recordings(
     const Study& study, const std::function<Thinning(const StudyRecording&)>& look,
-    const std::function<FoundParameter(const StudyRecording&, std::size_t every)>& parameter, const std::string& what) {
+    const std::function<FoundParameter(const StudyRecording&, std::size_t every)>& parameter, const std::string& what,
+    const std::stop_token& stop) {
   std::vector<Thinning> of(study.recordings.size());
   std::map<std::size_t, std::vector<std::size_t>> by_m;
-  for (std::size_t r = 0; r < of.size(); ++r) {
+  for (std::size_t r = 0; r < of.size() && !stop.stop_requested(); ++r) {
     of[r] = look(study.recordings[r]);
     if (of[r].every > 1) {
       by_m[of[r].every].push_back(r);

@@ -44,7 +44,8 @@ struct Thinning {
 /// value of a recording's m.
 [[nodiscard]] std::vector<FaultyRecordings> resampled_recordings(
     const Study& study, const std::function<Thinning(const StudyRecording&)>& look,
-    const std::function<FoundParameter(const StudyRecording&, std::size_t every)>& parameter, const std::string& what);
+    const std::function<FoundParameter(const StudyRecording&, std::size_t every)>& parameter, const std::string& what,
+    const std::stop_token& stop);
 
 /// Leaves every channel of a recording out of the examination; it stays an input.
 void set_aside(StudyRecording& recording);

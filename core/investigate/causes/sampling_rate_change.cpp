@@ -8,8 +8,8 @@
 namespace driftlab::investigate {
 namespace {
 
-std::vector<FaultyRecordings> find(const Study& study) {
-  return clock_faults(study, ClockBreak::RateChange, "eps", units::ppm({}));
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& stop) {
+  return clock_faults(study, ClockBreak::RateChange, "eps", units::ppm({}), stop);
 }
 
 void inject_effect(Draft& draft, std::span<const double> values, Random& /*random*/) {

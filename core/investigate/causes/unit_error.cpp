@@ -59,7 +59,7 @@ FaultyRecordings describe(const Study& study, double factor, const std::vector<D
   return fault;
 }
 
-std::vector<FaultyRecordings> find(const Study& study) {
+std::vector<FaultyRecordings> find(const Study& study, const std::stop_token& /*stop*/) {
   std::map<double, std::vector<DoubtfulRecording>> by_factor;
   for (const DoubtfulRecording& doubt : doubtful_recordings(study)) {
     if (doubt.doubt == RecordingDoubt::OtherUnit) {

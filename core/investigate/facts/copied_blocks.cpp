@@ -1,9 +1,12 @@
 #include "core/investigate/facts/copied_blocks.hpp"
 
+#include "core/signal/progress.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace driftlab::investigate {
@@ -62,14 +65,36 @@ class Rows {
   const Columns& columns_;
 };
 
-/// Chance that equality goes on for one more row, a little above what was counted.
-double chance_of_going_on(const Rows& rows, std::vector<Keyed> keyed) {
+/// In order of hash and row, of what stands in order of row. Hashes spread evenly: each is put among those that begin
+/// with the same bits, about eight, which are then sorted. Not in order where it was stopped.
+std::vector<Keyed> sorted_by_hash(const std::vector<Keyed>& by_row, const std::stop_token& stop) {
+  const int bits = std::clamp(static_cast<int>(std::bit_width(by_row.size())) - 3, 1, 24);
+  const auto bucket_of = [&](std::uint64_t hash) { return static_cast<std::size_t>(hash >> (64 - bits)); };
+  std::vector<std::size_t> begin((std::size_t{1} << bits) + 1, 0);
+  for (const Keyed& keyed : by_row) {
+    ++begin[bucket_of(keyed.first) + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Keyed> sorted(by_row.size());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < by_row.size() && !polled(stop, i); ++i) {
+    const Keyed& keyed = by_row[i];
+    sorted[next[bucket_of(keyed.first)]++] = keyed;
+  }
+  for (std::size_t b = 0; b + 1 < begin.size() && !polled(stop, b); ++b) {
+    const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::sort(at(begin[b]), at(begin[b + 1]));
+  }
+  return sorted;
+}
+
+/// Chance that equality goes on for one more row, a little above what was counted. `keyed`: in order of hash and row.
+double chance_of_going_on(const Rows& rows, const std::vector<Keyed>& keyed, const std::stop_token& stop) {
   // Runs of equal rows that end before this count for chance, from which its rate is estimated. Chosen, not measured.
   constexpr std::size_t kNoChance = 6;
-  std::sort(keyed.begin(), keyed.end());
   double pairs = 0.0;
   double go_on = 0.0;
-  for (std::size_t k = 1; k < keyed.size(); ++k) {
+  for (std::size_t k = 1; k < keyed.size() && !polled(stop, k); ++k) {
     const auto [h, j] = keyed[k];
     const std::size_t i = keyed[k - 1].second;
     if (keyed[k - 1].first != h || j - i < 2) {
@@ -108,7 +133,8 @@ std::vector<Keyed> windows_of(const std::vector<Keyed>& row_hashes, std::size_t 
 
 }  // namespace
 
-std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const double>>& columns) {
+std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const double>>& columns,
+                                            const std::stop_token& stop) {
   const Rows rows(columns);
   const std::size_t n = rows.count();
   if (n < kFewestRows) {
@@ -116,20 +142,26 @@ std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const do
   }
   std::vector<Keyed> keyed;
   keyed.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n && !polled(stop, i); ++i) {
     keyed.emplace_back(rows.hash(i), i);
   }
-  const double p = chance_of_going_on(rows, keyed);
+  const std::vector<Keyed> by_hash = sorted_by_hash(keyed, stop);
+  if (stop.stop_requested()) {
+    return {};
+  }
+  const double p = chance_of_going_on(rows, by_hash, stop);
   const double pairs = 0.5 * static_cast<double>(n) * static_cast<double>(n);
   const double least = p < 1.0 ? 1.0 + std::log(kByChance / pairs) / std::log(p) : static_cast<double>(n);
   if (least > 0.25 * static_cast<double>(n)) {
     return {};
   }
   const std::size_t length = std::max(kShortest, static_cast<std::size_t>(std::ceil(least)));
-  std::vector<Keyed> windows = windows_of(keyed, length);
-  std::sort(windows.begin(), windows.end());
+  const std::vector<Keyed> windows = sorted_by_hash(windows_of(keyed, length), stop);
+  if (stop.stop_requested()) {
+    return {};
+  }
   std::vector<std::pair<std::size_t, std::size_t>> pairs_of;  // copy, first
-  for (std::size_t k = 1; k < windows.size(); ++k) {
+  for (std::size_t k = 1; k < windows.size() && !polled(stop, k); ++k) {
     const std::size_t first = windows[k - 1].second;
     const std::size_t copy = windows[k].second;
     if (windows[k - 1].first == windows[k].first && copy - first >= length) {
@@ -139,6 +171,9 @@ std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const do
   std::sort(pairs_of.begin(), pairs_of.end());
   std::vector<CopiedBlock> blocks;
   for (auto [copy, first] : pairs_of) {
+    if (stop.stop_requested()) {
+      return {};
+    }
     const std::size_t taken = blocks.empty() ? 0 : blocks.back().copy + blocks.back().length;
     if (copy < taken || rows.equal_from(first, copy, length) < length) {
       continue;

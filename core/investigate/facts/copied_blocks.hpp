@@ -11,6 +11,7 @@
 /// changes is stuck and not copied.
 #include <cstddef>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -23,7 +24,8 @@ struct CopiedBlock {
 };
 
 /// The copies among the rows of a recording, by place; a row is the values of all `columns` together, which are equally
-/// long. O(n log n).
-[[nodiscard]] std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const double>>& columns);
+/// long. O(n log n). None once `stop` is asked.
+[[nodiscard]] std::vector<CopiedBlock> find_copied_blocks(const std::vector<std::span<const double>>& columns,
+                                                          const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

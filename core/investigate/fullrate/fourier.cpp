@@ -1,5 +1,7 @@
 #include "core/investigate/fullrate/fourier.hpp"
 
+#include "core/signal/progress.hpp"
+
 #include <unsupported/Eigen/FFT>
 
 #include <cmath>
@@ -37,9 +39,9 @@ Complex factor_of(std::size_t k, std::size_t n) {
 }
 
 /// Joins four transforms of length m, which stand one behind the other, into one.
-void join_four(Complex* out, std::size_t m) {
+void join_four(Complex* out, std::size_t m, const std::stop_token& stop) {
   const std::size_t n = 4 * m;
-  for (std::size_t k = 0; k < m; ++k) {
+  for (std::size_t k = 0; k < m && !polled(stop, k); ++k) {
     const Complex first = out[k + m] * factor_of(k, n);
     const Complex second = out[k + 2 * m] * factor_of(2 * k, n);
     const Complex third = out[k + 3 * m] * factor_of(3 * k, n);
@@ -57,12 +59,15 @@ void join_four(Complex* out, std::size_t m) {
 
 /// Transform of the n complex values at first, first + stride, ..., of which each is two real ones.
 void transform_of_pairs(Complex* out, std::size_t n, const Values& at, std::size_t first, std::size_t stride,
-                        std::size_t whole) {
+                        std::size_t whole, const std::stop_token& stop) {
+  if (stop.stop_requested()) {
+    return;
+  }
   if (n > whole && n % 4 == 0) {
     for (std::size_t q = 0; q < 4; ++q) {
-      transform_of_pairs(out + q * (n / 4), n / 4, at, first + q * stride, 4 * stride, whole);
+      transform_of_pairs(out + q * (n / 4), n / 4, at, first + q * stride, 4 * stride, whole, stop);
     }
-    join_four(out, n / 4);
+    join_four(out, n / 4, stop);
     return;
   }
   std::vector<Complex> pairs(n);
@@ -75,7 +80,8 @@ void transform_of_pairs(Complex* out, std::size_t n, const Values& at, std::size
 
 }  // namespace
 
-std::vector<Complex> half_spectrum(std::size_t length, const Values& at, std::size_t whole) {
+std::vector<Complex> half_spectrum(std::size_t length, const Values& at, std::size_t whole,
+                                   const std::stop_token& stop) {
   std::vector<Complex> spectrum(length / 2 + 1);
   if (length == 0) {
     return spectrum;
@@ -92,11 +98,11 @@ std::vector<Complex> half_spectrum(std::size_t length, const Values& at, std::si
   }
   // Even and odd values are the parts of complex ones; their transform is parted again at the end.
   const std::size_t pairs = length / 2;
-  transform_of_pairs(spectrum.data(), pairs, at, 0, 1, whole);
+  transform_of_pairs(spectrum.data(), pairs, at, 0, 1, whole, stop);
   const Complex constant(spectrum[0].real() + spectrum[0].imag());
   const Complex nyquist(spectrum[0].real() - spectrum[0].imag());
   const double pi = std::acos(-1.0);
-  for (std::size_t k = 1; k <= pairs / 2; ++k) {
+  for (std::size_t k = 1; k <= pairs / 2 && !polled(stop, k); ++k) {
     const Complex here = spectrum[k];
     const Complex there = std::conj(spectrum[pairs - k]);
     const Complex even = here + there;

@@ -10,6 +10,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -19,9 +20,11 @@ inline constexpr std::size_t kWholeTransform = std::size_t{1} << 20U;
 
 /// Transform of the real values at(0) ... at(length - 1): length/2 + 1 complex ones. Memory: 8 bytes a value for the
 /// result, 32 bytes for each of the `whole` (a quarter of a longer part at most); 48 bytes a value where `length` is no
-/// multiple of 4. O(length log length).
+/// multiple of 4. O(length log length). Once `stop` is asked, of which longer transforms take note, the values mean
+/// nothing.
 [[nodiscard]] std::vector<std::complex<double>> half_spectrum(std::size_t length,
                                                               const std::function<double(std::size_t)>& at,
-                                                              std::size_t whole = kWholeTransform);
+                                                              std::size_t whole = kWholeTransform,
+                                                              const std::stop_token& stop = {});
 
 }  // namespace driftlab::investigate

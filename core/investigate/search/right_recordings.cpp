@@ -30,7 +30,7 @@ RightedRecordings right_recordings(const Study& study, const std::stop_token& st
     if (family == nullptr || stop.stop_requested()) {
       continue;
     }
-    for (FaultyRecordings& fault : family->find(present())) {
+    for (FaultyRecordings& fault : family->find(present(), stop)) {
       if (!righted.study) {
         righted.study = study;
       }
