@@ -192,6 +192,10 @@ void Backups::make(const std::stop_token& stop) {
     const Status ready = make_directories(options_.directory);
     report = ready ? options_.make(options_.directory / name, rfc3339(clock_.now()), stop) : fail(ready.error());
   });
+  if (report && report->faults.empty()) {
+    // Before it is told, so that who hears of it finds the others gone.
+    (void)guarded_round("backups", [this] { forget_old(); });
+  }
   Backup ended;
   {
     const std::lock_guard<std::mutex> guard(mutex_);
@@ -202,9 +206,6 @@ void Backups::make(const std::stop_token& stop) {
     own.blobs = report ? report->blobs : 0;
     own.bytes = report ? report->bytes : 0;
     ended = own;
-  }
-  if (ended.state == BackupState::Complete) {
-    forget_old();  // after a damaged one the older ones may be the only sound ones
   }
   if (options_.ended) {
     options_.ended(ended);
@@ -226,6 +227,7 @@ void Backups::forget_unfinished() {
   }
 }
 
+/// Never after a damaged one: the older ones may be the only sound ones then.
 void Backups::forget_old() {
   const std::vector<Backup> found = complete().value_or(std::vector<Backup>{});
   for (std::size_t i = 0; options_.keep > 0 && i + options_.keep < found.size(); ++i) {
