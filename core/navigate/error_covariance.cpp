@@ -140,8 +140,8 @@ struct Kernel {
     }
   }
 
-  static void update(const ScalarMeasurement& m, Matrix9& nn, double* __restrict ns, double* __restrict ss,
-                     double* __restrict state) {
+  static ScalarInnovation update(const ScalarMeasurement& m, Matrix9& nn, double* __restrict ns, double* __restrict ss,
+                                 double* __restrict state) {
     const Eigen::Matrix<double, 9, 1> pn = nn.lazyProduct(m.h);
     alignas(32) double ps[S] = {};
     weighted(m.h, ns, ps);
@@ -188,6 +188,7 @@ struct Kernel {
         ss[i * S + j] = (once - 0.5 * (ms[i] * ks[j] + ks[i] * ms[j])) + r * (ks[i] * ks[j]);
       }
     }
+    return {rest, s};
   }
 };
 
@@ -200,9 +201,9 @@ struct WideKernel {
                                                               const double* phi, Matrix9& nn, double* ns, double* ss) {
     Kernel<S>::propagate(f, gain, phi, nn, ns, ss);
   }
-  [[gnu::target("avx2"), gnu::flatten]] static void update(const ScalarMeasurement& m, Matrix9& nn, double* ns,
-                                                           double* ss, double* state) {
-    Kernel<S>::update(m, nn, ns, ss, state);
+  [[gnu::target("avx2"), gnu::flatten]] static ScalarInnovation update(const ScalarMeasurement& m, Matrix9& nn,
+                                                                       double* ns, double* ss, double* state) {
+    return Kernel<S>::update(m, nn, ns, ss, state);
   }
 };
 
@@ -289,9 +290,12 @@ void ErrorCovariance::add_noise(const SensorTransition& sensors) {
   }
 }
 
-void ErrorCovariance::update(const ScalarMeasurement& measurement, State& state) {
-  with_kernel(stride_,
-              [&](auto kernel) { decltype(kernel)::update(measurement, nn_, ns_.data(), ss_.data(), state.data()); });
+ScalarInnovation ErrorCovariance::update(const ScalarMeasurement& measurement, State& state) {
+  ScalarInnovation innovation;
+  with_kernel(stride_, [&](auto kernel) {
+    innovation = decltype(kernel)::update(measurement, nn_, ns_.data(), ss_.data(), state.data());
+  });
+  return innovation;
 }
 
 ErrorCovariance::State ErrorCovariance::times(const WideMeasurement& measurement) const {
@@ -336,9 +340,7 @@ ScalarInnovation ErrorCovariance::expected(const WideMeasurement& measurement, c
 
 ScalarInnovation ErrorCovariance::update(const WideMeasurement& measurement, State& state) {
   if (measurement.count == 0) {
-    const ScalarInnovation innovation = expected(measurement, state);
-    update(measurement.navigation, state);
-    return innovation;
+    return update(measurement.navigation, state);
   }
   const State p = times(measurement);
   const ScalarInnovation innovation{measurement.navigation.innovation - projected(measurement, state),

@@ -93,7 +93,7 @@ class ErrorCovariance {
 
   /// Scalar Kalman update in Joseph's form; the correction is added to `state`, which holds what earlier measurements
   /// of this moment gave.
-  void update(const ScalarMeasurement& measurement, State& state);
+  ScalarInnovation update(const ScalarMeasurement& measurement, State& state);
   /// The same for a measurement that depends on sensor states, and slower: it takes matrices of all states.
   ScalarInnovation update(const WideMeasurement& measurement, State& state);
   /// The innovation that `update` would find, without the update.
