@@ -345,10 +345,7 @@ std::vector<Evidence> find_lines(const FullRate& data) {
 Evidence line_near(const FullRate& data, const std::vector<std::size_t>& scope, double f_hz, double within_hz) {
   const LineSpectra spectra = line_spectra(data);
   if (data.stopped()) {
-    Evidence nothing;
-    nothing.members = scope;
-    nothing.parameters.resize(2);
-    return nothing;
+    return {};
   }
   double total = 0.0;
   for (const std::size_t r : scope) {
