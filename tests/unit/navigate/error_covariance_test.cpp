@@ -1,11 +1,13 @@
 #include "core/navigate/error_covariance.hpp"
 
+#include "core/navigate/covariance_kernels.hpp"
 #include "core/process/random.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace driftlab {
@@ -54,6 +56,71 @@ ScalarMeasurement measurement(Random& random, int coordinate, double variance) {
   m.innovation = random.normal();
   m.variance = variance;
   return m;
+}
+
+/// Blocks of a covariance as the kernels take them, filled at random: what they compute of it is all that is asked.
+template <int S>
+struct Blocks {
+  explicit Blocks(Random& random) {
+    const auto fill = [&](auto& numbers) {
+      for (double& number : numbers) {
+        number = random.normal();
+      }
+    };
+    fill(gain);
+    fill(phi);
+    fill(ns);
+    fill(ss);
+    fill(state);
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        nn(i, j) = nn(j, i) = random.normal();
+      }
+    }
+    f = {0.1, 1e-6 * Matrix3::Ones(), {random.normal(), random.normal(), random.normal()}, {0.1, -0.2, 0.3}};
+    measurement.h.setConstant(0.3);
+    measurement.innovation = random.normal();
+    measurement.variance = 4.0;
+  }
+  NavigationTransition f;
+  ScalarMeasurement measurement;
+  ErrorCovariance::Navigation nn;
+  alignas(32) std::array<double, 9 * S> gain{}, ns{};
+  alignas(32) std::array<double, S> phi{};
+  alignas(32) std::array<double, S * S> ss{};
+  std::array<double, 9 + S> state{};
+};
+
+template <int S>
+void expect_the_same_of_both_kernels() {
+  Random random(17);
+  for (int round = 0; round < 50; ++round) {
+    Blocks<S> wide(random);
+    Blocks<S> plain = wide;
+    const auto run = [](auto kernel, Blocks<S>& blocks) {
+      using Of = decltype(kernel);
+      Of::propagate(blocks.f, blocks.gain.data(), blocks.phi.data(), blocks.nn, blocks.ns.data(), blocks.ss.data());
+      return Of::update(blocks.measurement, blocks.nn, blocks.ns.data(), blocks.ss.data(), blocks.state.data());
+    };
+    const ScalarInnovation of_wide = run(covariance_kernels::WideKernel<S>{}, wide);
+    const ScalarInnovation of_plain = run(covariance_kernels::Kernel<S>{}, plain);
+    EXPECT_EQ(of_wide.value, of_plain.value);
+    EXPECT_EQ(of_wide.variance, of_plain.variance);
+    EXPECT_TRUE(wide.nn == plain.nn);
+    EXPECT_EQ(wide.ns, plain.ns);
+    EXPECT_EQ(wide.ss, plain.ss);
+    EXPECT_EQ(wide.state, plain.state);
+  }
+}
+
+TEST(ErrorCovariance, IsTheSameToTheBitWithWideInstructions) {
+  if (!covariance_kernels::has_avx2()) {
+    GTEST_SKIP() << "This processor has no AVX2.";
+  }
+  expect_the_same_of_both_kernels<12>();
+  expect_the_same_of_both_kernels<16>();
+  expect_the_same_of_both_kernels<24>();
+  expect_the_same_of_both_kernels<kMaxSensorStates>();
 }
 
 TEST(ErrorCovariance, AnUpdateIsTheTextbooksInJosephsForm) {
