@@ -1,23 +1,26 @@
 #!/usr/bin/env python3
 """How long every kind of job takes to end once it is cancelled, at moments spread over all that it does.
 
-usage: cancel_times.py [MOMENTS] [--only NAME,NAME] [--seed N]    (default 20 moments; DRIFTLABD is the daemon's program)
+usage: cancel_times.py [MOMENTS] [--only NAME,NAME] [--seed N] [--busy N]    (default 20 moments; DRIFTLABD is the daemon's program)
 
 Each job is asked for, left to run for a time drawn evenly from [0, LONGEST] and cancelled; a job that ended before is left
 out, and the next drawn times are kept below its length. Prints, for each kind, the median and the longest time from the request
-to the state `cancelled`, and the stage that the slowest was in. The table of tests/RELIABILITY.md is its output.
+to the state `cancelled`, and the stage that the slowest was in. --busy keeps N processes computing beside the daemon, as a loaded
+machine would. The table of tests/RELIABILITY.md is its output.
 """
 from __future__ import annotations
 
 import argparse
+import contextlib
 import io
 import json
 import os
 import random
 import statistics
+import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -122,14 +125,26 @@ def cancelled_in(daemon: Daemon, request: dict[str, Any], wait_s: float) -> tupl
     return time.monotonic() - asked, str(state.get("stage") or "")
 
 
+@contextlib.contextmanager
+def busy(processes: int) -> Iterator[None]:
+    running = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(processes)]
+    try:
+        yield
+    finally:
+        for process in running:
+            process.kill()
+            process.wait()
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("moments", nargs="?", type=int, default=20)
     parser.add_argument("--only", default="")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--busy", type=int, default=0)
     flags = parser.parse_args()
     print("| job | cancelled | median | longest | in the stage |\n|---|---|---|---|---|")
-    with Daemon(arguments=("--workers", "1")) as daemon:
+    with busy(flags.busy), Daemon(arguments=("--workers", "1")) as daemon:
         for name, request in jobs(daemon).items():
             if flags.only and not any(word in name for word in flags.only.split(",")):
                 continue
