@@ -15,42 +15,33 @@ constexpr std::uint64_t kHeldOutStream = 400;  ///< of the bootstrap
 /// The options as they are for each fold: what the other fold has shown.
 using FoldOptions = std::array<FilterOptions, LogLikelihood::kFolds>;
 
-/// Whether the two are known to be alike: one set of runs is then enough.
-enum class FoldValues { Apart, Alike };
-
 double log_score(const DriveOutage& o) {
   const Matrix3& p = o.covariance_ned;
   const double determinant = p(0, 0) * p(1, 1) - p(0, 1) * p(1, 0);
   return -0.5 * (std::log(determinant) + o.nees());
 }
 
-/// Outages of the plan under values that fold 0 has shown and under those of fold 1, by whether they were seen.
-Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, const RunControl& control,
-             FoldValues values = FoldValues::Apart) {
-  Rung rung;
-  rung.name = std::move(name);
-  const OutagePlan& plan = drive.document.outages;
-  struct Lists {
-    std::vector<DriveOutage> found, held_out;
-  };
-  std::vector<Lists> lists(plan.duration_s.size());
-  std::vector<std::vector<DriveOutage>> scored;
-  for (std::size_t fold = 0; fold < by_fold.size(); ++fold) {
-    if (fold == 0 || values == FoldValues::Apart) {
-      const auto prepared = PreparedDrive::make(drive, by_fold[fold]);
-      if (!prepared) {
-        continue;
-      }
-      scored = scored_outages(*prepared, control);
-    }
-    for (std::size_t d = 0; d < scored.size(); ++d) {
-      for (const DriveOutage& outage : scored[d]) {
-        if (const auto own = fold_of(outage.outage)) {
-          (*own == fold ? lists[d].found : lists[d].held_out).push_back(outage);
-        }
+/// The outages of each duration of the plan.
+using ScoredOutages = std::vector<std::vector<DriveOutage>>;
+
+/// Outages by whether the fold whose values they were scored under has seen them.
+struct OutageLists {
+  std::vector<DriveOutage> found, held_out;
+};
+
+void sort_by_fold(const ScoredOutages& scored, std::size_t fold, std::vector<OutageLists>& lists) {
+  for (std::size_t d = 0; d < scored.size(); ++d) {
+    for (const DriveOutage& outage : scored[d]) {
+      if (const auto own = fold_of(outage.outage)) {
+        (*own == fold ? lists[d].found : lists[d].held_out).push_back(outage);
       }
     }
   }
+}
+
+Rung rung_of_lists(const OutagePlan& plan, std::string name, std::vector<OutageLists> lists) {
+  Rung rung;
+  rung.name = std::move(name);
   EvaluationOptions no_bootstrap;
   no_bootstrap.resamples = 0;
   for (std::size_t d = 0; d < lists.size(); ++d) {
@@ -78,6 +69,36 @@ Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, c
     rung.durations.push_back(figures);
   }
   return rung;
+}
+
+/// Outages of the plan under values that fold 0 has shown and under those of fold 1.
+Rung rung_of(const Drive& drive, std::string name, const FoldOptions& by_fold, const RunControl& control) {
+  std::vector<OutageLists> lists(drive.document.outages.duration_s.size());
+  for (std::size_t fold = 0; fold < by_fold.size(); ++fold) {
+    if (const auto prepared = PreparedDrive::make(drive, by_fold[fold])) {
+      sort_by_fold(scored_outages(*prepared, control), fold, lists);
+    }
+  }
+  return rung_of_lists(drive.document.outages, std::move(name), std::move(lists));
+}
+
+/// Outages that were scored under values which no fold has shown.
+Rung rung_of(const OutagePlan& plan, std::string name, const ScoredOutages& scored) {
+  std::vector<OutageLists> lists(plan.duration_s.size());
+  for (std::size_t fold = 0; fold < LogLikelihood::kFolds; ++fold) {
+    sort_by_fold(scored, fold, lists);
+  }
+  return rung_of_lists(plan, std::move(name), std::move(lists));
+}
+
+/// The outages that an evaluation scored, by the plan's durations.
+ScoredOutages outages_of(const DriveEvaluation& evaluation, const OutagePlan& plan) {
+  ScoredOutages scored(plan.duration_s.size());
+  for (const DurationSummary& summary : evaluation.durations) {
+    const auto at = std::find(plan.duration_s.begin(), plan.duration_s.end(), summary.duration_s);
+    scored[static_cast<std::size_t>(at - plan.duration_s.begin())] = summary.outages;
+  }
+  return scored;
 }
 
 /// Mean over durations of the held-out log score.
@@ -244,11 +265,15 @@ Result<DriveExplanation> explain_drive(const Drive& drive, const Drive& as_stamp
   parallel_for(
       control.threads, fitted.size(),
       [&](std::size_t fold) { fitted[fold] = fitted_on(drive, fold, search->options, knobs, control); }, control.stop);
-  explanation.rungs.push_back(
-      rung_of(as_stamped, "as stamped, the document's model", {unmended, unmended}, control, FoldValues::Alike));
-  explanation.rungs.push_back(rung_of(drive,
+  const OutagePlan& plan = drive.document.outages;
+  explanation.rungs.push_back(rung_of(plan, "as stamped, the document's model", outages_of(explanation.before, plan)));
+  const auto prepared_first = PreparedDrive::make(drive, first);
+  if (!prepared_first) {
+    return fail(prepared_first.error());
+  }
+  explanation.rungs.push_back(rung_of(plan,
                                       drive.facts.sampling.polled_faster ? "repeats out, fixes dated" : "fixes dated",
-                                      {first, first}, control, FoldValues::Alike));
+                                      scored_outages(*prepared_first, control)));
   // The noise level comes first: judged under the document's, every gain would be one of covariance alone.
   FoldOptions current{first, first};
   for (std::size_t fold = 0; fold < current.size(); ++fold) {
