@@ -10,6 +10,8 @@ namespace driftlab::drive {
 namespace {
 
 constexpr std::size_t kRemembered = 64;
+constexpr double kMostLevel = 1e4, kLeastLevel = 1e-2;  ///< factors of the model's noise, chosen
+constexpr double kParabolic = 1.3;  ///< a likelihood is a parabola of the logarithm of a level within this factor
 
 }  // namespace
 
@@ -169,28 +171,36 @@ FilterOptions Profile::with_noise_fitted(FilterOptions options, double first_fac
     first_factor = std::max(first_factor, 2.0);
   }
   for (const bool gyroscope : {true, false, true}) {
-    double step = first_factor;
-    double best = values({options}).front();
-    while (step > 1.03) {
-      FilterOptions up = options;
-      FilterOptions down = options;
-      double& of_up = gyroscope ? up.gyro_noise : up.force_noise;
-      double& of_down = gyroscope ? down.gyro_noise : down.force_noise;
-      of_up *= step;
-      of_down /= step;
-      const auto tried = values({up, down});
-      const bool rises = std::max(tried[0], tried[1]) > best && of_up < 1e4 && of_down > 1e-2;
-      if (rises) {
-        options = tried[0] > tried[1] ? up : down;
-        best = std::max(tried[0], tried[1]);
-      } else {
-        step = std::sqrt(step);
-      }
-      if (control_.stop.stop_requested()) {
-        return options;
-      }
-    }
+    options = with_level_fitted(std::move(options), gyroscope, first_factor);
     first_factor = std::min(first_factor, 2.0);
+  }
+  return options;
+}
+
+FilterOptions Profile::with_level_fitted(FilterOptions options, bool gyroscope, double factor) const {
+  const auto level = [&](FilterOptions& of) -> double& { return gyroscope ? of.gyro_noise : of.force_noise; };
+  const auto times = [&](double by) {
+    FilterOptions copy = options;
+    level(copy) *= by;
+    return copy;
+  };
+  double best = values({options}).front();
+  while (!control_.stop.stop_requested()) {
+    const std::vector<FilterOptions> trials{times(1.0 / factor), times(factor)};
+    const auto tried = values(trials);
+    const std::size_t better = tried[1] > tried[0] ? 1 : 0;
+    const double set = level(options);
+    if (tried[better] > best && set * factor < kMostLevel && set / factor > kLeastLevel) {
+      options = trials[better];
+      best = tried[better];
+    } else if (factor > kParabolic) {
+      factor = std::sqrt(factor);
+    } else {
+      const double step = std::log(factor);
+      const ProfileEstimate top = parabola({-step, 0.0, step, tried[0], best, tried[1]}, 1.0);
+      const FilterOptions there = times(std::exp(top.value));
+      return top.sound && values({there}).front() > best ? there : options;
+    }
   }
   return options;
 }

@@ -33,8 +33,8 @@ class Profile {
   /// One estimate for each knob, from the options whose log likelihood is `at`.
   [[nodiscard]] std::vector<ProfileEstimate> estimates(const FilterOptions& options, double at,
                                                        const std::vector<const Knob*>& knobs, double scale) const;
-  /// The factors of the white noise, gyroscope and accelerometer, at the top of the likelihood; steps begin at
-  /// `first_factor`.
+  /// The factors of the white noise, gyroscope and accelerometer, at the top of the likelihood, one after the other;
+  /// steps begin at `first_factor`.
   [[nodiscard]] FilterOptions with_noise_fitted(FilterOptions options, double first_factor) const;
   /// The knobs at the top of the likelihood, one after the other.
   [[nodiscard]] FilterOptions refitted(FilterOptions options, const std::vector<const Knob*>& knobs, int sweeps) const;
@@ -52,6 +52,9 @@ class Profile {
     double low, middle, high;
     double low_value, middle_value, high_value;
   };
+  /// One of the two factors at the top: steps by `factor` and its roots while the likelihood rises, then the vertex of
+  /// the parabola in the level's logarithm.
+  [[nodiscard]] FilterOptions with_level_fitted(FilterOptions options, bool gyroscope, double factor) const;
   /// The likelihood of each trial; nothing for options that no filter can have.
   [[nodiscard]] std::vector<std::optional<LogLikelihood>> runs(const std::vector<FilterOptions>& trials) const;
   [[nodiscard]] Bracket stride(const FilterOptions& options, const Knob& knob, Bracket bracket) const;

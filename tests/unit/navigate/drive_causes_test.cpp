@@ -131,6 +131,28 @@ TEST(DriveCauses, MotionAndNoiseOfAChannelAreToldApart) {
   EXPECT_TRUE(std::isinf(scale_of_noise(drive, doubled, 2)));
 }
 
+TEST(DriveCauses, LevelsOfTheNoiseEndAtTheTopOfTheLikelihood) {
+  // Steps that end where the next is 3 % leave the level up to 3 % off; the vertex of a parabola is nearer, from afar
+  // and from nearby.
+  Hidden loud;
+  loud.noise_factor = 4.0;
+  const Drive drive = simulated_drive(37, loud);
+  const RunControl control;
+  const Profile profile(drive, {true, true}, control);
+  FilterOptions nearby;
+  nearby.gyro_noise = 3.5;
+  for (const auto& [start, first_factor] : {std::pair{FilterOptions{}, 4.0}, std::pair{nearby, 1.2}}) {
+    const FilterOptions fitted = profile.with_noise_fitted(start, first_factor);
+    EXPECT_NEAR(fitted.gyro_noise, 4.0, 0.6);
+    const double top = profile.values({fitted}).front();
+    for (const double factor : {0.98, 1.02}) {
+      FilterOptions beside = fitted;
+      beside.gyro_noise *= factor;
+      EXPECT_LT(profile.values({beside}).front(), top) << factor << " from steps by " << first_factor;
+    }
+  }
+}
+
 TEST(DriveCauses, TheArmDownIsNotSoughtOnAFlatRoad) {
   // Read from the gyroscope's noise it was 1.1 m too high, with a score above 5, on three of eight drives of seeds 71
   // to 78 with four times the noise.
