@@ -2,7 +2,7 @@
 import type {ComponentChildren, JSX} from 'preact';
 import {useEffect, useId, useLayoutEffect, useMemo, useRef, useState} from 'preact/hooks';
 import {writeNumber} from '../format/number';
-import {say} from '../shell/say';
+import {copy} from '../shell/copy';
 import {openDrawer} from '../shell/Drawer';
 import {Drawing} from './Drawing';
 import {csvOf, save, svgText, tableOf, type Table} from './export';
@@ -26,14 +26,6 @@ export interface FigureProps {
   note?: ComponentChildren;
   onZoom?: (from: number, to: number) => void;
   plain?: boolean;              // without a panel of its own
-}
-
-export function curlOf(path: string): string {
-  return `curl '${window.location.origin}${path}'`;
-}
-
-export function copy(text: string, what: string): void {
-  navigator.clipboard.writeText(text).then(() => say(`${what} copied.`), () => say('The browser does not let this page copy.'));
 }
 
 export function useWidth(): [{current: HTMLDivElement | null}, number] {

@@ -6,7 +6,7 @@ import type {Characterisation, Device, DeviceSummary, List, Recording} from '../
 import {writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
 import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
-import {curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
+import {defaultReadout, Figure, Tools} from '../figure/Figure';
 import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
 import {choose, go, hover, pageOf, usePlace} from '../route';
@@ -16,6 +16,7 @@ import {Head, Verdict} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {LiveLine, useLiveJobs} from '../shell/Live';
 import {MadeFrom, Report} from '../shell/Report';
+import {curlOf} from '../shell/copy';
 import {say} from '../shell/say';
 import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';

@@ -6,11 +6,12 @@ import {writeNumber, writeQuantity, writeShare, writeTick} from '../format/numbe
 import {writeDuration, writeWhen} from '../format/time';
 import {capital, plural, writeSentence, writeUnit} from '../format/words';
 import {csvOf, save} from '../figure/export';
-import {curlOf, defaultReadout, Figure, Tools} from '../figure/Figure';
+import {defaultReadout, Figure, Tools} from '../figure/Figure';
 import {choose, listOf, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {usePageKeys} from '../shell/keys';
 import {MadeBy, Report} from '../shell/Report';
+import {curlOf} from '../shell/copy';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {errorOf, isComparison, isExplanation, opened, SHORT, type Comparison, type Duration, type Estimated, type Evaluation, type Explanation, type Measured, type OutageOf, type Side, type Simulated} from './drive/documents';

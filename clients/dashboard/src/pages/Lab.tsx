@@ -1,20 +1,19 @@
 // The lab: what must be read today, what runs, and whether each device is like its siblings.
 import type {JSX} from 'preact';
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {useRead} from '../api/client';
 import type {Attention, AxisSummary, Counts, Device, Job, List} from '../api/documents';
 import {writeTick, writeQuantity} from '../format/number';
 import {writeToday, writeWhen} from '../format/time';
 import {capital, conditionName, countWord, jobKind, plural, writeUnit} from '../format/words';
-import {MarkAt} from '../figure/marks';
+import {MarkAt} from '../figure/MarkAt';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
 import {Sought} from '../shell/Sought';
+import {curlOf, copy} from '../shell/copy';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
-import {curlOf, copy} from '../figure/Figure';
-import {EmptyLab} from './EmptyLab';
 
 const MARKS: Record<string, Mark> = {x: 'dot', y: 'square', z: 'triangle'};
 const PAGE = 50;
@@ -126,6 +125,13 @@ function Running({jobs}: {jobs: readonly Job[]}): JSX.Element {
   </Panel>;
 }
 
+// It comes with the page of uploads, which a lab that is not empty does not need first.
+function Empty(): JSX.Element {
+  const [Page, setPage] = useState<() => JSX.Element>();
+  useEffect(() => { import('../routes/lists').then(pages => setPage(() => pages.EmptyLab), () => window.location.reload()); }, []);
+  return Page ? <Page /> : <Hairlines />;
+}
+
 export default function Lab(): JSX.Element {
   const {query} = usePlace();
   useTitle('Lab');
@@ -136,7 +142,7 @@ export default function Lab(): JSX.Element {
   const devices = useRead<List<Device>>(`/v1/devices?include=summary&sort=${sort}&limit=${PAGE}${q ? `&q=${encodeURIComponent(q)}` : ''}${after ? `&cursor=${after}` : ''}`, 3000);
   const jobs = useRead<List<Job>>('/v1/jobs?sort=-created_at&limit=50', 3000);
   const [seen, setSeen] = useState(() => localStorage.getItem(SEEN) ?? '');
-  if (devices.data?.items.length === 0 && !after && !q) return <EmptyLab />;
+  if (devices.data?.items.length === 0 && !after && !q) return <Empty />;
   const list = devices.data?.items ?? [];
   const recent = jobs.data?.items ?? [];
   const all = toRead(counts.data?.attention ?? [], recent);

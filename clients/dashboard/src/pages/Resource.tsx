@@ -1,9 +1,9 @@
 // Studies, models and calibrations as they are stored: every id has a page.
 import type {JSX} from 'preact';
 import {useRead} from '../api/client';
-import {copy, curlOf} from '../figure/Figure';
 import {usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {copy, curlOf} from '../shell/copy';
 import {Panel, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 

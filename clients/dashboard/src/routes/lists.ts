@@ -1,4 +1,6 @@
 // Lists, forms and documents: pages without figures.
+import '../app';
+export {EmptyLab} from '../pages/EmptyLab';
 export {default as Devices} from '../pages/Devices';
 export {default as Investigations} from '../pages/Investigations';
 export {default as Outages} from '../pages/Outages';

@@ -4,8 +4,8 @@ import {useState} from 'preact/hooks';
 import {useRead} from '../../api/client';
 import type {List} from '../../api/documents';
 import {save} from '../../figure/export';
-import {copy, curlOf} from '../../figure/Figure';
 import {openDrawer} from '../../shell/Drawer';
+import {copy, curlOf} from '../../shell/copy';
 import {Shown} from '../../shell/states';
 
 interface Target { target: string; title: string; file: string; convention: string; source: string }

@@ -1,11 +1,12 @@
 // Measured against simulated: what the baseline says, and what remains against the extended model, on the same axes.
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
-import {Figure, curlOf} from '../../figure/Figure';
+import {Figure} from '../../figure/Figure';
 import {finite, type Plot, type Series, type Zone} from '../../figure/spec';
 import {writeTick} from '../../format/number';
 import {capital, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
+import {curlOf} from '../../shell/copy';
 import {causeName, columnOf, frequencyOf, keyOf, type Finding, type Investigation, type SeriesDocument} from './documents';
 
 const over = (values: readonly (number | null)[], by: readonly (number | null)[]): (number | null)[] => values.map((value, i) => { const base = by[i]; return value === null || base === null || base === undefined || base <= 0 ? null : value / base; });

@@ -1,9 +1,10 @@
 // What no listed cause explains and the extended model holds all the same: measured profiles beside the model.
 import type {JSX} from 'preact';
-import {curlOf, Figure} from '../../figure/Figure';
+import {Figure} from '../../figure/Figure';
 import type {Plot} from '../../figure/spec';
 import {writeNumber} from '../../format/number';
 import {spaced, writeSentence, writeUnit} from '../../format/words';
+import {curlOf} from '../../shell/copy';
 import {columnOf, type Investigation, type Profile} from './documents';
 
 const NAMES = {spectrum: 'density ÷ model', variance: 'power of the noise ÷ model', mean: 'mean'};

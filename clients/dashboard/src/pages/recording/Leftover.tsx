@@ -4,9 +4,10 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {useRead} from '../../api/client';
 import type {Channel, ModelFit, Recording, Spectrogram} from '../../api/documents';
 import {writeTick} from '../../format/number';
-import {copy, curlOf, Tools, useWidth} from '../../figure/Figure';
+import {Tools, useWidth} from '../../figure/Figure';
 import {Panel, Shown} from '../../shell/states';
 import {save} from '../../figure/export';
+import {copy, curlOf} from '../../shell/copy';
 
 const MOST = 1;        // a tenfold excess or lack has the full colour
 const HEIGHT = 220;

@@ -5,8 +5,9 @@ import {useRead} from '../../api/client';
 import type {Channel, Histogram, Recording} from '../../api/documents';
 import {writeCount, writeNumber} from '../../format/number';
 import {writeUnit} from '../../format/words';
-import {curlOf, Figure} from '../../figure/Figure';
+import {Figure} from '../../figure/Figure';
 import type {Plot} from '../../figure/spec';
+import {curlOf} from '../../shell/copy';
 import {Panel, Shown} from '../../shell/states';
 import {writePower} from './Spectrum';
 

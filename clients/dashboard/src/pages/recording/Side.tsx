@@ -4,7 +4,7 @@ import type {Channel, Characterisation, ModelFit, Quantity, Recording} from '../
 import {writeBytes, writeCount, writeNumber, writeP, writeQuantity} from '../../format/number';
 import {writeFull} from '../../format/time';
 import {conventionName, processName, symbolOf, writeSentence, writeUnit} from '../../format/words';
-import {copy} from '../../figure/Figure';
+import {copy} from '../../shell/copy';
 import {Panel} from '../../shell/states';
 import {LabelsOf} from './Labels';
 import {styleOf} from './plots';

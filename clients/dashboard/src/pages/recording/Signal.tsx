@@ -6,9 +6,10 @@ import type {Nullable, Recording, Trace} from '../../api/documents';
 import {writeTick} from '../../format/number';
 import {writeDuration} from '../../format/time';
 import {sensorOf, writeUnit} from '../../format/words';
-import {curlOf, Figure} from '../../figure/Figure';
+import {Figure} from '../../figure/Figure';
 import {finite, type Plot, type Series, type Zone} from '../../figure/spec';
 import {choose, usePlace} from '../../route';
+import {curlOf} from '../../shell/copy';
 import {Panel, Shown} from '../../shell/states';
 import {Places, placesOf, type Place} from './Places';
 

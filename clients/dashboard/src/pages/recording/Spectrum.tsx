@@ -6,8 +6,9 @@ import type {Channel, Implied, ModelFit, Nullable, Recording, Spectrum as Spectr
 import {writeCount, writeNumber} from '../../format/number';
 import {factorBetween} from '../../format/units';
 import {processName, writeUnit} from '../../format/words';
-import {curlOf, defaultReadout, Figure} from '../../figure/Figure';
+import {defaultReadout, Figure} from '../../figure/Figure';
 import type {Plot, Series} from '../../figure/spec';
+import {curlOf} from '../../shell/copy';
 import {Panel, Shown} from '../../shell/states';
 import {styleOf} from './plots';
 

@@ -1,7 +1,7 @@
 // The secret of a webhook, once: it is held by this page alone and gone with it.
 import type {JSX} from 'preact';
 import {useEffect, useRef} from 'preact/hooks';
-import {copy} from '../../figure/Figure';
+import {copy} from '../../shell/copy';
 
 export function Secret({secret, onSeen}: {secret: string; onSeen: () => void}): JSX.Element {
   const box = useRef<HTMLElement>(null);
