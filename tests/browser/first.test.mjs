@@ -46,3 +46,21 @@ test('an empty lab offers its drop zone, whose file comes when it is needed', as
     await empty.end();
   }
 });
+
+test('a file that is dropped on any page is for the upload', async () => {
+  await daemon.upload(csv(600, 6), {device: 'dropped-on', condition: 'static', rate_hz: 100});
+  const page = await open(browser, daemon, '/devices/dropped-on');
+  await page.getByRole('heading', {level: 1, name: 'dropped-on'}).waitFor();
+  const left = await page.evaluate(text => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], 'bench.csv', {type: 'text/csv'}));
+    const drop = new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true});
+    document.querySelector('h1').dispatchEvent(drop);
+    return !drop.defaultPrevented;
+  }, csv(600, 7));
+  assert.equal(left, false, 'the browser does not leave the lab for the file');
+  await page.waitForURL(/\/upload$/);
+  await page.getByText('bench.csv').first().waitFor();
+  assert.deepEqual(page.loud, []);
+  await page.context().close();
+});

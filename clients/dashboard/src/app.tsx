@@ -7,6 +7,7 @@ import './routes/shell';
 import {followLinks, usePlace} from './route';
 import {Bar} from './shell/Bar';
 import {Drawer, openDrawer} from './shell/Drawer';
+import {startDrops} from './shell/drops';
 import {Keys} from './shell/Help';
 import {startKeys} from './shell/keys';
 import {Said} from './shell/say';
@@ -87,6 +88,7 @@ function App(): JSX.Element {
 }
 
 startTheme();
+startDrops();
 followLinks();
 startKeys(() => openDrawer('Keys', Keys));
 const root = document.getElementById('page')!;

@@ -5,13 +5,14 @@ import type {Problem} from '../api/client';
 import {writeBytes, writeTick} from '../format/number';
 import {countWord, plural, writeSentence} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
+import {droppedOf} from '../shell/drops';
 import {Head} from '../shell/Head';
 import {copy} from '../shell/copy';
 import {Panel, Progress, Refusal} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Columns} from './upload/Columns';
 import {ConditionField} from './upload/ConditionField';
-import {DropZone} from './upload/DropZone';
+import {DropZone, filesOf} from './upload/DropZone';
 import {change, remove, usePending, type Pending} from './upload/pending';
 import {Repair} from './upload/Repair';
 import {following, pause, runSample, sendAll, sendOne, take, takeHanded, takeSample} from './upload/run';
@@ -61,7 +62,7 @@ export default function Upload(): JSX.Element {
   const received = (dropped: readonly File[]): void => { setProblem(undefined); take(dropped).catch(error => setProblem(error as Problem)); };
   useEffect(() => {
     const over = (event: DragEvent): void => event.preventDefault();
-    const drop = (event: DragEvent): void => { if (!event.defaultPrevented && event.dataTransfer) { event.preventDefault(); received([...event.dataTransfer.files]); } };
+    const drop = (event: DragEvent): void => { if (!event.defaultPrevented && event.dataTransfer) { event.preventDefault(); void filesOf(droppedOf(event.dataTransfer)).then(received); } };
     document.addEventListener('dragover', over);
     document.addEventListener('drop', drop);
     return () => { document.removeEventListener('dragover', over); document.removeEventListener('drop', drop); };

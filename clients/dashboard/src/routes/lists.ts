@@ -1,6 +1,8 @@
 // Lists, forms and documents: pages without figures.
 import '../app';
 export {EmptyLab} from '../pages/EmptyLab';
+export {filesOf} from '../pages/upload/DropZone';
+export {askFor} from '../pages/upload/run';
 export {default as Devices} from '../pages/Devices';
 export {default as Investigations} from '../pages/Investigations';
 export {default as Outages} from '../pages/Outages';

@@ -1,10 +1,10 @@
 import type {JSX} from 'preact';
 import {useRef, useState} from 'preact/hooks';
+import {droppedOf, type Dropped} from '../../shell/drops';
 
 // Files of a drop, with those of folders in it.
-async function filesOf(data: DataTransfer): Promise<File[]> {
-  const entries = [...data.items].map(item => item.webkitGetAsEntry?.()).filter((entry): entry is FileSystemEntry => Boolean(entry));
-  if (entries.length === 0) return [...data.files];
+export async function filesOf({entries, files}: Dropped): Promise<File[]> {
+  if (entries.length === 0) return files;
   const found: File[] = [];
   const walk = async (entry: FileSystemEntry): Promise<void> => {
     if (entry.isFile) {
@@ -27,7 +27,7 @@ export function DropZone({onFiles, onSample, tall}: {onFiles: (files: File[]) =>
   const chooser = useRef<HTMLInputElement>(null);
   return <div class={`drop${over ? ' over' : ''}${tall ? ' tall' : ''}`}
     onDragOver={event => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
-    onDrop={event => { event.preventDefault(); setOver(false); if (event.dataTransfer) void filesOf(event.dataTransfer).then(onFiles); }}>
+    onDrop={event => { event.preventDefault(); setOver(false); if (event.dataTransfer) void filesOf(droppedOf(event.dataTransfer)).then(onFiles); }}>
     <svg width="26" height="26" viewBox="0 0 26 26" aria-hidden="true"><path d="M3 17v6h20v-6M13 18V4M7 10l6-6 6 6" fill="none" stroke="var(--ink)" stroke-width="1.8" /></svg>
     <div class={tall ? '' : 'grow'}><b>Drop recordings, a folder or a study.json here</b><div class="sec">CSV, npy, npz, MATLAB, phyphox and Sensor Logger exports, board logs; gzip, xz or zstd.</div></div>
     <div class="actions">
