@@ -5,6 +5,7 @@ import {createRequire} from 'node:module';
 import {dirname, join} from 'node:path';
 import {test} from 'node:test';
 import {fileURLToPath} from 'node:url';
+import {normal} from './world.mjs';
 
 const repository = join(dirname(fileURLToPath(import.meta.url)), '../..');
 const require = createRequire(join(repository, 'clients/dashboard/package.json'));
@@ -21,6 +22,27 @@ test('the interval decides the digits', async () => {
   for (const {value, ci95, text} of cases) assert.equal(writeQuantity({value, unit: '', ci95}).value.replace('\u2212', '-'), text, String(value));
   assert.equal(writeQuantity({value: 1.0382, unit: '', ci95: [1.0347, 1.0417]}).interval, '[1.035, 1.042]');
   assert.equal(writeQuantity({value: null, unit: ''}).value, '…');
+});
+
+// Ends of a known normal: a mean of 10 of standard error s has [10 - 1.96 s, 10 + 1.96 s].
+test('the interval of a difference and of a ratio holds what it should as often as it should', async () => {
+  const {difference, ratio, known} = await source('format/interval.ts');
+  const [low, high] = difference({value: 10, low: 9, high: 11}, {value: 4, low: 2, high: 6});
+  assert.ok(Math.abs(low - (6 - Math.sqrt(5))) < 1e-12 && Math.abs(high - (6 + Math.sqrt(5))) < 1e-12, `${low}, ${high}`);
+  assert.equal(ratio({value: 1, low: -0.1, high: 2}, {value: 1, low: 0.5, high: 2}), null);
+  assert.equal(known({value: 1, ci95: [null, 2]}), null);
+  const random = normal(5);
+  const Z = 1.96;
+  let held = 0;
+  const RUNS = 4000;
+  for (let run = 0; run < RUNS; ++run) {
+    // Log-normal estimates of 3 and 2, as uncertain as levels of noise are: 5 and 20 %.
+    const [a, b] = [[3, 0.05], [2, 0.2]].map(([truth, s]) => { const value = truth * Math.exp(s * random()); return {value, low: value * Math.exp(-Z * s), high: value * Math.exp(Z * s)}; });
+    const ends = ratio(a, b);
+    held += ends[0] <= 1.5 && 1.5 <= ends[1] ? 1 : 0;
+  }
+  // Exact for log-normal estimates: 95 % with a standard error of 0.34 %.
+  assert.ok(Math.abs(held / RUNS - 0.95) < 4 * Math.sqrt(0.95 * 0.05 / RUNS), `${held} of ${RUNS}`);
 });
 
 test('units and conditions are written as in print', async () => {

@@ -3,6 +3,7 @@ import type {JSX} from 'preact';
 import {useMemo, useState} from 'preact/hooks';
 import {useRead} from '../api/client';
 import type {Channel, Characterisation, Device, List, Quantity, Recording} from '../api/documents';
+import {difference, known, ratio} from '../format/interval';
 import {writeQuantity} from '../format/number';
 import {factorBetween, unitsFor} from '../format/units';
 import {conditionName, processName, symbolOf, writeUnit} from '../format/words';
@@ -31,9 +32,13 @@ function plotsOf(items: readonly Item[]): Plot[] {
     return {id: item.key, name: item.name.slice(0, 18), x: allan.tau_s, y: times(allan.deviation), low: times(allan.ci95.map(ends => ends[0])), high: times(allan.ci95.map(ends => ends[1])), mark: MARKS[i]!, line: true, colour: COLOURS[i]!, ...(DASHES[i] ? {dash: DASHES[i]!} : {})};
   });
   const first = series[0]!;
-  const base = new Map(first.x.map((x, i) => [x.toPrecision(6), first.y[i] ?? null] as const));
-  const over = (one: Series, values: readonly (number | null)[] | undefined): (number | null)[] => one.x.map((x, i) => { const by = base.get(x.toPrecision(6)); const value = values?.[i]; return finite(by) && finite(value) ? value / by : null; });
-  const ratios = series.slice(1).map((one): Series => ({...one, id: `${one.id}-ratio`, noKey: true, line: false, y: over(one, one.y), low: over(one, one.low), high: over(one, one.high)}));
+  const at = (one: Series, i: number): {value: number | null; ci95: (number | null)[]} => ({value: one.y[i] ?? null, ci95: [one.low?.[i] ?? null, one.high?.[i] ?? null]});
+  const base = new Map(first.x.map((x, i) => [x.toPrecision(6), i] as const));
+  // Uncertain is the first one too: its interval is in that of the ratio.
+  const ratios = series.slice(1).map((one): Series => {
+    const points = one.x.map((x, i) => { const j = base.get(x.toPrecision(6)); const by = j === undefined ? null : first.y[j]; const value = one.y[i]; if (j === undefined || !finite(by) || !finite(value)) return null; const [a, b] = [known(at(one, i)), known(at(first, j))]; return {y: value / by, ends: a && b ? ratio(a, b) : null}; });
+    return {...one, id: `${one.id}-ratio`, noKey: true, line: false, y: points.map(point => point?.y ?? null), low: points.map(point => point?.ends?.[0] ?? null), high: points.map(point => point?.ends?.[1] ?? null)};
+  });
   const main: Plot = {id: 'deviation', equalDecades: true, x: {scale: 'log', name: ratios.length > 0 ? '' : 'averaging time τ, s'}, y: {scale: 'log', name: `Allan deviation, ${writeUnit(unit)}`}, series};
   return ratios.length > 0 ? [main, {id: 'ratio', height: 130, rules: [1], x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: `÷ ${first.name}`}, series: ratios}] : [main];
 }
@@ -49,14 +54,22 @@ function parametersOf(channel: Channel): Map<string, Quantity> {
   return found;
 }
 
-// Two intervals that do not meet.
-const apart = (a: Quantity, b: Quantity): boolean => finite(a.ci95?.[1]) && finite(b.ci95?.[0]) && finite(a.ci95?.[0]) && finite(b.ci95?.[1]) && (a.ci95![1]! < b.ci95![0]! || b.ci95![1]! < a.ci95![0]!);
+// A parameter against that of the first item: by how much it differs, and whether that is shown.
+function Against({first, quantity}: {first: Quantity; quantity: Quantity}): JSX.Element | null {
+  const [a, b] = [known(quantity), known(first)];
+  if (quantity.value === null || first.value === null || !a || !b) return <div class="u">no interval to compare by</div>;
+  const ends = difference(a, b);
+  const times = ratio(a, b);
+  const by = writeQuantity({value: a.value - b.value, ci95: ends, unit: ''});
+  const factor = times && writeQuantity({value: a.value / b.value, ci95: times, unit: ''});
+  return <div class="u">{ends[0] > 0 || ends[1] < 0 ? 'differs by ' : 'no difference shown: '}{a.value > b.value && '+'}{by.value} {by.interval}{factor && <>, {factor.value} {factor.interval} times</>}</div>;
+}
 
 function Table({items}: {items: readonly Item[]}): JSX.Element {
   const all = items.map(item => parametersOf(item.channel));
   const names = [...new Set(all.flatMap(one => [...one.keys()]))];
   return <div class="scroll"><table class="stacked"><thead><tr><th scope="col">parameter</th>{items.map(item => <th key={item.key} scope="col">{item.name} <span class="u">{item.channel.fits[0]?.model}</span></th>)}</tr></thead>
-    <tbody>{names.map(name => <tr key={name}><th scope="row">{name} <span class="u">{writeUnit(all.map(one => one.get(name)).find(Boolean)?.unit)}</span></th>{all.map((one, i) => { const quantity = one.get(name); const first = all[0]!.get(name); if (!quantity) return <td key={i}>…</td>; const written = writeQuantity(quantity); return <td key={i} data-label={items[i]!.name}><b>{written.value}</b> <span class="ci">{written.interval}</span>{i > 0 && first ? <div class="u">{apart(first, quantity) ? `differs: ${((quantity.value! / first.value!) || 0).toFixed(2)} times` : 'intervals meet'}</div> : null}</td>; })}</tr>)}</tbody></table></div>;
+    <tbody>{names.map(name => <tr key={name}><th scope="row">{name} <span class="u">{writeUnit(all.map(one => one.get(name)).find(Boolean)?.unit)}</span></th>{all.map((one, i) => { const quantity = one.get(name); const first = all[0]!.get(name); if (!quantity) return <td key={i}>…</td>; const written = writeQuantity(quantity); return <td key={i} data-label={items[i]!.name}><b>{written.value}</b> <span class="ci">{written.interval}</span>{i > 0 && first ? <Against first={first} quantity={quantity} /> : null}</td>; })}</tr>)}</tbody></table></div>;
 }
 
 export default function Compare(): JSX.Element {
@@ -75,11 +88,12 @@ export default function Compare(): JSX.Element {
     const result = results[i]!.data;
     const one = result?.channels.find(each => each.result.channel === channel || each.result.axis === channel) ?? result?.channels[0];
     const row = rows[i]!.data;
-    const said = [several ? deviceName(row?.device) : '', conditionName(row?.metadata.condition, one?.result.axis), one?.result.axis ?? ''].filter(Boolean).join(' ');
-    return one ? [{key: wanted[i]!, name: said, channel: one.result}] : [];
+    const words = [several ? deviceName(row?.device) : '', conditionName(row?.metadata.condition, one?.result.axis), one?.result.axis ?? ''].filter(Boolean).join(' ');
+    return one ? [{key: wanted[i]!, name: words, channel: one.result}] : [];
   });
   // Names that are still equal get the recordings' own.
-  items.forEach((item, i) => { if (items.some((other, j) => j !== i && other.name === item.name)) item.name = rows[wanted.indexOf(item.key)]?.data?.metadata.id ?? item.name; });
+  const said = items.map(item => item.name);
+  items.forEach((item, i) => { if (said.indexOf(item.name) !== i || said.lastIndexOf(item.name) !== i) item.name = rows[wanted.indexOf(item.key)]?.data?.metadata.id ?? item.name; });
   const set = (next: string[]): void => choose({with: next.join(',') || null});
   const plots = useMemo(() => items.length > 0 ? plotsOf(items) : [], [items.map(item => item.key + item.name).join()]);
   const problem = results.find((each, i) => i < split.length && each.problem)?.problem;
@@ -93,7 +107,7 @@ export default function Compare(): JSX.Element {
     {items.length > 0 && <>
       {items.length > 1 && <p class="verdict">{models.length === 1 ? `One structure, ${models[0]}, is ranked first for all of them.` : `Different structures are ranked first: ${models.join(', ')}.`}</p>}
       <Figure name="compare" title="Allan deviation" plots={plots} source="driftlab" describe={`Allan deviations of ${items.map(item => item.name).join(', ')}, and their ratio to the first.`} cursor={Number(query.get('tau')) || null} onCursor={(x, pinned) => { if (pinned) hover({tau: x === null ? null : String(x)}); }} readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} />
-      <Panel title="Parameters" sub="of the model ranked first for each"><Table items={items} /></Panel>
+      <Panel title="Parameters" sub="of the model ranked first for each; the difference from the first and its 95 % interval"><Table items={items} /></Panel>
     </>}
   </>;
 }
