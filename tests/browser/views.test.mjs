@@ -272,12 +272,23 @@ test('an investigation’s figure ranks the sinusoids it identified first and ma
   await panel(page, 'Innovations by scale').locator('svg circle').first().waitFor();
   const count = found.figures[0].innovations.length;
   assert.equal(await panel(page, 'Innovations by scale').locator('svg circle').count(), 2 * count, 'before and after, every scale that the checks judge');
-  await page.locator('li.finding summary').first().click();
+  const findings = panel(page, 'Periodic disturbance');
+  assert.deepEqual((await findings.getByRole('columnheader').allInnerTexts()).slice(0, 3), ['axis', 'amplitude', 'frequency'], 'rows under their columns');
+  assert.equal(await findings.locator('tbody.finding').count(), lines.length);
+  await findings.locator('summary').first().click();
   await page.waitForURL(/finding=periodic_disturbance:1/);
+  // The checks that it rests on light up in the grid.
+  if (found.findings[0].because.length > 0) {
+    await page.getByRole('button', {name: 'Mark them'}).first().click();
+    await page.waitForURL(/lit=periodic_disturbance:1/);
+    assert.equal(await panel(page, 'Checks').locator('circle.lit').count(), found.checks.filter(check => found.findings[0].because.some(id => check.id.endsWith(id))).length);
+    await page.goBack();
+    await page.waitForURL(url => !url.search.includes('lit'));
+  }
   await figure.getByText(/black: Periodic disturbance, 1?[73]\.[37] Hz/).waitFor();
   if (found.findings[0].rivals.length > 0) await page.getByText(/Rivals and their evidence/).first().waitFor();
   await page.reload();
-  await page.locator('li.finding details[open]').waitFor();
+  await page.locator('tbody.finding details[open]').waitFor();
   await page.goBack();
   await page.waitForURL(url => !url.search.includes('finding'));
   await closed(page);

@@ -1,10 +1,10 @@
 // What the simulation gets wrong: causes with their sizes, what they mend, what is left, what was not examined.
 import type {JSX} from 'preact';
 import {useRead} from '../api/client';
-import type {Device, List, Quantity, Recording} from '../api/documents';
-import {writeNumber, writeQuantity} from '../format/number';
+import type {Device, List, Recording} from '../api/documents';
+import {writeNumber} from '../format/number';
 import {writeWhen} from '../format/time';
-import {capital, countWord, listWords, plural, processName, symbolOf, writeSentence, writeUnit} from '../format/words';
+import {capital, countWord, listWords, plural, processName, writeSentence} from '../format/words';
 import {Drawn} from '../figure/Drawn';
 import {csvOf, save, type Table} from '../figure/export';
 import {Tools} from '../figure/Figure';
@@ -15,11 +15,10 @@ import {curlOf} from '../shell/copy';
 import {Panel, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Checks} from './investigation/Checks';
-import {axisOf, causeName, checkKind, columnOf, keyOf, type Finding, type Investigation} from './investigation/documents';
+import {Findings} from './investigation/Findings';
+import {causeName, checkKind, columnOf, type Finding, type Investigation} from './investigation/documents';
 import {Measured} from './investigation/Measured';
 import {Unnamed} from './investigation/Unnamed';
-
-const MOST_BAR = 1000;
 
 // Grouped by cause, in the order of the document: as a laboratory would act on them.
 function grouped(findings: readonly Finding[]): [string, Finding[]][] {
@@ -34,28 +33,6 @@ function sentence(found: Investigation): string {
   const {checks_failed_before: before, checks_failed_after: after} = found.gain;
   if (found.findings.length === 0) return before === 0 ? `${found.checks.length} checks, none failed. The simulation agrees with these recordings.` : `${before} of ${found.checks.length} checks fail, and no listed cause explains them.`;
   return `The simulation lacks ${listWords(grouped(found.findings).map(([cause]) => causeName(cause)))}; ${after} of ${before} failed checks still fail.`;
-}
-
-function Size({name, quantity}: {name: string; quantity: Quantity}): JSX.Element {
-  const written = writeQuantity(quantity);
-  return <span class="nowrap"><span class="sec">{symbolOf(name.replace(/_/g, ' '))}</span> <b>{written.value}</b> <span class="u">{writeUnit(quantity.unit)}</span> <span class="ci">{written.interval}</span></span>;
-}
-
-function FindingRow({finding, id, names, total}: {finding: Finding; id: string; names: Map<string, string>; total: number}): JSX.Element {
-  const {query} = usePlace();
-  const open = query.get('finding') === id;
-  const recordings = [...new Set(finding.channels.map(channel => /^(rec_[0-9A-Z]{26})\//.exec(channel)?.[1]).filter((id): id is string => Boolean(id)))];
-  const axes = [...new Set(finding.channels.map(axisOf))];
-  const score = finding.score ?? 0;
-  return <li class={`finding ${finding.status}`} aria-current={open ? 'true' : undefined}>
-    <div class="row"><b>{axes.join(', ')}</b>{Object.entries(finding.parameters).map(([name, quantity]) => <Size key={name} name={name} quantity={quantity} />)}
-      <span class="right nowrap sec">{recordings.length === 0 || recordings.length === total ? `all ${total || ''}` : recordings.length === 1 ? `${names.get(recordings[0]!) ?? 'one'} only` : `${recordings.length} of ${total}`}</span>
-      <span class="nowrap" title="evidence; over 6 identifies"><svg width="90" height="8" aria-hidden="true"><rect x="0" y="1" width={Math.min(90, Math.log1p(Math.max(score, 0)) / Math.log1p(MOST_BAR) * 90)} height="5" fill="var(--model)" /></svg> {writeNumber(score, 3)}</span></div>
-    <details open={open}><summary class="sec" onClick={event => { event.preventDefault(); choose({finding: open ? null : id}); }}>{finding.status === 'ambiguous' && finding.alternatives.length > 0 ? `cannot be told from ${listWords(finding.alternatives.map(causeName))}` : 'explanation'}</summary>
-      <p>{writeSentence(finding.explanation)}</p>{finding.next_measurement && <p class="sec">Next: {finding.next_measurement}</p>}
-      {(finding.rivals?.length ?? 0) > 0 && <p class="sec">Rivals and their evidence, {writeNumber(score, 3)} for this: {finding.rivals!.map(rival => `${rival.title} ${rival.score === null ? '–' : writeNumber(rival.score, 3)}`).join(', ')}.</p>}
-      {finding.gain.heldout && <p class="u">held-out gain {writeNumber(finding.gain.log_score_per_sample)} nats a sample{finding.gain.of_the_file ? ', of the digits and rows of the file' : ''}</p>}</details>
-  </li>;
 }
 
 function NotExamined({found}: {found: Investigation}): JSX.Element {
@@ -97,7 +74,7 @@ function Found({found}: {found: Investigation}): JSX.Element {
     {channels.length > 1 && <p class="row" style={{marginTop: '16px'}}><Segments label="Channel" options={channels.map(one => [one.channel, columnOf(one.channel)] as const)} value={shown?.channel ?? ''} onChange={value => choose({axis: value})} /></p>}
     {shown && <Measured found={found} one={shown} names={names} />}
     {groups.map(([cause, list], i) => <Panel key={cause} title={capital(causeName(cause))} sub={`${list.every(finding => finding.status === 'identified') ? 'identified' : 'ambiguous'} · ${plural(list.length, 'finding')}`} tools={i === 0 ? <Tools title="The search" onCsv={table} curl={curlOf(`/v1/investigations/${found.id}`)} how={() => <p>Every listed cause is sought in the recordings, estimated, held out and compared with its rivals; checks compare the recordings with simulations of the baseline, corrected for their number. <a href="/docs/analysis">The manual</a> tells how.</p>} /> : undefined}>
-      <ul class="rows plain">{list.map((finding, j) => <FindingRow key={j} finding={finding} id={keyOf(finding, found.findings)} names={names} total={ids.size} />)}</ul>
+      <Findings list={list} found={found} names={names} total={ids.size} />
     </Panel>)}
     <Unnamed found={found} />
     <div class="grid two">

@@ -1,6 +1,7 @@
 // Where it was looked, and how much: recordings and axes against kinds of checks.
 import type {JSX} from 'preact';
-import {checkKind, columnOf, type Check, type Finding, type Investigation} from './documents';
+import {usePlace} from '../../route';
+import {checkKind, columnOf, keyOf, restsOn, type Check, type Investigation} from './documents';
 
 const CELL = 22;
 const LEFT = 190;
@@ -9,7 +10,7 @@ const UNCORRECTED = 0.05;
 
 function mended(check: Check, found: Investigation): boolean {
   if (check.end) return check.end !== 'unexplained';
-  return !found.unexplained.some(one => one.checks.includes(check.id)) && found.findings.some((finding: Finding) => finding.because.some(id => check.id === id || check.id.endsWith(id)));
+  return !found.unexplained.some(one => one.checks.includes(check.id)) && found.findings.some(finding => restsOn(finding, [check]).length > 0);
 }
 
 export function Checks({found, names}: {found: Investigation; names: Map<string, string>}): JSX.Element {
@@ -17,6 +18,8 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
   const kinds = [...new Set(found.checks.map(checkKind))];
   const at = new Map<string, Check>(found.checks.map(check => [`${check.recording ?? ''}\u0001${columnOf(check.channel)}\u0001${checkKind(check)}`, check] as const));
   const failed = found.checks.filter(check => check.failed);
+  const lit = usePlace().query.get('lit');
+  const marked = new Set(found.findings.filter(finding => keyOf(finding, found.findings) === lit).flatMap(finding => restsOn(finding, found.checks)));
   return <>
     <div class="checks" tabIndex={0} role="region" aria-label="Checks"><svg viewBox={`0 0 ${LEFT + kinds.length * CELL + 70} ${TOP + rows.length * CELL + 6}`} width={LEFT + kinds.length * CELL + 70} height={TOP + rows.length * CELL + 6} role="img" aria-label={`${found.checks.length} checks in ${rows.length} rows of ${kinds.length} kinds; ${failed.length} failed: ${failed.map(check => `${columnOf(check.channel)} ${checkKind(check)}`).join(', ') || 'none'}.`}>
       {kinds.map((kind, i) => <text key={kind} class="s" transform={`translate(${LEFT + i * CELL + 14},${TOP - 8}) rotate(-52)`}>{kind}</text>)}
@@ -31,8 +34,9 @@ export function Checks({found, names}: {found: Investigation; names: Map<string,
             const check = at.get(`${row}\u0001${kind}`);
             if (!check) return null;
             const x = LEFT + i * CELL + CELL / 2;
-            if (check.failed) return <rect key={kind} x={x - 5} y={y - 5} width="10" height="10" fill={mended(check, found) ? 'var(--surface)' : 'var(--robust)'} stroke="var(--robust)" stroke-width="1.8" />;
-            return <circle key={kind} cx={x} cy={y} r={check.p !== null && check.p < UNCORRECTED ? 3 : 1.1} fill="var(--ink3)" />;
+            return <g key={kind}>{marked.has(check) && <circle class="lit" cx={x} cy={y} r="9.5" fill="none" stroke="var(--focus)" stroke-width="2" />}
+              {check.failed ? <rect x={x - 5} y={y - 5} width="10" height="10" fill={mended(check, found) ? 'var(--surface)' : 'var(--robust)'} stroke="var(--robust)" stroke-width="1.8" />
+                : <circle cx={x} cy={y} r={check.p !== null && check.p < UNCORRECTED ? 3 : 1.1} fill="var(--ink3)" />}</g>;
           })}
         </g>;
       })}

@@ -29,6 +29,9 @@ export const keyOf = (finding: Finding, findings: readonly Finding[]): string =>
 // The frequency of a finding that is a line; null for any other.
 export const frequencyOf = (finding: Finding): number | null => Object.values(finding.parameters).find(quantity => quantity.unit === 'Hz')?.value ?? null;
 
+// The checks that a finding rests on; those of a file's recordings are told without its id.
+export const restsOn = (finding: Finding, checks: readonly Check[]): Check[] => checks.filter(check => finding.because.some(id => check.id === id || check.id.endsWith(id)));
+
 export const causeName = (cause: string): string => spaced(cause);
 
 // The column of `rec_…/gyro_x (rad/s)`: what follows the id.
