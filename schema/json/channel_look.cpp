@@ -45,6 +45,10 @@ Json histogram_to_json(const ChannelLook& look, const std::optional<RobustHistog
   document["gaussian"] = numbers(histogram->gaussian);
   document["below"] = histogram->below;
   document["above"] = histogram->above;
+  document["apart"] = Json::array();
+  for (const ApartPlace& place : look.apart()) {
+    document["apart"].push_back({{"t0", number(place.t0_s)}, {"t1", number(place.t1_s)}, {"samples", place.samples}});
+  }
   return document;
 }
 

@@ -37,6 +37,27 @@ class Looks(DaemonTest):
         for count, expected in zip(found["counts"], found["gaussian"]):
             self.assertLess(abs(count - expected), 5 * math.sqrt(expected) + 5)
 
+    def test_values_apart_from_the_rest_have_their_places(self) -> None:
+        """Three values within a second are one place; what was trimmed counts in the time and is not looked at; a jump and a drift are none."""
+        (noise,) = samples.noise(10000, seed=16)
+        noise = [value + 3e-3 * t + (25.0 if t >= 5010 else 0.0) for t, value in enumerate(noise)]
+        for t in (50, 3000, 3020, 3050, 7000):
+            noise[t] += 40.0
+        id = self.upload(noise)
+        self.expect(200, self.daemon.request("PATCH", f"/v1/recordings/{id}", {"trim": {"start_s": 2.0}}, {"If-Match": "*"}))
+        found = self.expect(200, self.daemon.get(f"/v1/recordings/{id}/histogram?channel=gz")).json
+        self.assertEqual([place["samples"] for place in found["apart"]], [3, 1])
+        for place, (t0, t1) in zip(found["apart"], ((30.0, 30.51), (70.0, 70.01))):
+            self.assertAlmostEqual(place["t0"], t0, places=6)
+            self.assertAlmostEqual(place["t1"], t1, places=6)
+        (crowded,) = samples.noise(60000, seed=17)
+        for t in range(0, 60000, 200):  # three hundred, each two seconds from the next
+            crowded[t] += 40.0
+        found = self.expect(200, self.daemon.get(f"/v1/recordings/{self.upload(crowded)}/histogram?channel=gz")).json
+        self.assertEqual((found["above"], len(found["apart"])), (300, 200), "every n-th of three hundred")
+        self.assertEqual(found["apart"][0]["t0"], 0)
+        self.assertGreater(found["apart"][-1]["t0"], 590, "from all over the recording")
+
     def test_the_spectrogram_says_when(self) -> None:
         """Noise three times as strong in the second half: against the model of all of it the ratio steps up by a decade."""
         (noise,) = samples.noise(20000, seed=7)

@@ -20,6 +20,25 @@ async function recorded(values, about) {
   return made.id;
 }
 
+test('gross errors and jumps are marked in the trace, and lead to their samples', async () => {
+  const values = noise(12000, 61);
+  for (const i of [3000, 3001, 9000]) values[i] += 5;
+  for (let i = 6000; i < values.length; ++i) values[i] += 2;
+  const id = await recorded(values, {device: 'spikes', id: 'spikes', trim_start_s: 10});
+  const page = await open(browser, daemon, `/recordings/${id}`);
+  const signal = panel(page, 'Signal');
+  const apart = signal.locator('.quality-note', {hasText: '3 values apart from the rest'});
+  await apart.waitFor();
+  const described = await signal.locator('svg[tabindex]').getAttribute('aria-label');
+  assert.match(described, /marked:.*values apart from the rest, a jump of the mean/);
+  await signal.locator('.quality-note', {hasText: /the mean jumps by (1\.9|2\.0)/}).waitFor();
+  await apart.getByRole('button', {name: '90 s'}).click();
+  await page.waitForURL(url => Number(url.searchParams.get('t0')) < 90 && Number(url.searchParams.get('t1')) > 90);
+  await signal.getByText(/\d+ samples,/).waitFor();
+  assert.equal(await signal.locator('svg[tabindex] path[stroke="var(--robust)"]').count(), 1, 'the one that is in view');
+  await closed(page);
+});
+
 test('what is compared has a difference with its interval, and says whether one is shown', async () => {
   const ids = [];
   for (const [seed, level] of [[81, 0.1], [82, 0.1], [83, 0.15]]) ids.push(await recorded(noise(12000, seed, level), {device: 'pair', id: `pair-${seed}`}));

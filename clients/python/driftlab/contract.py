@@ -1375,6 +1375,17 @@ class Histogram(TypedDict):
     # Values under the first edge.
     below: NotRequired[int]
     above: NotRequired[int]
+    # Where gross errors are: values more than eight robust standard deviations from the median of their 64 samples and
+    # from those of the 64 before and behind. Those within 1 s of one another are one place; of more than 200 every
+    # n-th.
+    apart: NotRequired[list[HistogramApartItem]]
+
+
+class HistogramApartItem(TypedDict):
+    # Seconds since the first row of the file.
+    t0: float
+    t1: float
+    samples: int
 
 
 class Investigation(TypedDict):

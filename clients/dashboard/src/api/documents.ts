@@ -29,7 +29,7 @@ export interface Quality {
   samples: number; analysed: number; missing?: number; gaps: number; repeated_stamps: number; backward_steps?: number; counter_wraps?: number;
   longest_gap_s: number | null; measured_rate_hz: number | null; jitter_s?: number; channels?: ChannelQuality[]; notes: string[];
 }
-export interface Metadata { id?: string; rate_hz?: number; condition: Condition; columns?: Record<string, {quantity: string; axis?: string; unit?: string}>; calibration?: string; stream?: string; labels?: Record<string, string> }
+export interface Metadata { id?: string; rate_hz?: number; condition: Condition; columns?: Record<string, {quantity: string; axis?: string; unit?: string}>; calibration?: string; stream?: string; trim?: {start_s?: number; end_s?: number}; labels?: Record<string, string> }
 export interface Recording {
   id: string; device: string; revision: number; metadata: Metadata; quality: Quality; created_at: string; rate_hz: number | null; duration_s: number | null; latest_job: string | null;
   file: {sha256: string; name: string | null; bytes?: number; format?: string; compression?: string; rows?: number; columns?: string[]; notes?: string[]};
@@ -45,7 +45,8 @@ export interface Channel {
   channel: string; quantity: string; axis: string | null; unit: string; samples: number; missing?: number; dt_s: number; mean: number | null;
   allan: {tau_s: number[]; deviation: Nullable; ci95: Ends[]; edf?: Nullable};
   haar: {scale: number[]; variance: Nullable; ci95: Ends[]; robust?: {variance: Nullable; ci95: (Ends | null)[]}};
-  contamination?: {verdict: string; p: number | null; disjoint_scales: number[]; flagged_samples: number; not_gaussian?: boolean};
+  contamination?: {verdict: string; p: number | null; disjoint_scales: number[]; flagged_samples: number; bursts?: number; not_gaussian?: boolean};
+  stationarity?: {changes: {kind: 'jump' | 'level'; time_s: number; size: number | null; unit: string}[]};
   allan_parameters: Record<'N' | 'B' | 'K' | 'Q' | 'R', Quantity | null> & {reasons: Record<string, string>};
   fits: ModelFit[];
   equivalents?: {N?: Equivalent[]; K?: Equivalent[]};
@@ -66,7 +67,7 @@ export interface Trace { unit: string | null; duration_s: number | null; rate_hz
 export interface TraceFlag { kind: 'trim' | 'gap' | 'flagged' | 'frozen' | 'saturated'; t0: number; t1: number; missing?: number }
 
 export interface Spectrum { unit: string; dt_s: number; samples: number; first_s: number; f_hz: number[]; density: Nullable; ci95: Ends[]; max: Nullable; segments: number; segment_samples: number; window: string }
-export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number }
+export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number; apart?: {t0: number; t1: number; samples: number}[] }
 export interface Spectrogram { unit: string; dt_s: number; samples: number; first_s: number; expected: 'model' | 'median'; time_s: number[]; f_hz: number[]; log10_ratio: Nullable[]; window_samples: number }
 
 export interface StoredProblem { title?: string; detail: string; type?: string; retryable?: boolean }

@@ -2,6 +2,7 @@
 import type {ComponentChildren, JSX} from 'preact';
 import {writeTick} from '../format/number';
 import {type Area, type Layout} from './layout';
+import {MarkAt} from './MarkAt';
 import {Band, Bars, Curve, Points, Sample} from './marks';
 import type {Note, Series} from './spec';
 
@@ -44,6 +45,8 @@ function Zones({place}: {place: Area}): JSX.Element {
       }
       case 'top': return <rect key={key} x={from} width={wide} y={top - 5} height="4" fill={zone.colour} stroke="none" />;
       case 'foot': return <rect key={key} x={from} width={wide} y={bottom - 4} height="4" fill={zone.colour} stroke="none" />;
+      case 'diamond': return <MarkAt key={key} mark="diamond" x={from + wide / 2} y={top - 3} colour={zone.colour} size={2.4} />;
+      case 'edge': return <line key={key} x1={from} x2={from} y1={top} y2={bottom} stroke={zone.colour} stroke-width="1.2" stroke-dasharray="5 3" />;
       case 'mark': {
         const at = Math.round((from + wide / 2) * 10) / 10;
         const fits = zone.text !== undefined && at - 4 > written;

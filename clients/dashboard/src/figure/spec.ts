@@ -43,8 +43,9 @@ export interface Note {
   ring?: boolean;
 }
 
-// A stretch of the x axis that is not like the rest: shaded over the whole height, hatched, a bar along the top or the foot, or a mark above it.
-export interface Zone { from: number; to: number; style: 'shade' | 'hatch' | 'top' | 'foot' | 'mark'; colour: string; text?: string }
+// A stretch of the x axis that is not like the rest: shaded over the whole height, hatched, a bar along the top or the foot, a mark or an
+// open diamond above it, or a line where it begins.
+export interface Zone { from: number; to: number; style: 'shade' | 'hatch' | 'top' | 'foot' | 'mark' | 'diamond' | 'edge'; colour: string; text?: string }
 
 export interface Guide { slope: number; text: string }
 

@@ -1,8 +1,8 @@
 // One recording: what it says, the evidence, the method.
 import type {JSX} from 'preact';
 import {useMemo, useState} from 'preact/hooks';
-import {get, Problem, remove, useJobEvents, useRead} from '../api/client';
-import type {Characterisation, CharacterisedChannel, Device, Implied, Job, List, Recording} from '../api/documents';
+import {get, Problem, remove, useJobEvents, useRead, type Read} from '../api/client';
+import type {Characterisation, CharacterisedChannel, Device, Histogram, Implied, Job, List, Recording} from '../api/documents';
 import {useEvents} from '../api/events';
 import {writeCount, writeNumber, writeP, writeTick} from '../format/number';
 import {writeDuration} from '../format/time';
@@ -23,7 +23,7 @@ import {useTitle} from '../shell/title';
 import {describe, variancePlots, type Curve} from './recording/plots';
 import {FilePanel, FittedModel, Ieee, OtherNames, Ranking} from './recording/Side';
 import {Leftover} from './recording/Leftover';
-import {Shape} from './recording/Shape';
+import {Shape, shapePath} from './recording/Shape';
 import {Signal} from './recording/Signal';
 import {Spectrum, SpectrumMethod} from './recording/Spectrum';
 
@@ -88,7 +88,7 @@ function How({result, channel}: {result: Characterisation; channel: Characterise
   </>;
 }
 
-function Evidence({recording, result, channel}: {recording: Recording; result: Characterisation; channel: CharacterisedChannel}): JSX.Element {
+function Evidence({recording, result, channel, shape}: {recording: Recording; result: Characterisation; channel: CharacterisedChannel; shape: Read<Histogram>}): JSX.Element {
   const {query} = usePlace();
   const c = channel.result;
   const curve: Curve = query.get('curve') === 'haar' ? 'haar' : 'allan';
@@ -135,7 +135,7 @@ function Evidence({recording, result, channel}: {recording: Recording; result: C
       {fit && <FittedModel fit={fit} />}
       {c.fits.length > 0 && <Ranking fits={c.fits} chosen={chosen} onChoose={i => choose({model: i === 0 ? null : c.fits[i]!.model})} />}
       <Ieee channel={c} />
-      <Shape recording={recording} channel={c} />
+      <Shape recording={recording} channel={c} read={shape} />
     </div>
   </div>
   <div class="print-only method foot"><How result={result} channel={channel} /><SpectrumMethod /></div></>;
@@ -164,6 +164,7 @@ function Body({recording}: {recording: Recording}): JSX.Element {
   const named = query.get('ch');
   const channel = channels.find(one => one.result.channel === named) ?? channels[0];
   const column = channel?.result.channel ?? (named && columns.includes(named) ? named : columns[0]);
+  const shape = useRead<Histogram>(channel ? shapePath(recording, channel.result.channel) : null);
   const select = (name: string): void => choose({ch: name});
   const step = (by: 1 | -1): void => { neighbourOf(recording, by).then(found => go(`${pageOf('recordings', found)}${named ? `?ch=${encodeURIComponent(named)}` : ''}`), () => say(by < 0 ? 'This is the first recording of the device.' : 'This is the last recording of the device.')); };
   usePageKeys({...Object.fromEntries(channels.slice(0, 9).map((one, i) => [String(i + 1), () => select(one.result.channel)])), c: () => go(`/compare?with=${recording.id}`), Escape: () => hover({tau: null}), '[': () => step(-1), ']': () => step(1)});
@@ -193,8 +194,8 @@ function Body({recording}: {recording: Recording}): JSX.Element {
     {!read.data && !job && (read.problem?.document.status === 404
       ? <p class="verdict">Not characterised yet. <Characterise recordings={[recording.id]} label="Characterise" onQueued={read.again} /><Expected recording={recording} /></p>
       : read.problem ? <Refusal problem={read.problem} again={read.again} /> : <Hairlines />)}
-    {column && <Signal recording={recording} column={column} quantity={channel?.result.quantity ?? 'sensor'} />}
-    {read.data && channel && <Evidence recording={recording} result={read.data} channel={channel} />}
+    {column && <Signal recording={recording} column={column} quantity={channel?.result.quantity ?? 'sensor'} shape={shape.data} channel={channel?.result} />}
+    {read.data && channel && <Evidence recording={recording} result={read.data} channel={channel} shape={shape} />}
     {!read.data && <div class="grid two"><Panel title="Quality"><p>{capital(qualityWords(recording))}.</p></Panel><FilePanel recording={recording} /></div>}
   </>;
 }

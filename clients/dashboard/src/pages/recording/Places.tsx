@@ -1,13 +1,13 @@
 // What the quality of a recording says, each sentence with the samples that it speaks of.
 import type {JSX} from 'preact';
-import type {Recording, Trace} from '../../api/documents';
-import {writeTick} from '../../format/number';
+import type {Channel, Histogram, Recording, Trace} from '../../api/documents';
+import {writeNumber, writeTick} from '../../format/number';
 import {writeDuration} from '../../format/time';
-import {countWord, plural, writeSentence} from '../../format/words';
+import {countWord, plural, writeSentence, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 
-export type PlaceKind = 'trim' | 'gap' | 'missing' | 'flagged' | 'frozen' | 'saturated';
-export interface Place { kind: PlaceKind; t0: number; t1: number; missing?: number }
+export type PlaceKind = 'trim' | 'gap' | 'missing' | 'flagged' | 'frozen' | 'saturated' | 'apart' | 'jump' | 'level';
+export interface Place { kind: PlaceKind; t0: number; t1: number; missing?: number; samples?: number; size?: string }
 
 // A stretch that lacks samples is a gap where the time column says so, else cells without a number.
 export function placesOf(trace: Trace): Place[] {
@@ -16,7 +16,16 @@ export function placesOf(trace: Trace): Place[] {
   return [...flags, ...missing];
 }
 
-const MARKS: Record<PlaceKind, string> = {trim: '░', gap: '▒', missing: '▒', flagged: '▼', frozen: '▁', saturated: '▔'};
+// What the samples themselves show: values apart from the rest, and where the noise is not the same before and after, whose times count from
+// the first analysed sample.
+export function foundIn(recording: Recording, shape: Histogram | undefined, channel: Channel | undefined): Place[] {
+  const first = recording.metadata.trim?.start_s ?? 0;
+  const apart = (shape?.apart ?? []).map(({t0, t1, samples}): Place => ({kind: 'apart', t0, t1, samples}));
+  const changes = (channel?.stationarity?.changes ?? []).map(({kind, time_s: time, size, unit}): Place => ({kind, t0: first + time, t1: first + time, size: kind === 'jump' ? `${writeNumber(size)} ${writeUnit(unit)}` : `${writeNumber(size)} times`}));
+  return [...apart, ...changes];
+}
+
+const MARKS: Record<PlaceKind, string> = {trim: '░', gap: '▒', missing: '▒', flagged: '▼', frozen: '▁', saturated: '▔', apart: '◇', jump: '┆', level: '┆'};
 const LEAST_SAMPLES = 60;  // about a place, so that it is seen among its neighbours
 const LISTED = 6;
 
@@ -27,6 +36,9 @@ const KINDS: Record<PlaceKind, (places: readonly Place[]) => string> = {
   flagged: places => `${plural(places.length, 'stretch', 'stretches')} with no measurement in ${places.length === 1 ? 'it' : 'them'}`,
   frozen: places => `frozen for ${writeDuration(places.reduce((sum, place) => sum + place.t1 - place.t0, 0))}`,
   saturated: places => `${plural(places.length, 'stretch', 'stretches')} at full scale`,
+  apart: places => `${plural(places.reduce((sum, place) => sum + (place.samples ?? 0), 0), 'value')} apart from the rest, more than 8 σ from the median around them`,
+  jump: places => `the mean jumps by ${places.map(place => place.size).join(', ')}`,
+  level: places => `the noise changes, to ${places.map(place => place.size).join(', ')} what it was`,
 };
 
 interface PlacesProps { recording: Recording; column: string; places: readonly Place[]; duration: number; rate: number }

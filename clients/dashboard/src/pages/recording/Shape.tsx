@@ -1,7 +1,7 @@
 // How the values lie around their median, on a logarithmic height: tails and spikes show against a Gaussian core of the same width.
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
-import {useRead} from '../../api/client';
+import type {Read} from '../../api/client';
 import type {Channel, Histogram, Recording} from '../../api/documents';
 import {writeCount, writeNumber} from '../../format/number';
 import {writeUnit} from '../../format/words';
@@ -22,9 +22,10 @@ function shapePlots(shape: Histogram): Plot[] {
       {id: 'counts', name: 'measured', x: middle, y: counts.map(count => count > 0 ? count : null), colour: 'var(--ink3)', bars: true}]}];
 }
 
-export function Shape({recording, channel}: {recording: Recording; channel: Channel}): JSX.Element {
-  const path = `/v1/recordings/${recording.id}/histogram?channel=${encodeURIComponent(channel.channel)}`;
-  const read = useRead<Histogram>(path);
+export const shapePath = (recording: Recording, column: string): string => `/v1/recordings/${recording.id}/histogram?channel=${encodeURIComponent(column)}`;
+
+export function Shape({recording, channel, read}: {recording: Recording; channel: Channel; read: Read<Histogram>}): JSX.Element {
+  const path = shapePath(recording, channel.channel);
   const plots = useMemo(() => read.data?.counts ? shapePlots(read.data) : [], [read.data]);
   const shape = read.data;
   if (!shape) return <Panel title="Shape of the noise"><Shown read={read}>{() => null}</Shown></Panel>;
