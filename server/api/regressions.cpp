@@ -31,6 +31,22 @@ Json worst_test(const Json& document) {
   return worst;
 }
 
+/// What a run says of one parameter: its tests, of every axis that has it.
+Json parameter_tests(const Json& document, std::string_view name) {
+  Json tests = Json::array();
+  for (const Json& unit : document.value("units", Json::array())) {
+    for (const Json& test : unit["tests"]) {
+      if (test.value("kind", "") == "parameter" && test.value("name", "") == name) {
+        tests.push_back(Json{{"sensor", unit["sensor"]}, {"axis", unit["axis"]}, {"condition", unit["condition"]}});
+        for (const char* const member : {"name", "ratio", "ci", "margin", "gated", "verdict"}) {
+          tests.back()[member] = test[member];
+        }
+      }
+    }
+  }
+  return tests;
+}
+
 /// How much the sessions scatter, of the document: the factors of spec/regression.md (3).
 Json scatter_of(const Json& document) {
   const Json between = document.value("between", Json());
@@ -38,20 +54,30 @@ Json scatter_of(const Json& document) {
                                                        : Json(nullptr);
 }
 
-/// A run is its job; its document is the job's result.
-Json listed(ApiContext& context, const Job& job) {
-  Json item{{"id", job.id},         {"state", name_of(job.state)},
-            {"device", nullptr},    {"baseline", nullptr},
-            {"candidate", nullptr}, {"verdict", nullptr},
-            {"summary", nullptr},   {"look", nullptr},
-            {"needs", nullptr},     {"worst", nullptr},
-            {"between", nullptr},   {"created_at", rfc3339(job.created_at)}};
+/// A run is its job; its document is the job's result. `parameter`: whose tests are told.
+Json listed(ApiContext& context, const Job& job, const std::optional<std::string>& parameter) {
+  Json item{{"id", job.id},
+            {"state", name_of(job.state)},
+            {"device", nullptr},
+            {"device_name", text_or_null(job.device_name)},
+            {"baseline", nullptr},
+            {"candidate", nullptr},
+            {"verdict", nullptr},
+            {"summary", nullptr},
+            {"look", nullptr},
+            {"needs", nullptr},
+            {"worst", nullptr},
+            {"between", nullptr},
+            {"created_at", rfc3339(job.created_at)}};
   const Json request = stored(job.request_json);
   if (request.is_object()) {
     item["device"] = request["inputs"]["device"];
     item["baseline"] = request["inputs"]["baseline"]["label"];
     item["candidate"] = request["inputs"]["candidate"]["label"];
     item["look"] = request["look"]["number"];
+  }
+  if (parameter) {
+    item["parameters"] = Json::array();
   }
   if (job.state == JobState::Succeeded) {
     if (const auto text = context.store.result_document(job.id)) {
@@ -61,6 +87,9 @@ Json listed(ApiContext& context, const Job& job) {
       item["needs"] = document["needs"];
       item["worst"] = worst_test(document);
       item["between"] = scatter_of(document);
+      if (parameter) {
+        item["parameters"] = parameter_tests(document, *parameter);
+      }
     }
   }
   return item;
@@ -90,9 +119,11 @@ Result<Response> list_regressions(ApiContext& context, const Request& request) {
     }
     filter.candidate = std::move(*label);
   }
+  const auto named = request.parameter("parameter");
+  const auto parameter = named ? std::optional(std::string(*named)) : std::nullopt;
   return list_rows(
       request, [&](const Page& page) { return context.store.jobs(filter, page); },
-      [&](const Job& job) { return listed(context, job); });
+      [&](const Job& job) { return listed(context, job, parameter); });
 }
 
 /// The job of a run. Error: NotFound, also for a job of another kind.
@@ -244,7 +275,7 @@ void add_regression_routes(Router& router, ApiContext& context) {
   router.add({"GET",
               "/v1/regressions",
               "listRegressions",
-              {"limit", "cursor", "sort", "device", "label"},
+              {"limit", "cursor", "sort", "device", "label", "parameter"},
               Handler([&](const Request& request) { return list_regressions(context, request); })});
   router.add({"GET", "/v1/regressions/{id}", "getRegression", {}, Handler([&](const Request& request) {
                 return get_regression(context, request);

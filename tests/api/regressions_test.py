@@ -189,6 +189,9 @@ class Labels(DaemonTest):
         self.assertEqual((runs[0]["id"], runs[0]["verdict"]), (second["id"], "fail"))
         self.assertGreater(runs[0]["worst"]["ci"][0], runs[0]["worst"]["margin"])
         self.assertGreater(runs[0]["between"]["kL"]["value"], 0)
+        self.assertEqual(runs[0]["device_name"], "imu-08")
+        self.assertNotIn("parameters", runs[0], "tests are told of the parameter that is asked for")
+        self.assertEqual(self.daemon.items("/v1/regressions?device=imu-08&parameter=flicker_noise.B")[0]["parameters"], [])
         self.problem(404, "not_found", self.daemon.get("/v1/regressions?device=nobody"))
 
     def test_settings_stay_with_the_anchor(self) -> None:

@@ -39,6 +39,51 @@ test('gross errors and jumps are marked in the trace, and lead to their samples'
   await closed(page);
 });
 
+test('runs against one baseline are drawn with intervals and margins, under the device’s name', async () => {
+  const ids = [];
+  for (const [seed, firmware, level] of [[71, '1.0', 0.1], [72, '1.1', 0.1], [73, '1.2', 0.17]]) ids.push(await recorded(noise(12000, seed, level), {device: 'gate-07', id: `gate-${firmware}`, labels: `firmware=${firmware}`, session: firmware}));
+  const jobs = [];
+  for (const firmware of ['1.1', '1.2']) {
+    const job = await daemon.json('/v1/jobs', {kind: 'regress', inputs: {device: 'gate-07', baseline: {labels: {firmware: '1.0'}}, candidate: {labels: {firmware}}}});
+    assert.equal((await daemon.finished(job.id)).state, 'succeeded');
+    jobs.push(job.id);
+  }
+  const {items} = await daemon.json('/v1/regressions?sort=-created_at&parameter=white_noise.N');
+  const [worse, same] = items;
+  assert.equal(worse.device_name, 'gate-07');
+  assert.ok(worse.parameters[0].ci[0] > worse.parameters[0].margin && same.parameters[0].ci[0] < same.parameters[0].margin, JSON.stringify(items.map(run => run.parameters)));
+  assert.equal((await daemon.json('/v1/regressions')).items[0].parameters, undefined, 'not asked for');
+
+  const page = await open(browser, daemon, '/regressions');
+  await page.getByRole('rowheader', {name: 'gate-07 against firmware=1.0'}).waitFor();
+  const figure = panel(page, 'gate-07 against firmware=1.0');
+  const svg = figure.locator('svg[tabindex]');
+  await svg.waitFor();
+  assert.equal(await svg.locator('rect[fill="var(--surface)"]').count(), 2, 'a square for the run that fails, and one in the key');
+  await figure.getByRole('button', {name: 'Table'}).click();
+  const rows = await figure.locator('.table-view tbody tr').allInnerTexts();
+  assert.equal(rows.length, 2, rows.join(' | '));
+  await page.getByLabel('parameter').selectOption('white_noise.N');
+  assert.ok(!page.url().includes('dev_'));
+
+  // The page of a run leads on: to a pipeline, to a merge request, and to a new baseline with a reason.
+  await page.goto(`${daemon.address}/regressions/${jobs[1]}`);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: 'JUnit'}).click()]);
+  assert.equal(download.suggestedFilename(), `${jobs[1]}.xml`);
+  await page.getByRole('button', {name: 'Markdown'}).click();
+  await page.getByText('The Markdown is copied.').waitFor();
+  assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^\*\*FAIL\*\*/);
+  await page.getByRole('link', {name: 'Compare'}).waitFor();
+  await page.getByRole('button', {name: 'Accept as new baseline'}).click();
+  const dialog = page.getByRole('dialog', {name: 'Accept as new baseline'});
+  await dialog.getByLabel('Reason').fill('the filter was widened');
+  await dialog.getByRole('button', {name: 'Accept', exact: true}).click();
+  await page.getByText('firmware=1.2 is the baseline of gate-07 now.').waitFor();
+  const [anchor] = (await daemon.json('/v1/regression-anchors?device=gate-07&sort=-created_at')).items;
+  assert.deepEqual([anchor.label, anchor.reason], ['firmware=1.2', 'the filter was widened']);
+  await closed(page);
+});
+
 test('what is compared has a difference with its interval, and says whether one is shown', async () => {
   const ids = [];
   for (const [seed, level] of [[81, 0.1], [82, 0.1], [83, 0.15]]) ids.push(await recorded(noise(12000, seed, level), {device: 'pair', id: `pair-${seed}`}));

@@ -50,7 +50,7 @@ const PAGES: Record<string, Load> = {
   'jobs/*': lists(pages => pages.Job),
   upload: lists(pages => pages.Upload),
   record: () => import('./routes/record').then(pages => pages.Record),
-  regressions: lists(pages => pages.Regressions),
+  regressions: results(pages => pages.Regressions),
   'regressions/*': results(pages => pages.Regression),
   docs: lists(pages => pages.Docs),
   'docs/*': lists(pages => pages.Docs),

@@ -3573,7 +3573,9 @@ class RegressionRun(TypedDict):
     # Of the run and of its job.
     id: str
     state: JobState
+    # Its id.
     device: str | None
+    device_name: str | None
     # Label.
     baseline: str | None
     # Label.
@@ -3584,6 +3586,9 @@ class RegressionRun(TypedDict):
     needs: RegressionNeeds | None
     # The test that shows the candidate furthest beyond its margin.
     worst: RegressionRunWorst | None
+    # The tests of the parameter that was asked for, one for each axis and condition that has it; none of a run that did
+    # not compare it. Only with `parameter`.
+    parameters: NotRequired[list[RegressionRunParameter]]
     # How much sessions scatter, in units of what is expected: of all axes in common, and of scales.
     between: RegressionRunBetween | None
     created_at: str
@@ -3599,6 +3604,19 @@ class RegressionRunBetween(TypedDict):
 class RegressionRunFactor(TypedDict):
     value: float
     ci95: list[float]
+
+
+class RegressionRunParameter(TypedDict):
+    sensor: str
+    axis: str
+    condition: str
+    name: str
+    # Candidate over baseline.
+    ratio: float | None
+    ci: list[float | None]
+    margin: float
+    gated: bool
+    verdict: str
 
 
 class RegressionRunWorst(TypedDict):
@@ -4440,7 +4458,9 @@ OPERATIONS: dict[str, Operation] = {
     'deleteInvestigation': Operation(
         'DELETE', '/v1/investigations/{id}', (), ('If-Match',), ()),
     'listRegressions': Operation(
-        'GET', '/v1/regressions', ('limit', 'cursor', 'sort', 'device', 'label'), (), ('application/json',)),
+        'GET', '/v1/regressions',
+        ('limit', 'cursor', 'sort', 'device', 'label', 'parameter'),
+        (), ('application/json',)),
     'getRegression': Operation(
         'GET', '/v1/regressions/{id}', (), (), ('application/json', 'text/plain', 'text/markdown')),
     'getRegressionJunit': Operation(

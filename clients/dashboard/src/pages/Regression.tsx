@@ -1,7 +1,7 @@
 // One regression run, for whoever wants to know why the gate failed: the sentence, what moved, what else changed, what would decide.
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
-import {useJobEvents, useRead} from '../api/client';
+import {ask, useJobEvents, useRead} from '../api/client';
 import type {Job, Nullable, Recording} from '../api/documents';
 import {writeNumber, writeP, writeQuantity, writeTick, type Written} from '../format/number';
 import {writeDuration} from '../format/time';
@@ -11,16 +11,16 @@ import type {Plot, Series} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head, Verdict} from '../shell/Head';
 import {MadeBy, Report} from '../shell/Report';
-import {curlOf} from '../shell/copy';
+import {say} from '../shell/say';
+import {copy, curlOf} from '../shell/copy';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
-import {columnName} from './device/documents';
+import {Accept} from './regression/Accept';
 import type {Regression as Document, Test, Unit} from './regression/documents';
+import {axisName, parameterName} from './regression/History';
 
 const COLOURS: Record<string, string> = {beyond: 'var(--robust)', worse_within_margin: 'var(--measured)', open: 'var(--measured)', ok: 'var(--measured)', improved: 'var(--model)'};
 const WORDS: Record<string, string> = {ok: 'no worse', worse_within_margin: 'worse, within the margin', beyond: 'beyond the margin', open: 'open', improved: 'better'};
-
-const nameOf = (unit: Unit): string => `${unit.sensor} ${unit.axis}, ${unit.condition.includes(':') ? unit.condition.split(':').slice(1).join(' ') : conditionName({kind: unit.condition})}`;
 
 function ratioPlots(tests: readonly Test[]): Plot[] {
   const scales = tests.filter(test => test.kind === 'scale' && test.tau_s !== undefined);
@@ -35,15 +35,14 @@ function ratioPlots(tests: readonly Test[]): Plot[] {
 }
 
 const ratioOf = (test: Test): Written => writeQuantity({value: test.ratio, ci95: [test.ci[0] ?? null, test.ci[1] ?? null], unit: ''});
-const parameterName = ({name = ''}: Test): string => { const {process, symbol} = columnName(name); return `${process} ${symbol}`; };
 
 function Tests({unit}: {unit: Unit}): JSX.Element {
   const chosen = usePlace().query.get('param');
   const parameters = unit.tests.filter(test => test.kind === 'parameter');
   return <Panel title="Parameters" sub={unit.structure.changed ? 'not compared: no model describes both arms' : unit.structure.pooled ?? ''}>
     {parameters.length === 0 ? <p class="sec">None is compared; the scales decide.</p> : <table class="stacked"><thead><tr><th scope="col">parameter</th><th scope="col" class="n">candidate ÷ baseline</th><th scope="col">interval</th><th scope="col" class="n">margin</th><th scope="col">word</th></tr></thead>
-      <tbody>{parameters.map(test => <tr key={test.name} aria-selected={test.name === chosen}><th scope="row"><button type="button" class="link" aria-pressed={test.name === chosen} onClick={() => choose({param: test.name === chosen ? null : test.name})}>{parameterName(test)}</button></th><td class="n" data-label="candidate ÷ baseline"><b>{ratioOf(test).value}</b></td><td class="ci">{ratioOf(test).interval}</td><td class="n nowrap" data-label="margin">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
-    {parameters.filter(test => test.name === chosen).map(test => <p key={test.name} class="note">{parameterName(test)} is {ratioOf(test).value} times that of the baseline{ratioOf(test).interval && `, 95 % ${ratioOf(test).interval}`}: {WORDS[test.verdict] ?? test.verdict}. {Math.round((test.margin - 1) * 100)} % more would be tolerated{test.p_adjusted !== undefined && test.p_adjusted !== null ? `; ${writeP(test.p_adjusted)} after correction for all tests` : ''}.</p>)}
+      <tbody>{parameters.map(test => <tr key={test.name} aria-selected={test.name === chosen}><th scope="row"><button type="button" class="link" aria-pressed={test.name === chosen} onClick={() => choose({param: test.name === chosen ? null : test.name})}>{parameterName(test.name ?? '')}</button></th><td class="n" data-label="candidate ÷ baseline"><b>{ratioOf(test).value}</b></td><td class="ci">{ratioOf(test).interval}</td><td class="n nowrap" data-label="margin">{Math.round((test.margin - 1) * 100)} %</td><td>{test.verdict === 'beyond' && <span class="g bad" aria-hidden="true">✗ </span>}{WORDS[test.verdict] ?? test.verdict}</td></tr>)}</tbody></table>}
+    {parameters.filter(test => test.name === chosen).map(test => <p key={test.name} class="note">{parameterName(test.name ?? '')} is {ratioOf(test).value} times that of the baseline{ratioOf(test).interval && `, 95 % ${ratioOf(test).interval}`}: {WORDS[test.verdict] ?? test.verdict}. {Math.round((test.margin - 1) * 100)} % more would be tolerated{test.p_adjusted !== undefined && test.p_adjusted !== null ? `; ${writeP(test.p_adjusted)} after correction for all tests` : ''}.</p>)}
     <p class="note">Structure: {unit.structure.baseline ?? '…'} before, {unit.structure.candidate ?? '…'} after{unit.structure.p !== undefined && unit.structure.p !== null ? `, ${writeP(unit.structure.p)}` : ''}.</p>
   </Panel>;
 }
@@ -64,9 +63,9 @@ function Shown({document}: {document: Document}): JSX.Element {
   return <>
     <Verdict summary={document.summary} />
     {document.needs?.sentence && !document.summary.details.includes(document.needs.sentence) && <p class="note"><b>What would decide:</b> {document.needs.sentence}</p>}
-    {document.units.length > 1 && <Segments label="Axis" options={document.units.map((each, i) => [String(i), nameOf(each)] as const)} value={String(document.units.indexOf(unit!))} onChange={value => choose({unit: value === '0' ? null : value})} />}
+    {document.units.length > 1 && <Segments label="Axis" options={document.units.map((each, i) => [String(i), axisName(each)] as const)} value={String(document.units.indexOf(unit!))} onChange={value => choose({unit: value === '0' ? null : value})} />}
     {unit && <div class="grid wide-side">
-      <Figure name={`regression-${document.device}-${unit.axis}`} title={`Ratio of deviations, ${nameOf(unit)}`} describe={`Candidate over baseline at each averaging time with simultaneous intervals; ${unit.tests.filter(test => test.verdict === 'beyond').length} beyond the margin.`} plots={plots}
+      <Figure name={`regression-${document.device}-${unit.axis}`} title={`Ratio of deviations, ${axisName(unit)}`} describe={`Candidate over baseline at each averaging time with simultaneous intervals; ${unit.tests.filter(test => test.verdict === 'beyond').length} beyond the margin.`} plots={plots}
         readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
         how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl></>} />
       <div class="stack"><Tests unit={unit} />
@@ -77,6 +76,17 @@ function Shown({document}: {document: Document}): JSX.Element {
   </>;
 }
 
+// The verdict as a merge request shows it.
+const markdown = (id: string): void => { ask(`/v1/regressions/${id}`, {headers: {Accept: 'text/markdown'}}).then(answer => answer.text()).then(text => copy(text, 'The Markdown is'), error => say((error as Error).message)); };
+
+// A recording of each arm at a time, for their deviations over each other: as many as a comparison takes.
+const COMPARED = 8;
+function compared({arms}: Document): string[] {
+  const of = (arm: Document['arms']['baseline']): string[] => arm.sessions.flatMap(session => session.recordings);
+  const [before, after] = [of(arms.baseline), of(arms.candidate)];
+  return [...new Set(Array.from({length: Math.max(before.length, after.length)}, (_, i) => [before[i], after[i]]).flat().filter((each): each is string => Boolean(each)))].slice(0, COMPARED);
+}
+
 export default function Regression(): JSX.Element {
   const {parts} = usePlace();
   const id = parts[1] ?? '';
@@ -85,9 +95,11 @@ export default function Regression(): JSX.Element {
   const read = useRead<Document>(job.data?.state === 'succeeded' ? `/v1/regressions/${encodeURIComponent(id)}` : null);
   useJobEvents(job.data && !job.data.finished_at ? id : null, job.again);
   const document = read.data;
+  const sessions = document ? compared(document) : [];
   return <>
     <Head crumb={[['Regressions', '/regressions'], [document?.device ?? '…', null]]} title={document ? `${document.arms.candidate.label || 'Candidate'} against ${document.arms.baseline.label || 'the baseline'}` : 'Regression'}
-      facts={[document?.device, document && `look ${document.look.number} of ${document.look.of}`]} actions={<Report />} />
+      facts={[document?.device, document && `look ${document.look.number} of ${document.look.of}`]} actions={<>{document && sessions.length > 1 && <a class="btn" href={`/compare?with=${sessions.join(',')}`}>Compare</a>}{document && <><a class="btn" href={`/v1/regressions/${id}/junit`} download={`${id}.xml`}>JUnit</a><button type="button" class="btn" onClick={() => markdown(id)}>Markdown</button></>}
+        {document?.arms.candidate.label && <Accept device={document.device} label={document.arms.candidate.label} />}<Report /></>} />
     {job.problem && <Refusal problem={job.problem} again={job.again} />}
     {job.data && !job.data.finished_at && <div role="status"><p class="verdict">{job.data.state === 'queued' ? 'Waiting for a worker' : `Comparing: ${job.data.stage ?? ''} ${Math.round(job.data.progress * 100)} %`}</p><Progress share={job.data.progress} label="Comparing" /></div>}
     {job.data?.finished_at && job.data.state !== 'succeeded' && <p class="verdict"><span class="g bad" aria-hidden="true">✗ </span>{job.data.problem?.detail ?? `The run is ${job.data.state}.`}</p>}

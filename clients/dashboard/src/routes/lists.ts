@@ -6,7 +6,6 @@ export {askFor} from '../pages/upload/run';
 export {default as Devices} from '../pages/Devices';
 export {default as Investigations} from '../pages/Investigations';
 export {default as Outages} from '../pages/Outages';
-export {default as Regressions} from '../pages/Regressions';
 export {default as Jobs} from '../pages/Jobs';
 export {default as Job} from '../pages/Job';
 export {default as Upload} from '../pages/Upload';

@@ -2,8 +2,9 @@
 import type {Nullable, Summary} from '../../api/documents';
 
 export interface Needs { sessions_per_arm: number | null; length_s: number | null; sentence: string | null }
+export interface ParameterTest { sensor: string; axis: string; condition: string; name: string; ratio: number | null; ci: Nullable; margin: number; gated: boolean; verdict: string }
 export interface RegressionRun {
-  id: string; state: string; device: string | null; baseline: string | null; candidate: string | null; verdict: string | null; summary: Summary | null;
+  id: string; state: string; device: string | null; device_name: string | null; parameters?: ParameterTest[]; baseline: string | null; candidate: string | null; verdict: string | null; summary: Summary | null;
   look: number | null; needs: Needs | null; created_at: string;
 }
 export interface Test { kind: string; tau_s?: number; name?: string; ratio: number | null; ci: Nullable; upper_single?: number | null; margin: number; gated: boolean; verdict: string; p_adjusted?: number | null }
