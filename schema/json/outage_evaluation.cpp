@@ -1,7 +1,9 @@
 #include "schema/json/outage_evaluation.hpp"
 
+#include "core/navigate/outage_progress.hpp"
 #include "core/signal/angle.hpp"
 #include "schema/json/outage_scenario.hpp"
+#include "schema/json/partial_outages.hpp"
 #include "schema/json/rounded.hpp"
 #include "schema/json/stored_channel.hpp"
 
@@ -176,6 +178,18 @@ OutageOptions outage_options_from_json(const Json& parameters, const std::string
 Json to_json(const OutageOptions& options) {
   return Json{
       {"runs", options.runs}, {"seed", options.seed}, {"relative_precision", number(options.relative_precision)}};
+}
+
+Json partial_outages_json(std::string_view stage) {
+  const auto known = outages_so_far(stage);
+  if (!known) {
+    return nullptr;
+  }
+  Json filters = Json::array();
+  for (const OutagesSoFar::Filter& filter : known->filters) {
+    filters.push_back(Json{{"name", filter.name}, {"error_m", quantity(filter.error_m, 1.0, "m")}});
+  }
+  return Json{{"runs", known->runs}, {"filters", std::move(filters)}};
 }
 
 }  // namespace driftlab

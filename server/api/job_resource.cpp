@@ -19,6 +19,9 @@ Json object_summary(const Job& job, const JobResource& resource) {
 Result<Json> whole_object(ApiContext& context, const Job& job, const JobResource& resource) {
   Json document = object_summary(job, resource);
   document["evaluation"] = nullptr;
+  if (resource.partial != nullptr && job.state == JobState::Running) {
+    document["partial"] = resource.partial(job.stage);
+  }
   if (job.state == JobState::Succeeded) {
     auto result = context.store.result_document(job.id);
     if (!result) {

@@ -17,6 +17,8 @@ struct JobResource {
   std::vector<const char*> parameters;  ///< and those that are its parameters
   /// Members that say what was asked, from a job's request, which may be null.
   Json (*about)(const Json& request);
+  /// What is known while a job runs, by its stage; null: nothing is told of this kind.
+  Json (*partial)(std::string_view stage) = nullptr;
 };
 
 /// Queues the job that a body of inputs, parameters and `priority` asks for. 202, or 200 for one that exists.
@@ -25,7 +27,7 @@ struct JobResource {
 /// A page of the jobs, without their results.
 [[nodiscard]] Result<Response> list_job_objects(ApiContext& context, const Request& request,
                                                 const JobResource& resource);
-/// One with `evaluation`, null until it has succeeded.
+/// One with `evaluation`, null until it has succeeded, and with `partial` while it runs.
 [[nodiscard]] Result<Response> get_job_object(ApiContext& context, const Request& request, const JobResource& resource);
 
 }  // namespace driftlab::server

@@ -1,4 +1,5 @@
 #include "schema/json/json.hpp"
+#include "schema/json/partial_outages.hpp"
 #include "server/api/api.hpp"
 #include "server/api/documents.hpp"
 
@@ -141,12 +142,15 @@ class JobEvents final : public EventSource {
     Batch batch;
     for (const JobEvent& event : *events) {
       after_ = event.sequence;
-      const Json data{{"job", job_id_},
-                      {"state", name_of(event.state)},
-                      {"stage", event.stage.empty() ? Json(nullptr) : Json(event.stage)},
-                      {"progress", number(event.progress)},
-                      {"attempt", event.attempt},
-                      {"at", rfc3339(event.at)}};
+      Json data{{"job", job_id_},
+                {"state", name_of(event.state)},
+                {"stage", event.stage.empty() ? Json(nullptr) : Json(event.stage)},
+                {"progress", number(event.progress)},
+                {"attempt", event.attempt},
+                {"at", rfc3339(event.at)}};
+      if (Json partial = partial_outages_json(event.stage); !partial.is_null()) {
+        data["partial"] = std::move(partial);
+      }
       batch.text +=
           "id: " + std::to_string(event.sequence) + "\nevent: " + event.type + "\ndata: " + to_text(data) + "\n\n";
       batch.last = event.type == "state" && is_terminal(event.state);

@@ -1,4 +1,5 @@
 /// Outage evaluations: jobs of kind `outage_evaluation` under a name of their own, with their results.
+#include "schema/json/partial_outages.hpp"
 #include "server/api/job_resource.hpp"
 
 namespace driftlab::server {
@@ -21,7 +22,8 @@ const JobResource kOutageEvaluations{"outage_evaluation",
                                      "outage evaluation",
                                      {"scenario"},
                                      {"runs", "seed", "relative_precision"},
-                                     about_outages};
+                                     about_outages,
+                                     partial_outages_json};
 
 }  // namespace
 

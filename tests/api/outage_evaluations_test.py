@@ -197,6 +197,21 @@ class OutageEvaluations(DaemonTest):
         self.assertEqual(self.daemon.finished(job)["state"], "cancelled")
         self.assertIsNone(self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{job}")).json["evaluation"])
 
+    def test_a_running_evaluation_tells_what_it_knows(self) -> None:
+        """The intervals so far, in the events of the job and in the resource; none before the first batch of runs, none in the end."""
+        job = self.expect(202, self.daemon.post("/v1/outage-evaluations", {"scenario": SCENARIO, "runs": 8000})).json["id"]
+        partial = next(event.data["partial"] for event in events(self.daemon, job) if "partial" in event.data)
+        self.assertEqual([each["name"] for each in partial["filters"]], ["matched", "too quiet"])
+        self.assertTrue(0 < partial["runs"] < 8000, partial)
+        for each in partial["filters"]:
+            low, high = each["error_m"]["ci95"]
+            self.assertTrue(low < each["error_m"]["value"] < high and each["error_m"]["unit"] == "m", each)
+        found = self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{job}")).json
+        self.assertEqual((found["state"], [each["name"] for each in found["partial"]["filters"]]), ("running", ["matched", "too quiet"]))
+        self.expect(202, self.daemon.post(f"/v1/jobs/{job}/cancel"))
+        self.daemon.finished(job)
+        self.assertNotIn("partial", self.expect(200, self.daemon.get(f"/v1/outage-evaluations/{job}")).json)
+
     def test_faults_are_named_by_their_place(self) -> None:
         def changed(**members: Any) -> dict[str, Any]:
             return {**copy.deepcopy(SCENARIO), **members}

@@ -103,3 +103,16 @@ test('what is compared has a difference with its interval, and says whether one 
   assert.ok(at > 0 && Math.abs(Math.log(high / value) - wanted) < 1e-6, `${heading[at]}: ${value}, ${high}; ${wanted}`);
   await closed(page);
 });
+
+test('an outage evaluation shows what its runs say while they go on', {timeout: 300000}, async () => {
+  const made = await daemon.json('/v1/outage-evaluations', {scenario: 'paper', runs: 400});
+  const page = await open(browser, daemon, `/outages/${made.id}`);
+  const soFar = panel(page, 'Horizontal error so far');
+  await soFar.locator('svg circle').first().waitFor({timeout: 240000});
+  const running = await daemon.json(`/v1/outage-evaluations/${made.id}`);
+  assert.equal(await soFar.locator('svg circle').count(), running.partial.filters.length);
+  for (const {error_m: error} of running.partial.filters) assert.ok(error.ci95[0] < error.value && error.value < error.ci95[1], JSON.stringify(error));
+  await page.getByText(/Running: what \d+ runs of 400 say\./).waitFor();
+  await daemon.json(`/v1/jobs/${made.id}/cancel`, {});
+  await closed(page);
+});

@@ -89,7 +89,7 @@ JSON_DOORS: dict[str, set[str]] = {
         "regression/recordings", "reported_channel", "trend_table", "verdict")},
     "core/calibrate": {f"core/calibrate/{name}.hpp" for name in ("multi_position", "sensor_calibration", "six_position")},
     "core/navigate": {f"core/navigate/{name}.hpp" for name in (
-        "drive/document", "imu_simulator", "outage_evaluation", "outage_scenario", "paper_scenario")},
+        "drive/document", "imu_simulator", "outage_evaluation", "outage_progress", "outage_scenario", "paper_scenario")},
 }
 # Module -> of these modules below it, the headers that it may include; of the others, all.
 DOORS = {**{module: {"core/campaign": CAMPAIGN_DOORS, "core/signal": SIGNAL_DOORS} for module in ABOVE_USE_CASES}, "schema/json": JSON_DOORS}

@@ -1768,6 +1768,7 @@ class JobEvent(TypedDict):
     progress: float
     attempt: int
     at: str
+    partial: NotRequired[OutageEvaluationPartial]
 
 
 class JobRequestArm(TypedDict):
@@ -2507,6 +2508,19 @@ class OutageEvaluationPair(TypedDict):
     outages: list[Quantity]
 
 
+class OutageEvaluationPartial(TypedDict):
+    """What a running evaluation knows: the mean horizontal error at the end of an outage, so far. Only in jobs that
+    evaluate outages, and from their first batch of runs on."""
+
+    runs: int
+    filters: list[OutageEvaluationPartialFilter]
+
+
+class OutageEvaluationPartialFilter(TypedDict):
+    name: str
+    error_m: Quantity
+
+
 class OutageEvaluationPath(TypedDict):
     """Once a second, metres from the start of the drive."""
 
@@ -2530,6 +2544,8 @@ class OutageEvaluationResource(TypedDict):
     created_at: str
     finished_at: str | None
     problem: ProblemStored | None
+    # Only while the job runs.
+    partial: NotRequired[OutageEvaluationPartial | None]
     evaluation: OutageEvaluation | None
 
 

@@ -1,4 +1,5 @@
 #include "core/navigate/outage_claims.hpp"
+#include "core/navigate/outage_progress.hpp"
 #include "core/navigate/outage_runs.hpp"
 #include "core/navigate/paper_scenario.hpp"
 
@@ -97,6 +98,38 @@ TEST(OutageEvaluation, TellsWhatIsKnownWhileItRuns) {
   ASSERT_TRUE(evaluate_outages(scenario, options, control));
   EXPECT_TRUE(last.starts_with("outages, mean after 40 runs: " + scenario.filters[0].name + " ")) << last;
   EXPECT_TRUE(last.ends_with("]")) << last;
+  const auto known = outages_so_far(last);
+  ASSERT_TRUE(known) << last;
+  EXPECT_EQ(known->runs, 40U);
+  ASSERT_EQ(known->filters.size(), 1U);
+  EXPECT_EQ(known->filters[0].name, scenario.filters[0].name);
+  options.runs = 40;
+  const auto after = evaluate_outages(scenario, options);
+  ASSERT_TRUE(after);
+  // Rounded to the digit that the interval lets stand: half a unit of it is less than a third of the half-width.
+  const Estimate& mean = after->filters[0].mean_error_m;
+  const double rounding = (mean.ci95.high - mean.ci95.low) / 2.0;
+  EXPECT_NEAR(known->filters[0].error_m.value, mean.value, rounding / 2.0);
+  EXPECT_NEAR(known->filters[0].error_m.ci95.low, mean.ci95.low, rounding / 2.0);
+  EXPECT_NEAR(known->filters[0].error_m.ci95.high, mean.ci95.high, rounding / 2.0);
+}
+
+TEST(OutagesSoFar, AreReadBackFromTheirSentenceAlone) {
+  const OutagesSoFar known{1000, {{"M 1, first", {12.0, {10.0, 14.0}}}, {"M_dyn(GMWM)", {0.5, {-0.2, 1.2}}}}};
+  const auto read = outages_so_far(stage_of(known));
+  ASSERT_TRUE(read) << stage_of(known);
+  EXPECT_EQ(read->runs, 1000U);
+  ASSERT_EQ(read->filters.size(), 2U);
+  EXPECT_EQ(read->filters[0].name, "M 1, first");
+  EXPECT_DOUBLE_EQ(read->filters[0].error_m.ci95.high, 14.0);
+  EXPECT_EQ(read->filters[1].name, "M_dyn(GMWM)");
+  EXPECT_DOUBLE_EQ(read->filters[1].error_m.ci95.low, -0.2);
+  for (const char* const stage :
+       {"", "outages", "trajectory", "outages, mean after 40 runs:", "outages, mean after 40 runs: M",
+        "outages, mean after 40 runs: M 1 m [0, 2", "outages, mean after many runs: M 1 m [0, 2]",
+        "outages, mean after 40 runs: M 1 m [0, 2], ", "outages, mean after 40 runs: M 1 m [0, 2]x, "}) {
+    EXPECT_FALSE(outages_so_far(stage)) << stage;
+  }
 }
 
 TEST(OutageEvaluation, PairsAreMirrorImages) {

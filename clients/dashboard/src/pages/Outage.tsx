@@ -12,7 +12,7 @@ import {MadeBy, Report} from '../shell/Report';
 import {curlOf} from '../shell/copy';
 import {Panel, Progress, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
-import type {Evaluation, Filter, StoredEvaluation} from './outage/documents';
+import type {Evaluation, Filter, Partial, StoredEvaluation} from './outage/documents';
 import {Errors} from './outage/Errors';
 import {Frame, reachOf} from './outage/Frames';
 import {DriveMap} from './outage/Map';
@@ -61,6 +61,12 @@ function Found({stored, evaluation}: {stored: StoredEvaluation; evaluation: Eval
   </>;
 }
 
+// Intervals tighten as runs come in; the best filter so far stands first.
+function SoFar({partial}: {partial: Partial}): JSX.Element {
+  const filters = partial.filters.map(({name, error_m: error}) => ({name, mean_error_m: error, outages: []})).sort((a, b) => (a.mean_error_m.value ?? 0) - (b.mean_error_m.value ?? 0));
+  return <Panel title="Horizontal error so far" sub="mean, 95 %"><Errors filters={filters} colours={filters.map(() => 'var(--measured)')} /></Panel>;
+}
+
 export default function OutagePage(): JSX.Element {
   const {parts} = usePlace();
   const read = useRead<StoredEvaluation>(`/v1/outage-evaluations/${encodeURIComponent(parts[1] ?? '')}`);
@@ -70,6 +76,6 @@ export default function OutagePage(): JSX.Element {
     <Head crumb={[['Outages', '/outages'], [stored.scenario_name, null]]} title={`Simulated outages: ${stored.scenario_name}`}
       facts={[stored.evaluation && plural(stored.evaluation.filters[0]?.outages.length ?? 0, 'outage'), stored.evaluation && plural(stored.evaluation.filters.length, 'filter'), `${plural(stored.evaluation?.runs ?? stored.runs, 'run')}, seed ${stored.seed}`, stored.finished_at ? `${writeWhen(stored.finished_at)}, took ${writeDuration((Date.parse(stored.finished_at) - Date.parse(stored.created_at)) / 1000)}` : 'running']} actions={<><a class="btn" href={`/jobs/${stored.id}`}>Job</a><Report /></>} />
     <MadeBy job={stored.id} document={`/v1/outage-evaluations/${stored.id}`} />
-    {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}</>}
+    {stored.evaluation ? <Found stored={stored} evaluation={stored.evaluation} /> : <><p class="verdict" role="status">{stored.problem ? <><span class="g bad" aria-hidden="true">✗ </span>{stored.problem.detail}</> : stored.finished_at ? `The job was ${stored.state}; there is no result.` : stored.partial ? `Running: what ${plural(stored.partial.runs, 'run')} of ${stored.runs} say.` : `${stored.stage ?? 'Waiting for a worker'}, ${Math.round(stored.progress * 100)} %`}</p>{!stored.finished_at && <Progress share={stored.progress} label="Outages" />}{!stored.finished_at && stored.partial && <SoFar partial={stored.partial} />}</>}
   </>}</Shown>;
 }

@@ -13,11 +13,14 @@ const GAP = 14;
 const LEAST = 660;
 const LABEL = 34;  // of the mean's value, behind its whisker
 
-export function Errors({filters, colours}: {filters: readonly Filter[]; colours: readonly string[]}): JSX.Element {
+type Erring = Pick<Filter, 'name' | 'mean_error_m' | 'outages'>;
+
+// A running evaluation knows the mean over all outages alone.
+export function Errors({filters, colours}: {filters: readonly Erring[]; colours: readonly string[]}): JSX.Element {
   const [box, room] = useWidth();
   const width = Math.max(room, LEAST);
   const outages = filters[0]?.outages ?? [];
-  const facets: {title: string; pick: (filter: Filter) => Quantity}[] = [{title: `mean of ${outages.length}`, pick: filter => filter.mean_error_m}, ...outages.map((one, i) => ({title: `outage ${one.index}`, pick: (filter: Filter) => filter.outages[i]!.error_m}))];
+  const facets: {title: string; pick: (filter: Erring) => Quantity}[] = [{title: outages.length > 0 ? `mean of ${outages.length}` : 'mean of all outages', pick: filter => filter.mean_error_m}, ...outages.map((one, i) => ({title: `outage ${one.index}`, pick: (filter: Erring) => filter.outages[i]!.error_m}))];
   const most = Math.max(...filters.flatMap(filter => facets.map(({pick}) => pick(filter).ci95?.[1] ?? pick(filter).value ?? 0))) * 1.05;
   const wide = (width - NAMES - LABEL) / facets.length - GAP;
   const height = HEAD + filters.length * ROW + 20;

@@ -14,6 +14,8 @@ export interface Evaluation {
   attribution: {total: Pair; low_frequency_noise: Pair; gauss_markov_states: Pair; switching: Pair} | null;
   claims: {claim: string; supported: boolean; because: string}[]; trajectory: Path; tracks?: Track[];
 }
-export interface StoredEvaluation { id: string; scenario_name: string; runs: number; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: {detail: string} | null; evaluation: Evaluation | null }
+// What is known while runs go on.
+export interface Partial { runs: number; filters: {name: string; error_m: Quantity}[] }
+export interface StoredEvaluation { partial?: Partial | null; id: string; scenario_name: string; runs: number; seed: number; state: string; stage: string | null; progress: number; created_at: string; finished_at: string | null; problem: {detail: string} | null; evaluation: Evaluation | null }
 
 export const at95 = (ellipses: readonly Ellipse[]): Ellipse | undefined => ellipses.find(each => Math.abs(each.fraction - 0.95) < 0.01);
