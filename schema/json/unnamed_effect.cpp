@@ -42,6 +42,7 @@ void read_unnamed_effect(const Json& document, const std::string& pointer, inves
   effect.value = read_numbers(reader.member("values"), pointer + "/values", faults);
   const auto unit = parse_parameter_unit(reader.text("unit").value_or("1"));
   (void)reader.text("along");
+  const Json* const period = reader.member("period_s");
   if (const Json* const recordings = reader.member("recordings"); recordings != nullptr && recordings->is_array()) {
     for (const Json& id : *recordings) {
       effect.recordings.push_back(id.is_string() ? id.get<std::string>() : "");
@@ -50,9 +51,17 @@ void read_unnamed_effect(const Json& document, const std::string& pointer, inves
   reader.reject_unknown();
   if (!kind || !against || (*kind == UnnamedKind::Spectrum) != (*against == Against::Frequency)) {
     faults.add(pointer + "/kind", ErrorCode::InvalidArgument,
-               "A profile is a spectrum against frequency, or a variance or a mean against time, rate, "
+               "A profile is a spectrum against frequency, or a variance or a mean against time, phase, rate, "
                "angular_acceleration, temperature or angle.");
     return;
+  }
+  if (*against == Against::Phase) {
+    effect.period_s = period != nullptr && period->is_number() ? period->get<double>() : 0.0;
+    if (!(effect.period_s > 0.0)) {
+      faults.add(pointer + "/period_s", ErrorCode::InvalidArgument,
+                 "A profile against phase has a period of more than 0 s.");
+      return;
+    }
   }
   if (*kind == UnnamedKind::Mean && !unit) {
     faults.add(pointer + "/unit", unit.error());
@@ -84,6 +93,9 @@ Json to_json(const UnnamedEffect& effect, const Unit& channel) {
             {"channel", effect.column},
             {"edges", numbers(investigate::in_lab_units(effect.edge, effect.against))},
             {"values", numbers(effect.value, mean ? level.per_si : 1.0)}};
+  if (effect.against == Against::Phase) {
+    item["period_s"] = effect.period_s;
+  }
   if (mean) {
     item["unit"] = level.symbol;
   }

@@ -280,6 +280,68 @@ TEST(ProfileWithoutAName, IsMeasuredAsItIs) {
   EXPECT_LT(report.unnamed.front().heldout_gain, 1.05 * oracle);
 }
 
+constexpr double kPulsesEvery = 7.3;  // [s]
+constexpr double kPulse = 0.14;       // [deg/s], 1.4 of the noise's deviations
+
+/// Short pulses of which no line of the spectrum stands out.
+std::vector<double> has_pulses(std::size_t, std::uint64_t seed) {
+  std::vector<double> noise = white(seed);
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noise[i] += std::fmod(static_cast<double>(i) / kRate, kPulsesEvery) < 0.1 ? kPulse : 0.0;
+  }
+  return noise;
+}
+
+/// Noise that is half as large again for a fifth of every period.
+std::vector<double> is_louder_at_times(std::size_t, std::uint64_t seed) {
+  std::vector<double> noise = white(seed);
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noise[i] *= std::fmod(static_cast<double>(i) / kRate, 3.1) < 0.62 ? 1.5 : 1.0;
+  }
+  return noise;
+}
+
+TEST(ProfileWithoutAName, OfPulsesHasTheirPeriodAndTheirShape) {
+  const Made made = study_of(has_pulses, 11);
+  const Report report = investigated(made.study);
+  EXPECT_FALSE(report.unexplained.empty()) << told(report);
+  ASSERT_EQ(report.unnamed.size(), 3U) << told(report);  // each recording has a phase of its own
+  for (const UnnamedFinding& found : report.unnamed) {
+    ASSERT_EQ(found.effect.against, Against::Phase) << told(report);
+    EXPECT_EQ(found.effect.kind, UnnamedKind::Mean) << told(report);
+    EXPECT_NEAR(found.effect.period_s, kPulsesEvery, 1e-3 * kPulsesEvery);
+    // What the pulse is worth in all: 5 samples of 1.4 deviations, 82 times.
+    EXPECT_GT(found.heldout_gain, 0.4 * 0.5 * 5.0 * 1.96 * 82.0);
+    EXPECT_LT(found.heldout_gain, 1.1 * 0.5 * 5.0 * 1.96 * 82.0);
+  }
+  // Simulated, the pulses are there again.
+  Faults faults;
+  const Baseline model = simulation_model_from_json(extended_json(report), "", faults);
+  ASSERT_TRUE(faults.none()) << faults.error().message;
+  const StudyRecording& own = made.study.recordings.front();
+  const SimulatedChannel channel = simulate_channel(model, own, "gz", own.channels.front().role, 5);
+  double on = 0.0;
+  double off = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const bool in_pulse = std::fmod(static_cast<double>(i) / kRate, kPulsesEvery) < 0.1;
+    (in_pulse ? on : off) += channel.reading[i] * 180.0 / std::numbers::pi;
+    count += in_pulse ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(on / count - off / (kSamples - count), kPulse, 0.4 * kPulse);
+}
+
+TEST(ProfileWithoutAName, OfNoiseThatComesAgainIsOneOfItsPower) {
+  const Report report = investigated(study_of(is_louder_at_times, 12, 1).study);
+  ASSERT_FALSE(report.unnamed.empty()) << told(report);
+  const UnnamedEffect& effect = report.unnamed.front().effect;
+  EXPECT_EQ(effect.kind, UnnamedKind::Variance) << told(report);
+  ASSERT_EQ(effect.against, Against::Phase) << told(report);
+  EXPECT_NEAR(effect.period_s, 3.1, 3e-3);
+  const auto ends = std::minmax_element(effect.value.begin(), effect.value.end());
+  EXPECT_NEAR(*ends.second / *ends.first, 2.25, 0.5);
+}
+
 TEST(ProfileWithoutAName, IsNoneWhereNothingIsHidden) {
   for (std::uint64_t seed = 20; seed < 30; ++seed) {
     const Report report = investigated(study_of([](std::size_t, std::uint64_t own) { return white(own); }, seed).study);

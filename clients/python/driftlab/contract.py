@@ -1665,7 +1665,9 @@ class InvestigationUnexplainedItem(TypedDict):
 
 class InvestigationUnnamedItem(TypedDict):
     kind: Literal['spectrum', 'variance', 'mean']
-    against: Literal['frequency', 'time', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    # Of a phase: the time since the start of the recording, modulo this.
+    period_s: NotRequired[float]
     # The unit of the edges.
     along: str
     channel: str
@@ -2225,8 +2227,11 @@ class ModelProcess(TypedDict):
 class ModelProfile(TypedDict):
     # Values are ratios to the model's density or to the power of its white noise; of a mean they are in `unit`.
     kind: Literal['spectrum', 'variance', 'mean']
-    # What the profile goes with; a spectrum with frequency, the others with the rest.
-    against: Literal['frequency', 'time', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    # What the profile goes with; a spectrum with frequency, the others with the rest. A phase is the time since the
+    # start of the recording, modulo `period_s`.
+    against: Literal['frequency', 'time', 'phase', 'rate', 'angular_acceleration', 'temperature', 'angle']
+    # Of a phase; needed there.
+    period_s: NotRequired[float]
     # The unit of the edges: the one that belongs to `against`, whatever is written.
     along: NotRequired[Literal['Hz', 's', 'deg/s', 'deg/s^2', 'degC', 'deg']]
     channel: str

@@ -130,7 +130,7 @@ void take_unnamed_means(const Baseline& baseline, const ChannelGroup& group, std
   for (const UnnamedEffect& effect : baseline.unnamed) {
     for (std::size_t r = 0; r < error.size() && effect.kind == UnnamedKind::Mean; ++r) {
       const StudyRecording& recording = *group.members[r].recording;
-      const Series course = course_of(effect.against, recording, group.axis());
+      const Series course = course_of(effect, recording, group.axis());
       if (!acts_on(effect, group.column, recording.id) || course.empty()) {
         continue;
       }

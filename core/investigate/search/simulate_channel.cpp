@@ -57,7 +57,7 @@ std::string add_unnamed(const UnnamedEffect& effect, Draft& draft) {
     shape_spectrum(effect, recording.dt_s, draft.slow);
     return "";
   }
-  const Series course = course_of(effect.against, recording, axis_index(draft.group->role.axis).value_or(2));
+  const Series course = course_of(effect, recording, axis_index(draft.group->role.axis).value_or(2));
   if (course.empty()) {
     return "it needs " + std::string(words_of(effect.against));
   }

@@ -94,7 +94,7 @@ struct GivenEffect {
 
 /// What a profile without a name is of, and what it goes with (unnamed_effect.hpp).
 enum class UnnamedKind { Spectrum, Variance, Mean };
-enum class Against { Frequency, Time, Rate, RateChange, Temperature, Angle };
+enum class Against { Frequency, Time, Phase, Rate, RateChange, Temperature, Angle };
 
 /// An effect that a model holds and nobody has a name for: a measured profile, `value[k]` between `edge[k]` and
 /// `edge[k + 1]`.
@@ -103,6 +103,7 @@ struct UnnamedEffect {
   Against against = Against::Frequency;
   std::string column;
   std::vector<std::string> recordings;  ///< ids; empty: all
+  double period_s = 0.0;                ///< of a phase
   std::vector<double> edge;             ///< ascending, one more than values [SI]
   std::vector<double> value;            ///< ratios; of a mean [SI]
 };

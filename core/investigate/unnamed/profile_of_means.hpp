@@ -14,8 +14,13 @@ struct BinMeans {
   Eigen::VectorXd se;         ///< before that
 };
 
+/// How the means of a profile are expected to lie: all of one size, or a few of one size among many that are none, as
+/// those of a pulse are. The share p of these and their variance t^2 are the likeliest ones (EM), and a mean with the
+/// variance v is drawn by the probability that it is one of them and by t^2/(t^2 + v).
+enum class ExpectedMeans { OfOneSize, Few };
+
 /// From the inner products of means and bins, constants taken out (centred_gram).
-[[nodiscard]] BinMeans fit_bin_means(const Eigen::MatrixXd& gram);
+[[nodiscard]] BinMeans fit_bin_means(const Eigen::MatrixXd& gram, ExpectedMeans expected = ExpectedMeans::OfOneSize);
 
 /// The first `width` columns.
 [[nodiscard]] BlockColumns narrowed(const BlockColumns& columns, std::size_t width);

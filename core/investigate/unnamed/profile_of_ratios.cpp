@@ -7,7 +7,7 @@
 namespace driftlab::investigate {
 namespace {
 
-constexpr double kLeast = 0.02;  ///< ratio: what is deeper is told as this deep
+constexpr double kDeepest = 0.02;  ///< ratio: what is deeper is told as this deep
 
 }  // namespace
 
@@ -42,7 +42,7 @@ RatioProfile profile_of(const std::vector<RatioBin>& bins) {
   const double prior = std::max(0.0, square / std::max(1.0, count));
   for (std::size_t b = 0; b < bins.size(); ++b) {
     const double own = bins[b].weight > 0.0 ? prior / (prior + 1.0 / bins[b].weight) : 0.0;
-    profile.value[b] = std::max(kLeast, 1.0 + own * (profile.value[b] - 1.0));
+    profile.value[b] = std::max(kDeepest, 1.0 + own * (profile.value[b] - 1.0));
   }
   return profile;
 }

@@ -8,6 +8,7 @@ namespace driftlab::investigate {
 
 std::string sentence_of(const UnnamedEffect& effect, const std::vector<double>& se, const LabUnit& unit) {
   constexpr double kSure = 3.0;
+  constexpr double kKnown = 0.001;  // a period, and better: what is shown of it
   const bool mean = effect.kind == UnnamedKind::Mean;
   const ProfileUnit along = unit_of(effect.against);
   std::vector<std::string> ends;
@@ -34,16 +35,21 @@ std::string sentence_of(const UnnamedEffect& effect, const std::vector<double>& 
   const std::string where = ends.empty()       ? "a little everywhere"
                             : ends.size() == 1 ? ends[0]
                                                : ends[0] + " and " + ends[1];
+  std::string along_what(words_of(effect.against));
+  if (effect.against == Against::Phase) {
+    along_what += " of " +
+                  significant(effect.period_s, effect.period_s * (1.0 - kKnown), effect.period_s * (1.0 + kKnown)) +
+                  " s";
+  }
   switch (effect.kind) {
     case UnnamedKind::Spectrum:
       return "The noise " + of + " has another density than the model's: " + where;
     case UnnamedKind::Variance:
-      return "The power of the noise " + of + " goes with " + std::string(words_of(effect.against)) +
-             ", over that of the model: " + where;
+      return "The power of the noise " + of + " goes with " + along_what + ", over that of the model: " + where;
     case UnnamedKind::Mean:
       break;
   }
-  return "The mean " + of + " goes with " + std::string(words_of(effect.against)) + ": " + where;
+  return "The mean " + of + " goes with " + along_what + ": " + where;
 }
 
 }  // namespace driftlab::investigate

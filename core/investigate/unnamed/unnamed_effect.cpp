@@ -23,9 +23,10 @@ struct AgainstWords {
   Against against;
   std::string_view name, words;
 };
-constexpr std::array<AgainstWords, 6> kAgainst{
+constexpr std::array<AgainstWords, 7> kAgainst{
     {{Against::Frequency, "frequency", "the frequency"},
      {Against::Time, "time", "the time since the start of the recording"},
+     {Against::Phase, "phase", "the time within its period"},
      {Against::Rate, "rate", "the rate about the axis"},
      {Against::RateChange, "angular_acceleration", "the angular acceleration about the axis"},
      {Against::Temperature, "temperature", "the temperature"},
@@ -74,6 +75,7 @@ ProfileUnit unit_of(Against against) {
     case Against::Frequency:
       return {"Hz", 1.0, 0.0};
     case Against::Time:
+    case Against::Phase:
       return {"s", 1.0, 0.0};
     case Against::Rate:
       return {"deg/s", 1.0 / kDegree, 0.0};
@@ -105,14 +107,16 @@ UnnamedEffect from_lab_units(UnnamedEffect effect, double value_factor) {
   return effect;
 }
 
-Series course_of(Against against, const StudyRecording& recording, std::size_t axis) {
+Series course_of(Against against, const StudyRecording& recording, std::size_t axis, double period_s) {
   switch (against) {
     case Against::Frequency:
       break;
-    case Against::Time: {
+    case Against::Time:
+    case Against::Phase: {
       std::vector<double> time(recording.length);
       for (std::size_t i = 0; i < time.size(); ++i) {
-        time[i] = recording.time_s(i);
+        const double t = recording.time_s(i);
+        time[i] = against == Against::Time ? t : t - period_s * std::floor(t / period_s);
       }
       return time;
     }
@@ -131,6 +135,10 @@ Series course_of(Against against, const StudyRecording& recording, std::size_t a
     }
   }
   return {};
+}
+
+Series course_of(const UnnamedEffect& effect, const StudyRecording& recording, std::size_t axis) {
+  return course_of(effect.against, recording, axis, effect.period_s);
 }
 
 double value_at(const UnnamedEffect& effect, double x) {

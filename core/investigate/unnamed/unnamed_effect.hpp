@@ -5,6 +5,7 @@
 ///   - spectrum: the density of all noise at a frequency is `value` times that of the model;
 ///   - variance: the power of the white noise is `value` times that of the model;
 ///   - mean: the error has this much more [SI].
+/// A phase is the time since the start of the recording, modulo a period: what comes again and again.
 /// Outside its bins a profile is what it is in the outermost one.
 #include "core/investigate/study/study.hpp"
 
@@ -38,8 +39,10 @@ struct ProfileUnit {
 [[nodiscard]] UnnamedEffect from_lab_units(UnnamedEffect effect, double value_factor);
 
 /// The quantity over the grid of a recording [SI]; empty where it is not known there, and for frequencies. Of a channel
-/// about no axis (a pressure) rates are those about z. Angles are taken modulo a turn.
-[[nodiscard]] Series course_of(Against against, const StudyRecording& recording, std::size_t axis);
+/// about no axis (a pressure) rates are those about z. Angles are taken modulo a turn, phases modulo `period_s`.
+[[nodiscard]] Series course_of(Against against, const StudyRecording& recording, std::size_t axis,
+                               double period_s = 0.0);
+[[nodiscard]] Series course_of(const UnnamedEffect& effect, const StudyRecording& recording, std::size_t axis);
 
 /// The profile's value at x.
 [[nodiscard]] double value_at(const UnnamedEffect& effect, double x);

@@ -2,6 +2,7 @@
 
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
+#include "core/investigate/unnamed/period_search.hpp"
 #include "core/investigate/unnamed/profile_bins.hpp"
 #include "core/investigate/unnamed/profile_of_means.hpp"
 #include "core/investigate/unnamed/profile_of_ratios.hpp"
@@ -26,6 +27,7 @@ constexpr double kPeriods = 4.0;                   ///< of the lowest frequency 
 constexpr std::size_t kTimeBins = 32;              ///< chosen, not measured, as all that follow
 constexpr std::size_t kTurns = 8;                  ///< of the folds within a bin of time
 constexpr std::size_t kSegments = 128;             ///< of a single recording that take turns
+constexpr std::size_t kMostPhases = 128;           ///< bins of a period
 constexpr std::size_t kMostAdopted = 3;            ///< of a channel
 constexpr double kCut = 5.0;                       ///< innovations: gross values are no level
 constexpr std::size_t kMostBlocks = 20'000;
@@ -41,6 +43,7 @@ struct Candidate {
   std::vector<double> se;
   double gain = -1e300;
   double samples = 0.0;
+  double tried = 1.0;                             ///< of which this one was chosen before it was judged
   std::optional<SlowModel> noise = std::nullopt;  ///< the base beside it, where it was fitted again
 };
 
@@ -50,6 +53,11 @@ struct Courses {
   std::vector<std::size_t> members;  ///< that have it
   std::vector<Series> of;            ///< one per member of the group
   std::vector<double> edge;
+  double period_s = 0.0;  ///< of a phase, as the next two
+  double periods = 0.0;   ///< in the recording
+  double tried = 1.0;     ///< periods
+  /// Whether they are of one recording, whose parts take turns, and say nothing of another.
+  [[nodiscard]] bool single() const { return against == Against::Time || against == Against::Phase; }
 };
 
 class UnnamedSearch {
@@ -62,6 +70,7 @@ class UnnamedSearch {
       }
     }
     lines_.resize(group.members.size());
+    again_.resize(group.members.size());
     tails_ = 1.0 + 0.5 * std::max(0.0, excess_kurtosis());
   }
 
@@ -73,7 +82,8 @@ class UnnamedSearch {
       if (adopted_.empty()) {
         tried_ = static_cast<double>(std::max<std::size_t>(all.size(), 1));
       }
-      std::erase_if(all, [&](const Candidate& one) { return one.gain < kAdopted + 2.0 * std::log(tried_); });
+      std::erase_if(all,
+                    [&](const Candidate& one) { return one.gain < kAdopted + 2.0 * std::log(tried_ * one.tried); });
       // A mean that is not taken off is in every spectrum and every variance: it comes first.
       const auto best = std::max_element(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
         const bool mean_a = a.effect.kind == UnnamedKind::Mean;
@@ -112,7 +122,7 @@ class UnnamedSearch {
     UnnamedFinding finding;
     finding.effect = candidate.effect;
     finding.heldout_gain = candidate.gain;
-    finding.tried = tried_;
+    finding.tried = tried_ * candidate.tried;
     finding.samples = candidate.samples;
     finding.sentence = sentence_of(candidate.effect, candidate.se, level_unit(group_.unit));
     if (candidate.noise) {
@@ -131,7 +141,9 @@ class UnnamedSearch {
 
   [[nodiscard]] bool known(const UnnamedEffect& effect) const {
     return std::any_of(adopted_.begin(), adopted_.end(), [&](const UnnamedEffect& other) {
-      return other.kind == effect.kind && other.against == effect.against && other.recordings == effect.recordings;
+      // Of a mean that comes again the squares do too.
+      const bool alike = other.kind == effect.kind || effect.against == Against::Phase;
+      return alike && other.against == effect.against && other.recordings == effect.recordings;
     });
   }
 
@@ -189,6 +201,50 @@ class UnnamedSearch {
     return courses;
   }
 
+  /// The period of what comes again and again in a member, of its mean or of its power; looked for once.
+  [[nodiscard]] std::optional<FoundPeriod> period_of(std::size_t r, UnnamedKind kind) const {
+    auto& known = again_[r][kind == UnnamedKind::Mean ? 0 : 1];
+    if (!known) {
+      const Series& innovation = data_.innovation[r];
+      const auto value = [&](std::size_t i) {
+        const double e = data_.used[r][i] != 0 ? std::clamp(innovation[i], -kCut, kCut) : 0.0;
+        return kind == UnnamedKind::Mean ? e : e * e;
+      };
+      known.emplace(find_period(innovation.size(), data_.dt_s, value, data_.stop));
+    }
+    return *known;
+  }
+
+  [[nodiscard]] Courses phases_of(std::size_t r, const FoundPeriod& found) const {
+    const StudyRecording& own = recording(r);
+    Courses courses;
+    courses.against = Against::Phase;
+    courses.members = {r};
+    courses.period_s = found.period_s;
+    courses.periods = static_cast<double>(own.count()) * own.dt_s / found.period_s;
+    courses.tried = found.tried;
+    courses.of.resize(group_.members.size());
+    courses.of[r] = course_of(Against::Phase, own, group_.axis(), found.period_s).part(own.begin, own.count());
+    const std::size_t block = std::max<std::size_t>(1, own.count() / kMostBlocks);
+    const double most = found.period_s / (own.dt_s * static_cast<double>(block));
+    const auto bins =
+        std::max<std::size_t>(2, std::min({2 * found.teeth, kMostPhases, static_cast<std::size_t>(most)}));
+    for (std::size_t k = 0; k <= bins; ++k) {
+      courses.edge.push_back(found.period_s * static_cast<double>(k) / static_cast<double>(bins));
+    }
+    return courses;
+  }
+
+  /// A mean or a power that comes again and again; without a gain where none does.
+  [[nodiscard]] Candidate again(std::size_t r, UnnamedKind kind) const {
+    const std::optional<FoundPeriod> found = period_of(r, kind);
+    if (!found) {
+      return {};
+    }
+    const Courses phases = phases_of(r, *found);
+    return kind == UnnamedKind::Mean ? mean(phases) : variance(phases);
+  }
+
   [[nodiscard]] std::vector<Candidate> candidates() const {
     std::vector<Candidate> all;
     std::vector<std::size_t> whole(group_.members.size());
@@ -207,6 +263,8 @@ class UnnamedSearch {
       const Courses time = time_of(r);
       all.push_back(variance(time));
       all.push_back(mean(time));
+      all.push_back(again(r, UnnamedKind::Mean));
+      all.push_back(again(r, UnnamedKind::Variance));
       if (group_.members.size() > 1) {
         all.push_back(spectrum({r}, kBands.front()));
       }
@@ -214,14 +272,15 @@ class UnnamedSearch {
     return all;
   }
 
-  [[nodiscard]] UnnamedEffect effect_in(UnnamedKind kind, Against against,
-                                        const std::vector<std::size_t>& members) const {
+  [[nodiscard]] UnnamedEffect effect_in(UnnamedKind kind, const Courses& courses) const {
     UnnamedEffect effect;
     effect.kind = kind;
-    effect.against = against;
+    effect.against = courses.against;
+    effect.period_s = courses.period_s;
     effect.column = group_.column;
-    const bool one_of_them = members.size() < group_.members.size() || against == Against::Time;
-    for (const std::size_t r : members) {
+    effect.edge = courses.edge;
+    const bool one_of_them = courses.members.size() < group_.members.size() || courses.single();
+    for (const std::size_t r : courses.members) {
       if (one_of_them) {
         effect.recordings.push_back(recording(r).id);
       }
@@ -237,7 +296,7 @@ class UnnamedSearch {
       if (effect.kind != UnnamedKind::Mean || !acts_on(effect, group_.column, own.id)) {
         continue;
       }
-      const Series course = course_of(effect.against, own, group_.axis());
+      const Series course = course_of(effect, own, group_.axis());
       rest = rest.empty() ? data_.residual[r].values() : std::move(rest);
       for (std::size_t i = 0; i < rest.size() && !course.empty(); ++i) {
         rest[i] -= value_at(effect, course[own.begin + i]);
@@ -249,7 +308,10 @@ class UnnamedSearch {
   /// Spectra of the halves of the members over those of the model.
   [[nodiscard]] Candidate spectrum(const std::vector<std::size_t>& members, int asked) const {
     Candidate candidate;
-    candidate.effect = effect_in(UnnamedKind::Spectrum, Against::Frequency, members);
+    Courses frequencies;
+    frequencies.against = Against::Frequency;
+    frequencies.members = members;
+    candidate.effect = effect_in(UnnamedKind::Spectrum, frequencies);
     double longest_s = 0.0;
     for (const std::size_t r : members) {
       longest_s = std::max(longest_s, 0.5 * data_.dt_s * static_cast<double>(data_.residual[r].size()));
@@ -357,14 +419,18 @@ class UnnamedSearch {
 
   /// Which part of a single recording a sample belongs to.
   [[nodiscard]] static std::size_t part_of(const Courses& courses, std::size_t i, std::size_t count) {
+    if (courses.against == Against::Phase) {
+      const double share = static_cast<double>(i) / static_cast<double>(count);
+      return static_cast<std::size_t>(share * courses.periods) % 2;
+    }
     const std::size_t segments = courses.against == Against::Time ? kTimeBins * kTurns : kSegments;
     return i * segments / count % 2;
   }
 
   [[nodiscard]] Candidate variance(const Courses& courses) const {
     Candidate candidate;
-    candidate.effect = effect_in(UnnamedKind::Variance, courses.against, courses.members);
-    candidate.effect.edge = courses.edge;
+    candidate.effect = effect_in(UnnamedKind::Variance, courses);
+    candidate.tried = courses.tried;
     const std::size_t bins = courses.edge.size() - 1;
     const bool alone = courses.members.size() == 1;
     std::vector<std::vector<RatioBin>> parts(alone ? 2 : courses.members.size(), std::vector<RatioBin>(bins));
@@ -374,7 +440,7 @@ class UnnamedSearch {
       std::vector<std::pair<const UnnamedEffect*, Series>> taken;
       for (const UnnamedEffect& effect : adopted_) {
         if (effect.kind == UnnamedKind::Variance && acts_on(effect, group_.column, own.id)) {
-          taken.emplace_back(&effect, course_of(effect.against, own, group_.axis()).part(own.begin, own.count()));
+          taken.emplace_back(&effect, course_of(effect, own, group_.axis()).part(own.begin, own.count()));
         }
       }
       const std::size_t count = data_.innovation[r].size();
@@ -400,8 +466,8 @@ class UnnamedSearch {
   /// Means of blocks of the residuals, and the bins that they lie in.
   [[nodiscard]] Candidate mean(const Courses& courses) const {
     Candidate candidate;
-    candidate.effect = effect_in(UnnamedKind::Mean, courses.against, courses.members);
-    candidate.effect.edge = courses.edge;
+    candidate.effect = effect_in(UnnamedKind::Mean, courses);
+    candidate.tried = courses.tried;
     const std::size_t bins = courses.edge.size() - 1;
     BlockSeries series;
     series.dt_s = data_.dt_s;
@@ -409,8 +475,8 @@ class UnnamedSearch {
     for (const std::size_t r : courses.members) {
       longest = std::max(longest, data_.residual[r].size());
     }
-    series.block = std::max<std::size_t>(
-        {1, static_cast<std::size_t>(std::lround(1.0 / (kBlockRateHz * data_.dt_s))), longest / kMostBlocks});
+    const double asked = courses.against == Against::Phase ? 1.0 : 1.0 / (kBlockRateHz * data_.dt_s);
+    series.block = std::max<std::size_t>({1, static_cast<std::size_t>(std::lround(asked)), longest / kMostBlocks});
     BlockColumns columns;
     columns.width = 1 + courses.members.size() + bins;  // the means, a constant of each recording, the bins
     SlowModel noise = data_.model;
@@ -427,7 +493,7 @@ class UnnamedSearch {
     SlowModel noise_without = noise;
     // An automatic base, and slow noise that was found, have followed the effect as they can: they are fitted again
     // beside the profile.
-    if (courses.against != Against::Time && noise.components.size() > first_free_) {
+    if (!courses.single() && noise.components.size() > first_free_) {
       SlowFreedom freedom;
       freedom.white = !data_.given;
       freedom.first_free = first_free_;
@@ -444,12 +510,13 @@ class UnnamedSearch {
     }
     const Eigen::Index size = static_cast<Eigen::Index>(bins) + 1;
     const auto all = std::accumulate(parts.begin(), parts.end(), Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size)));
+    const ExpectedMeans expected = courses.against == Against::Phase ? ExpectedMeans::Few : ExpectedMeans::OfOneSize;
     for (const Eigen::MatrixXd& part : parts) {
-      const Eigen::VectorXd a = fit_bin_means(all - part).amplitude;
+      const Eigen::VectorXd a = fit_bin_means(all - part, expected).amplitude;
       candidate.gain += a.dot(part.col(0).segment(1, size - 1)) -
                         0.5 * (part(0, 0) + a.dot(part.block(1, 1, size - 1, size - 1) * a));
     }
-    const BinMeans fit = fit_bin_means(all);
+    const BinMeans fit = fit_bin_means(all, expected);
     candidate.effect.value.assign(fit.amplitude.begin(), fit.amplitude.end());
     candidate.se.assign(fit.se.begin(), fit.se.end());
     return candidate;
@@ -523,6 +590,8 @@ class UnnamedSearch {
   std::vector<Courses> courses_;
   std::vector<UnnamedEffect> adopted_;
   mutable std::vector<std::optional<Halves>> lines_;  ///< by member; it is for one thread
+  /// Likewise, by mean and by power.
+  mutable std::vector<std::array<std::optional<std::optional<FoundPeriod>>, 2>> again_;
   double tails_ = 1.0;
   double tried_ = 1.0;
 };

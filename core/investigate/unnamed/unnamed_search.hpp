@@ -10,11 +10,14 @@
 ///   - the spectrum of the residuals over that of the model, in 14 or 42 bands of equal width in ln f or in 40 of
 ///     equal width in f, whichever predict best;
 ///   - the mean square of the innovations against rate, angular acceleration, temperature and angle, in 12 bins with
-///     equal numbers of samples, and against time in each single recording;
+///     equal numbers of samples, and against time and against the phase of a period in each single recording;
 ///   - the mean against the same, by generalised least squares on block means (slow/slow_fit.hpp).
 /// With bins b, estimates r_b and their variances v_b, a profile of ratios is drawn towards 1 by
 ///   r^_b = 1 + w_b (r_b - 1),   w_b = t^2/(t^2 + v_b),   t^2 = max(0, mean of (r_b - 1)^2 - v_b)
 /// (the prior variance t^2 by moments), so that where there is nothing, nothing is changed.
+///
+/// The period of what comes again in a recording is found first (unnamed/period_search.hpp) and counts with all others
+/// that were tried; every second period is held out.
 ///
 /// Under an automatic base the mean ratio is a level that the base takes (search/joint_refit.hpp), and is divided out.
 ///

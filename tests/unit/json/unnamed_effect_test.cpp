@@ -54,6 +54,19 @@ TEST(UnnamedEffect, IsReadInSiAndWrittenAsItWasRead) {
   EXPECT_FALSE(to_json(density.model.unnamed.at(0), *parse_unit("deg/s")).contains("unit"));
 }
 
+TEST(UnnamedEffect, OfAPhaseHasItsPeriod) {
+  const Read pulses = read(R"json({"kind": "mean", "against": "phase", "period_s": 7.25, "channel": "gz",
+                                   "recordings": ["a"], "edges": [0, 0.5, 7.25], "values": [1, 0], "unit": "deg/s"})json");
+  ASSERT_EQ(pulses.fault, "");
+  const investigate::UnnamedEffect& effect = pulses.model.unnamed.at(0);
+  EXPECT_EQ(effect.against, Against::Phase);
+  EXPECT_EQ(effect.period_s, 7.25);
+  const Json written = to_json(effect, *parse_unit("deg/s"));
+  EXPECT_EQ(written.at("against"), "phase");
+  EXPECT_EQ(written.at("period_s"), 7.25);
+  EXPECT_EQ(written.at("along"), "s");
+}
+
 TEST(UnnamedEffect, IsRefusedWhereItCannotBeOne) {
   const auto refused = [](const char* text, const char* part) {
     const Read result = read(text);
@@ -76,6 +89,11 @@ TEST(UnnamedEffect, IsRefusedWhereItCannotBeOne) {
           "not negative");
   refused(R"json({"kind": "variance", "against": "rate", "channel": "g", "edges": [1, "2"], "values": [1]})json",
           "list of numbers");
+  refused(R"json({"kind": "variance", "against": "phase", "channel": "g", "edges": [1, 2], "values": [1]})json",
+          "/period_s");
+  refused(
+      R"json({"kind": "variance", "against": "phase", "period_s": 0, "channel": "g", "edges": [1, 2], "values": [1]})json",
+      "/period_s");
 }
 
 }  // namespace

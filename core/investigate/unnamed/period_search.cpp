@@ -1,0 +1,118 @@
+#include "core/investigate/unnamed/period_search.hpp"
+
+#include "core/investigate/fullrate/fourier.hpp"
+#include "core/investigate/fullrate/spectrum.hpp"
+#include "core/signal/progress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+namespace driftlab::investigate {
+namespace {
+
+constexpr std::array<std::size_t, 7> kTeeth{4, 8, 16, 32, 64, 128, 256};
+constexpr double kPeriods = 8.0;                            ///< in a recording, as the next three chosen, not measured
+constexpr double kCap = 20.0;                               ///< of an ordinate over its mean
+constexpr std::size_t kMostValues = std::size_t{1} << 18U;  ///< a day at 100 Hz would take a minute
+constexpr std::size_t kFewestValues = 256;
+
+/// Ordinates of twice as many frequencies as there are independent ones, over their mean, capped; without the mean of
+/// the values.
+std::vector<float> ordinates(std::size_t n, const std::function<double(std::size_t)>& at, const std::stop_token& stop) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += at(i);
+    count += at(i) != 0.0 ? 1.0 : 0.0;
+  }
+  const double mean = sum / std::max(count, 1.0);
+  const auto value = [&](std::size_t i) { return i < n && at(i) != 0.0 ? at(i) - mean : 0.0; };
+  const std::vector<std::complex<double>> z = half_spectrum(2 * n, value, kWholeTransform, stop);
+  double power = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    power += value(i) * value(i);
+  }
+  std::vector<float> p;
+  for (const std::complex<double>& one : z) {
+    p.push_back(static_cast<float>(power > 0.0 ? std::min(std::norm(one) / power, kCap) : 0.0));
+  }
+  return p;
+}
+
+/// At most -ln of the chance of a comb's sum.
+double nats_of(double sum, double teeth) { return sum > teeth ? sum - teeth - teeth * std::log(sum / teeth) : 0.0; }
+
+/// Of periods around one that a comb of so many teeth has told, the one whose phases tell most: a tooth is half of a
+/// line's width uncertain, by which a pulse moves from one end of the recording to the other.
+double sharpened(double period, std::size_t teeth, std::size_t n, double dt_s,
+                 const std::function<double(std::size_t)>& at) {
+  constexpr int kEachWay = 16;
+  constexpr std::size_t kFinest = 512;  // phases
+  const std::size_t phases = std::min(4 * teeth, kFinest);
+  double best = period;
+  double most = -1.0;
+  for (int d = -kEachWay; d <= kEachWay; ++d) {
+    const double drift = static_cast<double>(d) / kEachWay * period / static_cast<double>(teeth);
+    const double tried = period * (1.0 + drift / (static_cast<double>(n) * dt_s));
+    std::vector<double> sum(phases, 0.0);
+    std::vector<double> count(phases, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double turns = static_cast<double>(i) * dt_s / tried;
+      const auto phase = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(phases));
+      sum[std::min(phase, phases - 1)] += at(i);
+      count[std::min(phase, phases - 1)] += at(i) != 0.0 ? 1.0 : 0.0;
+    }
+    double told = 0.0;
+    for (std::size_t b = 0; b < phases; ++b) {
+      told += count[b] > 0.0 ? sum[b] * sum[b] / count[b] : 0.0;
+    }
+    if (told > most) {
+      most = told;
+      best = tried;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::function<double(std::size_t)>& at,
+                                       const std::stop_token& stop) {
+  n = fast_length(std::min(n, kMostValues));
+  if (n < kFewestValues) {
+    return std::nullopt;
+  }
+  const std::vector<float> p = ordinates(n, at, stop);
+  const double places = static_cast<double>(p.size() - 1);
+  FoundPeriod best;
+  best.tried = 0.0;
+  double most = 0.0;
+  for (const std::size_t teeth : kTeeth) {
+    // Fundamentals in places of the spectrum; steps by which the last tooth moves one place.
+    const double step = 1.0 / static_cast<double>(teeth);
+    const auto first = static_cast<std::size_t>(2.0 * kPeriods / step);
+    const auto end = static_cast<std::size_t>(places);  // where the last tooth is at the end of the spectrum
+    for (std::size_t j = first; j < end && !polled(stop, j); ++j) {
+      double sum = 0.0;
+      for (std::size_t k = 1; k <= teeth; ++k) {
+        sum += static_cast<double>(p[(k * j + teeth / 2) / teeth]);
+      }
+      if (const double nats = nats_of(sum, static_cast<double>(teeth)); nats > most) {
+        most = nats;
+        best.teeth = teeth;
+        best.period_s = static_cast<double>(2 * n) * dt_s / (static_cast<double>(j) * step);
+      }
+    }
+    best.tried += end > first ? 0.5 * static_cast<double>(end - first) : 0.0;
+  }
+  if (!(best.tried > 0.0 && most > std::log(best.tried))) {
+    return std::nullopt;
+  }
+  best.period_s = sharpened(best.period_s, best.teeth, n, dt_s, at);
+  return best;
+}
+
+}  // namespace driftlab::investigate
