@@ -1,6 +1,7 @@
 #include "server/configuration.hpp"
 
 #include "core/signal/text.hpp"
+#include "server/places/place.hpp"
 
 #include <unistd.h>
 
@@ -112,8 +113,13 @@ Setting blobs_setting() {
           "Folder of recordings that several daemons and workers share, or `database`; none: in --data",
           [](Settings& settings, const std::vector<std::string>& values) -> Status {
             const std::string& where = values.back();
-            if (!where.empty() && where != "database" && !where.starts_with('/')) {
-              return refuse("blobs", "must be the absolute path of a folder, or database.");
+            const BlobPlace* const place = find_blob_place(where);
+            if (place == nullptr) {
+              return refuse("blobs", "must be " + meanings_of_blob_places() + ".");
+            }
+            const std::string fault = place->fault(where);
+            if (!fault.empty()) {
+              return refuse("blobs", fault);
             }
             settings.blobs = where;
             return {};

@@ -1,15 +1,14 @@
 #include "server/open_store.hpp"
 
 #include "server/move_store.hpp"
+#include "server/places/place.hpp"
 #include "server/store/sqlite/sqlite_store.hpp"
 
 #ifdef DRIFTLAB_POSTGRES
-#include "server/store/postgres/database_blobs.hpp"
 #include "server/store/postgres/postgres_store.hpp"
 #endif
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -17,12 +16,6 @@ namespace driftlab::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Holds the word of the PostgreSQL database whose recordings the directory keeps.
-constexpr const char* kIdentityFile = "postgresql-store";
-constexpr const char* kSqliteFile = "driftlab.db";
-/// The value of --blobs that means no folder.
-constexpr std::string_view kInDatabase = "database";
 
 bool is_there(const fs::path& path) {
   std::error_code none;
@@ -64,45 +57,6 @@ Result<OpenedStore> open_sqlite(const Settings& settings, const Clock& clock, Au
 }
 
 #ifdef DRIFTLAB_POSTGRES
-std::string first_word(const fs::path& path) {
-  std::ifstream stream(path);
-  std::string word;
-  stream >> word;
-  return word;
-}
-
-/// Rows and recordings that belong to each other, or none of either yet. `data`: the directory of the recordings.
-Status bind_directory(const fs::path& data, SqlStore& store, const std::string& identity) {
-  const fs::path file = data / kIdentityFile;
-  const std::vector<ErrorField> fields = {{"parameter", "data"}};
-  if (is_there(file)) {
-    return first_word(file) == identity
-               ? Status{}
-               : fail(ErrorCode::Conflict,
-                      "The directory " + data.string() + " keeps the recordings of another database than --store.",
-                      fields);
-  }
-  if (Status made = make_directories(data); !made) {
-    return made;
-  }
-  if (is_there(data / kSqliteFile) || is_there(data / "blobs")) {
-    return fail(ErrorCode::Conflict,
-                "The directory " + data.string() +
-                    " keeps the recordings of an SQLite store; name an empty one for the PostgreSQL database.",
-                fields);
-  }
-  const auto hashes = store.blob_hashes();
-  if (!hashes) {
-    return fail(hashes.error());
-  }
-  if (!hashes->empty()) {
-    return fail(ErrorCode::Conflict,
-                "The recordings of the database are not in " + data.string() + "; name the directory that keeps them.",
-                fields);
-  }
-  return write_secret_file(file, identity + "\n");
-}
-
 Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audited) {
   if (Status made = make_directories(settings.data); !made) {
     return fail(made.error());
@@ -120,12 +74,6 @@ Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audite
     return fail(store.error());
   }
   const PostgresFacts& facts = (*store)->facts();
-  if (settings.blobs != kInDatabase) {
-    const fs::path recordings = settings.blobs.empty() ? settings.data : fs::path(settings.blobs);
-    if (Status bound = bind_directory(recordings, **store, facts.identity); !bound) {
-      return fail(bound.error());
-    }
-  }
   Json told{{"postgresql", facts.version},
             {"database", facts.database},
             {"schema_before", facts.schema_before},
@@ -133,7 +81,9 @@ Result<OpenedStore> open_postgres(const Settings& settings, AuditListener audite
   Coordination* const others = (*store)->coordination();
   Database* const database = &(*store)->database();
   const Clock* const clock = &(*store)->clock();
-  return OpenedStore{std::move(*lock), std::move(*store), std::move(told), database, others, clock};
+  std::string identity = facts.identity;
+  return OpenedStore{std::move(*lock),   std::move(*store), std::move(told), database, others, clock,
+                     std::move(identity)};
 }
 #else
 Result<OpenedStore> open_postgres(const Settings& /*settings*/, const AuditListener& /*audited*/) {
@@ -150,29 +100,16 @@ Result<OpenedStore> open_store(const Settings& settings, const Clock& clock, Aud
 }
 
 Result<std::unique_ptr<BlobStore>> open_blobs(const Settings& settings, OpenedStore& opened) {
-  if (settings.blobs.empty()) {
-    return open_blob_directory(settings.data);
-  }
-  if (settings.blobs != kInDatabase) {
-    return open_shared_blob_directory(settings.blobs);
-  }
-  const fs::path copies = settings.data / "copies";
-  auto local = open_blob_directory(copies);
-  if (!local) {
-    return local;
-  }
-#ifdef DRIFTLAB_POSTGRES
-  return std::make_unique<DatabaseBlobs>(*opened.database, std::move(*local), copies,
-                                         static_cast<std::uintmax_t>(settings.cache_megabytes) * 1'000'000);
-#else
-  return local;
-#endif
+  const BlobPlace* const place = find_blob_place(settings.blobs);
+  return place == nullptr
+             ? fail(ErrorCode::InvalidArgument, "There is no such place of recordings.", {{"parameter", "blobs"}})
+             : place->open(settings, opened);
 }
 
 Result<OpenedStore> open_existing_store(const Settings& settings, const Clock& clock) {
+  const bool in_folder = settings.blobs.empty() || settings.blobs.starts_with('/');
   const fs::path kept = settings.blobs.empty() ? settings.data : fs::path(settings.blobs);
-  const bool in_database = settings.blobs == kInDatabase;
-  if (!in_database && !is_there(kept / (settings.store.empty() ? kSqliteFile : kIdentityFile))) {
+  if (in_folder && !is_there(kept / (settings.store.empty() ? kSqliteFile : kIdentityFile))) {
     return fail(ErrorCode::NotFound,
                 "There is no database in " + kept.string() + "; name the daemon's directory with --data.");
   }

@@ -10,6 +10,7 @@
 #include "server/store/sql/sql_store.hpp"
 
 #include <memory>
+#include <string>
 
 namespace driftlab::server {
 
@@ -23,16 +24,21 @@ struct OpenedStore {
   Coordination* others = nullptr;
   /// By which its rows are dated: that of a database that daemons share, else the one it was opened with.
   const Clock* clock = nullptr;
+  /// The word of a database, which the place of its recordings keeps; empty: they lie in the same directory.
+  std::string identity = {};
 };
 
-/// Locks the directory and opens the store. Rows and recordings belong together: a directory whose recordings belong to
-/// another store is refused, for the sweeper would take them for rubbish.
-/// Errors: those of open_sqlite_store or open_postgres_store; Conflict (directory and store do not belong together);
-/// InvalidArgument (a driftlab that was built without PostgreSQL).
+/// Holds the word of the PostgreSQL database whose recordings a folder keeps.
+inline constexpr const char* kIdentityFile = "postgresql-store";
+inline constexpr const char* kSqliteFile = "driftlab.db";
+
+/// Locks the directory and opens the store.
+/// Errors: those of open_sqlite_store or open_postgres_store; Conflict (the directory belongs to a PostgreSQL
+/// database); InvalidArgument (a driftlab that was built without PostgreSQL).
 [[nodiscard]] Result<OpenedStore> open_store(const Settings& settings, const Clock& clock, AuditListener audited = {});
 
-/// The recordings of a store that was opened by the same settings. Errors: those of open_blob_directory or
-/// open_shared_blob_directory.
+/// The recordings of a store that was opened by the same settings. Errors: those of their place
+/// (server/places/place.hpp).
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_blobs(const Settings& settings, OpenedStore& opened);
 
 /// The store, if it was made before: a command makes no new one by a typing error. Error also: NotFound.

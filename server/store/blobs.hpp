@@ -1,5 +1,6 @@
 #pragma once
-/// Blobs: uploaded bytes and their decoded columns as files beside the database.
+/// Blobs: uploaded bytes and their decoded columns, as files in a folder; in other storages:
+/// server/store/copied_blobs.hpp.
 ///
 ///   <root>/blobs/ab/abcdef...            the bytes as uploaded, named by their SHA-256
 ///   <root>/columns/ab/abcdef....columns  their decoded columns (core/read/column_file.hpp)
@@ -51,6 +52,9 @@ class IncomingBlob {
 /// Where the pyramid of a columns file lies, whether there is one or not.
 [[nodiscard]] std::filesystem::path pyramid_path(const std::filesystem::path& columns);
 
+/// What of a blob somebody is about to use.
+enum class BlobPart { Bytes, Columns };
+
 class BlobStore {
  public:
   BlobStore() = default;
@@ -74,6 +78,12 @@ class BlobStore {
     double free_fraction = 0.0;
   };
   [[nodiscard]] virtual Result<Space> space() const = 0;
+  /// Brings a part of a blob to where its path leads, or finds that it is missing or damaged: then nothing is there, as
+  /// checks of the file will say. Error: Io, where the storage does not answer, so that nobody knows; without this call
+  /// that would look like a loss.
+  [[nodiscard]] virtual Status reach(std::string_view /*sha256*/, BlobPart /*part*/) const { return {}; }
+  /// Whether a storage that is no folder answers. Error: Io, in a sentence.
+  [[nodiscard]] virtual Status ping() const { return {}; }
 };
 
 /// Blobs in a directory of the local file system, made if absent. Clears `incoming/`. Holds a lock on the directory

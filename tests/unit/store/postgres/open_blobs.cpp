@@ -1,6 +1,7 @@
 #include "tests/unit/store/postgres/open_blobs.hpp"
 
-#include "server/store/postgres/database_blobs.hpp"
+#include "server/store/copied_blobs.hpp"
+#include "server/store/postgres/database_files.hpp"
 #include "server/store/postgres/postgres_store.hpp"
 #include "tests/unit/store/postgres/cluster.hpp"
 #include "tests/unit/store/postgres/open.hpp"
@@ -10,30 +11,28 @@
 namespace driftlab::server {
 namespace {
 
-/// Blobs with the store whose database they lie in.
-class OwnedBlobs final : public BlobStore {
+/// Files in the database of a store that they bring along.
+class OwnedFiles final : public RemoteFiles {
  public:
-  OwnedBlobs(std::unique_ptr<PostgresStore> store, std::unique_ptr<BlobStore> local, const std::filesystem::path& root)
-      : store_(std::move(store)), blobs_(store_->database(), std::move(local), root, 10'000) {}
-  [[nodiscard]] Result<std::unique_ptr<IncomingBlob>> begin() override { return blobs_.begin(); }
-  [[nodiscard]] std::filesystem::path bytes_path(std::string_view sha256) const override {
-    return blobs_.bytes_path(sha256);
+  explicit OwnedFiles(std::unique_ptr<PostgresStore> store) : store_(std::move(store)), files_(store_->database()) {}
+  [[nodiscard]] Status store(const std::string& blob, std::span<const LocalFile> files) override {
+    return files_.store(blob, files);
   }
-  [[nodiscard]] std::filesystem::path columns_path(std::string_view sha256) const override {
-    return blobs_.columns_path(sha256);
+  [[nodiscard]] Result<std::string> read(const std::string& blob, FileKind kind, const Sink& sink) const override {
+    return files_.read(blob, kind, sink);
   }
-  [[nodiscard]] Status remove(std::string_view sha256) override { return blobs_.remove(sha256); }
-  [[nodiscard]] Result<bool> remove_if_older(std::string_view sha256, std::chrono::microseconds age) override {
-    return blobs_.remove_if_older(sha256, age);
+  [[nodiscard]] Status remove(const std::string& blob) override { return files_.remove(blob); }
+  [[nodiscard]] Result<bool> remove_if_older(const std::string& blob, std::chrono::microseconds age) override {
+    return files_.remove_if_older(blob, age);
   }
   [[nodiscard]] Result<std::vector<std::string>> hashes_older_than(std::chrono::microseconds age) override {
-    return blobs_.hashes_older_than(age);
+    return files_.hashes_older_than(age);
   }
-  [[nodiscard]] Result<Space> space() const override { return blobs_.space(); }
+  [[nodiscard]] Status ping() const override { return files_.ping(); }
 
  private:
   std::unique_ptr<PostgresStore> store_;
-  DatabaseBlobs blobs_;
+  DatabaseFiles files_;
 };
 
 }  // namespace
@@ -44,7 +43,12 @@ std::unique_ptr<BlobStore> open_database_blobs_under_test(const std::filesystem:
   const std::filesystem::path copies = folder / ("process" + std::to_string(process));
   auto local = open_blob_directory(copies);
   EXPECT_TRUE(local) << local.error().message;
-  return store && local ? std::make_unique<OwnedBlobs>(std::move(*store), std::move(*local), copies) : nullptr;
+  if (!store || !local) {
+    return nullptr;
+  }
+  return std::make_unique<CopiedBlobs>(std::make_unique<OwnedFiles>(std::move(*store)), std::move(*local), copies,
+                                       10'000,
+                                       ReadPatience{3, std::chrono::milliseconds(50), std::chrono::seconds(30)});
 }
 
 }  // namespace driftlab::server
