@@ -75,6 +75,9 @@ Status Scrubber::verify_columns(const std::string& sha256) {
 
 Status Scrubber::expect_sound_columns(const std::string& sha256) {
   constexpr std::uintmax_t kReadAtOnce = 64ULL << 20U;
+  if (Status reached = blobs_.reach(sha256, BlobPart::Columns); !reached) {
+    return reached;
+  }
   std::error_code unknown;
   if (std::filesystem::file_size(blobs_.columns_path(sha256), unknown) <= kReadAtOnce && !unknown) {
     return verify_columns(sha256);

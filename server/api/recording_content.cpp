@@ -42,6 +42,9 @@ Result<Response> get_content(ApiContext& context, const Request& request) {
   if (!blob) {
     return fail(blob.error());
   }
+  if (auto reached = context.blobs.reach(recording->blob_sha256, BlobPart::Bytes); !reached) {
+    return fail(reached.error());
+  }
   const std::filesystem::path path = context.blobs.bytes_path(recording->blob_sha256);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);

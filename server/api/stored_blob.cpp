@@ -17,6 +17,9 @@ Result<bool> decode_again(BlobStore& blobs, const std::string& sha256, const Dec
   if (!incoming) {
     return fail(incoming.error());
   }
+  if (Status reached = blobs.reach(sha256, BlobPart::Bytes); !reached) {
+    return fail(reached.error());
+  }
   std::ifstream bytes(blobs.bytes_path(sha256), std::ios::binary);
   std::array<char, 65536> piece{};
   while (bytes.read(piece.data(), piece.size()) || bytes.gcount() > 0) {
@@ -96,6 +99,9 @@ std::string_view name_of(BlobState state) {
 
 Result<BlobState> verify_columns(BlobStore& blobs, const std::string& sha256, const DecodeLimits& limits,
                                  const ReadingPace& pace) {
+  if (Status reached = blobs.reach(sha256, BlobPart::Columns); !reached) {
+    return fail(reached.error());
+  }
   const auto columns = check_columns(blobs.columns_path(sha256), pace);
   if (!columns) {
     return fail(columns.error());
@@ -116,6 +122,9 @@ Result<BlobState> verify_blob(BlobStore& blobs, const std::string& sha256, const
   auto columns = verify_columns(blobs, sha256, limits, pace);
   if (!columns || *columns != BlobState::Sound) {
     return columns;
+  }
+  if (Status reached = blobs.reach(sha256, BlobPart::Bytes); !reached) {
+    return fail(reached.error());
   }
   const auto bytes = check_bytes(blobs.bytes_path(sha256), sha256, pace);
   if (!bytes) {
