@@ -110,7 +110,8 @@ Setting store_setting() {
 
 Setting blobs_setting() {
   return {"blobs", SettingKind::Text,
-          "Folder of recordings that several daemons and workers share, or `database`; none: in --data",
+          "Recordings that several daemons and workers share: a folder, `database`, or "
+          "s3://BUCKET/PREFIX?endpoint=URL&region=NAME; none: in --data",
           [](Settings& settings, const std::vector<std::string>& values) -> Status {
             const std::string& where = values.back();
             const BlobPlace* const place = find_blob_place(where);
@@ -339,8 +340,10 @@ const std::vector<Setting>& all_settings() {
       data_setting(),
       store_setting(),
       blobs_setting(),
+      path_setting("blobs_credentials", &Settings::blobs_credentials,
+                   "File of the object storage's key, as ~/.aws/credentials; none: AWS_ACCESS_KEY_ID and its like"),
       whole_setting("cache_megabytes", &Settings::cache_megabytes, 0, 100'000'000,
-                    "Local copies of recordings that lie in the database, in --data"),
+                    "Local copies of recordings that lie in a database or an object storage, in --data"),
       text_setting("listen", &Settings::listen, "IP:PORT to listen on; port 0 takes any free one"),
       list_setting("allow_host", &Settings::allow_host, "Another name to answer for in the Host header"),
       list_setting("proxies", &Settings::proxies, "Address of a proxy, which connects for many people"),

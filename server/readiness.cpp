@@ -8,6 +8,7 @@ namespace {
 constexpr double kLeastFreeFraction = 0.05;
 constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
 constexpr std::chrono::seconds kProbeInterval{2};
+constexpr std::chrono::seconds kBlobsInterval{5};
 
 }  // namespace
 
@@ -33,7 +34,8 @@ std::string Readiness::look(bool tries_to_write) const {
   const std::string full = told(BadState::DiskNearlyFull, "The disk is nearly full: ", room);
   const std::string unwritable =
       tries_to_write ? told(BadState::StoreUnwritable, "The store cannot be written: ", can_write()) : "";
-  return !silent.empty() ? silent : !full.empty() ? full : unwritable;
+  const std::string unreachable = told(BadState::BlobsSilent, "Recordings cannot be reached: ", can_reach_blobs());
+  return !silent.empty() ? silent : !full.empty() ? full : !unwritable.empty() ? unwritable : unreachable;
 }
 
 bool Readiness::is_nearly_full() const {
@@ -49,6 +51,16 @@ Status Readiness::can_write() const {
     probed_at_ = std::chrono::steady_clock::now();
   }
   return written_;
+}
+
+Status Readiness::can_reach_blobs() const {
+  const std::lock_guard<std::mutex> guard(blobs_mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (!asked_at_ || now - *asked_at_ >= kBlobsInterval) {
+    reached_ = blobs_.ping();
+    asked_at_ = std::chrono::steady_clock::now();
+  }
+  return reached_;
 }
 
 }  // namespace driftlab::server

@@ -1,5 +1,6 @@
 #pragma once
-/// Whether this daemon can take work: its store answers and can be written, and its disk has room.
+/// Whether this daemon can take work: its store answers and can be written, so does the storage of its recordings, and
+/// its disk has room.
 #include "server/store/bad_states.hpp"
 #include "server/store/blobs.hpp"
 #include "server/store/store.hpp"
@@ -30,6 +31,8 @@ class Readiness {
  private:
   /// Whether a row can be written; tried once in two seconds, for who asks whether the daemon is ready asks often.
   [[nodiscard]] Status can_write() const;
+  /// Whether the storage of recordings answers; asked once in five seconds.
+  [[nodiscard]] Status can_reach_blobs() const;
   [[nodiscard]] std::string look(bool tries_to_write) const;
   /// The sentence for a state that holds where `checked` failed; empty where it does not.
   [[nodiscard]] std::string told(BadState state, const std::string& what, const Status& checked) const;
@@ -40,6 +43,9 @@ class Readiness {
   mutable std::mutex mutex_;
   mutable std::optional<std::chrono::steady_clock::time_point> probed_at_;
   mutable Status written_;
+  mutable std::mutex blobs_mutex_;
+  mutable std::optional<std::chrono::steady_clock::time_point> asked_at_;
+  mutable Status reached_;
 };
 
 }  // namespace driftlab::server

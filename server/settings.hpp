@@ -13,10 +13,10 @@ namespace driftlab::server {
 struct Settings {
   std::filesystem::path data = "driftlab-data";
   std::string store;  ///< postgresql://... of the database that keeps the rows; empty: an SQLite file in `data`
-  /// Where recordings are kept: empty: in `data`; a folder that several daemons and workers share; "database": in parts
-  /// in that of `store`.
+  /// Where recordings are kept: empty: in `data`; or one of server/places/place.hpp.
   std::string blobs;
-  int cache_megabytes = 10'000;  ///< of local copies of what lies in the database
+  std::filesystem::path blobs_credentials;  ///< file of the key of an object storage; empty: AWS_* variables have it
+  int cache_megabytes = 10'000;             ///< of local copies of what lies in no folder
   std::string listen = "127.0.0.1:8477";
   std::vector<std::string> allow_host;     ///< Host names answered for, beside the address and localhost
   std::vector<std::string> proxies;        ///< addresses whose many connections are those of many people

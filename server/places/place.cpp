@@ -12,6 +12,7 @@ const std::vector<BlobPlace>& all_blob_places() {
       own_directory(),
       in_database(),
       shared_folder(),
+      in_object_storage(),
   };
   return all;
 }

@@ -40,6 +40,8 @@ struct BlobPlace {
 [[nodiscard]] BlobPlace shared_folder();
 /// Parts of 1 MiB in the database.
 [[nodiscard]] BlobPlace in_database();
+/// Objects of an S3-compatible storage.
+[[nodiscard]] BlobPlace in_object_storage();
 
 /// Blobs of a storage that is no folder, with their copies in `copies` under --data.
 [[nodiscard]] Result<std::unique_ptr<BlobStore>> open_copied(const Settings& settings,

@@ -19,6 +19,7 @@ namespace driftlab::server {
 enum class BadState {
   StoreSilent,      ///< the database does not answer
   StoreUnwritable,  ///< a row cannot be written
+  BlobsSilent,      ///< the storage of recordings, where it is no folder, does not answer
   DiskNearlyFull,   ///< less than 5 % and less than 10 GiB are free
   FilesFail,        ///< an answer or a job met an error of the disk in the last minutes
   FileDamaged,      ///< a stored file is not what was written

@@ -1,5 +1,6 @@
 #pragma once
-/// A database of the store that does not answer for now: it starts, is cut off, or has no connection left.
+/// A database of the store, or an object storage of its recordings, that does not answer for now: it starts, is cut
+/// off, or has no connection left.
 #include "core/signal/result.hpp"
 
 #include <string>

@@ -3143,7 +3143,7 @@ class ReadinessAnswer(TypedDict):
 
 
 class ReadinessAnswerState(TypedDict):
-    state: Literal['store_silent', 'store_unwritable', 'disk_nearly_full', 'files_fail', 'file_damaged']
+    state: Literal['store_silent', 'store_unwritable', 'blobs_silent', 'disk_nearly_full', 'files_fail', 'file_damaged']
     cause: Literal['io', 'disk_full', 'damage']
     since: str
     detail: str

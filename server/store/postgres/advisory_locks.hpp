@@ -30,4 +30,8 @@ inline constexpr std::string_view kTakeKey =
 inline constexpr std::string_view kGiveBackKey =
     "SELECT pg_advisory_unlock(hashtextextended(current_schema() || ' ' || ?1, 1685218932))::INT";
 
+/// What is removed of a blob that lies in an object storage, and what an upload finds there; ?1 its hash.
+inline constexpr std::string_view kTakeBlob =
+    "SELECT pg_advisory_xact_lock(hashtextextended(current_schema() || ' blob ' || ?1, 1685218932))::TEXT";
+
 }  // namespace driftlab::server::advisory_locks
