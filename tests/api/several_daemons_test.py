@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import daemon as daemons
+import object_storage
 import postgres
 import samples
 import yaml
@@ -24,25 +25,31 @@ if postgres.programs() is None or "built without PostgreSQL" in start(Path("/non
     print("SEVERAL DAEMONS NOT TESTED: there is no PostgreSQL.")
     raise SystemExit(SKIPPED)
 
+if not object_storage.is_installed():
+    print("OBJECT STORAGE NOT TESTED: python3-swift is not installed.")
+
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 SMALL = ("--budget", "reserve_bytes=0")
 CLOCK_SHIM = os.environ.get("DRIFTLAB_CLOCK_SHIM", "")
 
 
 class Several(unittest.TestCase):
-    """Daemons with a folder of recordings between them; `InDatabase` runs the same without one."""
+    """Daemons with a folder of recordings between them; `InDatabase` and `InObjectStorage` run the same without one."""
 
-    in_database = False
+    environment: dict[str, str] = {}
+
+    def place(self) -> str:
+        return str(self.folder / "shared")
 
     def setUp(self) -> None:
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.cluster = postgres.cluster()
         self.store = self.cluster.store_of(self.folder)
-        self.blobs = "database" if self.in_database else str(self.folder / "shared")
+        self.blobs = self.place()
 
     def start(self, name: str, *arguments: str, environment: dict[str, str] | None = None) -> Daemon:
         together = ("--store", self.store, "--blobs", self.blobs, *SMALL, *arguments)
-        return self.enterContext(Daemon(self.folder / name, arguments=together, environment=environment))
+        return self.enterContext(Daemon(self.folder / name, arguments=together, environment={**self.environment, **(environment or {})}))
 
     def upload(self, daemon: Daemon, seed: int = 1) -> str:
         answer = daemon.upload(samples.gyro_csv(4096, seed=seed), rate_hz=100, columns=samples.GYRO_Z)
@@ -190,10 +197,8 @@ class Several(unittest.TestCase):
         self.assertIn(b.finished(job)["state"], ("cancelled", "succeeded"))
 
 
-class InDatabase(Several):
-    in_database = True
-
-    def test_a_daemon_with_nothing_but_the_database_has_everything(self) -> None:
+class WithoutFolder(Several):
+    def test_a_daemon_with_nothing_but_what_is_shared_has_everything(self) -> None:
         a = self.start("a")
         recording = self.upload(a)
         self.assertEqual(a.finished(self.job(a, recording))["state"], "succeeded")
@@ -204,6 +209,22 @@ class InDatabase(Several):
         self.assertEqual(b.finished(again)["state"], "succeeded")
         deleted = b.request("DELETE", f"/v1/recordings/{recording}", headers={"If-Match": "*"})
         self.assertEqual(deleted.status, 204, deleted.describe())
+
+
+class InDatabase(WithoutFolder):
+    def place(self) -> str:
+        return "database"
+
+
+@unittest.skipUnless(object_storage.is_installed(), "OBJECT STORAGE NOT TESTED: python3-swift is not installed")
+class InObjectStorage(WithoutFolder):
+    environment = object_storage.KEY
+
+    def place(self) -> str:
+        return object_storage.place_of(self.folder)
+
+
+del WithoutFolder  # has no place of its own
 
 
 class Refused(unittest.TestCase):

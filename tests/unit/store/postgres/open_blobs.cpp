@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 namespace driftlab::server {
 namespace {
 
@@ -36,6 +38,44 @@ class OwnedFiles final : public RemoteFiles {
 };
 
 }  // namespace
+
+Trouble database_in_trouble(const std::filesystem::path& folder, BlobFault fault, const std::string& sha256) {
+  PostgresCluster& cluster = PostgresCluster::of_this_process();
+  const std::string schema = schema_for(folder);
+  const auto cut = [&cluster] {
+    return cluster.run("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'driftlabd'");
+  };
+  switch (fault) {
+    case BlobFault::Cut:
+      EXPECT_TRUE(cut());
+      break;
+    case BlobFault::Unavailable:
+      cluster.stop(SIGQUIT);
+      return {&cluster, [](PostgresCluster* stopped) { stopped->start(); }};
+    case BlobFault::Denied:
+      EXPECT_TRUE(cluster.run("ALTER DATABASE postgres SET default_transaction_read_only = on"));
+      EXPECT_TRUE(cut());
+      return {&cluster, [cut](PostgresCluster* denying) {
+                EXPECT_TRUE(denying->run("ALTER DATABASE postgres RESET default_transaction_read_only"));
+                EXPECT_TRUE(cut());
+              }};
+    case BlobFault::Damaged:
+      EXPECT_TRUE(cluster.run("UPDATE " + schema +
+                              ".stored_file_parts SET content = content || 'x' WHERE file_id IN "
+                              "(SELECT id FROM " +
+                              schema + ".stored_files WHERE blob = '" + sha256 +
+                              "' AND kind IN ('bytes', 'columns'))"));
+      break;
+    case BlobFault::Missing:
+      EXPECT_TRUE(cluster.run("DELETE FROM " + schema + ".stored_files WHERE blob = '" + sha256 +
+                              "' AND kind IN ('bytes', 'columns')"));
+      break;
+    case BlobFault::Slow:  // postgres_test.cpp waits for locks
+    case BlobFault::Full:  // tests/api/store_test.py has a database on a small disk
+      return nullptr;
+  }
+  return std::make_shared<int>(0);
+}
 
 std::unique_ptr<BlobStore> open_database_blobs_under_test(const std::filesystem::path& folder, int process) {
   auto store = open_postgres_store(PostgresCluster::of_this_process().schema(schema_for(folder)));
