@@ -95,7 +95,7 @@ class InObjectStorage(unittest.TestCase):
         self.assertEqual(b.finished(job)["state"], "succeeded")
 
     def test_a_large_file_goes_in_parts_and_comes_back(self) -> None:
-        content = content_of(2, rows=900_000)
+        content = content_of(2, rows=3_800_000)
         self.assertGreater(len(content), 32 << 20)
         a = self.start()
         begun = time.monotonic()
