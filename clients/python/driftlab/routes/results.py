@@ -125,9 +125,11 @@ class ResultRoutes(Routes):
         self._transport.call("deleteInvestigation", {"id": id}, if_match=if_match)
 
     @operation("listRegressions")
-    def regressions(self, *, device: str | None = None, label: str | None = None, page_size: int = PAGE) -> Iterator[RegressionRun]:
-        """Regression runs with their verdicts, oldest first; `label` is the candidate's. A run is a job of kind `regress`."""
-        return self._list("listRegressions", {"device": device, "label": label}, page_size)
+    def regressions(self, *, device: str | None = None, label: str | None = None, parameter: str | None = None,
+                    page_size: int = PAGE) -> Iterator[RegressionRun]:
+        """Regression runs with their verdicts, oldest first; `label` is the candidate's. A run is a job of kind `regress`. With
+        `parameter` each tells its tests of that one too."""
+        return self._list("listRegressions", {"device": device, "label": label, "parameter": parameter}, page_size)
 
     @operation("getRegression")
     def regression(self, id: str) -> Regression:
