@@ -6,7 +6,7 @@
 namespace driftlab::server {
 
 struct DashboardFile {
-  std::string_view path;  ///< as it is asked for: `/assets/main-3F2A.js`; the page itself is `/index.html`
+  std::string_view path;  ///< as it is asked for: `/assets/main-3F2A.css`; the page itself is `/index.html`
   std::string_view content_type;
   std::string_view content;
 };
