@@ -4,8 +4,9 @@
     invented.py FOLDER [--studies 6] [--seed 515] [--z 30]
 
 Sizes are those that an oracle sees at z standard deviations who knows base, place and shape: of a mean m over noise of deviation s
-z^2 = sum m^2/s^2, of a modulation of the noise's power by 1 + d, z^2 = sum d^2/2. The answer of every study is `unnamed`: what is
-said must not be another name with confidence. The seed fixes everything; none of driftlab's code is used. Standard library only.
+z^2 = sum m^2/s^2, of a modulation of the noise's power by 1 + d, z^2 = sum d^2/2. Beside slow noise, which s does not count, a slow
+mean shows less: `oracle_z` of an answer is what one sees of it who knows the slow noise's law too. The answer of every study is
+`unnamed`: what is said must not be another name with confidence. The seed fixes everything; none of driftlab's code is used. Standard library only.
 """
 from __future__ import annotations
 
@@ -27,15 +28,34 @@ def scaled(world: World, shape: Course, total: float) -> float:
     return math.sqrt(total / square)
 
 
-def add_mean(world: World, shape: Course, z: float) -> None:
+def seen(world: World, mean: list[float]) -> float:
+    """z^2 of a mean beside white and Gauss-Markov noise: the Kalman filter that whitens the noise, run over the mean."""
+    sigma, beta = world.gm[0] if world.gm else (0.0, 1.0)
+    phi = math.exp(-beta * world.dt)
+    white, driven = world.N ** 2 / world.dt, sigma ** 2 * (1 - phi * phi)
+    x, p, total = 0.0, sigma ** 2, 0.0
+    for value in mean:
+        innovation, variance = value - x, p + white
+        total += innovation ** 2 / variance
+        gain = p / variance
+        x, p = phi * (x + gain * innovation), phi * phi * (1 - gain) * p + driven
+    return total
+
+
+def add_mean(world: World, shape: Course, z: float) -> float:
+    """What an oracle sees of it who knows the slow noise too."""
     factor = world.N / math.sqrt(world.dt) * scaled(world, shape, z * z)
+    total = 0.0
     for r, recording in enumerate(world.recordings):
+        mean = [factor * shape(r, i * world.dt) for i in range(world.n)]
+        total += seen(world, mean)
         y = recording["columns"]["gz"]
-        for i in range(world.n):
-            y[i] += factor * shape(r, i * world.dt)
+        for i, value in enumerate(mean):
+            y[i] += value
+    return math.sqrt(total)
 
 
-def add_power(world: World, shape: Course, z: float) -> None:
+def add_power(world: World, shape: Course, z: float) -> float:
     """Noise whose power is multiplied by 1 + d; made anew, for what is slow in it stays as it is."""
     factor = scaled(world, shape, 2 * z * z)
     sd = world.N / math.sqrt(world.dt)
@@ -46,6 +66,7 @@ def add_power(world: World, shape: Course, z: float) -> None:
             y[i] += sd * world.rng.gauss(0, 1) * math.sqrt(d) if d > 0 else 0.0
             if d < 0:
                 y[i] = world.bias["z"] + (y[i] - world.bias["z"]) * math.sqrt(1 + d)
+    return z
 
 
 def filtered(world: World, taps: list[float], feedback: list[float]) -> None:
@@ -95,37 +116,38 @@ def turning(world: World) -> list[float]:
     return [0.0, *values]
 
 
-def make(kind: str, world: World, z: float) -> None:
+def make(kind: str, world: World, z: float) -> float:
+    """Puts the effect in; what an oracle sees of it."""
     rng = world.rng
     if kind in ("noise_by_temperature", "bias_by_temperature"):
         temperature = rests(world, warm=True)
-        (add_power if kind[0] == "n" else add_mean)(world, lambda r, t: math.sin(2 * math.pi * (temperature(r, t) - 22) / 8), z)
+        return (add_power if kind[0] == "n" else add_mean)(world, lambda r, t: math.sin(2 * math.pi * (temperature(r, t) - 22) / 8), z)
     elif kind in ("noise_by_angle", "bias_by_angle"):
         rates = turning(world)
         lobes = rng.choice([3, 4, 5])
-        (add_power if kind[0] == "n" else add_mean)(world, lambda r, t: math.cos(lobes * math.radians(rates[r] * t)) if rates[r] else 0.0, z)
+        return (add_power if kind[0] == "n" else add_mean)(world, lambda r, t: math.cos(lobes * math.radians(rates[r] * t)) if rates[r] else 0.0, z)
     elif kind == "noise_by_sign_of_rate":
         rates_at = profiles(world)
-        add_power(world, lambda r, t: 1.0 if rates_at[r][min(int(t / world.dt + 0.5), world.n - 1)] > 5 else 0.0, z)
+        return add_power(world, lambda r, t: 1.0 if rates_at[r][min(int(t / world.dt + 0.5), world.n - 1)] > 5 else 0.0, z)
     elif kind == "bias_wavers_with_rate":
         rates_at = profiles(world)
-        add_mean(world, lambda r, t: math.sin(rates_at[r][min(int(t / world.dt + 0.5), world.n - 1)] / 6), z)
+        return add_mean(world, lambda r, t: math.sin(rates_at[r][min(int(t / world.dt + 0.5), world.n - 1)] / 6), z)
     elif kind == "swelling_in_time":
         rests(world)
         period, phase = rng.uniform(40, 90), 2 * math.pi * rng.random()
-        add_power(world, lambda r, t: math.sin(2 * math.pi * t / period + phase), z)
+        return add_power(world, lambda r, t: math.sin(2 * math.pi * t / period + phase), z)
     elif kind == "quiet_spells":
         rests(world)
         spells = [(rng.randrange(3), rng.uniform(0, world.n * world.dt - 10)) for _ in range(6)]
-        add_power(world, lambda r, t: -1.0 if any(s[0] == r and s[1] <= t < s[1] + 10 for s in spells) else 0.0, z)
+        return add_power(world, lambda r, t: -1.0 if any(s[0] == r and s[1] <= t < s[1] + 10 for s in spells) else 0.0, z)
     elif kind == "pulses":
         rests(world)
         period, width = rng.uniform(5, 12), rng.uniform(0.05, 0.15)
-        add_mean(world, lambda r, t: 1.0 if t % period < width else 0.0, z)
+        return add_mean(world, lambda r, t: 1.0 if t % period < width else 0.0, z)
     elif kind == "triangle_in_one":
         rests(world)
         middle, half = rng.uniform(0.3, 0.7) * world.n * world.dt, rng.uniform(20, 50)
-        add_mean(world, lambda r, t: max(0.0, 1 - abs(t - middle) / half) if r == 1 else 0.0, z)
+        return add_mean(world, lambda r, t: max(0.0, 1 - abs(t - middle) / half) if r == 1 else 0.0, z)
     elif kind == "echo":
         rests(world)
         lag = rng.randrange(5, 12)
@@ -152,6 +174,7 @@ def make(kind: str, world: World, z: float) -> None:
             recording["columns"]["gz"] = [world.bias["z"] + sd * (e + s * (e * e - 1)) for e in (rng.gauss(0, 1) for _ in range(world.n))]
     else:
         raise ValueError(kind)
+    return z
 
 
 KINDS = ["noise_by_temperature", "bias_by_temperature", "noise_by_angle", "bias_by_angle", "noise_by_sign_of_rate", "bias_wavers_with_rate", "swelling_in_time",
@@ -170,10 +193,10 @@ def main() -> None:
     for c, kind in enumerate(KINDS):
         for k in range(given.studies):
             world = World(random.Random(given.seed * 300007 + 1000 * c + k), 50.0, 300.0, "z", "wn" if k % 2 == 0 else "gm")
-            make(kind, world, given.z)
+            oracle_z = make(kind, world, given.z)
             ident = f"i{c:02d}{k:02d}"
             world.write(folder / "cases" / ident, ident)
-            answers[ident] = {"group": "outside", "kind": kind, "cause": "unnamed", "allowed": []}
+            answers[ident] = {"group": "outside", "kind": kind, "cause": "unnamed", "allowed": [], "oracle_z": round(oracle_z, 1)}
     (folder / "answers.json").write_text(json.dumps({"cases": answers}, indent=1))
 
 
