@@ -33,50 +33,6 @@ void divide_by_medians(Spectrogram& found) {
   }
 }
 
-constexpr std::size_t kApartBlock = 64;
-constexpr double kApartDeviations = 8.0;
-
-/// In place; the upper one of two in the middle. Precondition: not empty.
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Of each kApartBlock values in a row.
-std::vector<double> block_medians(std::span<const double> values) {
-  std::vector<double> medians;
-  std::vector<double> block;
-  for (std::size_t first = 0; first < values.size(); first += kApartBlock) {
-    const std::span<const double> here = values.subspan(first, std::min(kApartBlock, values.size() - first));
-    block.assign(here.begin(), here.end());
-    medians.push_back(median_of(block));
-  }
-  return medians;
-}
-
-/// Robust standard deviation of values around the medians of their blocks.
-double deviation_from(const std::vector<double>& medians, std::span<const double> values) {
-  constexpr double kOfGaussian = 1.4826;
-  std::vector<double> distances(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    distances[i] = std::fabs(values[i] - medians[i / kApartBlock]);
-  }
-  return distances.empty() ? 0.0 : kOfGaussian * median_of(distances);
-}
-
-/// Of a value of that block from the nearest of three medians: its own, and those before and behind.
-double distance_from(const std::vector<double>& medians, std::size_t block, double value) {
-  double least = std::fabs(value - medians[block]);
-  if (block > 0) {
-    least = std::min(least, std::fabs(value - medians[block - 1]));
-  }
-  if (block + 1 < medians.size()) {
-    least = std::min(least, std::fabs(value - medians[block + 1]));
-  }
-  return least;
-}
-
 }  // namespace
 
 Result<ChannelLook> ChannelLook::open(RecordingSource& source, std::string_view column) {
@@ -122,30 +78,7 @@ Result<BinnedSpectrum> ChannelLook::spectrum(FrequencyScale scale, std::size_t b
 
 std::optional<RobustHistogram> ChannelLook::histogram(std::size_t bins) const { return robust_histogram(run_, bins); }
 
-std::vector<ApartPlace> ChannelLook::apart() const {
-  constexpr double kTogether = 1.0;  // [s]
-  const std::vector<double> medians = block_medians(run_);
-  const double limit = kApartDeviations * deviation_from(medians, run_);
-  std::vector<ApartPlace> places;
-  for (std::size_t i = 0; i < run_.size() && limit > 0.0; ++i) {
-    if (distance_from(medians, i / kApartBlock, run_[i]) <= limit) {
-      continue;
-    }
-    const double begins = first_s_ + dt_s_ * static_cast<double>(i);
-    if (places.empty() || begins - places.back().t1_s > kTogether) {
-      places.push_back({begins, begins, 0});
-    }
-    places.back().t1_s = begins + dt_s_;
-    ++places.back().samples;
-  }
-  if (places.size() > kMostApart) {
-    for (std::size_t k = 0; k < kMostApart; ++k) {
-      places[k] = places[k * places.size() / kMostApart];
-    }
-    places.resize(kMostApart);
-  }
-  return places;
-}
+std::vector<ApartPlace> ChannelLook::apart() const { return apart_places(run_, first_s_, dt_s_); }
 
 std::vector<double> ChannelLook::Ratio::log10() const {
   std::vector<double> logs;

@@ -6,6 +6,7 @@
 /// trims; where samples are missing inside, its longest run without a gap.
 #include "core/analysis/recording_source.hpp"
 #include "core/process/model.hpp"
+#include "core/signal/apart_places.hpp"
 #include "core/signal/robust_histogram.hpp"
 #include "core/variance/binned_spectrum.hpp"
 #include "core/variance/spectrogram.hpp"
@@ -16,16 +17,6 @@
 #include <vector>
 
 namespace driftlab {
-
-/// Values that stand apart from those around them, of which each is within 1 s of the one before.
-struct ApartPlace {
-  double t0_s = 0.0;        ///< since the first row of the file
-  double t1_s = 0.0;        ///< where the last of them ends
-  std::size_t samples = 0;  ///< of these values
-};
-
-/// So many places at most are told.
-inline constexpr std::size_t kMostApart = 200;
 
 /// Columns, view and the run of one channel. Move-only; spans live as long as it does.
 class ChannelLook {
@@ -44,10 +35,7 @@ class ChannelLook {
   [[nodiscard]] Result<BinnedSpectrum> spectrum(FrequencyScale scale, std::size_t bins) const;
   /// Nothing where more than half of the values are equal.
   [[nodiscard]] std::optional<RobustHistogram> histogram(std::size_t bins) const;
-  /// Where gross errors are, by time; of more than kMostApart places every n-th. A value is one that is more than eight
-  /// robust standard deviations from the median of its 64 samples and from those of the 64 before and behind: a drift
-  /// or a jump of the level is none. The deviation is 1.4826 times the median distance from those medians; nothing
-  /// where that is zero. O(N) time, N doubles of memory.
+  /// Where gross errors are (core/signal/apart_places.hpp).
   [[nodiscard]] std::vector<ApartPlace> apart() const;
   /// Density over that expected, cells x bands: of `model` where there is one, which leaves the spectrum of what the
   /// model does not explain; else the median of each band over time. Errors: TooFewSamples; InvalidArgument where a

@@ -1,6 +1,7 @@
 #include "core/datasheet/plausible_units.hpp"
 
 #include "core/signal/angle.hpp"
+#include "core/signal/median.hpp"
 #include "core/signal/number.hpp"
 
 #include <algorithm>
@@ -26,11 +27,7 @@ struct Candidate {
   double factor = 1.0;  ///< SI in one of it
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(std::vector<double> values) { return take_median(values); }
 
 /// What readings of that quantity may be in, beside the unit that is said: units, and counts of the sensor.
 std::vector<Candidate> candidates(Quantity quantity, const Unit& said, const std::optional<KnownSensor>& sensor) {

@@ -1,5 +1,7 @@
 #include "core/fit/outlier_screen.hpp"
 
+#include "core/signal/median.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,20 +9,12 @@
 namespace driftlab {
 namespace {
 
-constexpr double kMadToSd = 1.4826022185056018;
 constexpr double kPatchLimit = 5.5;
 constexpr double kClip = 5.0;
 constexpr std::size_t kLooks = 2000;  ///< places at which predictors are compared
 constexpr std::size_t kPoll = 1U << 18U;
 
-double median_of(std::vector<double>& values) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median_of(std::vector<double>& values) { return values.empty() ? 0.0 : take_median(values); }
 
 /// Robust standard deviation about 0 of at most some 40,000 of the values.
 double robust_sd(std::span<const double> values) {
@@ -30,7 +24,7 @@ double robust_sd(std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); i += stride) {
     magnitudes.push_back(std::fabs(values[i]));
   }
-  return kMadToSd * median_of(magnitudes);
+  return kGaussianOfMedian * median_of(magnitudes);
 }
 
 /// What the neighbours within `reach` say about a sample.

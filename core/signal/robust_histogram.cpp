@@ -1,5 +1,7 @@
 #include "core/signal/robust_histogram.hpp"
 
+#include "core/signal/median.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,14 +10,6 @@ namespace driftlab {
 namespace {
 
 constexpr double kReach = 8.0;
-/// One over the 75 % point of the standard Gaussian distribution.
-constexpr double kGaussianWidth = 1.482602218505602;
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -27,11 +21,11 @@ std::optional<RobustHistogram> robust_histogram(std::span<const double> values, 
   }
   std::vector<double> work(values.begin(), values.end());
   RobustHistogram result;
-  result.median = median_of(work);
+  result.median = take_median(work);
   for (double& value : work) {
     value = std::abs(value - result.median);
   }
-  result.sigma = kGaussianWidth * median_of(work);
+  result.sigma = kGaussianOfMedian * take_median(work);
   if (result.sigma <= 0.0) {
     return std::nullopt;
   }

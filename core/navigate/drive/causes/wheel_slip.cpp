@@ -1,6 +1,7 @@
 /// wheel_slip: the wheel of the odometer slips or locks, in bursts. Its readings there are used by no filter.
 #include "core/navigate/drive/causes/cause.hpp"
 #include "core/navigate/drive/likelihood.hpp"
+#include "core/signal/median.hpp"
 #include "core/signal/with_count.hpp"
 
 #include <algorithm>
@@ -44,11 +45,7 @@ std::vector<Compared> compared(const Drive& drive, double velocity_latency_s) {
   return list;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median_of(std::vector<double> values) { return take_median(values); }
 
 }  // namespace
 
