@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace driftlab::investigate {
@@ -19,27 +20,35 @@ constexpr double kCap = 20.0;                               ///< of an ordinate 
 constexpr std::size_t kMostValues = std::size_t{1} << 18U;  ///< a day at 100 Hz would take a minute
 constexpr std::size_t kFewestValues = 256;
 
-/// Ordinates of twice as many frequencies as there are independent ones, over their mean, capped; without the mean of
-/// the values.
-std::vector<float> ordinates(std::size_t n, const std::function<double(std::size_t)>& at, const std::stop_token& stop) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    sum += at(i);
-    count += at(i) != 0.0 ? 1.0 : 0.0;
-  }
-  const double mean = sum / std::max(count, 1.0);
-  const auto value = [&](std::size_t i) { return i < n && at(i) != 0.0 ? at(i) - mean : 0.0; };
-  const std::vector<std::complex<double>> z = half_spectrum(2 * n, value, kWholeTransform, stop);
+/// Ordinates of twice as many frequencies as there are independent ones, over their mean, capped; of the values without
+/// their mean.
+std::vector<float> ordinates(std::span<const double> values, const std::stop_token& stop) {
   double power = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    power += value(i) * value(i);
+  for (const double value : values) {
+    power += value * value;
   }
+  const auto padded = [&](std::size_t i) { return i < values.size() ? values[i] : 0.0; };
   std::vector<float> p;
-  for (const std::complex<double>& one : z) {
+  for (const std::complex<double>& one : half_spectrum(2 * values.size(), padded, kWholeTransform, stop)) {
     p.push_back(static_cast<float>(power > 0.0 ? std::min(std::norm(one) / power, kCap) : 0.0));
   }
   return p;
+}
+
+/// The first n, those that there are without their mean.
+std::vector<double> centred(std::size_t n, const std::function<double(std::size_t)>& at) {
+  std::vector<double> values(n);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = at(i);
+    sum += values[i];
+    count += values[i] != 0.0 ? 1.0 : 0.0;
+  }
+  for (double& value : values) {
+    value -= value != 0.0 ? sum / std::max(count, 1.0) : 0.0;
+  }
+  return values;
 }
 
 /// At most -ln of the chance of a comb's sum.
@@ -47,8 +56,7 @@ double nats_of(double sum, double teeth) { return sum > teeth ? sum - teeth - te
 
 /// Of periods around one that a comb of so many teeth has told, the one whose phases tell most: a tooth is half of a
 /// line's width uncertain, by which a pulse moves from one end of the recording to the other.
-double sharpened(double period, std::size_t teeth, std::size_t n, double dt_s,
-                 const std::function<double(std::size_t)>& at) {
+double sharpened(double period, std::size_t teeth, std::span<const double> values, double dt_s) {
   constexpr int kEachWay = 16;
   constexpr std::size_t kFinest = 512;  // phases
   const std::size_t phases = std::min(4 * teeth, kFinest);
@@ -56,14 +64,14 @@ double sharpened(double period, std::size_t teeth, std::size_t n, double dt_s,
   double most = -1.0;
   for (int d = -kEachWay; d <= kEachWay; ++d) {
     const double drift = static_cast<double>(d) / kEachWay * period / static_cast<double>(teeth);
-    const double tried = period * (1.0 + drift / (static_cast<double>(n) * dt_s));
+    const double tried = period * (1.0 + drift / (static_cast<double>(values.size()) * dt_s));
     std::vector<double> sum(phases, 0.0);
     std::vector<double> count(phases, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
       const double turns = static_cast<double>(i) * dt_s / tried;
       const auto phase = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(phases));
-      sum[std::min(phase, phases - 1)] += at(i);
-      count[std::min(phase, phases - 1)] += at(i) != 0.0 ? 1.0 : 0.0;
+      sum[std::min(phase, phases - 1)] += values[i];
+      count[std::min(phase, phases - 1)] += values[i] != 0.0 ? 1.0 : 0.0;
     }
     double told = 0.0;
     for (std::size_t b = 0; b < phases; ++b) {
@@ -85,7 +93,8 @@ std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::fu
   if (n < kFewestValues) {
     return std::nullopt;
   }
-  const std::vector<float> p = ordinates(n, at, stop);
+  const std::vector<double> values = centred(n, at);
+  const std::vector<float> p = ordinates(values, stop);
   const double places = static_cast<double>(p.size() - 1);
   FoundPeriod best;
   best.tried = 0.0;
@@ -111,7 +120,7 @@ std::optional<FoundPeriod> find_period(std::size_t n, double dt_s, const std::fu
   if (!(best.tried > 0.0 && most > std::log(best.tried))) {
     return std::nullopt;
   }
-  best.period_s = sharpened(best.period_s, best.teeth, n, dt_s, at);
+  best.period_s = sharpened(best.period_s, best.teeth, values, dt_s);
   return best;
 }
 
