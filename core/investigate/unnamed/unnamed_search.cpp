@@ -2,7 +2,7 @@
 
 #include "core/investigate/causes/evidence.hpp"
 #include "core/investigate/slow/slow_fit.hpp"
-#include "core/investigate/unnamed/period_search.hpp"
+#include "core/investigate/unnamed/courses.hpp"
 #include "core/investigate/unnamed/profile_bins.hpp"
 #include "core/investigate/unnamed/profile_of_means.hpp"
 #include "core/investigate/unnamed/profile_of_ratios.hpp"
@@ -24,17 +24,10 @@ namespace {
 constexpr std::array<int, 3> kBands{14, 42, -40};  ///< spec/trust-notes.md, section 7, as the next two
 constexpr double kAdopted = 6.0;                   ///< [nat], beside 2 ln(tried)
 constexpr double kPeriods = 4.0;                   ///< of the lowest frequency in half a recording
-constexpr std::size_t kTimeBins = 32;              ///< chosen, not measured, as all that follow
-constexpr std::size_t kTurns = 8;                  ///< of the folds within a bin of time
-constexpr std::size_t kSegments = 128;             ///< of a single recording that take turns
-constexpr std::size_t kMostPhases = 128;           ///< bins of a period
-constexpr std::size_t kMostAdopted = 3;            ///< of a channel
+constexpr std::size_t kMostAdopted = 3;            ///< of a channel, chosen, not measured, as all that follow
 constexpr double kCut = 5.0;                       ///< innovations: gross values are no level
-constexpr std::size_t kMostBlocks = 20'000;
 constexpr double kPassed = 0.05;  ///< of the white noise: what a band limit leaves less of is the last digit's rounding
-constexpr double kBlockRateHz = 5.0;     ///< of the means
-constexpr std::size_t kFewest = 2'000;   ///< samples that a profile is made of
-constexpr std::size_t kLooked = 20'000;  ///< values by which bins are placed
+constexpr double kBlockRateHz = 5.0;  ///< of the means
 
 constexpr std::array kQuantities{Against::Rate, Against::RateChange, Against::Temperature, Against::Angle};
 
@@ -47,25 +40,12 @@ struct Candidate {
   std::optional<SlowModel> noise = std::nullopt;  ///< the base beside it, where it was fitted again
 };
 
-/// What a quantity is in each member; empty where it is not known.
-struct Courses {
-  Against against = Against::Time;
-  std::vector<std::size_t> members;  ///< that have it
-  std::vector<Series> of;            ///< one per member of the group
-  std::vector<double> edge;
-  double period_s = 0.0;  ///< of a phase, as the next two
-  double periods = 0.0;   ///< in the recording
-  double tried = 1.0;     ///< periods
-  /// Whether they are of one recording, whose parts take turns, and say nothing of another.
-  [[nodiscard]] bool single() const { return against == Against::Time || against == Against::Phase; }
-};
-
 class UnnamedSearch {
  public:
   UnnamedSearch(const ChannelGroup& group, const FullRate& data, std::size_t base)
       : group_(group), data_(data), first_free_(data.given ? base : 0) {
     for (const Against against : kQuantities) {
-      if (Courses courses = courses_of(against); !courses.edge.empty()) {
+      if (Courses courses = courses_of(group, against); !courses.edge.empty()) {
         courses_.push_back(std::move(courses));
       }
     }
@@ -166,41 +146,6 @@ class UnnamedSearch {
     return second > 0.0 ? fourth * count / (second * second) - 3.0 : 0.0;
   }
 
-  [[nodiscard]] Courses courses_of(Against against) const {
-    Courses courses;
-    courses.against = against;
-    std::vector<double> looked;
-    for (std::size_t r = 0; r < group_.members.size(); ++r) {
-      const StudyRecording& own = recording(r);
-      const Series course = course_of(against, own, group_.axis());
-      courses.of.push_back(course.empty() ? Series() : course.part(own.begin, own.count()));
-      if (course.empty() || own.count() < kFewest) {
-        continue;
-      }
-      courses.members.push_back(r);
-      const std::size_t step = std::max<std::size_t>(1, own.count() * group_.members.size() / kLooked);
-      for (std::size_t i = 0; i < own.count(); i += step) {
-        looked.push_back(courses.of.back()[i]);
-      }
-    }
-    courses.edge = edges_of(std::move(looked));
-    return courses;
-  }
-
-  [[nodiscard]] Courses time_of(std::size_t r) const {
-    Courses courses;
-    courses.against = Against::Time;
-    courses.members = {r};
-    courses.of.resize(group_.members.size());
-    const StudyRecording& own = recording(r);
-    courses.of[r] = course_of(Against::Time, own, group_.axis()).part(own.begin, own.count());
-    for (std::size_t k = 0; k <= kTimeBins; ++k) {
-      courses.edge.push_back(own.time_s(own.begin) + static_cast<double>(k) / static_cast<double>(kTimeBins) *
-                                                         static_cast<double>(own.count()) * own.dt_s);
-    }
-    return courses;
-  }
-
   /// The period of what comes again and again in a member, of its mean or of its power; looked for once.
   [[nodiscard]] std::optional<FoundPeriod> period_of(std::size_t r, UnnamedKind kind) const {
     auto& known = again_[r][kind == UnnamedKind::Mean ? 0 : 1];
@@ -215,33 +160,13 @@ class UnnamedSearch {
     return *known;
   }
 
-  [[nodiscard]] Courses phases_of(std::size_t r, const FoundPeriod& found) const {
-    const StudyRecording& own = recording(r);
-    Courses courses;
-    courses.against = Against::Phase;
-    courses.members = {r};
-    courses.period_s = found.period_s;
-    courses.periods = static_cast<double>(own.count()) * own.dt_s / found.period_s;
-    courses.tried = found.tried;
-    courses.of.resize(group_.members.size());
-    courses.of[r] = course_of(Against::Phase, own, group_.axis(), found.period_s).part(own.begin, own.count());
-    const std::size_t block = std::max<std::size_t>(1, own.count() / kMostBlocks);
-    const double most = found.period_s / (own.dt_s * static_cast<double>(block));
-    const auto bins =
-        std::max<std::size_t>(2, std::min({2 * found.teeth, kMostPhases, static_cast<std::size_t>(most)}));
-    for (std::size_t k = 0; k <= bins; ++k) {
-      courses.edge.push_back(found.period_s * static_cast<double>(k) / static_cast<double>(bins));
-    }
-    return courses;
-  }
-
   /// A mean or a power that comes again and again; without a gain where none does.
   [[nodiscard]] Candidate again(std::size_t r, UnnamedKind kind) const {
     const std::optional<FoundPeriod> found = period_of(r, kind);
     if (!found) {
       return {};
     }
-    const Courses phases = phases_of(r, *found);
+    const Courses phases = phases_of(group_, r, *found);
     return kind == UnnamedKind::Mean ? mean(phases) : variance(phases);
   }
 
@@ -257,10 +182,10 @@ class UnnamedSearch {
       all.push_back(mean(courses));
     }
     for (std::size_t r = 0; r < group_.members.size() && !data_.stopped(); ++r) {
-      if (recording(r).count() < kFewest) {
+      if (recording(r).count() < kFewestOfProfile) {
         continue;
       }
-      const Courses time = time_of(r);
+      const Courses time = time_of(group_, r);
       all.push_back(variance(time));
       all.push_back(mean(time));
       all.push_back(again(r, UnnamedKind::Mean));
@@ -417,16 +342,6 @@ class UnnamedSearch {
     candidate.se = std::move(all.se);
   }
 
-  /// Which part of a single recording a sample belongs to.
-  [[nodiscard]] static std::size_t part_of(const Courses& courses, std::size_t i, std::size_t count) {
-    if (courses.against == Against::Phase) {
-      const double share = static_cast<double>(i) / static_cast<double>(count);
-      return static_cast<std::size_t>(share * courses.periods) % 2;
-    }
-    const std::size_t segments = courses.against == Against::Time ? kTimeBins * kTurns : kSegments;
-    return i * segments / count % 2;
-  }
-
   [[nodiscard]] Candidate variance(const Courses& courses) const {
     Candidate candidate;
     candidate.effect = effect_in(UnnamedKind::Variance, courses);
@@ -454,7 +369,7 @@ class UnnamedSearch {
           square /= value_at(*effect, course[i]);
         }
         // Two squares count as one ordinate, and those of a heavy tail for less.
-        parts[alone ? part_of(courses, i, count) : m][bin_of(courses.edge, courses.of[r][i])] +=
+        parts[alone ? courses.part_of(i, count) : m][bin_of(courses.edge, courses.of[r][i])] +=
             {0.5 / tails_, 0.5 / tails_ * square};
         candidate.samples += 1.0;
       }
@@ -530,7 +445,7 @@ class UnnamedSearch {
       for (std::size_t half = 0; half < (alone ? 2U : 1U); ++half) {
         parts.push_back(centred_gram(
             whitened.columns, m, courses.members.size(),
-            [&](std::size_t b, std::size_t blocks) { return !alone || part_of(courses, b, blocks) == half; }));
+            [&](std::size_t b, std::size_t blocks) { return !alone || courses.part_of(b, blocks) == half; }));
       }
     }
     return parts;
