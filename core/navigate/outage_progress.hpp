@@ -1,7 +1,6 @@
 #pragma once
 /// What an outage evaluation knows while its runs go on, as the name of the stage that they are: a sentence for people
-/// that can be read back, so that whoever watches a job has the intervals too. Both are in outage_evaluation.cpp, which
-/// tells it.
+/// that can be read back, so that whoever watches a job has the intervals too.
 ///
 /// "outages, mean after 40 runs: M_stat(AV) 12 m [10, 14], M_dyn(GMWM) 9.1 m [8.3, 9.9]"
 #include "core/signal/estimate.hpp"
