@@ -3,6 +3,7 @@
 #include "server/store/checksums.hpp"
 #include "server/store/digest.hpp"
 #include "server/store/files.hpp"
+#include "server/store/retry_policy.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -12,7 +13,6 @@
 #include <cerrno>
 #include <fstream>
 #include <functional>
-#include <random>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 /// Copies that were used a moment ago are not removed: somebody is about to open them.
 constexpr auto kJustUsed = std::chrono::minutes(5);
-
-bool is_there(const fs::path& path) { return ::access(path.c_str(), F_OK) == 0; }
 
 void mark_used(const fs::path& path) { (void)::utimensat(AT_FDCWD, path.c_str(), nullptr, 0); }
 
@@ -67,11 +65,6 @@ std::string sum_beside(FileKind kind, const fs::path& path) {
     std::ifstream(columns_checksum_path(path)) >> sum;
   }
   return sum;
-}
-
-std::chrono::milliseconds drawn_pause(std::chrono::milliseconds bound) {
-  thread_local std::mt19937_64 generator{std::random_device{}()};
-  return std::chrono::milliseconds(std::uniform_int_distribution<long>(0, bound.count())(generator));
 }
 
 }  // namespace
@@ -131,7 +124,7 @@ Result<CopiedBlobs::Fetched> CopiedBlobs::fetch(const std::string& sha256, FileK
     if (!passing) {
       break;
     }
-    std::this_thread::sleep_for(drawn_pause(pause));
+    std::this_thread::sleep_for(draw_pause(pause));
     pause *= 2;
     fetched = fetch_once(sha256, kind, path);
   }

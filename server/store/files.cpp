@@ -28,6 +28,11 @@ Error file_error(int error_number, std::string_view doing, const std::filesystem
                {{"path", path.string()}}};
 }
 
+bool is_there(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none);
+}
+
 Status make_directories(const std::filesystem::path& path) {
   struct ::stat found{};
   if (::stat(path.c_str(), &found) == 0) {

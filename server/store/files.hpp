@@ -32,6 +32,9 @@ class FileHandle {
 /// Io.
 [[nodiscard]] Error file_error(int error_number, std::string_view doing, const std::filesystem::path& path);
 
+/// Whether there is something at the path, of any kind; false where nobody can say.
+[[nodiscard]] bool is_there(const std::filesystem::path& path);
+
 /// Makes the directory and its parents (mode 0700), durably. Errors: Io, DiskFull.
 [[nodiscard]] Status make_directories(const std::filesystem::path& path);
 

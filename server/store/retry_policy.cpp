@@ -16,4 +16,9 @@ std::int64_t draw_pause_micros(int failures, std::mt19937_64& generator) {
   return std::uniform_int_distribution<std::int64_t>(0, pause_bound_micros(failures))(generator);
 }
 
+std::chrono::milliseconds draw_pause(std::chrono::milliseconds bound) {
+  thread_local std::mt19937_64 generator{std::random_device{}()};
+  return std::chrono::milliseconds(std::uniform_int_distribution<std::int64_t>(0, bound.count())(generator));
+}
+
 }  // namespace driftlab::server

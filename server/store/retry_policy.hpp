@@ -1,5 +1,6 @@
 #pragma once
 /// When a failed attempt is tried again. The same for every store.
+#include <chrono>
 #include <cstdint>
 #include <random>
 
@@ -20,5 +21,8 @@ inline constexpr std::int64_t kAgeingMicros = 10LL * 60 * 1'000'000;
 /// Draws the pause after the n-th failure: uniform over [0, pause_bound_micros(n)] ("full jitter"), so that jobs that
 /// failed together do not come back together.
 [[nodiscard]] std::int64_t draw_pause_micros(int failures, std::mt19937_64& generator);
+
+/// The same of a bound that the caller has, by a generator of the thread's own.
+[[nodiscard]] std::chrono::milliseconds draw_pause(std::chrono::milliseconds bound);
 
 }  // namespace driftlab::server

@@ -1,6 +1,7 @@
 #include "server/store/s3/client.hpp"
 
 #include "server/store/digest.hpp"
+#include "server/store/retry_policy.hpp"
 #include "server/store/s3/xml.hpp"
 #include "server/store/silent_store.hpp"
 
@@ -10,18 +11,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
-#include <random>
 #include <thread>
 
 namespace driftlab::server::s3 {
 namespace {
 
 constexpr std::size_t kMostIdle = 8;
-
-std::string header(const Reply& reply, const std::string& name) {
-  const auto found = reply.headers.find(name);
-  return found == reply.headers.end() ? std::string() : found->second;
-}
 
 /// A word of the storage that goes into a sentence: letters alone, of a code such as `AccessDenied`.
 std::string word(const std::string& text) {
@@ -55,15 +50,10 @@ bool passes_by(int status, std::string_view code) {
 }
 
 std::chrono::milliseconds asked_pause(const Reply& reply) {
-  const std::string text = header(reply, "retry-after");
+  const std::string text = reply.header("retry-after");
   int seconds = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   return std::chrono::seconds(error == std::errc{} && seconds > 0 ? seconds : 0);
-}
-
-std::chrono::milliseconds drawn_pause(std::chrono::milliseconds bound) {
-  thread_local std::mt19937_64 generator{std::random_device{}()};
-  return std::chrono::milliseconds(std::uniform_int_distribution<long>(0, bound.count())(generator));
 }
 
 }  // namespace
@@ -90,7 +80,7 @@ Result<Reply> Client::send(const Call& call, const Connection::Sink& sink) const
   const int attempts = sink ? 1 : options_.attempts;
   for (int i = 1; i < attempts && !outcome.reply && outcome.again && std::chrono::steady_clock::now() < until; ++i) {
     std::this_thread::sleep_for(outcome.pause.count() > 0 ? std::min(outcome.pause, options_.longest_pause)
-                                                          : drawn_pause(bound));
+                                                          : draw_pause(bound));
     bound = std::min(bound * 2, options_.longest_pause);
     outcome = attempt(call, sink);
   }
@@ -188,7 +178,7 @@ Client::Outcome Client::judge(const Call& call, Reply reply) const {
   };
   constexpr UtcMicros kSkewMicros = 300'000'000;
   const UtcMicros ours = SystemClock().now();
-  const UtcMicros theirs = read_time(header(reply, "date")).value_or(ours + ahead_micros_);
+  const UtcMicros theirs = read_time(reply.header("date")).value_or(ours + ahead_micros_);
   // The answer to HEAD has no code.
   const bool is_skewed = status == 403 && code.empty() && std::abs(theirs - ours - ahead_micros_) > kSkewMicros;
   if (code == "RequestTimeTooSkewed" || is_skewed) {

@@ -37,6 +37,11 @@ struct Reply {
   int status = 0;
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;                            ///< at most 16 MiB; empty where a sink took it
+  /// Of that name, in lower case; empty: there is none.
+  [[nodiscard]] std::string header(const std::string& name) const {
+    const auto found = headers.find(name);
+    return found == headers.end() ? std::string() : found->second;
+  }
 };
 
 class Connection {

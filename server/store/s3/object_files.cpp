@@ -25,17 +25,12 @@ constexpr std::uintmax_t kMostParts = 10'000;
 /// What was removed while it was uploaded is written again so often.
 constexpr int kRounds = 3;
 
-std::string header(const Reply& reply, const std::string& name) {
-  const auto found = reply.headers.find(name);
-  return found == reply.headers.end() ? std::string() : found->second;
-}
-
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
 bool is_missing(const Error& error) { return error.code == ErrorCode::NotFound; }
 
 /// The time of the storage's own clock, by which it dates objects.
-UtcMicros storage_time(const Reply& reply) { return read_time(header(reply, "date")).value_or(SystemClock().now()); }
+UtcMicros storage_time(const Reply& reply) { return read_time(reply.header("date")).value_or(SystemClock().now()); }
 
 /// The hash that a key names; empty for one of another kind.
 std::string hash_in(const std::string& key) {
@@ -124,8 +119,8 @@ Result<bool> ObjectFiles::holds(const Written& written) const {
   if (!found) {
     return is_missing(found.error()) ? Result<bool>(false) : fail(found.error());
   }
-  return header(*found, "content-length") == std::to_string(written.bytes) &&
-         header(*found, kSumHeader) == written.sha256;
+  return found->header("content-length") == std::to_string(written.bytes) &&
+         found->header(kSumHeader) == written.sha256;
 }
 
 Result<ObjectFiles::Written> ObjectFiles::put_file(const std::string& key, const fs::path& path) {
@@ -190,7 +185,7 @@ Status ObjectFiles::put_each_part(const std::string& key, const std::string& upl
     if (!put) {
       return fail(put.error());
     }
-    parts.append("<Part><PartNumber>" + name + "</PartNumber><ETag>" + header(*put, "etag") + "</ETag></Part>");
+    parts.append("<Part><PartNumber>" + name + "</PartNumber><ETag>" + put->header("etag") + "</ETag></Part>");
   }
   return {};
 }
@@ -216,7 +211,7 @@ Result<std::string> ObjectFiles::read(const std::string& blob, FileKind kind, co
   if (!got) {
     return fail(got.error());
   }
-  const std::string told = header(*got, kSumHeader);
+  const std::string told = got->header(kSumHeader);
   return kind == kBytes ? blob : is_sha256_hex(told) ? told : std::string();
 }
 
@@ -242,7 +237,7 @@ Result<bool> ObjectFiles::remove_if_older(const std::string& blob, std::chrono::
       }
       if (found) {
         const UtcMicros now = storage_time(*found);
-        old = read_time(header(*found, "last-modified")).value_or(now) < now - age.count();
+        old = read_time(found->header("last-modified")).value_or(now) < now - age.count();
         if (!old) {
           return {};
         }
