@@ -10,17 +10,9 @@
 
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 namespace driftlab::server {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_there(const fs::path& path) {
-  std::error_code none;
-  return fs::exists(path, none);
-}
 
 Result<OpenedStore> open_sqlite(const Settings& settings, const Clock& clock, AuditListener audited) {
   if (is_there(settings.data / kIdentityFile)) {
@@ -107,11 +99,11 @@ Result<std::unique_ptr<BlobStore>> open_blobs(const Settings& settings, OpenedSt
 }
 
 Result<OpenedStore> open_existing_store(const Settings& settings, const Clock& clock) {
-  const bool in_folder = settings.blobs.empty() || settings.blobs.starts_with('/');
-  const fs::path kept = settings.blobs.empty() ? settings.data : fs::path(settings.blobs);
-  if (in_folder && !is_there(kept / (settings.store.empty() ? kSqliteFile : kIdentityFile))) {
+  const BlobPlace* const place = find_blob_place(settings.blobs);
+  const auto kept = place != nullptr ? place->folder(settings) : std::nullopt;
+  if (kept && !is_there(*kept / (settings.store.empty() ? kSqliteFile : kIdentityFile))) {
     return fail(ErrorCode::NotFound,
-                "There is no database in " + kept.string() + "; name the daemon's directory with --data.");
+                "There is no database in " + kept->string() + "; name the daemon's directory with --data.");
   }
   return open_store(settings, clock);
 }

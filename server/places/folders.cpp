@@ -3,17 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <system_error>
 
 namespace driftlab::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_there(const fs::path& path) {
-  std::error_code none;
-  return fs::exists(path, none);
-}
 
 /// Rows in SQLite lie in the directory itself and need no mark.
 Status bind_directory(const fs::path& data, OpenedStore& store) {
@@ -41,6 +35,7 @@ Status bind_directory(const fs::path& data, OpenedStore& store) {
 BlobPlace own_directory() {
   return {"nothing for --data", [](const std::string& value) { return value.empty(); },
           [](const std::string& /*value*/) { return std::string(); },
+          [](const Settings& settings) -> std::optional<fs::path> { return settings.data; },
           [](const Settings& settings, OpenedStore& store) -> Result<std::unique_ptr<BlobStore>> {
             const Status bound = bind_directory(settings.data, store);
             return bound ? open_blob_directory(settings.data) : fail(bound.error());
@@ -50,6 +45,7 @@ BlobPlace own_directory() {
 BlobPlace shared_folder() {
   return {"the absolute path of a folder", [](const std::string& value) { return value.starts_with('/'); },
           [](const std::string& /*value*/) { return std::string(); },
+          [](const Settings& settings) -> std::optional<fs::path> { return settings.blobs; },
           [](const Settings& settings, OpenedStore& store) -> Result<std::unique_ptr<BlobStore>> {
             const Status bound = bind_directory(settings.blobs, store);
             return bound ? open_shared_blob_directory(settings.blobs) : fail(bound.error());

@@ -9,6 +9,7 @@ namespace driftlab::server {
 BlobPlace in_database() {
   return {"database", [](const std::string& value) { return value == "database"; },
           [](const std::string& /*value*/) { return std::string(); },
+          [](const Settings& /*settings*/) { return std::optional<std::filesystem::path>(); },
           [](const Settings& settings, OpenedStore& store) -> Result<std::unique_ptr<BlobStore>> {
 #ifdef DRIFTLAB_POSTGRES
             return open_copied(settings, std::make_unique<DatabaseFiles>(*store.database));

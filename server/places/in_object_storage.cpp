@@ -59,7 +59,7 @@ BlobPlace in_object_storage() {
             const auto read = s3::read_place(value);
             return read ? std::string() : read.error().message;
           },
-          open};
+          [](const Settings& /*settings*/) { return std::optional<std::filesystem::path>(); }, open};
 }
 
 }  // namespace driftlab::server

@@ -6,8 +6,10 @@
 #include "server/store/blobs.hpp"
 #include "server/store/remote_files.hpp"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,8 @@ struct BlobPlace {
   std::function<bool(const std::string& value)> is_meant;
   /// Empty where it is well written, else how it has to be: `must name a bucket.` Never repeats what may be a secret.
   std::function<std::string(const std::string& value)> fault;
+  /// The folder of this machine that it is, where a database's mark or an SQLite store lies; nothing: it is elsewhere.
+  std::function<std::optional<std::filesystem::path>(const Settings& settings)> folder;
   /// Opens it beside a store that was opened by the same settings. Recordings belong to one database: a place that
   /// keeps those of another is refused, for the sweeper would take them for rubbish. Errors: Conflict, Io, DiskFull,
   /// InvalidArgument.
