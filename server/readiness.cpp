@@ -7,8 +7,6 @@ namespace {
 
 constexpr double kLeastFreeFraction = 0.05;
 constexpr std::uintmax_t kEnoughFreeBytes = 10ULL * 1024 * 1024 * 1024;
-constexpr std::chrono::seconds kProbeInterval{2};
-constexpr std::chrono::seconds kBlobsInterval{5};
 
 }  // namespace
 
@@ -33,8 +31,11 @@ std::string Readiness::look(bool tries_to_write) const {
       is_nearly_full() ? Status(fail(ErrorCode::DiskFull, "less than it needs is free, or nobody can say.")) : Status{};
   const std::string full = told(BadState::DiskNearlyFull, "The disk is nearly full: ", room);
   const std::string unwritable =
-      tries_to_write ? told(BadState::StoreUnwritable, "The store cannot be written: ", can_write()) : "";
-  const std::string unreachable = told(BadState::BlobsSilent, "Recordings cannot be reached: ", can_reach_blobs());
+      tries_to_write ? told(BadState::StoreUnwritable,
+                            "The store cannot be written: ", writable_.ask([&] { return store_.write_probe(); }))
+                     : "";
+  const std::string unreachable =
+      told(BadState::BlobsSilent, "Recordings cannot be reached: ", reachable_.ask([&] { return blobs_.ping(); }));
   return !silent.empty() ? silent : !full.empty() ? full : !unwritable.empty() ? unwritable : unreachable;
 }
 
@@ -43,24 +44,13 @@ bool Readiness::is_nearly_full() const {
   return !space || (space->free_fraction < kLeastFreeFraction && space->free_bytes < kEnoughFreeBytes);
 }
 
-Status Readiness::can_write() const {
+Status Readiness::Probe::ask(const std::function<Status()>& question) {
   const std::lock_guard<std::mutex> guard(mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  if (!probed_at_ || now - *probed_at_ >= kProbeInterval) {
-    written_ = store_.write_probe();
-    probed_at_ = std::chrono::steady_clock::now();
-  }
-  return written_;
-}
-
-Status Readiness::can_reach_blobs() const {
-  const std::lock_guard<std::mutex> guard(blobs_mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  if (!asked_at_ || now - *asked_at_ >= kBlobsInterval) {
-    reached_ = blobs_.ping();
+  if (!asked_at_ || std::chrono::steady_clock::now() - *asked_at_ >= interval_) {
+    answer_ = question();
     asked_at_ = std::chrono::steady_clock::now();
   }
-  return reached_;
+  return answer_;
 }
 
 }  // namespace driftlab::server

@@ -6,6 +6,7 @@
 #include "server/store/store.hpp"
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -29,10 +30,20 @@ class Readiness {
   [[nodiscard]] bool is_nearly_full() const;
 
  private:
-  /// Whether a row can be written; tried once in two seconds, for who asks whether the daemon is ready asks often.
-  [[nodiscard]] Status can_write() const;
-  /// Whether the storage of recordings answers; asked once in five seconds.
-  [[nodiscard]] Status can_reach_blobs() const;
+  /// A question that is asked no more often than once in its interval, for who asks whether the daemon is ready asks
+  /// often; meanwhile the last answer holds.
+  class Probe {
+   public:
+    explicit Probe(std::chrono::seconds interval) : interval_(interval) {}
+    [[nodiscard]] Status ask(const std::function<Status()>& question);
+
+   private:
+    std::chrono::seconds interval_;
+    std::mutex mutex_;
+    std::optional<std::chrono::steady_clock::time_point> asked_at_;
+    Status answer_;
+  };
+
   [[nodiscard]] std::string look(bool tries_to_write) const;
   /// The sentence for a state that holds where `checked` failed; empty where it does not.
   [[nodiscard]] std::string told(BadState state, const std::string& what, const Status& checked) const;
@@ -40,12 +51,8 @@ class Readiness {
   Store& store_;
   BlobStore& blobs_;
   BadStates& states_;
-  mutable std::mutex mutex_;
-  mutable std::optional<std::chrono::steady_clock::time_point> probed_at_;
-  mutable Status written_;
-  mutable std::mutex blobs_mutex_;
-  mutable std::optional<std::chrono::steady_clock::time_point> asked_at_;
-  mutable Status reached_;
+  mutable Probe writable_{std::chrono::seconds(2)};   ///< whether a row can be written
+  mutable Probe reachable_{std::chrono::seconds(5)};  ///< whether the storage of recordings answers
 };
 
 }  // namespace driftlab::server
