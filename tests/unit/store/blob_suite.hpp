@@ -30,7 +30,9 @@ struct BlobStoreUnderTest {
   std::string name;
   /// The blobs of that folder, as process number `process` reaches them.
   std::function<std::unique_ptr<BlobStore>(const std::filesystem::path& folder, int process)> open;
-  /// Brings it about for the blobs of that folder, of which one is named; nothing: this kind knows no such fault.
+  /// Those that it can have here.
+  std::vector<BlobFault> faults;
+  /// Brings one of these about for the blobs of that folder, of which one is named.
   std::function<Trouble(const std::filesystem::path& folder, BlobFault fault, const std::string& sha256)> trouble;
   bool is_shared = false;                                ///< several processes reach them at a time
   std::function<bool()> is_there = [] { return true; };  ///< whether it is installed; says so where it is not
