@@ -85,9 +85,9 @@ struct Blocks {
   NavigationTransition f;
   ScalarMeasurement measurement;
   ErrorCovariance::Navigation nn;
-  alignas(32) std::array<double, 9 * S> gain{}, ns{};
+  alignas(32) std::array<double, std::size_t{9} * S> gain{}, ns{};
   alignas(32) std::array<double, S> phi{};
-  alignas(32) std::array<double, S * S> ss{};
+  alignas(32) std::array<double, std::size_t{S} * S> ss{};
   std::array<double, 9 + S> state{};
 };
 
