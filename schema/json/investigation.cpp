@@ -136,6 +136,7 @@ Json finding_json(const Finding& finding) {
   Json next = finding.next_measurement.empty() ? Json(nullptr) : Json(finding.next_measurement);
   return Json{{"cause", std::string(finding.evidence.cause->name)},
               {"title", std::string(finding.evidence.cause->title)},
+              {"equation", std::string(finding.evidence.cause->equation)},
               {"concern", std::string(name_of(concern_of(*finding.evidence.cause)))},
               {"status", finding.evidence.ambiguous ? "ambiguous" : "identified"},
               {"alternatives", alternatives_of(finding.evidence)},

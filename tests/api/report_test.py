@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -52,8 +53,12 @@ class Pages(unittest.TestCase):
         self.assertEqual(page.count("<svg"), 4 * len(document["figures"]))
         for finding in document["findings"]:
             self.assertIn(finding["cause"], page)
+            self.assertTrue(finding["equation"])
+            self.assertIn(f'<p class="equation">{finding["equation"]}</p>', page)
             for name in finding["parameters"]:
                 self.assertIn(f"<td>{name}</td>", page)
+                spoken = re.sub("_(hz|s|deg)$", "", name).replace("_", " ")
+                self.assertIn(f"{spoken} = ", finding["explanation"])
         for heading in ("Extended model", "Not examined"):
             self.assertIn(f"<h2>{heading}</h2>", page)
 

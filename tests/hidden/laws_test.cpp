@@ -1,5 +1,6 @@
 /// What the injection of every registered cause puts into a recording obeys an equation that was not written with the
-/// cause: a wrong sign or unit in a template would else be hidden and found again by itself.
+/// cause: a wrong sign or unit in a template would else be hidden and found again by itself. What every registered
+/// cause owes its readers is asked here too.
 #include "core/investigate/causes/cause.hpp"
 #include "tests/hidden/equations.hpp"
 #include "tests/hidden/simulated_study.hpp"
@@ -7,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <string>
 
 namespace driftlab::hidden {
@@ -178,6 +181,43 @@ TEST_P(CauseLaw, InjectionObeysAnEquationOfItsOwn) {
       }
       expect_sharp(cause, trial, injected);
     }
+  }
+}
+
+/// As print writes a parameter for which there is a symbol: sigma_s is σ, t0_s is t₀.
+std::string symbol_of(const std::string& spoken) {
+  static const std::map<std::string, std::string> symbols{{"sigma", "σ"}, {"beta", "β"}, {"nu", "ν"},  {"delta", "δ"},
+                                                          {"eps", "ε"},   {"tau", "τ"},  {"t0", "t₀"}, {"f0", "f₀"},
+                                                          {"f1", "f₁"},   {"S2", "S₂"},  {"S3", "S₃"}};
+  const auto found = symbols.find(spoken);
+  return found == symbols.end() ? spoken : found->second;
+}
+
+/// The text has the word with no letter of its own before or behind it: `S` stands in "S₂ ω", not in "Student".
+bool has_word(const std::string& text, const std::string& word) {
+  const auto is_letter = [&](std::size_t i) {
+    return i < text.size() && std::isalnum(static_cast<unsigned char>(text[i])) != 0;
+  };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + word.size())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Pages, reports and terminals print the equation as it stands, where markup and programmers' notation are noise.
+TEST_P(CauseLaw, EquationIsALineOfPrintThatNamesEveryParameter) {
+  const Cause& cause = *find_cause(GetParam());
+  const std::string equation(cause.equation);
+  ASSERT_FALSE(equation.empty()) << cause.name << " declares no equation (Cause::equation)";
+  EXPECT_EQ(equation.find_first_of("_^*\\$<>&`\n\t-"), std::string::npos) << equation;
+  EXPECT_NE(equation.find_first_of("="), std::string::npos) << equation;
+  for (const CauseParameter& parameter : cause.parameters) {
+    EXPECT_TRUE(has_word(equation, symbol_of(spoken_name(parameter.name)))) << parameter.name << ": " << equation;
+  }
+  for (const Cause& other : cause_registry()) {
+    EXPECT_TRUE(other.name == cause.name || other.equation != cause.equation) << other.name;
   }
 }
 

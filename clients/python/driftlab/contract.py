@@ -1534,6 +1534,9 @@ class InvestigationFiguresWavelet(TypedDict):
 class InvestigationFinding(TypedDict):
     cause: str
     title: NotRequired[str]
+    # The equation of the effect as one line of text: y is the channel's error, x what the sensor sees, z what the file
+    # says, k the number of a sample.
+    equation: NotRequired[str]
     concern: NotRequired[InvestigationConcern]
     status: Literal['identified', 'ambiguous']
     alternatives: list[str]

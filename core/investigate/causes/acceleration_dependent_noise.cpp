@@ -26,6 +26,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause acceleration_dependent_noise() {
   return {.name = "acceleration_dependent_noise",
           .title = "white noise that grows with the angular acceleration",
+          .equation = "N(α) = N₀ (1 + k |α|), N² the density of the white noise, α the angular acceleration",
           .family = NoiseLevel{.examine = examine, .deviation = deviation},
           .rivals = {"white_noise_level", "rate_dependent_noise", "noise_level_change", "quantization_noise"},
           .needs = "several accelerations or a profile",

@@ -71,6 +71,7 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 Cause averaged_samples() {
   return {.name = "averaged_samples",
           .title = "samples that are means over several",
+          .equation = "z(k) = (x(k) + x(k−1) + … + x(k − samples + 1)) / samples, x the reading before the mean",
           .family = RecordingFault{.find = find},
           .rivals = {"band_limited_noise"},
           .needs = "any recording",

@@ -51,6 +51,7 @@ double shown_other_axis(const Stage& /*stage*/, Random& /*random*/) { return 2.0
 Cause axis_misalignment() {
   return {.name = "axis_misalignment",
           .title = "a part of the rate about another axis (misalignment)",
+          .equation = "y = m ω, ω the rate about another axis",
           .family = MeanEffect{.build = build, .shapes = shapes, .penalty = 1.0, .part_of_rate = true},
           .rivals = {"turn_on_bias"},
           .needs = "several axes in motion",

@@ -171,6 +171,7 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 Cause band_limited_noise() {
   return {.name = "band_limited_noise",
           .title = "white noise that a low-pass filter has narrowed",
+          .equation = "S(f) = N² / (1 + (f / corner)⁴), N² the density of the white noise at low frequency",
           .family = BandLimit{.examine = examine, .log_gain = log_gain},
           .rivals = {"gauss_markov"},
           .needs = "any recording",

@@ -23,6 +23,7 @@ double shown_t0(const Stage& stage, Random& random) { return stage.duration_s * 
 Cause bias_step() {
   return {.name = "bias_step",
           .title = "a jump of the bias",
+          .equation = "y = 0 before t₀ and y = step from t₀ on",
           .family = MeanEffect{.build = build, .scope_all = false, .scope_single = true, .change_point = true},
           .rivals = {"random_walk", "gauss_markov", "linear_drift", "warm_up_transient", "temperature_bias"},
           .needs = "any recording",

@@ -83,6 +83,10 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause bursty_clock() {
   return {.name = "bursty_clock",
           .title = "samples that arrive in bursts and are stamped on arrival",
+          .equation =
+              "t(k) = the time of the last sample of the burst that sample k arrives in, samples taken at k / rate and "
+              "burst of them "
+              "arriving at a time",
           .family = RecordingFault{.find = find},
           .rivals = {"timestamp_jitter"},
           .needs = "a time column",

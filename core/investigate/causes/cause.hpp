@@ -42,6 +42,10 @@ enum class Concern { Recording, Calibration, Noise, Format };
 struct Cause {
   std::string_view name;
   std::string_view title;  ///< "a bias that follows the temperature"
+  /// The equation of the effect in print, one line of plain text: "y = R t, t from the first sample of the file". In it
+  /// y is the error of the channel, x what the sensor sees, z what the file says, k the number of a sample. It names
+  /// each parameter by its symbol or by `spoken_name`.
+  std::string_view equation;
   Family family;
   std::vector<std::string_view> rivals;  ///< causes that can look alike
   std::string_view needs;                ///< what a study must hold to show it

@@ -320,6 +320,7 @@ Cause chirped_disturbance() {
   return {
       .name = "chirped_disturbance",
       .title = "a disturbance whose frequency runs",
+      .equation = "y = amplitude · sin(2π (f₀ t + (f₁ − f₀) t² / (2T)) + φ), T the length of the recording",
       .family = SpectralLine{.examine = examine, .find_again = find_again, .log_gain = log_gain, .values = values_of},
       .rivals = {"periodic_disturbance"},
       .needs = "any recording",

@@ -24,6 +24,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause clock_jump() {
   return {.name = "clock_jump",
           .title = "a clock that jumps",
+          .equation = "x(t) = ω(t) before t₀ and x(t) = ω(t − δ) from t₀ on, x the reading and ω the reference",
           .family = RecordingFault{.find = find},
           .rivals = {"sampling_rate_change", "reference_time_offset", "reference_clock_drift"},
           .needs = "a motion profile with a reference column",

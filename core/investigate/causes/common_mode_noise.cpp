@@ -149,6 +149,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause common_mode_noise() {
   return {.name = "common_mode_noise",
           .title = "noise that the axes share",
+          .equation = "E(e₁ e₂) = correlation · s₁ s₂ for any two axes, e the white part and s its standard deviation",
           .family = CommonNoise{.examine_together = examine},
           .rivals = {},
           .needs = "several axes recorded together",

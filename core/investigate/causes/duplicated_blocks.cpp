@@ -144,6 +144,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause duplicated_blocks() {
   return {.name = "duplicated_blocks",
           .title = "blocks of samples that were written twice",
+          .equation = "z(k) = z(k − m) within copies of m samples; mean length: of m; fraction: copied samples of all",
           .family = RecordingFault{.find = find},
           .rivals = {"stuck_samples"},
           .needs = "any recording",

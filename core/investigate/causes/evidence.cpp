@@ -25,6 +25,18 @@ LabUnit level_unit(const Unit& channel, std::string_view suffix) {
   return unit;
 }
 
+std::string spoken_name(std::string_view parameter) {
+  for (const std::string_view unit : {"_hz", "_s", "_deg"}) {
+    if (parameter.ends_with(unit)) {
+      parameter.remove_suffix(unit.size());
+      break;
+    }
+  }
+  std::string name(parameter);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::vector<std::string> alternatives_of(const Evidence& evidence) {
   std::vector<std::string> alternatives;
   for (const Evidence& rival : evidence.rivals) {

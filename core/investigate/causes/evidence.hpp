@@ -21,6 +21,10 @@ struct LabUnit {
 /// The channel's own unit as reports write it: deg/s, m/s^2, or 1; with something behind it ("/s", "/degC").
 [[nodiscard]] LabUnit level_unit(const Unit& channel, std::string_view suffix = "");
 
+/// "frequency" of `frequency_hz`, "mean run" of `mean_run`: a parameter's name in sentences, which write its unit
+/// beside its value.
+[[nodiscard]] std::string spoken_name(std::string_view parameter);
+
 struct FoundParameter {
   std::string name;
   Estimate estimate;  ///< SI

@@ -10,6 +10,7 @@ namespace driftlab::investigate {
 Cause flicker_noise() {
   return {.name = "flicker_noise",
           .title = "flicker noise",
+          .equation = "S(f) = B² / (2π |f|), S the density of y at frequencies of both signs",
           .family = SlowNoise{&registered<FlickerNoise>()},
           .rivals = {"gauss_markov", "random_walk"},
           .needs = "a baseline that does not already hold it",

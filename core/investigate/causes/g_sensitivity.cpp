@@ -21,6 +21,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 Cause g_sensitivity() {
   return {.name = "g_sensitivity",
           .title = "a gyro that feels specific force along its axis",
+          .equation = "y = G f, f the specific force along the same axis",
           .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"vibration_rectification", "turn_on_bias"},
           .needs = "an accelerometer along the gyro's axis, and a specific force that varies",

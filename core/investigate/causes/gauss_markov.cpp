@@ -17,6 +17,7 @@ double shown_beta(const Stage& /*stage*/, Random& random) { return 0.2 + 0.3 * r
 Cause gauss_markov() {
   return {.name = "gauss_markov",
           .title = "one more slow Gauss-Markov process",
+          .equation = "dy/dt = −β y + σ √(2β) w(t), w white noise of unit density",
           .family = SlowNoise{&registered<GaussMarkov>()},
           .rivals = {"random_walk", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step", "turn_on_bias"},
           .needs = "a baseline that does not already hold it",

@@ -56,6 +56,7 @@ Cause heading_dependent_bias() {
   return {
       .name = "heading_dependent_bias",
       .title = "a bias that follows the heading",
+      .equation = "y = amplitude · cos(heading − phase)",
       .family =
           MeanEffect{.build = build, .shapes = phases, .refinement = ShapeRefinement::phase(kTurnDeg), .penalty = 6.0},
       .rivals = {"turn_on_bias"},

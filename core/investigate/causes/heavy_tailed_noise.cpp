@@ -90,6 +90,9 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause heavy_tailed_noise() {
   return {.name = "heavy_tailed_noise",
           .title = "white noise with heavier tails than a Gaussian",
+          .equation =
+              "e = s √((ν − 2) / ν) T, T of Student's distribution with ν degrees of freedom, s the standard deviation "
+              "of the white part",
           .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail},
           .rivals = {"outliers"},
           .needs = "any recording",

@@ -60,15 +60,18 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 }  // namespace
 
 Cause interpolated_samples() {
-  return {.name = "interpolated_samples",
-          .title = "samples interpolated between fewer",
-          .family = RecordingFault{.find = find},
-          .rivals = {},
-          .needs = "any recording",
-          .separates = "the same recording at the sensor's own output rate",
-          .parameters = {{"source_rate_hz", units::hertz}},
-          .inject = inject_effect,
-          .showing = {.values = shown_values, .oracle = false}};
+  return {
+      .name = "interpolated_samples",
+      .title = "samples interpolated between fewer",
+      .equation =
+          "z(t) = x(a) + (x(b) − x(a)) (t − a) / (b − a), a and b the neighbours of t among samples at the source rate",
+      .family = RecordingFault{.find = find},
+      .rivals = {},
+      .needs = "any recording",
+      .separates = "the same recording at the sensor's own output rate",
+      .parameters = {{"source_rate_hz", units::hertz}},
+      .inject = inject_effect,
+      .showing = {.values = shown_values, .oracle = false}};
 }
 
 }  // namespace driftlab::investigate

@@ -30,6 +30,7 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
 Cause lever_arm() {
   return {.name = "lever_arm",
           .title = "accelerometers away from the axis of rotation",
+          .equation = "y = −r ω² along the radius and y = r dω/dt along the tangent, ω the rate about z",
           .family = MeanEffect{.build = build, .penalty = 1.0, .one_for_all_axes = true},
           .rivals = {"turn_on_bias"},
           .needs = "accelerometers in rotation about z",

@@ -21,6 +21,7 @@ Cause linear_drift() {
   return {
       .name = "linear_drift",
       .title = "a bias that drifts at a constant rate",
+      .equation = "y = R t, t from the first sample of the file",
       .family =
           MeanEffect{
               .build = build, .penalty = 1.0, .scope_moving = true, .scope_single = true, .drift_of_baseline = true},

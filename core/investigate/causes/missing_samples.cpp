@@ -55,6 +55,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause missing_samples() {
   return {.name = "missing_samples",
           .title = "samples that are absent",
+          .equation = "t(k+1) − t(k) = (1 + m) Δt where m samples are absent; fraction: absent samples of all",
           .family = FileFact{.find = find, .events = events},
           .rivals = {},
           .needs = "a time column",

@@ -238,6 +238,7 @@ Cause modulated_disturbance() {
   return {
       .name = "modulated_disturbance",
       .title = "a sinusoidal disturbance that swells and fades",
+      .equation = "y = amplitude / 2 · (1 + cos(2π · modulation · t + ψ)) · sin(2π · frequency · t + φ)",
       .family = SpectralLine{.examine = examine, .find_again = find_again, .log_gain = log_gain, .values = values_of},
       .rivals = {"periodic_disturbance"},
       .needs = "any recording",

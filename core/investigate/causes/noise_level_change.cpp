@@ -151,6 +151,7 @@ Cause noise_level_change() {
   return {
       .name = "noise_level_change",
       .title = "noise that changes its level within a recording",
+      .equation = "y = m + e before t₀ and y = m + ratio · e from t₀ on, m the mean and e the rest",
       .family = NoiseLevel{.examine = examine, .deviation = deviation, .within_recording = true, .scales_slow = true},
       .rivals = {"white_noise_level", "outliers"},
       .needs = "any recording",

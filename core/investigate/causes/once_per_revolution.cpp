@@ -38,15 +38,17 @@ std::string lacks(const Study& /*study*/, const ChannelGroup& group) {
 }  // namespace
 
 Cause once_per_revolution() {
-  return {.name = "once_per_revolution",
-          .title = "an error that repeats with every revolution",
-          .family = MeanEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0},
-          .rivals = {"periodic_disturbance", "gauss_markov"},
-          .needs = "rotation through several revolutions",
-          .separates = "another rate: the error keeps its angle, a disturbance its frequency",
-          .parameters = {{"amplitude", units::level}},
-          .lacks = lacks,
-          .showing = {.scenario = Scenario::Rates}};
+  return {
+      .name = "once_per_revolution",
+      .title = "an error that repeats with every revolution",
+      .equation = "y = amplitude · sin(θ + φ), θ = ∫ ω dt from the first sample of the file, φ free in each recording",
+      .family = MeanEffect{.build = build, .columns = 2, .free_phase = true, .penalty = 2.0},
+      .rivals = {"periodic_disturbance", "gauss_markov"},
+      .needs = "rotation through several revolutions",
+      .separates = "another rate: the error keeps its angle, a disturbance its frequency",
+      .parameters = {{"amplitude", units::level}},
+      .lacks = lacks,
+      .showing = {.scenario = Scenario::Rates}};
 }
 
 }  // namespace driftlab::investigate

@@ -79,6 +79,7 @@ Cause outliers() {
   return {
       .name = "outliers",
       .title = "gross errors in single samples",
+      .equation = "y = e ± magnitude in a fraction of the samples, the sign at random, and y = e else",
       .family = NoiseTails{.examine = examine, .log_gain = log_gain, .tail = tail, .added_variance = added_variance},
       .rivals = {"heavy_tailed_noise"},
       .needs = "any recording",

@@ -90,6 +90,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause output_resolution() {
   return {.name = "output_resolution",
           .title = "a coarse output resolution",
+          .equation = "z = step · round(x / step), x the reading before it is rounded",
           .family = FileFact{.find = find, .log_gain = log_gain, .gives_lattice_step = true},
           .rivals = {},
           .needs = "any recording",

@@ -48,6 +48,7 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 Cause periodic_disturbance() {
   return {.name = "periodic_disturbance",
           .title = "a sinusoidal disturbance",
+          .equation = "y = amplitude · sin(2π · frequency · t + φ), φ free in each recording",
           .family =
               SpectralLine{.examine = find_lines, .find_again = find_again, .log_gain = log_gain, .values = values_of},
           .rivals = {"once_per_revolution", "gauss_markov"},

@@ -66,6 +66,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause quantization_noise() {
   return {.name = "quantization_noise",
           .title = "quantisation noise of an integrated output",
+          .equation = "y(k) = (u(k) − u(k−1)) / Δt, u uniform and independent with standard deviation Q",
           .family = DifferencedNoise{.examine = examine, .log_gain = log_gain},
           .rivals = {"white_noise_level"},
           .needs = "any recording; with an automatic baseline recordings of several conditions",

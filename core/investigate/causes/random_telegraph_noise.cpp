@@ -323,6 +323,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause random_telegraph_noise() {
   return {.name = "random_telegraph_noise",
           .title = "random jumps between two levels (popcorn noise)",
+          .equation = "y = ± amplitude, each side held for a random time τ with P(τ longer than t) = exp(−t / dwell)",
           .family = SwitchingNoise{.find = find, .values = values_of},
           .rivals = {"gauss_markov", "flicker_noise", "random_walk", "bias_step"},
           .needs = "recordings at rest",

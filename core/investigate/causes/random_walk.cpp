@@ -10,6 +10,7 @@ namespace driftlab::investigate {
 Cause random_walk() {
   return {.name = "random_walk",
           .title = "a random walk of the bias",
+          .equation = "dy/dt = K w(t), w white noise of unit density",
           .family = SlowNoise{&registered<RandomWalk>()},
           .rivals = {"gauss_markov", "flicker_noise", "linear_drift", "warm_up_transient", "bias_step"},
           .needs = "a baseline that does not already hold it",

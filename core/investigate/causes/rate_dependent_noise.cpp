@@ -26,6 +26,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause rate_dependent_noise() {
   return {.name = "rate_dependent_noise",
           .title = "white noise that grows with the rate",
+          .equation = "N(ω) = N₀ (1 + k |ω|), N² the density of the white noise, ω the rate",
           .family = NoiseLevel{.examine = examine, .deviation = deviation},
           .rivals = {"white_noise_level", "acceleration_dependent_noise", "noise_level_change", "quantization_noise"},
           .needs = "several rates or a profile",

@@ -16,6 +16,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 Cause reference_clock_drift() {
   return {.name = "reference_clock_drift",
           .title = "a reference clock that runs at another rate",
+          .equation = "x(t) = ω(t (1 + ε)), x the reading and ω the reference",
           .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"reference_time_offset", "scale_factor_error"},
           .needs = "a profile with a reference column",

@@ -104,6 +104,8 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause reference_noise() {
   return {.name = "reference_noise",
           .title = "a reference that is noisy or coarse itself",
+          .equation =
+              "r = ω + N w(t), w white noise of unit density, or r = step · round(ω / step), r the reference column",
           .family = RecordingFault{.find = find},
           .rivals = {"rate_dependent_noise", "white_noise_level", "scale_factor_error"},
           .needs = "a reference column",

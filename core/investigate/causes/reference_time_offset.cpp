@@ -16,6 +16,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 Cause reference_time_offset() {
   return {.name = "reference_time_offset",
           .title = "a reference that is shifted in time",
+          .equation = "x(t) = ω(t − δ), x the reading and ω the reference",
           .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"reference_clock_drift", "scale_factor_error"},
           .needs = "a profile with a reference column",

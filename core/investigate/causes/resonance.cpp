@@ -136,6 +136,9 @@ std::vector<double> shown_values(const Stage& stage, Random& random) {
 Cause resonance() {
   return {.name = "resonance",
           .title = "a resonance: a second-order Gauss-Markov process",
+          .equation =
+              "d²y/dt² + (ω₀ / quality) dy/dt + ω₀² y = σ √(2 ω₀³ / quality) w(t), ω₀ = 2π · frequency, w white noise "
+              "of unit density",
           .family = SpectralPeak{.examine = examine, .log_gain = log_gain, .density = density},
           .rivals = {"periodic_disturbance", "modulated_disturbance", "band_limited_noise"},
           .needs = "any recording",

@@ -25,6 +25,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause sampling_rate_change() {
   return {.name = "sampling_rate_change",
           .title = "a sampling rate that changes",
+          .equation = "x(t) = ω(t₀ + (t − t₀)(1 + ε)) from t₀ on, x the reading and ω the reference",
           .family = RecordingFault{.find = find},
           .rivals = {"clock_jump", "reference_clock_drift"},
           .needs = "a motion profile with a reference column",

@@ -83,6 +83,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) {
 Cause saturation() {
   return {.name = "saturation",
           .title = "an output that is clipped",
+          .equation = "z = max(−limit, min(limit, x)), x the reading before it is clipped",
           .family = FileFact{.find = find, .spoils = spoils},
           .rivals = {},
           .needs = "motion beyond the range, with a reference",

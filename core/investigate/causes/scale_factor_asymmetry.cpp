@@ -18,6 +18,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 Cause scale_factor_asymmetry() {
   return {.name = "scale_factor_asymmetry",
           .title = "a scale factor that differs between the signs of the rate",
+          .equation = "y = S |ω|, ω the rate about the axis",
           .family = MeanEffect{.build = build, .penalty = 1.0, .part_of_rate = true},
           .rivals = {"scale_factor_error", "scale_factor_nonlinearity", "turn_on_bias"},
           .needs = "rates of both signs",

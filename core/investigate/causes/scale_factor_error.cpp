@@ -24,6 +24,7 @@ bool in_unit(const Evidence& found, UnitAxis& axis) {
 Cause scale_factor_error() {
   return {.name = "scale_factor_error",
           .title = "an output that is proportional to the rate (scale-factor error)",
+          .equation = "y = S ω, ω the rate about the axis",
           .family = MeanEffect{.build = build, .penalty = 1.0, .part_of_rate = true},
           .rivals = {"scale_factor_asymmetry", "scale_factor_nonlinearity", "turn_on_bias"},
           .needs = "several rates, or a profile",

@@ -26,6 +26,7 @@ double shown_power(const Stage& /*stage*/, Random& /*random*/) { return 2.0; }
 Cause scale_factor_nonlinearity() {
   return {.name = "scale_factor_nonlinearity",
           .title = "a scale factor that changes with the magnitude of the rate",
+          .equation = "y = S₂ ω |ω| or y = S₃ ω³, ω the rate about the axis",
           .family = MeanEffect{.build = build,
                                .shapes = shapes,
                                .shape_of_parameter = {2.0, 3.0},

@@ -270,6 +270,8 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause stuck_samples() {
   return {.name = "stuck_samples",
           .title = "runs in which the last value repeats",
+          .equation =
+              "z(k) = z(k−1) within runs; mean run: repeats in a run on the average; fraction: repeats of all samples",
           .family = FileFact{.find = find, .spoils = spoils},
           .rivals = {},
           .needs = "any recording",

@@ -97,6 +97,7 @@ std::string lacks(const Study& study, const ChannelGroup& group) {
 Cause swapped_axes() {
   return {.name = "swapped_axes",
           .title = "two channels that are exchanged",
+          .equation = "z₁ = x₂ and z₂ = x₁, x the readings of two axes in the stated order",
           .family = RecordingFault{.find = find},
           .rivals = {"axis_misalignment", "scale_factor_error", "turn_on_bias"},
           .needs = "several axes recorded together in motion that is known",

@@ -54,6 +54,7 @@ double shown_lag(const Stage& /*stage*/, Random& random) { return 20.0 + 40.0 * 
 Cause temperature_bias() {
   return {.name = "temperature_bias",
           .title = "a bias that follows the temperature",
+          .equation = "y = coefficient · (U − mean of T), lag · dU/dt = T − U, T the temperature",
           .family = MeanEffect{.build = build,
                                .shapes = shapes,
                                .refinement = ShapeRefinement::time(),

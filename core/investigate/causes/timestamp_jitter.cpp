@@ -54,6 +54,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause timestamp_jitter() {
   return {.name = "timestamp_jitter",
           .title = "time stamps that scatter around the uniform grid",
+          .equation = "t(k) = t(0) + k Δt + ε(k), ε independent with standard deviation σ",
           .family = FileFact{.find = find},
           .rivals = {"acceleration_dependent_noise"},
           .needs = "a time column",

@@ -22,6 +22,7 @@ std::vector<double> shown_values(const Stage& stage, Random& /*random*/) { retur
 Cause turn_on_bias() {
   return {.name = "turn_on_bias",
           .title = "a bias that differs from recording to recording",
+          .equation = "y = b, drawn anew for each recording with standard deviation σ",
           .family = SlowNoise{&constant_offset()},
           .rivals = {"scale_factor_error", "scale_factor_asymmetry", "scale_factor_nonlinearity", "gauss_markov",
                      "axis_misalignment", "g_sensitivity", "lever_arm", "vibration_rectification",

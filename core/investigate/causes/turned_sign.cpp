@@ -50,6 +50,7 @@ Cause turned_sign() {
   return {
       .name = "turned_sign",
       .title = "a channel whose sign is turned",
+      .equation = "z = −x, x the reading in the stated direction",
       .family = RecordingFault{.find = find},
       .rivals = {"turn_on_bias", "scale_factor_error"},
       .needs = "motion that is known",

@@ -90,6 +90,7 @@ Cause unit_error() {
   return {
       .name = "unit_error",
       .title = "a recording in another unit than the one declared",
+      .equation = "z = factor · x, x the reading in the unit declared",
       .family = RecordingFault{.find = find},
       .rivals = {"turn_on_bias", "scale_factor_error"},
       .needs = "motion that is known, or two recordings beside it",

@@ -121,6 +121,9 @@ Cause vibration_bursts() {
   return {
       .name = "vibration_bursts",
       .title = "vibration in a narrow band that comes and goes",
+      .equation =
+          "y = b(t) n(t), n noise in a narrow band about the frequency with amplitude as its rms, b = 1 for a fraction "
+          "of the time and 0 else",
       .family = SpectralLine{.examine = examine, .find_again = find_again, .log_gain = log_gain, .values = values_of},
       .rivals = {"periodic_disturbance", "chirped_disturbance", "modulated_disturbance"},
       .needs = "any recording",

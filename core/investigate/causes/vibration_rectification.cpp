@@ -21,6 +21,7 @@ bool build(const StudyRecording& recording, const ChannelGroup& group, double /*
 Cause vibration_rectification() {
   return {.name = "vibration_rectification",
           .title = "a bias that vibration causes",
+          .equation = "y = coefficient · var(f), f the specific force along the same axis in a centred window of 1 s",
           .family = MeanEffect{.build = build, .penalty = 1.0},
           .rivals = {"g_sensitivity", "turn_on_bias", "gauss_markov"},
           .needs = "an accelerometer along the gyro's axis, and vibration that comes and goes",

@@ -34,6 +34,7 @@ double shown_tau(const Stage& /*stage*/, Random& random) { return 40.0 + 80.0 * 
 Cause warm_up_transient() {
   return {.name = "warm_up_transient",
           .title = "a bias that decays exponentially after switching on",
+          .equation = "y = amplitude · exp(−t / τ), t from the first sample of the file",
           .family = MeanEffect{.build = build,
                                .shapes = shapes,
                                .refinement = ShapeRefinement::time(),

@@ -69,6 +69,7 @@ Cause white_noise_level() {
   return {
       .name = "white_noise_level",
       .title = "white noise of another level than the baseline's",
+      .equation = "y = N w(t) in place of the baseline's white noise, w white noise of unit density",
       .family = NoiseLevel{.examine = examine, .deviation = deviation, .replaces_white = true},
       .rivals = {"rate_dependent_noise", "acceleration_dependent_noise", "noise_level_change", "quantization_noise"},
       .needs = "any recording; with an automatic baseline recordings of several conditions",

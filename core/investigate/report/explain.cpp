@@ -47,7 +47,7 @@ std::string explain(const Finding& finding, const ChannelGroup& group) {
   text.append(group.column).append(" show ").append(evidence.cause->title).append(": ");
   std::vector<std::string> parts;
   for (const FoundParameter& parameter : evidence.parameters) {
-    parts.push_back(parameter.name + " = " + in_words(parameter));
+    parts.push_back(spoken_name(parameter.name) + " = " + in_words(parameter));
   }
   text.append(list_of(parts)).append(", in ");
   text.append(evidence.members.size() == group.members.size()

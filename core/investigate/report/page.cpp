@@ -21,7 +21,8 @@ void append_findings(const Report& report, std::string& page) {
   for (const FindingGroup& group : groups_of(report.findings)) {
     const bool several = group.findings.size() > 1;
     page.append(std::to_string(number++)).append(". **").append(group.cause->name).append("** (");
-    page.append(name_of(concern_of(*group.cause))).append(several ? ", " + list_of(group.columns) : "").append(")");
+    page.append(name_of(concern_of(*group.cause))).append(several ? ", " + list_of(group.columns) : "").append("): ");
+    page.append(group.cause->equation).append(".");
     for (const std::size_t i : group.findings) {
       const Finding& finding = report.findings[i];
       page.append(several ? "\n   - " : " ").append(finding.evidence.ambiguous ? "Ambiguous. " : "Identified. ");

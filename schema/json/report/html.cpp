@@ -13,6 +13,7 @@ constexpr const char* kStyle =
     "auto;padding:0 16px}"
     "h1{font-size:24px;font-weight:600;margin:0}h2{font-size:15px;font-weight:600;margin:28px 0 4px}"
     ".meta,footer{color:#4a5056;font-size:13px}.verdict{font-size:19px;line-height:1.42;margin:16px 0 4px}"
+    ".equation{margin:4px 0 4px 16px}"
     "ul{margin:4px 0 8px;padding-left:18px;color:#4a5056}svg{display:block;width:100%;height:auto;margin:8px 0}"
     "section{break-inside:avoid}pre{font:11px/1.4 ui-monospace,\"DejaVu Sans "
     "Mono\",monospace;white-space:pre-wrap;overflow-wrap:anywhere}"

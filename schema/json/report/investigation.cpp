@@ -23,6 +23,9 @@ std::string finding_html(const Json& finding) {
   const std::string others = with_commas(finding.value("alternatives", Json::array()));
   std::string text = "<section>\n<h2>" + html(finding.value("title", finding.at("cause").get<std::string>())) +
                      "</h2>\n<p>" + html(text_of(finding, "explanation")) + "</p>\n";
+  if (const std::string equation = text_of(finding, "equation"); !equation.empty()) {
+    text += "<p class=\"equation\">" + html(equation) + "</p>\n";
+  }
   text += "<p class=\"meta\">" + html(finding.at("cause").get<std::string>()) + ", " +
           html(status + (others.empty() ? "" : ": or " + others)) + "; " +
           html(with_commas(finding.value("channels", Json::array()))) + "</p>\n";

@@ -66,6 +66,7 @@ export function Findings({list, found, names, total}: {list: readonly Finding[];
           <td class="n" data-label="held-out gain, 10⁻³ nats a sample">{finding.gain.heldout && finite(finding.gain.log_score_per_sample) ? writeNumber(finding.gain.log_score_per_sample * 1000, 2) : '–'}</td></tr>
         <tr class="behind"><td colSpan={columns}><details open={open}><summary class="sec" onClick={event => { event.preventDefault(); choose({finding: open ? null : id}); }}>{finding.status === 'ambiguous' && finding.alternatives.length > 0 ? `cannot be told from ${listWords(finding.alternatives.map(causeName))}` : 'explanation'}</summary>
           <p>{writeSentence(finding.explanation)}</p>
+          {finding.equation && <p class="equation">{finding.equation}</p>}
           <Because checks={restsOn(finding, found.checks)} id={id} />
           {rivals.length > 0 && <p class="sec">Rivals and their evidence, {writeNumber(score, 3)} for this: {rivals.map(rival => `${rival.title} ${rival.score === null ? '–' : writeNumber(rival.score, 3)}`).join(', ')}.</p>}
           {finding.next_measurement && <p class="sec">Next: {finding.next_measurement}</p>}

@@ -10,7 +10,7 @@ export interface SeriesDocument {
   course: {time_s: number[]; error: Nullable; effect: Nullable};
 }
 export interface Finding {
-  cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; rivals?: {cause: string; title: string; score: number | null}[]; channels: string[]; because: string[]; explanation: string; parameters: Record<string, Quantity>; score?: number | null;
+  cause: string; status: 'identified' | 'ambiguous'; alternatives: string[]; rivals?: {cause: string; title: string; score: number | null}[]; channels: string[]; because: string[]; explanation: string; equation?: string; parameters: Record<string, Quantity>; score?: number | null;
   gain: {log_score_per_sample: number | null; misfit_before: number | null; misfit_after: number | null; heldout: boolean; of_the_file?: boolean; explained?: number | null}; next_measurement: string | null;
 }
 export interface Check { id: string; recording: string | null; channel: string; observed: number | null; p: number | null; p_adjusted: number | null; failed: boolean; failed_after?: boolean; end?: 'finding' | 'mended' | 'unexplained' | null }

@@ -35,6 +35,7 @@ std::vector<Figure> law(const Draft& before, const Draft& after, std::span<const
 Cause toy() {
   return {.name = "toy",
           .title = "a square wave",
+          .equation = "y = amplitude in the first half of every 40 s and y = −amplitude in the second",
           .family = MeanEffect{.build = build},
           .rivals = {"periodic_disturbance"},
           .needs = "a minute",
