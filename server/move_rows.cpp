@@ -322,7 +322,7 @@ const std::vector<MovedTable>& moved_tables() {
       {"webhooks", "id"},
       {"webhook_deliveries", "id"},
       {"drives", "id"},
-      {"attention", "id"},
+      {"verdicts", "id"},
       {"job_recordings", "job_id,recording_id"},
   };
   return tables;

@@ -43,16 +43,19 @@ Json to_json(const AxisResult& axis) {
               {"reason", text_or_null(axis.glance.reason)}};
 }
 
-/// A result that must be read, with the page of the API that holds what its verdict rests on.
-Json to_json(const Attention& item) {
-  const std::string href = item.recording_id.empty() ? result_address(item.kind, item.job_id, item.investigation_id)
-                                                     : "/v1/recordings/" + item.recording_id +
-                                                           "/characterisation?channel=" + percent_encode(item.channel);
+/// The page of the API that holds what the verdict rests on.
+std::string address_of(const ResultVerdict& item) {
+  return item.recording_id.empty()
+             ? result_address(item.kind, item.job_id, item.investigation_id)
+             : "/v1/recordings/" + item.recording_id + "/characterisation?channel=" + percent_encode(item.channel);
+}
+
+Json to_json(const ResultVerdict& item) {
   return Json{{"id", item.id},
               {"level", item.level},
               {"verdict", item.verdict},
               {"kind", item.kind},
-              {"href", href},
+              {"href", address_of(item)},
               {"job", item.job_id},
               {"device", text_or_null(item.device_id)},
               {"device_name", text_or_null(item.device_name)},
@@ -63,7 +66,7 @@ Json to_json(const Attention& item) {
 
 /// Newest first unless it is asked otherwise: what came last is read first.
 Result<Response> list_attention(ApiContext& context, const Request& request) {
-  AttentionFilter filter;
+  VerdictFilter filter;
   auto device_id = device_filter(context.store, request);
   const auto since = since_filter(request);
   if (!device_id || !since) {
@@ -76,8 +79,8 @@ Result<Response> list_attention(ApiContext& context, const Request& request) {
     asked.query.emplace_back("sort", "-created_at");
   }
   return list_rows(
-      asked, [&](const Page& page) { return context.store.attention(filter, page); },
-      [](const Attention& item) { return to_json(item); });
+      asked, [&](const Page& page) { return context.store.verdicts(filter, page); },
+      [](const ResultVerdict& item) { return to_json(item); });
 }
 
 /// Results to read that stand beside the counts: as many as the first page of a day shows.
@@ -115,6 +118,33 @@ Result<Response> get_counts(ApiContext& context, const Request& request) {
   return json_response(200, document);
 }
 
+/// The newest result of a device: by the verdicts that are kept, or a characterisation of before all of them were.
+Json newest_result(const ResultVerdict* said, const Fit* fit) {
+  if (said != nullptr && (fit == nullptr || said->created_at >= fit->created_at)) {
+    return Json{{"kind", said->kind},
+                {"id", !said->recording_id.empty()       ? said->recording_id
+                       : !said->investigation_id.empty() ? said->investigation_id
+                                                         : said->job_id},
+                {"href", address_of(*said)},
+                {"job", said->job_id},
+                {"recording", text_or_null(said->recording_id)},
+                {"at", rfc3339(said->created_at)},
+                {"level", said->level},
+                {"verdict", said->verdict}};
+  }
+  if (fit == nullptr) {
+    return nullptr;
+  }
+  return Json{{"kind", "characterise"},
+              {"id", fit->recording_id},
+              {"href", "/v1/recordings/" + fit->recording_id + "/characterisation"},
+              {"job", fit->job_id},
+              {"recording", fit->recording_id},
+              {"at", rfc3339(fit->created_at)},
+              {"level", nullptr},
+              {"verdict", nullptr}};
+}
+
 Result<Response> get_summary(ApiContext& context, const Request& request) {
   auto device = context.store.device(request.parameters[0]);
   if (!device) {
@@ -141,6 +171,13 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
   auto fits = store.fits(filter, Page{"", kMostFits});
   if (!fits) {
     return fail(fits.error());
+  }
+  VerdictFilter any;
+  any.device_id = device_id;
+  any.to_read = false;
+  const auto said = store.verdicts(any, Page{"", 1, PageOrder::NewestFirst});
+  if (!said) {
+    return fail(said.error());
   }
   std::map<std::pair<std::string, std::string>, AxisResult> axes;
   const Fit* newest = nullptr;
@@ -171,11 +208,7 @@ Result<Json> device_summary(Store& store, const std::string& device_id) {
   return Json{{"recordings", recordings},
               {"conditions", std::move(kinds)},
               {"channels", std::move(channels)},
-              {"latest", newest == nullptr ? Json(nullptr)
-                                           : Json{{"kind", "characterise"},
-                                                  {"job", newest->job_id},
-                                                  {"recording", newest->recording_id},
-                                                  {"at", rfc3339(newest->created_at)}}}};
+              {"latest", newest_result(said->empty() ? nullptr : &said->front(), newest)}};
 }
 
 void add_overview_routes(Router& router, ApiContext& context) {

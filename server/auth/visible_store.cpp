@@ -164,8 +164,8 @@ class VisibleStore final : public Store {
   Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) override {
     return whole_.fits(filter, limited(page));
   }
-  Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) override {
-    return whole_.attention(filter, limited(page));
+  Result<std::vector<ResultVerdict>> verdicts(const VerdictFilter& filter, const Page& page) override {
+    return whole_.verdicts(filter, limited(page));
   }
   Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id, std::string_view quantity,
                                                             std::string_view axis) override {

@@ -9,7 +9,6 @@
 #include "core/analysis/told_characterisation.hpp"
 #include "schema/json/campaign_summary.hpp"
 #include "schema/json/characterisation.hpp"
-#include "server/jobs/attention.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_recordings.hpp"
 
@@ -180,13 +179,12 @@ class Characterise final : public JobKind {
     if (characterised.channels.empty()) {
       return;
     }
-    results.looked_at.push_back(recording.id);
     const GravestChannel gravest = gravest_channel(characterised);
-    Attention about;
-    about.device_id = recording.device_id;
-    about.recording_id = recording.id;
-    about.channel = gravest.channel;
-    note_attention(std::move(about), driftlab::name_of(gravest.verdict.level), gravest.verdict.sentence, results);
+    results.verdicts.push_back({.device_id = recording.device_id,
+                                .recording_id = recording.id,
+                                .channel = gravest.channel,
+                                .level = std::string(driftlab::name_of(gravest.verdict.level)),
+                                .verdict = gravest.verdict.sentence});
   }
 
   /// Rows for the store: one per channel and one per fit. `document`: that of `characterised`, whose parts are stored.

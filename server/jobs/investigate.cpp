@@ -9,7 +9,6 @@
 #include "schema/json/investigation.hpp"
 #include "schema/json/simulation_model.hpp"
 #include "schema/json/unnamed_effect.hpp"
-#include "server/jobs/attention.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_baseline.hpp"
 #include "server/jobs/stored_recordings.hpp"
@@ -60,9 +59,9 @@ class Rows {
     document["baseline_model"] = row.baseline_id;
     document["model"] = row.model_id;
     results.document_json = to_text(document);
-    Attention about;
-    about.device_id = row.device_id;
-    note_attention(std::move(about), driftlab::name_of(report.summary.level), report.summary.sentence, results);
+    results.verdicts.push_back({.device_id = row.device_id,
+                                .level = std::string(driftlab::name_of(report.summary.level)),
+                                .verdict = report.summary.sentence});
     results.investigations.push_back(std::move(row));
     return results;
   }

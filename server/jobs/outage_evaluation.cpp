@@ -8,7 +8,6 @@
 #include "schema/json/outage_evaluation.hpp"
 
 #include "schema/json/outage_scenario.hpp"
-#include "server/jobs/attention.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/stored_models.hpp"
 
@@ -107,7 +106,8 @@ class OutageEvaluationKind final : public JobKind {
       document["left_out"] = inputs["left_out"];
     }
     results.document_json = to_text(document);
-    note_attention({}, driftlab::name_of(report->summary.level), report->summary.sentence, results);
+    results.verdicts.push_back(
+        {.level = std::string(driftlab::name_of(report->summary.level)), .verdict = report->summary.sentence});
     return results;
   }
 };

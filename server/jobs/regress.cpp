@@ -12,7 +12,6 @@
 #include "core/campaign/regression/kept_settings.hpp"
 #include "schema/json/regression.hpp"
 #include "schema/text/regression.hpp"
-#include "server/jobs/attention.hpp"
 #include "server/jobs/compared_recordings.hpp"
 #include "server/jobs/job_kind.hpp"
 #include "server/jobs/pinned_arms.hpp"
@@ -183,7 +182,7 @@ class Regress final : public JobKind {
     JobResults made;
     made.document_json = to_text(driftlab::to_json(*report));
     made.artefacts = artefacts_of(*report);
-    note_attention({}, report->report.summary.level, report->report.summary.verdict, made);
+    made.verdicts.push_back({.level = report->report.summary.level, .verdict = report->report.summary.verdict});
     return made;
   }
 };

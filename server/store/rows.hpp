@@ -161,18 +161,18 @@ struct AxisResults {
   std::string pooled_json = {};       ///< its result; empty until it has succeeded
 };
 
-/// A result whose verdict a person must read.
-struct Attention {
-  std::string id;                ///< `att_...`
-  std::string job_id;            ///< known once it is stored
-  std::string kind;              ///< of the job; known once it is stored
-  std::string device_id;         ///< empty: it speaks of no device, or of several
-  std::string recording_id;      ///< empty: it speaks of the job's result as a whole
-  std::string channel;           ///< the channel that says most against itself; empty likewise
-  std::string level;             ///< `look` or `wrong`
-  std::string verdict;           ///< one sentence
-  std::string investigation_id;  ///< read only: what the job made; empty: it is of another kind
-  std::string device_name;       ///< read only
+/// What a result comes to.
+struct ResultVerdict {
+  std::string id = {};                ///< `att_...`
+  std::string job_id = {};            ///< known once it is stored
+  std::string kind = {};              ///< of the job; known once it is stored
+  std::string device_id = {};         ///< empty: it speaks of no device, or of several
+  std::string recording_id = {};      ///< empty: it speaks of the job's result as a whole
+  std::string channel = {};           ///< the channel that says most against itself; empty likewise
+  std::string level = {};             ///< `fine`, or `look` or `wrong`: a person must read it
+  std::string verdict = {};           ///< one sentence
+  std::string investigation_id = {};  ///< read only: what the job made; empty: it is of another kind
+  std::string device_name = {};       ///< read only
   UtcMicros created_at = 0;
 };
 
@@ -238,8 +238,7 @@ struct JobResults {
   std::vector<Model> models = {};  ///< parents before children
   std::vector<Investigation> investigations = {};
   std::vector<Artefact> artefacts = {};
-  std::vector<Attention> attention = {};    ///< replaces what was said of the same recordings before
-  std::vector<std::string> looked_at = {};  ///< the recordings that were characterised, whatever came of it
+  std::vector<ResultVerdict> verdicts = {};  ///< each of a recording replaces what was said of it before
 };
 
 /// A stored answer to a POST that carried an Idempotency-Key.

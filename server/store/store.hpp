@@ -109,9 +109,10 @@ struct InvestigationFilter {
   std::optional<UtcMicros> since = {};   ///< made at this time or later
 };
 
-struct AttentionFilter {
-  std::optional<std::string> device_id;
+struct VerdictFilter {
+  std::optional<std::string> device_id = {};
   std::optional<UtcMicros> since = {};  ///< made at this time or later
+  bool to_read = true;                  ///< only those that a person must read
 };
 
 struct DeviceChange {
@@ -261,9 +262,8 @@ class Store {
   [[nodiscard]] virtual Result<std::string> result_document(std::string_view job_id) = 0;
   [[nodiscard]] virtual Result<Fit> fit(std::string_view id) = 0;
   [[nodiscard]] virtual Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) = 0;
-  /// The results whose verdict a person must read: those of the newest characterisation of each recording, and of every
-  /// other job.
-  [[nodiscard]] virtual Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) = 0;
+  /// What results come to: of the newest characterisation of each recording, and of every other job.
+  [[nodiscard]] virtual Result<std::vector<ResultVerdict>> verdicts(const VerdictFilter& filter, const Page& page) = 0;
   /// The latest result per (recording, channel) of the recording's current revision, by condition, content of the
   /// recording (its blob's hash) and channel: the same order however and whenever the recordings came.
   [[nodiscard]] virtual Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,

@@ -44,10 +44,19 @@ class Investigations(DaemonTest):
         self.assertEqual(report.json["findings"], result["findings"])
         page = self.expect(200, self.daemon.get(f"/v1/investigations/{result['id']}", Accept="text/markdown"))
         self.assertIn("**bias_step**", page.text)
+        equation = report.json["findings"][0]["equation"]
+        self.assertIn("step", equation)
+        self.assertIn(f"): {equation}.", page.text)
+        self.assertIn("t0 = ", report.json["findings"][0]["explanation"])
         self.expect(406, self.daemon.get(f"/v1/investigations/{result['id']}", Accept="image/png"))
         [listed] = self.daemon.items("/v1/investigations?device=stepping")
         self.assertEqual((listed["id"], listed["model"]), (result["id"], result["model"]))
         self.assertEqual(self.daemon.items(f"/v1/investigations?study={study}&job={listed['job']}"), [listed])
+
+        latest = self.expect(200, self.daemon.get("/v1/devices/stepping/summary")).json["latest"]
+        self.assertEqual({key: latest[key] for key in ("kind", "id", "href", "recording", "level", "verdict")},
+                         {"kind": "investigate", "id": result["id"], "href": f"/v1/investigations/{result['id']}", "recording": None,
+                          "level": result["summary"]["level"], "verdict": result["summary"]["verdict"]})
 
         child = self.expect(200, self.daemon.get(f"/v1/models/{result['model']}")).json
         self.assertEqual(child["parent"], result["baseline_model"])

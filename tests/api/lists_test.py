@@ -139,6 +139,27 @@ class Attention(DaemonTest):
         self.assertEqual(self.daemon.finished(job)["state"], "succeeded")
         return made, job
 
+    def latest(self, device: str) -> Any:
+        return self.expect(200, self.daemon.get(f"/v1/devices/{device}/summary")).json["latest"]
+
+    def test_the_summary_of_a_device_says_its_newest_result_whatever_it_comes_to(self) -> None:
+        bare = self.expect(201, self.daemon.upload(samples.gyro_csv(4096, seed=9), device="summed", rate_hz=100, columns=samples.GYRO_Z))
+        self.assertIsNone(self.latest("summed"))
+        wanders, first_job = self.characterised(wandering(11), "summed")
+        first = self.latest("summed")
+        said = self.expect(200, self.daemon.get(first["href"])).json["channels"][0]["summary"]
+        self.assertEqual((first["kind"], first["id"], first["recording"], first["job"]), ("characterise", wanders.json["id"], wanders.json["id"], first_job))
+        self.assertEqual((first["level"], first["verdict"]), ("look", said["verdict"]))
+        self.daemon.finished(self.daemon.characterise(bare.json["id"], models=["WN"]).json["id"])
+        fine = self.latest("summed")
+        self.assertEqual((fine["id"], fine["level"]), (bare.json["id"], "fine"), "a result that is fine is a result")
+        self.assertTrue(fine["verdict"])
+        self.assertNotIn(bare.json["id"], [item["recording"] for item in self.items("?device=summed")])
+        beside = {one["name"]: one for one in self.daemon.items("/v1/devices?include=summary")}
+        self.assertEqual(beside["summed"]["summary"]["latest"], fine)
+        self.expect(204, self.daemon.request("DELETE", bare.headers["location"], headers={"If-Match": "*"}))
+        self.assertEqual(self.latest("summed"), first, "with what was deleted its results go")
+
     def test_what_does_not_fit_is_listed_until_it_is_gone_and_what_fits_is_not(self) -> None:
         since = now()
         first, job = self.characterised(wandering(1), "attention")

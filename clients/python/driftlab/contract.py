@@ -566,7 +566,7 @@ class DeviceSummary(TypedDict):
     conditions: list[DeviceSummaryCondition]
     # Each sensor axis that was characterised, by the best fit of a recording at rest, or else of the first there is.
     channels: list[DeviceSummaryChannel]
-    # The newest result; null where there is none.
+    # The newest result that has a verdict; null where there is none.
     latest: DeviceSummaryLatest | None
 
 
@@ -590,12 +590,20 @@ class DeviceSummaryCondition(TypedDict):
 
 
 class DeviceSummaryLatest(TypedDict):
-    """The newest result; null where there is none."""
+    """The newest result that has a verdict; null where there is none."""
 
-    kind: Literal['characterise']
+    kind: Literal['characterise', 'investigate', 'outage_evaluation', 'regress']
+    # Of what the result is of: the recording, the investigation, the evaluation or the regression.
+    id: str
+    # Where the result is read.
+    href: str
     job: str
-    recording: str
+    # null: the result speaks of the device, not of one recording.
+    recording: str | None
     at: str
+    level: Literal['fine', 'look', 'wrong', None]
+    # One sentence. null: of a characterisation that was made before verdicts were kept.
+    verdict: str | None
 
 
 class Drive(TypedDict):

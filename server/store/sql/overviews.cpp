@@ -1,4 +1,4 @@
-/// How much there is, and what of it must be read.
+/// How much there is, and what it comes to.
 #include "server/store/sql/tables.hpp"
 
 namespace driftlab::server::tables {
@@ -15,22 +15,22 @@ constexpr std::string_view kEndedSince =
     "SELECT coalesce(sum(CASE WHEN state = 'succeeded' THEN 1 ELSE 0 END), 0), "
     "coalesce(sum(CASE WHEN state IN ('failed', 'dead') THEN 1 ELSE 0 END), 0) FROM jobs "
     "WHERE finished_at >= ? AND kind <> 'pool'";
-constexpr std::string_view kSelectAttention =
-    "SELECT id, job_id, (SELECT kind FROM jobs WHERE jobs.id = attention.job_id), coalesce(device_id, ''), "
+constexpr std::string_view kSelectVerdict =
+    "SELECT id, job_id, (SELECT kind FROM jobs WHERE jobs.id = verdicts.job_id), coalesce(device_id, ''), "
     "coalesce(recording_id, ''), channel, level, verdict, coalesce((SELECT investigations.id FROM investigations WHERE "
-    "investigations.job_id = attention.job_id), ''), coalesce((SELECT devices.name FROM devices WHERE devices.id = "
-    "device_id), ''), created_at FROM attention";
-constexpr std::string_view kForgetRecording = "DELETE FROM attention WHERE recording_id = ?";
+    "investigations.job_id = verdicts.job_id), ''), coalesce((SELECT devices.name FROM devices WHERE devices.id = "
+    "device_id), ''), created_at FROM verdicts";
+constexpr std::string_view kForgetRecording = "DELETE FROM verdicts WHERE recording_id = ?";
 /// ?2 the job. A result that speaks of no device by itself is that of the only one which its job names.
-constexpr std::string_view kInsertAttention =
-    "INSERT INTO attention (id, job_id, device_id, recording_id, channel, level, verdict, created_at) VALUES (?1, ?2, "
+constexpr std::string_view kInsertVerdict =
+    "INSERT INTO verdicts (id, job_id, device_id, recording_id, channel, level, verdict, created_at) VALUES (?1, ?2, "
     "coalesce(?3, (SELECT max(device_id) FROM job_devices WHERE job_id = ?2 HAVING count(*) = 1)), ?4, ?5, ?6, ?7, ?8)";
 
 std::optional<std::string> some(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional<std::string>(text);
 }
 
-Attention read_attention(const Statement& row) {
+ResultVerdict read_verdict(const Statement& row) {
   return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4),    row.text(5),
           row.text(6), row.text(7), row.text(8), row.text(9), row.integer(10)};
 }
@@ -66,21 +66,24 @@ Result<EndedCounts> ended_since(Connection& connection, UtcMicros since, const s
       Error{ErrorCode::Internal, "The store counts nothing.", {}});
 }
 
-Result<std::vector<Attention>> attention(Connection& connection, const AttentionFilter& filter, const Page& page) {
-  FilteredQuery query(kSelectAttention);
+Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const VerdictFilter& filter, const Page& page) {
+  FilteredQuery query(kSelectVerdict);
   query.where("device_id = ?", filter.device_id);
   query.made_since("att", filter.since);
-  return query.visible_or_own(page, "device_id", "attention.job_id").read_page(connection, page, read_attention);
+  if (filter.to_read) {
+    query.where("level <> 'fine'");
+  }
+  return query.visible_or_own(page, "device_id", "verdicts.job_id").read_page(connection, page, read_verdict);
 }
 
-Status insert_attention(Connection& connection, std::string_view job_id, const JobResults& results, UtcMicros now) {
-  for (const std::string& recording : results.looked_at) {
-    if (Status forgotten = connection.prepare(kForgetRecording).bind(recording).run(); !forgotten) {
-      return forgotten;
+Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results, UtcMicros now) {
+  for (const ResultVerdict& made : results.verdicts) {
+    if (!made.recording_id.empty()) {
+      if (Status forgotten = connection.prepare(kForgetRecording).bind(made.recording_id).run(); !forgotten) {
+        return forgotten;
+      }
     }
-  }
-  for (const Attention& made : results.attention) {
-    Status inserted = connection.prepare(kInsertAttention)
+    Status inserted = connection.prepare(kInsertVerdict)
                           .bind(made.id.empty() ? make_id("att", now) : made.id, job_id, some(made.device_id),
                                 some(made.recording_id), made.channel, made.level, made.verdict, now)
                           .run();

@@ -105,7 +105,7 @@ Status insert_results(Connection& connection, std::string_view job_id, const Job
   if (inserted) {
     inserted = insert_investigations(connection, job_id, results, now);
   }
-  return inserted ? insert_attention(connection, job_id, results, now) : inserted;
+  return inserted ? insert_verdicts(connection, job_id, results, now) : inserted;
 }
 
 Result<std::string> result_document(Connection& connection, std::string_view job_id) {

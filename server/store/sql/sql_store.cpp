@@ -292,8 +292,8 @@ Result<std::vector<Fit>> SqlStore::fits(const FitFilter& filter, const Page& pag
   return database_->read([&](Connection& c) { return tables::fits(c, filter, page); });
 }
 
-Result<std::vector<Attention>> SqlStore::attention(const AttentionFilter& filter, const Page& page) {
-  return database_->read([&](Connection& c) { return tables::attention(c, filter, page); });
+Result<std::vector<ResultVerdict>> SqlStore::verdicts(const VerdictFilter& filter, const Page& page) {
+  return database_->read([&](Connection& c) { return tables::verdicts(c, filter, page); });
 }
 
 Result<std::vector<ChannelResult>> SqlStore::latest_channel_results(std::string_view device_id,

@@ -91,7 +91,7 @@ class SqlStore : public Store {
   [[nodiscard]] Result<std::string> result_document(std::string_view job_id) override;
   [[nodiscard]] Result<Fit> fit(std::string_view id) override;
   [[nodiscard]] Result<std::vector<Fit>> fits(const FitFilter& filter, const Page& page) override;
-  [[nodiscard]] Result<std::vector<Attention>> attention(const AttentionFilter& filter, const Page& page) override;
+  [[nodiscard]] Result<std::vector<ResultVerdict>> verdicts(const VerdictFilter& filter, const Page& page) override;
   [[nodiscard]] Result<std::vector<ChannelResult>> latest_channel_results(std::string_view device_id,
                                                                           std::string_view quantity,
                                                                           std::string_view axis) override;

@@ -231,12 +231,12 @@ class FilteredQuery {
 /// Their ids alone.
 [[nodiscard]] Result<std::vector<std::string>> latest_result_ids(Connection& connection, const SensorAxis& axis);
 
-// ---- what wants a look
-[[nodiscard]] Result<std::vector<Attention>> attention(Connection& connection, const AttentionFilter& filter,
-                                                       const Page& page);
-/// After the job's result document. What was said of the recordings in `results.looked_at` is forgotten.
-[[nodiscard]] Status insert_attention(Connection& connection, std::string_view job_id, const JobResults& results,
-                                      UtcMicros now);
+// ---- what results come to
+[[nodiscard]] Result<std::vector<ResultVerdict>> verdicts(Connection& connection, const VerdictFilter& filter,
+                                                          const Page& page);
+/// After the job's result document. What was said before of the recordings that they speak of is forgotten.
+[[nodiscard]] Status insert_verdicts(Connection& connection, std::string_view job_id, const JobResults& results,
+                                     UtcMicros now);
 
 // ---- pooling of the results of an axis
 /// Makes the row of each axis name its latest results: what pooled others is cancelled, a job for these queued. How

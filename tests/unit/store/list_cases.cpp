@@ -192,63 +192,67 @@ TEST_P(ListStore, InvestigationsAreSoughtByTextAndTime) {
   EXPECT_TRUE(store().investigations(filter, {})->empty());
 }
 
-/// What a job says of a recording that must be read.
-Attention about(const Recording& recording, const std::string& verdict) {
-  Attention item;
+/// What a job says of a recording.
+ResultVerdict about(const Recording& recording, const std::string& verdict, const std::string& level = "look") {
+  ResultVerdict item;
   item.device_id = recording.device_id;
   item.recording_id = recording.id;
   item.channel = "gz";
-  item.level = "look";
+  item.level = level;
   item.verdict = verdict;
   return item;
 }
 
-TEST_P(ListStore, AttentionHoldsTheNewestWordOnARecordingAndEveryOtherResult) {
+TEST_P(ListStore, VerdictsAreTheNewestWordOnARecordingAndEveryOtherResult) {
   const Recording recording = add_recording(store(), add_device(store()));
-  const auto finish = [&](const std::vector<Attention>& items, const std::vector<std::string>& looked_at) {
+  const auto finish = [&](const std::vector<ResultVerdict>& items) {
     clock_.advance(kMinute);
     add_job(store(), "key " + make_id("job", 0));
     const Job job = claim_one(store());
     JobResults results = results_for(job, recording);
-    results.attention = items;
-    results.looked_at = looked_at;
+    results.verdicts = items;
     EXPECT_TRUE(store().succeed(lease_of(job), results)->held);
     return job;
   };
-  const auto verdicts = [&](const AttentionFilter& filter = {}) {
+  const auto verdicts = [&](const VerdictFilter& filter = {}) {
     std::vector<std::string> found;
-    const auto items = store().attention(filter, {"", 50, PageOrder::NewestFirst});
-    for (const Attention& item : *items) {
+    const auto items = store().verdicts(filter, {"", 50, PageOrder::NewestFirst});
+    for (const ResultVerdict& item : *items) {
       found.push_back(item.verdict);
     }
     return found;
   };
   using Verdicts = std::vector<std::string>;
-  finish({about(recording, "does not fit")}, {recording.id});
-  Attention whole;
+  finish({about(recording, "does not fit")});
+  ResultVerdict whole;
   whole.level = "wrong";
   whole.verdict = "worse than before";
-  const Job regression = finish({whole}, {});
+  const Job regression = finish({whole});
   EXPECT_EQ(verdicts(), (Verdicts{"worse than before", "does not fit"}));
-  const auto items = *store().attention({}, {});
+  const auto items = *store().verdicts({}, {});
   EXPECT_EQ(items.back().job_id, regression.id);
   EXPECT_EQ(items.back().kind, "characterise");
   EXPECT_EQ(items.back().device_id, "") << "its job names none";
   EXPECT_EQ(items.front().channel, "gz");
-  AttentionFilter filter;
+  VerdictFilter filter;
   filter.device_id = recording.device_id;
   EXPECT_EQ(verdicts(filter), Verdicts{"does not fit"});
   filter = {};
   filter.since = clock_.now();
   EXPECT_EQ(verdicts(filter), Verdicts{"worse than before"});
-  finish({about(recording, "gross errors")}, {recording.id});
+  finish({about(recording, "gross errors")});
   EXPECT_EQ(verdicts(), (Verdicts{"gross errors", "worse than before"}));
-  finish({}, {recording.id});
+  finish({about(recording, "fits", "fine")});
   EXPECT_EQ(verdicts(), Verdicts{"worse than before"}) << "a newer result of the recording is fine";
-  finish({about(recording, "again")}, {recording.id});
+  filter = {};
+  filter.to_read = false;
+  EXPECT_EQ(verdicts(filter), (Verdicts{"fits", "worse than before"})) << "and is kept as what the recording comes to";
+  filter.device_id = recording.device_id;
+  EXPECT_EQ(verdicts(filter), Verdicts{"fits"});
+  finish({about(recording, "again")});
   Page limited;
   limited.visible = Visibility{R"(["another"])", "token"};
-  EXPECT_TRUE(store().attention({}, limited)->empty()) << "a token limited to other devices";
+  EXPECT_TRUE(store().verdicts({}, limited)->empty()) << "a token limited to other devices";
   ASSERT_TRUE(store().remove_recording(recording.id, 1));
   EXPECT_EQ(verdicts(), Verdicts{}) << "results that held the recording go with it";
 }
@@ -258,13 +262,13 @@ TEST_P(ListStore, AResultOfOneDeviceIsThatDevices) {
   const std::string request = R"({"inputs":{"device":")" + recording.device_id + R"("}})";
   ASSERT_TRUE(store().enqueue({"regress", "key", request}));
   JobResults results;
-  Attention whole;
+  ResultVerdict whole;
   whole.level = "look";
   whole.verdict = "inconclusive";
-  results.attention.push_back(whole);
+  results.verdicts.push_back(whole);
   ASSERT_TRUE(store().succeed(lease_of(claim_one(store())), results)->held);
-  ASSERT_EQ(store().attention({}, {})->size(), 1U);
-  EXPECT_EQ(store().attention({}, {})->front().device_id, recording.device_id);
+  ASSERT_EQ(store().verdicts({}, {})->size(), 1U);
+  EXPECT_EQ(store().verdicts({}, {})->front().device_id, recording.device_id);
 }
 
 TEST_P(ListStore, JobsThatEndedSinceAreCountedWithoutPools) {

@@ -55,11 +55,11 @@ Device fill(Store& store) {
   investigation.baseline_id = model_id;
   investigation.model_id = model_id;
   results.investigations.push_back(investigation);
-  Attention item;
+  ResultVerdict item;
   item.recording_id = recording.id;
   item.level = "look";
   item.verdict = "does not fit";
-  results.attention.push_back(item);
+  results.verdicts.push_back(item);
   EXPECT_TRUE(store.succeed(lease_of(done), results)->held);
   add_job(store, "failed");
   EXPECT_TRUE(store.fail_attempt(lease_of(claim_one(store)), {"{}"})->held);
@@ -76,7 +76,7 @@ void expect_filled(Store& store, const Device& device) {
   EXPECT_THAT(*store.jobs({}, {}), SizeIs(3));
   EXPECT_THAT(*store.fits({}, {}), SizeIs(2));
   EXPECT_THAT(*store.investigations({}, {}), SizeIs(1));
-  EXPECT_THAT(*store.attention({}, {}), SizeIs(1));
+  EXPECT_THAT(*store.verdicts({}, {}), SizeIs(1));
 }
 
 TEST(Migrations, EmbeddedTextsAreTheFilesOfTheRepository) {
@@ -216,6 +216,43 @@ TEST(Migrations, AnchorsOfAnEarlierReleaseKeptNoSettings) {
   EXPECT_EQ(anchors->front().label, "firmware=1.0");
   EXPECT_EQ(anchors->front().created_at, 7);
   EXPECT_EQ(anchors->front().settings_json, "");
+}
+
+TEST(Migrations, ResultsOfAnEarlierReleaseKeepTheirVerdicts) {
+  const TemporaryDirectory directory;
+  const std::vector<Migration> then(embedded_migrations().begin(), embedded_migrations().begin() + 13);
+  ASSERT_TRUE(open_with(directory.path(), then));
+  {
+    const auto old = SqliteConnection::open(directory.path() / "driftlab.db", Access::ReadWrite);
+    std::string rows = "INSERT INTO devices VALUES ('dev_1', 'phone-07', '', '', '', '{}', 1, 0, 0);";
+    const auto add = [&](const std::string& job, const std::string& kind, const std::string& document) {
+      rows +=
+          "INSERT INTO jobs (id, kind, state, priority, max_failures, unique_key, request_json, run_at, created_at, "
+          "finished_at) VALUES ('" +
+          job + "', '" + kind + "', 'succeeded', 5, 5, '" + job + "', '{}', 0, 0, 0);" +
+          "INSERT INTO job_devices VALUES ('" + job + "', 'dev_1');" + "INSERT INTO job_results VALUES ('" + job +
+          "', '" + document + "', 7);";
+    };
+    add("job_1", "regress", R"({"summary":{"level":"wrong","verdict":"Fail."}})");
+    add("job_2", "investigate", R"({"summary":{"level":"fine","verdict":"Nothing is missing."}})");
+    add("job_3", "outage_evaluation", "no JSON");
+    add("job_4", "characterise", R"({"recordings":[]})");
+    rows += "INSERT INTO attention VALUES ('att_0', 'job_1', 'dev_1', NULL, '', 'wrong', 'Fail.', 7)";
+    ASSERT_TRUE((*old)->execute(rows));
+  }
+  const auto now = open_with(directory.path(), embedded_migrations());
+  ASSERT_TRUE(now) << now.error().message;
+  VerdictFilter filter;
+  filter.device_id = "dev_1";
+  ASSERT_THAT(*(*now)->verdicts(filter, {}), SizeIs(1));
+  EXPECT_EQ((*now)->verdicts(filter, {})->front().verdict, "Fail.");
+  filter.to_read = false;
+  const auto all = *(*now)->verdicts(filter, {});
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_EQ(all.back().verdict, "Nothing is missing.");
+  EXPECT_EQ(all.back().level, "fine");
+  EXPECT_EQ(all.back().job_id, "job_2");
+  EXPECT_EQ(all.back().created_at, 7);
 }
 
 TEST(Migrations, ABackupIsMadeBeforeAndCanBeOpenedByTheOldRelease) {

@@ -20,7 +20,7 @@ export interface DeviceSummary {
   recordings: number;
   conditions: {condition: Condition | null; recordings: number}[];
   channels: AxisSummary[];
-  latest: {kind: string; job: string; recording: string; at: string} | null;
+  latest: {kind: string; id: string; href: string; job: string; recording: string | null; at: string; level: string | null; verdict: string | null} | null;
 }
 export interface Device { id: string; name: string; model?: string; imu?: string; serial?: string; labels?: Record<string, string>; created_at: string; summary?: DeviceSummary | null }
 

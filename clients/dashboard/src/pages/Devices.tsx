@@ -2,10 +2,10 @@
 import type {JSX} from 'preact';
 import {useRead} from '../api/client';
 import type {Device, List} from '../api/documents';
-import {writeWhen} from '../format/time';
 import {conditionName} from '../format/words';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {LastResult} from '../shell/LastResult';
 import {Sought} from '../shell/Sought';
 import {Panel, Shown} from '../shell/states';
 import {Tabs} from '../shell/Tabs';
@@ -30,7 +30,7 @@ export default function Devices(): JSX.Element {
             <td class="sec">{[device.model, device.imu].filter(Boolean).join(', ') || '–'}</td>
             <td class="n" data-label="recordings">{device.summary?.recordings ?? '–'}</td>
             <td class="sec">{device.summary?.conditions.slice(0, 4).map(one => conditionName(one.condition)).join(', ')}{(device.summary?.conditions.length ?? 0) > 4 ? ` and ${device.summary!.conditions.length - 4} more` : ''}</td>
-            <td class="sec">{device.summary?.latest ? writeWhen(device.summary.latest.at) : 'not characterised'}</td>
+            <td class="sec"><LastResult device={device} /></td>
           </tr>)}</tbody></table></div>}
         {(list.next_cursor || after) && <p class="row">{after && <button type="button" class="btn" onClick={() => choose({after: null})}>Newest</button>}{list.next_cursor && <button type="button" class="btn" onClick={() => choose({after: list.next_cursor})}>Older</button>}</p>}
       </>;

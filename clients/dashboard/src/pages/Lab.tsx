@@ -10,6 +10,7 @@ import {MarkAt} from '../figure/MarkAt';
 import type {Mark} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
 import {Head} from '../shell/Head';
+import {LastResult, pageOfResult} from '../shell/LastResult';
 import {Sought} from '../shell/Sought';
 import {curlOf, copy} from '../shell/copy';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
@@ -21,13 +22,6 @@ const SHOWN = 8;
 const SEEN = 'driftlab-seen';  // until when results to read were marked as seen, in this browser alone
 
 interface Item { who: string; href: string; text: string; at: string; bad: boolean }
-
-// The page of a result; the API's address is the page's with /v1 before it.
-function pageOfResult(item: Attention): string {
-  if (item.recording) return `${pageOf('recordings', item.recording)}${item.channel ? `?ch=${encodeURIComponent(item.channel)}` : ''}`;
-  const [, , group = '', id = ''] = item.href.split('/');
-  return pageOf({'outage-evaluations': 'outages'}[group] ?? group, id);
-}
 
 // Results whose verdict is not fine, and jobs that failed, newest first.
 function toRead(attention: readonly Attention[], jobs: readonly Job[]): Item[] {
@@ -99,14 +93,13 @@ function Devices({devices, next}: {devices: readonly Device[]; next: string | nu
       <thead><tr><th scope="col">device</th><th scope="col" class="n">recordings</th><th scope="col">conditions</th><th scope="col" class="desk-only">white noise N</th><th scope="col">x, y, z</th><th scope="col">last result</th></tr></thead>
       <tbody>{devices.length === 0 && <tr><td colSpan={6} class="sec">No device has “{query.get('q')}” in its name, model or serial.</td></tr>}{devices.map(device => {
         const channels = of(device);
-        const worst = channels.find(channel => channel.level !== 'fine');
         return <tr key={device.id}>
           <th scope="row"><a href={pageOf('devices', device.name)}>{device.name}</a></th>
           <td class="n" data-label="recordings">{device.summary?.recordings ?? '–'}</td>
           <td class="sec">{conditionsOf(device)}</td>
           <td class="desk-only" style={{width: '34%'}}><Levels channels={channels} scale={scale} /></td>
           <td class="nowrap" data-label="N">{channels.length > 0 ? channels.map(channel => channel.N ? writeQuantity(channel.N).value : '…').join(', ') : '–'}</td>
-          <td class="sec">{channels.length === 0 ? 'not characterised' : worst ? <><span class="g warn" aria-hidden="true">△ </span>{worst.fits === false ? 'no fit' : 'not tested'}: {worst.axis ?? 'channel'}</> : 'fits'}{device.summary?.latest ? <span class="dim">, {writeWhen(device.summary.latest.at)}</span> : ''}</td>
+          <td class="sec"><LastResult device={device} /></td>
         </tr>;
       })}
       {scale && <tr class="desk-only axis" aria-hidden="true"><td /><td /><td /><td><svg viewBox={`0 0 ${WIDTH} 18`} width="100%" height="18" preserveAspectRatio="xMinYMid meet">{scale.ticks.map(tick => <text key={tick} class="s" x={scale(tick)} y="13" text-anchor="middle">{writeTick(tick)}</text>)}</svg></td><td /><td /></tr>}
