@@ -30,7 +30,7 @@ const {metafile} = await build({
   entryPoints: [join(here, 'src/main.tsx'), join(here, 'src/style/main.css')],
   outdir: join(out, 'assets'), outbase: join(here, 'src'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
   assetNames: '[name]-[hash]', bundle: true, splitting: true, format: 'esm', minify: true, target: 'es2021',
-  alias: {'d3-interpolate': join(here, 'src/figure/interpolate.ts')},
+  alias: {'d3-interpolate': join(here, 'src/figure/interpolate.ts'), 'd3-format': join(here, 'src/figure/unformatted.ts')},
   jsx: 'automatic', jsxImportSource: 'preact', loader: {'.woff2': 'file', '.svg': 'file'}, legalComments: 'none',
   logLevel: 'warning', define: {DRIFTLAB_VERSION: JSON.stringify(JSON.parse(readFileSync(join(here, 'package.json'), 'utf8')).version)},
 });
