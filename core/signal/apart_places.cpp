@@ -49,24 +49,27 @@ double distance_from(const std::vector<double>& medians, std::size_t block, doub
 std::vector<ApartPlace> apart_places(std::span<const double> values, double first_s, double dt_s) {
   constexpr double kTogether = 1.0;  // [s]
   const std::vector<double> medians = block_medians(values);
-  const double limit = kApartDeviations * deviation_from(medians, values);
+  const double deviation = deviation_from(medians, values);
   std::vector<ApartPlace> places;
-  for (std::size_t i = 0; i < values.size() && limit > 0.0; ++i) {
-    if (distance_from(medians, i / kApartBlock, values[i]) <= limit) {
+  for (std::size_t i = 0; i < values.size() && deviation > 0.0; ++i) {
+    const double deviations = distance_from(medians, i / kApartBlock, values[i]) / deviation;
+    if (deviations <= kApartDeviations) {
       continue;
     }
     const double begins = first_s + dt_s * static_cast<double>(i);
     if (places.empty() || begins - places.back().t1_s > kTogether) {
-      places.push_back({begins, begins, 0});
+      places.push_back({.t0_s = begins});
     }
-    places.back().t1_s = begins + dt_s;
-    ++places.back().samples;
+    ApartPlace& place = places.back();
+    place.t1_s = begins + dt_s;
+    ++place.samples;
+    place.deviations = std::max(place.deviations, deviations);
   }
   if (places.size() > kMostApart) {
-    for (std::size_t k = 0; k < kMostApart; ++k) {
-      places[k] = places[k * places.size() / kMostApart];
-    }
+    std::nth_element(places.begin(), places.begin() + kMostApart, places.end(),
+                     [](const ApartPlace& a, const ApartPlace& b) { return a.deviations > b.deviations; });
     places.resize(kMostApart);
+    std::sort(places.begin(), places.end(), [](const ApartPlace& a, const ApartPlace& b) { return a.t0_s < b.t0_s; });
   }
   return places;
 }

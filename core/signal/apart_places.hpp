@@ -15,13 +15,14 @@ struct ApartPlace {
   double t0_s = 0.0;        ///< since the first row of the file
   double t1_s = 0.0;        ///< where the last of them ends
   std::size_t samples = 0;  ///< of these values
+  double deviations = 0.0;  ///< that the farthest of them is from the nearest of the three medians
 };
 
 /// So many places at most are told.
 inline constexpr std::size_t kMostApart = 200;
 
-/// By time; of more than kMostApart places every n-th. Nothing where the deviation is zero. `first_s` is the time of
-/// the first value. O(N) time, N doubles of memory.
+/// By time; of more than kMostApart places those that are farthest out. Nothing where the deviation is zero. `first_s`
+/// is the time of the first value. O(N) time, N doubles of memory.
 [[nodiscard]] std::vector<ApartPlace> apart_places(std::span<const double> values, double first_s, double dt_s);
 
 }  // namespace driftlab

@@ -47,7 +47,10 @@ Json histogram_to_json(const ChannelLook& look, const std::optional<RobustHistog
   document["above"] = histogram->above;
   document["apart"] = Json::array();
   for (const ApartPlace& place : look.apart()) {
-    document["apart"].push_back({{"t0", number(place.t0_s)}, {"t1", number(place.t1_s)}, {"samples", place.samples}});
+    document["apart"].push_back({{"t0", number(place.t0_s)},
+                                 {"t1", number(place.t1_s)},
+                                 {"samples", place.samples},
+                                 {"deviations", number(place.deviations)}});
   }
   return document;
 }

@@ -1384,8 +1384,8 @@ class Histogram(TypedDict):
     below: NotRequired[int]
     above: NotRequired[int]
     # Where gross errors are: values more than eight robust standard deviations from the median of their 64 samples and
-    # from those of the 64 before and behind. Those within 1 s of one another are one place; of more than 200 every
-    # n-th.
+    # from those of the 64 before and behind. Those within 1 s of one another are one place; of more than 200 those that
+    # are farthest out.
     apart: NotRequired[list[HistogramApartItem]]
 
 
@@ -1394,6 +1394,8 @@ class HistogramApartItem(TypedDict):
     t0: float
     t1: float
     samples: int
+    # Robust standard deviations of the one that is farthest out.
+    deviations: float
 
 
 class Investigation(TypedDict):

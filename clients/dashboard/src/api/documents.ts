@@ -67,7 +67,7 @@ export interface Trace { unit: string | null; duration_s: number | null; rate_hz
 export interface TraceFlag { kind: 'trim' | 'gap' | 'flagged' | 'frozen' | 'saturated'; t0: number; t1: number; missing?: number }
 
 export interface Spectrum { unit: string; dt_s: number; samples: number; first_s: number; f_hz: number[]; density: Nullable; ci95: Ends[]; max: Nullable; segments: number; segment_samples: number; window: string }
-export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number; apart?: {t0: number; t1: number; samples: number}[] }
+export interface Histogram { unit: string; dt_s: number; samples: number; first_s: number; median: number | null; sigma: number | null; reason?: string; edges?: number[]; counts?: number[]; gaussian?: number[]; below?: number; above?: number; apart?: {t0: number; t1: number; samples: number; deviations: number}[] }
 export interface Spectrogram { unit: string; dt_s: number; samples: number; first_s: number; expected: 'model' | 'median'; time_s: number[]; f_hz: number[]; log10_ratio: Nullable[]; window_samples: number }
 
 export interface StoredProblem { title?: string; detail: string; type?: string; retryable?: boolean }

@@ -7,7 +7,7 @@ import {countWord, plural, writeSentence, writeUnit} from '../../format/words';
 import {choose, usePlace} from '../../route';
 
 export type PlaceKind = 'trim' | 'gap' | 'missing' | 'flagged' | 'frozen' | 'saturated' | 'apart' | 'jump' | 'level';
-export interface Place { kind: PlaceKind; t0: number; t1: number; missing?: number; samples?: number; size?: string }
+export interface Place { kind: PlaceKind; t0: number; t1: number; missing?: number; samples?: number; deviations?: number; size?: string }
 
 // A stretch that lacks samples is a gap where the time column says so, else cells without a number.
 export function placesOf(trace: Trace): Place[] {
@@ -20,7 +20,7 @@ export function placesOf(trace: Trace): Place[] {
 // the first analysed sample.
 export function foundIn(recording: Recording, shape: Histogram | undefined, channel: Channel | undefined): Place[] {
   const first = recording.metadata.trim?.start_s ?? 0;
-  const apart = (shape?.apart ?? []).map(({t0, t1, samples}): Place => ({kind: 'apart', t0, t1, samples}));
+  const apart = (shape?.apart ?? []).map((place): Place => ({kind: 'apart', ...place}));
   const changes = (channel?.stationarity?.changes ?? []).map(({kind, time_s: time, size, unit}): Place => ({kind, t0: first + time, t1: first + time, size: kind === 'jump' ? `${writeNumber(size)} ${writeUnit(unit)}` : `${writeNumber(size)} times`}));
   return [...apart, ...changes];
 }
@@ -28,6 +28,7 @@ export function foundIn(recording: Recording, shape: Histogram | undefined, chan
 const MARKS: Record<PlaceKind, string> = {trim: '░', gap: '▒', missing: '▒', flagged: '▼', frozen: '▁', saturated: '▔', apart: '◇', jump: '┆', level: '┆'};
 const LEAST_SAMPLES = 60;  // about a place, so that it is seen among its neighbours
 const LISTED = 6;
+const MOST_APART = 200;  // places that the API tells
 
 const KINDS: Record<PlaceKind, (places: readonly Place[]) => string> = {
   trim: places => `${writeDuration(places.reduce((sum, place) => sum + place.t1 - place.t0, 0))} trimmed`,
@@ -36,10 +37,14 @@ const KINDS: Record<PlaceKind, (places: readonly Place[]) => string> = {
   flagged: places => `${plural(places.length, 'stretch', 'stretches')} with no measurement in ${places.length === 1 ? 'it' : 'them'}`,
   frozen: places => `frozen for ${writeDuration(places.reduce((sum, place) => sum + place.t1 - place.t0, 0))}`,
   saturated: places => `${plural(places.length, 'stretch', 'stretches')} at full scale`,
-  apart: places => `${plural(places.reduce((sum, place) => sum + (place.samples ?? 0), 0), 'value')} apart from the rest, more than 8 σ from the median around them`,
+  apart: places => `${places.length === MOST_APART ? 'at least ' : ''}${plural(places.reduce((sum, place) => sum + (place.samples ?? 0), 0), 'value')} apart from the rest, more than 8 σ from the median around them`,
   jump: places => `the mean jumps by ${places.map(place => place.size).join(', ')}`,
   level: places => `the noise changes, to ${places.map(place => place.size).join(', ')} what it was`,
 };
+
+// Which are named where there are more than a line holds: values by how far out they are, changes from the first on, stretches by length.
+const NAMED: Partial<Record<PlaceKind, readonly [string, (place: Place) => number]>> = {apart: ['farthest out', place => place.deviations ?? 0], jump: ['first', place => -place.t0], level: ['first', place => -place.t0]};
+const LONGEST = ['longest', (place: Place) => place.missing ?? place.t1 - place.t0] as const;
 
 interface PlacesProps { recording: Recording; column: string; places: readonly Place[]; duration: number; rate: number }
 
@@ -55,9 +60,9 @@ export function Places({recording, column, places, duration, rate}: PlacesProps)
   return <>{notes.map(note => <span key={note} class="quality-note">{writeSentence(note)} </span>)}
     {kinds.map(kind => {
       const list = places.filter(place => place.kind === kind);
-      // The longest ones where there are more than a line holds, in the order of time.
-      const first = [...list].sort((a, b) => (b.missing ?? b.t1 - b.t0) - (a.missing ?? a.t1 - a.t0)).slice(0, LISTED).sort((a, b) => a.t0 - b.t0);
-      return <span key={kind} class="quality-note"><span aria-hidden="true" class={`mark-${kind}`}>{MARKS[kind]} </span>{KINDS[kind](list)}{list.length > LISTED ? `; the ${countWord(LISTED)} longest at ` : ': at '}
+      const [word, rank] = NAMED[kind] ?? LONGEST;
+      const first = [...list].sort((a, b) => rank(b) - rank(a)).slice(0, LISTED).sort((a, b) => a.t0 - b.t0);
+      return <span key={kind} class="quality-note"><span aria-hidden="true" class={`mark-${kind}`}>{MARKS[kind]} </span>{KINDS[kind](list)}{list.length > LISTED ? `; the ${countWord(LISTED)} ${word} at ` : ': at '}
         {first.map((place, i) => { const to = shown(place); return <span key={place.t0}>{i > 0 && ', '}<button type="button" class="link" aria-pressed={query.get('t0') === to.t0} onClick={() => choose(to)}>{writeTick(Number(place.t0.toPrecision(6)))} s</button></span>; })}. </span>;
     })}</>;
 }
