@@ -2,13 +2,14 @@
 
 #include "core/campaign/regression/ratios.hpp"
 #include "core/signal/angle.hpp"
+#include "core/signal/unit.hpp"
 #include "schema/json/recording_spec.hpp"
 #include "schema/json/stored_member.hpp"
 
 namespace driftlab {
 namespace {
 
-Json regression_test_json(const regression::ScaleReport& told) {
+Json regression_test_json(const regression::ScaleReport& told, const ParameterUnit& unit) {
   Json test{{"kind", told.name.empty() ? "scale" : "parameter"}};
   if (told.name.empty()) {
     test["tau_s"] = number(told.test.tau_s);
@@ -16,6 +17,11 @@ Json regression_test_json(const regression::ScaleReport& told) {
     test["name"] = told.name;
   }
   const regression::RatioReport ratios = regression::ratios_of(told);
+  if (ratios.deviations) {
+    const auto& [before, after] = *ratios.deviations;
+    test["baseline"] = quantity(before, unit.per_si, unit.symbol);
+    test["candidate"] = quantity(after, unit.per_si, unit.symbol);
+  }
   test["ratio"] = number(ratios.ratio);
   test["ci"] = interval(ratios.ci95);
   test["upper_single"] = number(ratios.upper_single);
@@ -27,9 +33,11 @@ Json regression_test_json(const regression::ScaleReport& told) {
 }
 
 Json regression_unit_json(const regression::Report& report, const regression::UnitReport& unit) {
+  const ParameterUnit deviations =
+      lab_unit(unit.sensor == "gyroscope" ? Dimension::AngularRate : Dimension::SpecificForce, 0);
   Json tests = Json::array();
   for (const regression::ScaleReport& test : unit.tests) {
-    tests.push_back(regression_test_json(test));
+    tests.push_back(regression_test_json(test, deviations));
   }
   return Json{{"device", report.device},
               {"condition", unit.condition},

@@ -4,6 +4,7 @@
 #include "schema/figure/axes.hpp"
 #include "schema/json/figure_values.hpp"
 
+#include <optional>
 #include <utility>
 
 namespace driftlab {
@@ -19,6 +20,47 @@ std::string unit_name(const Json& unit) {
   const std::string name = unit.value("sensor", "") + " " + unit.value("axis", "");
   return name + (condition.is_string() ? ", " + condition.get<std::string>() : "");
 }
+
+namespace {
+
+/// What one arm measured: the baseline as a line with its band, the candidate as points with theirs.
+/// `unit`: set to that of the deviations.
+Series arm_series(const Json& tests, const char* arm, std::string& unit) {
+  Series series{.name = arm};
+  for (const Json& test : tests) {
+    const auto tau = value_of(test.value("tau_s", Json(nullptr)));
+    const Json deviation = test.value(arm, Json(nullptr));
+    if (!tau || !deviation.is_object()) {
+      continue;  // a parameter, or a run of before arms were told
+    }
+    unit = deviation.at("unit").get<std::string>();
+    series.x.push_back(*tau);
+    series.y.push_back(value_of(deviation.at("value")));
+    series.low.push_back(value_of(deviation.at("ci95")[0]));
+    series.high.push_back(value_of(deviation.at("ci95")[1]));
+  }
+  return series;
+}
+
+/// The deviations of both arms over each other; nothing where the run does not tell them.
+std::optional<Plot> arms_plot(const Json& tests) {
+  std::string unit;
+  Series candidate = arm_series(tests, "candidate", unit);
+  Series baseline = arm_series(tests, "baseline", unit);
+  if (candidate.x.empty() || baseline.x.empty()) {
+    return std::nullopt;
+  }
+  candidate.mark = Mark::Dot;
+  candidate.detail = "95 % interval";
+  baseline.line = true;
+  baseline.band = figure::palette::kBand;
+  Plot plot{.x = {ScaleKind::Log, "averaging time τ, s"}, .y = {ScaleKind::Log, "Allan deviation, " + unit}};
+  plot.series = {std::move(candidate), std::move(baseline)};
+  figure::frame_by_curves(plot);
+  return plot;
+}
+
+}  // namespace
 
 std::vector<NamedFigure> figures_of_regression(const Json& document, const std::string& axis) {
   std::vector<NamedFigure> figures;
@@ -58,9 +100,15 @@ std::vector<NamedFigure> figures_of_regression(const Json& document, const std::
     plot.rules = {1.0};
     Figure figure{
         .title = unit_name(unit) + ": change of the Allan deviation",
-        .sentence = "Allan deviation of the candidate over that of the baseline with intervals, and the margin.",
+        .sentence =
+            "Allan deviation of the candidate over that of the baseline with intervals, and the margin; below, both.",
         .source = "driftlab " DRIFTLAB_VERSION};
-    figure.plots.push_back(std::move(plot));
+    auto arms = arms_plot(unit.at("tests"));
+    plot.hide_x = arms.has_value();
+    figure.plots.push_back(std::move(plot));  // first, for a terminal draws no more
+    if (arms) {
+      figure.plots.push_back(std::move(*arms));
+    }
     figures.push_back({word(unit_name(unit)), std::move(figure)});
   }
   return figures;

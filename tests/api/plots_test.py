@@ -224,10 +224,17 @@ class Plots(DaemonTest):
         svg = self.drawn("gate.svg")
         self.judge_png("gate.png", svg)
         self.judge_terminal(self.said("plot", "r.json"), "candidate ÷ baseline", "averaging time τ, s", "change")
-        for label in ("candidate ÷ baseline", "change", "margin", "averaging time τ, s"):
+        scales = [test for test in document["units"][0]["tests"] if test["kind"] == "scale"]
+        for label in ("Allan deviation, deg/h", "baseline", "candidate", "candidate ÷ baseline", "change", "margin", "averaging time τ, s"):
             self.assertIn(label, svg.texts)
-        ratios = [test["ratio"] for test in document["units"][0]["tests"] if test["kind"] == "scale"]
-        self.judge_heights(svg, ratios)
+        self.judge_heights(svg, [test["ratio"] for test in scales])
+        both = [group for group in svg.root.iter(SVG + "g") if group.get("clip-path")][1]
+        self.assertEqual(sum(node.get("class") == "mark" for node in both.iter(SVG + "circle")), len(scales), "a point of the candidate for each")
+        for test in scales:
+            self.assertAlmostEqual(test["candidate"]["value"] / test["baseline"]["value"], test["ratio"], places=9)
+            for arm in ("baseline", "candidate"):
+                low, high = test[arm]["ci95"]
+                self.assertTrue(low < test[arm]["value"] < high, test)
 
     def test_another_ending_and_a_document_without_a_figure_are_one_sentence(self) -> None:
         for arguments, words in ((("characterise", "1.csv", "--models", "WN", "--plot", "a.jpg"), "--plot: Figures are written as .svg and .png"),

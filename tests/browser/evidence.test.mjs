@@ -68,6 +68,14 @@ test('runs against one baseline are drawn with intervals and margins, under the 
 
   // The page of a run leads on: to a pipeline, to a merge request, and to a new baseline with a reason.
   await page.goto(`${daemon.address}/regressions/${jobs[1]}`);
+  // Both arms over each other, above their ratio: a point of the candidate for each averaging time, and the baseline's line.
+  const arms = panel(page, 'Allan deviation, gyroscope z').locator('svg[tabindex]');
+  await arms.waitFor();
+  const scales = (await daemon.json(`/v1/regressions/${jobs[1]}`)).units[0].tests.filter(each => each.kind === 'scale');
+  const [csv] = await Promise.all([page.waitForEvent('download'), panel(page, 'Allan deviation, gyroscope z').getByRole('button', {name: 'CSV'}).click()]);
+  const rows = readFileSync(await csv.path(), 'utf8').trim().split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
+  const column = name => rows[0].findIndex(each => each.includes(name) && each.includes('deg/h'));
+  for (const [i, scale] of scales.entries()) for (const arm of ['candidate', 'baseline']) assert.equal(Number(rows[i + 1][column(arm)]), scale[arm].value, `${arm} at ${scale.tau_s} s of ${rows[0]}`);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: 'JUnit'}).click()]);
   assert.equal(download.suggestedFilename(), `${jobs[1]}.xml`);
   await page.getByRole('button', {name: 'Markdown'}).click();

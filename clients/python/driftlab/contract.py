@@ -3707,6 +3707,9 @@ class RegressionTest(TypedDict):
     kind: Literal['scale', 'parameter']
     tau_s: NotRequired[float]
     name: NotRequired[str]
+    # Allan deviation of the arm at this averaging time, over its sessions; its interval is of this one alone.
+    baseline: NotRequired[Quantity]
+    candidate: NotRequired[Quantity]
     # Candidate over baseline, of the deviation.
     ratio: float
     # Holds for all tests at once.

@@ -106,6 +106,17 @@ LevelEstimator estimate_levels(const Unit& unit, const Eigen::VectorXd& theta, c
   return estimator;
 }
 
+/// The mean of an arm at each row. `scatter`: what a session adds, per row.
+std::vector<ArmMean> means_of(const Design& design, const Eigen::MatrixXd& weights, const Eigen::VectorXd& scatter) {
+  const Eigen::VectorXd x = weighted(design, weights);
+  const Eigen::VectorXd sampling = sampling_of(design, weights).diagonal();
+  std::vector<ArmMean> means;
+  for (Eigen::Index row = 0; row < design.size(); ++row) {
+    means.push_back({x(row), std::sqrt(sampling(row) + weights.row(row).squaredNorm() * scatter(row))});
+  }
+  return means;
+}
+
 }  // namespace
 
 Contrast make_contrast(const Design& design, const ScatterTerms& terms, const SessionScatter& scatter) {
@@ -114,12 +125,15 @@ Contrast make_contrast(const Design& design, const ScatterTerms& terms, const Se
       scatter.mean_square_common() * terms.common + scatter.mean_square_local() * terms.local;
   const Eigen::MatrixXd base = weights_of(design, mean_scatter.diagonal(), Arm::Baseline);
   const Eigen::MatrixXd candidate = weights_of(design, mean_scatter.diagonal(), Arm::Candidate);
+  const std::vector<ArmMean> before = means_of(design, base, mean_scatter.diagonal());
+  const std::vector<ArmMean> after = means_of(design, candidate, mean_scatter.diagonal());
   std::vector<Eigen::Index> rows;
   for (Eigen::Index row = 0; row < design.size(); ++row) {
     if (base.row(row).sum() > 0.0 && candidate.row(row).sum() > 0.0) {
       const Row& scale = design.rows[static_cast<std::size_t>(row)];
       rows.push_back(row);
       contrast.tests.push_back({scale.unit, std::nullopt, row, scale.tau_s, scale.margin});
+      contrast.means.push_back({before[static_cast<std::size_t>(row)], after[static_cast<std::size_t>(row)]});
     }
   }
   const Eigen::MatrixXd weights = candidate - base;

@@ -12,6 +12,7 @@
 #include "core/campaign/regression/session_scatter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -37,11 +38,18 @@ struct StructureTest {
   [[nodiscard]] double least_p() const { return std::min(p_fit, p_contrast); }
 };
 
+/// What one arm has at a scale: the weighted mean of its sessions, sum_r w_r x_rj.
+struct ArmMean {
+  double x = 0.0;   ///< ln deviation of the Haar wavelet variance, 1/2 ln nu
+  double se = 0.0;  ///< with what a session adds
+};
+
 struct Contrast {
-  std::vector<Test> tests;                ///< scales by row, then levels by unit
-  Eigen::VectorXd theta;                  ///< per test [ln deviation]
-  Eigen::VectorXd se;                     ///< at the posterior means of kL^2 and kS^2
-  std::vector<StructureTest> structures;  ///< per unit
+  std::vector<Test> tests;                    ///< scales by row, then levels by unit
+  std::vector<std::array<ArmMean, 2>> means;  ///< per test of a scale: baseline, candidate; theta is their difference
+  Eigen::VectorXd theta;                      ///< per test [ln deviation]
+  Eigen::VectorXd se;                         ///< at the posterior means of kL^2 and kS^2
+  std::vector<StructureTest> structures;      ///< per unit
 
   /// C = sampling + kL^2 common + kS^2 local over the tests of scales; all tests are `combine` times these.
   Eigen::MatrixXd sampling;

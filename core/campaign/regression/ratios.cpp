@@ -4,11 +4,24 @@
 
 namespace driftlab::regression {
 
+namespace {
+
+Estimate deviation_of(const ArmMean& mean) {
+  const auto at = [&](double deviations) { return std::sqrt(2.0) * std::exp(mean.x + deviations * mean.se); };
+  return {at(0.0), {at(-1.96), at(1.96)}};
+}
+
+}  // namespace
+
 RatioReport ratios_of(const ScaleReport& told) {
-  return {std::exp(told.theta),
-          {std::exp(told.outcome.lower), std::exp(told.outcome.upper)},
-          std::exp(told.outcome.upper_one),
-          std::exp(told.test.margin)};
+  RatioReport ratios{std::exp(told.theta),
+                     {std::exp(told.outcome.lower), std::exp(told.outcome.upper)},
+                     std::exp(told.outcome.upper_one),
+                     std::exp(told.test.margin)};
+  if (told.means) {
+    ratios.deviations = {deviation_of((*told.means)[0]), deviation_of((*told.means)[1])};
+  }
+  return ratios;
 }
 
 TrendRatios ratios_of(const ReleaseTrend& trend) {

@@ -11,6 +11,9 @@ struct RatioReport {
   Interval ci95 = {1.0, 1.0};  ///< of all tests at once
   double upper_single = 1.0;   ///< upper end of this test alone
   double margin = 1.0;         ///< the most that is accepted
+  /// Allan deviations of baseline and candidate [SI], each with the 95 % interval of this arm and scale alone. Of a
+  /// scale.
+  std::optional<std::array<Estimate, 2>> deviations = {};
 };
 [[nodiscard]] RatioReport ratios_of(const ScaleReport& told);
 

@@ -42,7 +42,9 @@ void tell_tests(const Design& design, Report& report) {
     const Test& test = comparison.contrast.tests[t];
     ScaleReport told{test, comparison.outcomes[t], "", comparison.contrast.theta(static_cast<Eigen::Index>(t)),
                      comparison.gate.gated[t]};
-    if (test.level) {
+    if (!test.level) {
+      told.means = comparison.contrast.means[t];
+    } else {
       const Level& level = design.units[test.unit].levels[*test.level];
       told.name = level.process + "." + level.parameter;
     }

@@ -21,6 +21,7 @@ struct ScaleReport {
   std::string name;  ///< of a level: `white_noise.N`; empty for a scale
   double theta = 0.0;
   bool gated = false;
+  std::optional<std::array<ArmMean, 2>> means = {};  ///< of a scale
 };
 
 struct UnitReport {

@@ -3,6 +3,7 @@
 #include "core/campaign/regression/ratios.hpp"
 #include "core/campaign/regression/report.hpp"
 #include "core/process/model.hpp"
+#include "core/signal/angle.hpp"
 #include "tests/unit/campaign/regression_channels.hpp"
 #include "tests/unit/fit/shared_data.hpp"
 
@@ -76,6 +77,16 @@ TEST(RegressionReport, EstimatesTheChangeThatWasMade) {
   for (const ScaleReport& test : report->units[0].tests) {
     if (test.name.empty() && test.test.tau_s < 0.5) {
       EXPECT_NEAR(test.theta, 0.5, 0.06) << test.test.tau_s;
+    }
+    const RatioReport ratios = ratios_of(test);
+    ASSERT_EQ(ratios.deviations.has_value(), test.name.empty());
+    if (ratios.deviations) {
+      const auto& [before, after] = *ratios.deviations;
+      EXPECT_NEAR(after.value / before.value, ratios.ratio, 1e-12);
+      EXPECT_TRUE(before.ci95.low < before.value && before.value < before.ci95.high) << test.test.tau_s;
+      if (test.test.tau_s < 0.05) {  // nearly white: N of 0.05 over the root of tau
+        EXPECT_NEAR(before.value / (0.05 * kDegree / std::sqrt(test.test.tau_s)), 1.0, 0.1);
+      }
     }
   }
 }

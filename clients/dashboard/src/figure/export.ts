@@ -63,7 +63,7 @@ export function tableOf(plots: readonly Plot[]): Table {
   const grid = new Set<number>();
   for (const {one} of measured.length > 0 ? measured : series) for (const x of one.x) grid.add(x);
   const xs = [...grid].sort((a, b) => a - b);
-  const heading = [first.x.name];
+  const heading = [plots.find(plot => plot.x.name)?.x.name ?? ''];  // of plots that share it only the last says it
   const columns: (number | null)[][] = [];
   for (const {one, unit} of series) {
     const index = new Map(one.x.map((x, i) => [x, i] as const));

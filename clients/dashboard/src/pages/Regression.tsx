@@ -5,7 +5,7 @@ import {ask, useJobEvents, useRead} from '../api/client';
 import type {Job, Nullable, Recording} from '../api/documents';
 import {writeNumber, writeP, writeQuantity, writeTick, type Written} from '../format/number';
 import {writeDuration} from '../format/time';
-import {conditionName, plural, writeSentence} from '../format/words';
+import {conditionName, plural, writeSentence, writeUnit} from '../format/words';
 import {defaultReadout, Figure} from '../figure/Figure';
 import type {Plot, Series} from '../figure/spec';
 import {choose, pageOf, usePlace} from '../route';
@@ -22,6 +22,16 @@ import {axisName, parameterName} from './regression/History';
 const COLOURS: Record<string, string> = {beyond: 'var(--robust)', worse_within_margin: 'var(--measured)', open: 'var(--measured)', ok: 'var(--measured)', improved: 'var(--model)'};
 const WORDS: Record<string, string> = {ok: 'no worse', worse_within_margin: 'worse, within the margin', beyond: 'beyond the margin', open: 'open', improved: 'better'};
 
+// Both arms over each other: the baseline as a line with its band, the candidate as points. Runs of before arms were told have none.
+function armsPlot(scales: readonly Test[]): Plot[] {
+  const arm = (name: 'baseline' | 'candidate'): Series => {
+    const [value, low, high] = [scales.map(test => test[name]?.value ?? null), ...([0, 1] as const).map(i => scales.map(test => test[name]?.ci95?.[i] ?? null))];
+    return {id: name, name, x: scales.map(test => test.tau_s!), y: value!, low: low!, high: high!, colour: 'var(--measured)', ...(name === 'baseline' ? {line: true, band: 'var(--band)'} : {mark: 'dot' as const, detail: '95 % interval'})};
+  };
+  const unit = scales[0]?.candidate?.unit;
+  return unit ? [{id: 'arms', height: 220, x: {scale: 'log', name: ''}, y: {scale: 'log', name: `Allan deviation, ${writeUnit(unit)}`}, hideX: true, series: [arm('candidate'), arm('baseline')]}] : [];
+}
+
 function ratioPlots(tests: readonly Test[]): Plot[] {
   const scales = tests.filter(test => test.kind === 'scale' && test.tau_s !== undefined);
   const x = scales.map(test => test.tau_s!);
@@ -31,7 +41,7 @@ function ratioPlots(tests: readonly Test[]): Plot[] {
   const series: Series[] = kinds.map(kind => ({id: kind, name: WORDS[kind] ?? kind, ...(kind === 'open' ? {detail: 'too few or too short'} : {}), x, y: scales.map(test => test.verdict === kind ? test.ratio : null), low: ends(0), high: ends(1), mark: kind === 'beyond' ? 'square' : kind === 'open' ? 'open' : 'dot', colour: COLOURS[kind] ?? 'var(--measured)'}));
   // Each averaging time has its own margin; those that are not gated have none.
   const limit: Series = {id: 'margin', name: 'margin', detail: 'of the gated times', x, y: scales.map(test => test.gated ? test.margin : null), line: true, colour: 'var(--robust)', dash: '7 4'};
-  return [{id: 'ratio', height: 220, x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: 'candidate ÷ baseline, Allan deviation', write: writeTick}, rules: [1], series: [...series, limit]}];
+  return [...armsPlot(scales), {id: 'ratio', height: 220, x: {scale: 'log', name: 'averaging time τ, s'}, y: {scale: 'log', name: 'candidate ÷ baseline, Allan deviation', write: writeTick}, rules: [1], series: [...series, limit]}];
 }
 
 const ratioOf = (test: Test): Written => writeQuantity({value: test.ratio, ci95: [test.ci[0] ?? null, test.ci[1] ?? null], unit: ''});
@@ -65,8 +75,8 @@ function Shown({document}: {document: Document}): JSX.Element {
     {document.needs?.sentence && !document.summary.details.includes(document.needs.sentence) && <p class="note"><b>What would decide:</b> {document.needs.sentence}</p>}
     {document.units.length > 1 && <Segments label="Axis" options={document.units.map((each, i) => [String(i), axisName(each)] as const)} value={String(document.units.indexOf(unit!))} onChange={value => choose({unit: value === '0' ? null : value})} />}
     {unit && <div class="grid wide-side">
-      <Figure name={`regression-${document.device}-${unit.axis}`} title={`Ratio of deviations, ${axisName(unit)}`} describe={`Candidate over baseline at each averaging time with simultaneous intervals; ${unit.tests.filter(test => test.verdict === 'beyond').length} beyond the margin.`} plots={plots}
-        readout={x => <><b>τ {writeNumber(x, 4)} s</b>{defaultReadout(plots[0]!, x)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
+      <Figure name={`regression-${document.device}-${unit.axis}`} title={`Allan deviation, ${axisName(unit)}`} describe={`Baseline and candidate over each other; below, candidate over baseline at each averaging time with simultaneous intervals; ${unit.tests.filter(test => test.verdict === 'beyond').length} beyond the margin.`} plots={plots}
+        readout={x => <><b>τ {writeNumber(x, 4)} s</b>{plots.map(plot => <span key={plot.id}>{defaultReadout(plot, x)}</span>)}</>} source={`driftlab, ${document.id}, algorithm ${document.algorithm_version}`} curl={curlOf(path)}
         how={() => <><p>Every averaging time up to {writeDuration(document.scope_s)} and every shared parameter is tested at once: the intervals hold for all of them together, at look {document.look.number} of {document.look.of}. <a href="/docs/regression">The manual</a> has the equations.</p><dl>{Object.entries(document.settings).map(([key, value]) => <><dt key={key}>{key.replace(/_/g, ' ')}</dt><dd><code>{JSON.stringify(value)}</code></dd></>)}</dl></>} />
       <div class="stack"><Tests unit={unit} />
         <Panel title="What else changed">{document.findings.filter(finding => finding.sentence).length + document.comparability.filter(each => each.sentence).length === 0 ? <p class="sec">Nothing that was looked at.</p> : <ul class="rows plain">{document.findings.filter(finding => finding.sentence).map(finding => <li key={finding.check}>{finding.verdict !== 'ok' && <span class={`g ${finding.verdict === 'fail' ? 'bad' : 'warn'}`} aria-hidden="true">{finding.verdict === 'fail' ? '✗ ' : '△ '}</span>}{writeSentence(finding.sentence!)}</li>)}{document.comparability.filter(each => each.sentence).map(each => <li key={each.item}>{writeSentence(each.sentence!)}</li>)}</ul>}
