@@ -112,6 +112,47 @@ test('what is compared has a difference with its interval, and says whether one 
   await closed(page);
 });
 
+test('conditions and fits are compared as recordings are, and nothing has the name of another', async () => {
+  const ids = [];
+  for (const seed of [84, 85]) ids.push(await recorded(noise(12000, seed, 0.1), {device: 'alike', id: 'static'}));
+  ids.push(await recorded(noise(12000, 86, 0.2), {device: 'alike', id: 'turning', condition: 'constant_rate:z:9:deg/s', columns: 'gz [deg/s]=angular_rate:z:deg/s'}));
+  const page = await open(browser, daemon, `/compare?with=${ids.slice(0, 2).join(',')}`);
+  const chips = page.locator('.chip');
+  await chips.filter({hasText: 'static (1)'}).waitFor();
+  await chips.filter({hasText: 'static (2)'}).waitFor();
+  assert.deepEqual((await page.getByRole('columnheader').allInnerTexts()).slice(1).map(each => each.slice(0, 10)), ['static (1)', 'static (2)']);
+  // A fit is the curve that it implies: the second becomes one, and has no points.
+  const {fit_ids: fits, result} = (await daemon.json(`/v1/recordings/${ids[1]}/characterisation`)).channels[0];
+  await page.getByLabel('Curve of static (2)').selectOption(fits[1]);
+  await page.waitForURL(url => url.searchParams.get('with') === `${ids[0]},${fits[1]}`);
+  await chips.filter({hasText: `static z`}).filter({hasText: result.fits[1].model}).waitFor();
+  const implied = (await daemon.json(`/v1/fits/${fits[1]}/implied`)).implied;
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', {name: 'CSV'}).first().click()]);
+  const [heading, row] = readFileSync(await download.path(), 'utf8').split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
+  const at = heading.findIndex(name => name.includes(result.fits[1].model) && !name.includes('÷'));
+  assert.ok(Math.abs(Number(row[at]) / (3600 * implied.ratio.deviation[0]) - 1) < 1e-9, `${heading[at]}: ${row[at]}, ${implied.ratio.deviation[0]}`);
+  await page.goBack();
+  await page.waitForURL(url => url.searchParams.get('with') === ids.slice(0, 2).join(','));
+  // Found by name: the device's conditions, whose parameters are those of the table.
+  await page.getByRole('button', {name: 'Add', exact: true}).click();
+  await page.getByLabel('Find what to compare').fill('alike');
+  await page.getByRole('button', {name: 'Conditions of alike'}).click();
+  await page.getByRole('button', {name: '9 deg/s', exact: true}).click();
+  await page.waitForURL(url => (url.searchParams.get('with') ?? '').endsWith(',alike~constant_rate%3Az%3A9%3Adeg%2Fs~gyroscope~z'));
+  const table = await daemon.json('/v1/parameter-tables?device=alike&sensor=gyroscope&axis=z');
+  const {value} = table.rows.find(each => each.label.startsWith('constant_rate')).values['white_noise.N'];
+  const cell = page.getByRole('row', {name: /white noise N/}).getByRole('cell').last();
+  await cell.getByText(/differs by/).waitFor();
+  assert.ok(Math.abs(Number((await cell.locator('b').innerText()).replace('\u202f', '')) / value - 1) < 0.01);
+  await page.getByRole('group', {name: 'Curve'}).getByRole('button', {name: 'Haar'}).click();
+  await page.getByRole('heading', {name: 'Haar deviation'}).waitFor();
+  await page.getByLabel('normalise').selectOption('1s');
+  await page.waitForURL(url => url.searchParams.get('fig') === 'haar' && url.searchParams.get('norm') === '1s');
+  await page.reload();
+  await page.getByText('Haar deviation ÷ its own at 1 s').first().waitFor();
+  await closed(page);
+});
+
 test('an outage evaluation shows what its runs say while they go on', {timeout: 300000}, async () => {
   const made = await daemon.json('/v1/outage-evaluations', {scenario: 'paper', runs: 400});
   const page = await open(browser, daemon, `/outages/${made.id}`);

@@ -5,7 +5,7 @@ import {ask, Problem, remove, useRead} from '../api/client';
 import type {Characterisation, Device, DeviceSummary, List, Recording} from '../api/documents';
 import {writeWhen} from '../format/time';
 import {factorBetween, unitsFor} from '../format/units';
-import {conditionName, plural, sensorOf, writeUnit} from '../format/words';
+import {conditionName, conditionText, plural, sensorOf, writeUnit} from '../format/words';
 import {defaultReadout, Figure, Tools} from '../figure/Figure';
 import {save} from '../figure/export';
 import type {Plot, Series} from '../figure/spec';
@@ -20,6 +20,7 @@ import {curlOf} from '../shell/copy';
 import {say} from '../shell/say';
 import {Hairlines, Panel, Refusal, Segments, Shown} from '../shell/states';
 import {useTitle} from '../shell/title';
+import {conditionKey} from './compare/items';
 import {colours, type ParameterTable, type Trends} from './device/documents';
 import {ExportModel} from './device/ExportModel';
 import {Recordings} from './device/Recordings';
@@ -59,9 +60,9 @@ function Overlay({table, rows}: {table: ParameterTable; rows: readonly number[]}
     readout={x => <><b>τ {x} s</b>{defaultReadout(plots[0]!, x)}</>} note="Rates are one ordered ramp, angular accelerations another, dashed with open marks." />;
 }
 
-// `onCompared`: told which recordings a comparison would show, the first of each condition.
+// `onCompared`: told what a comparison would show, its conditions.
 // `live`: jobs work on its recordings, and the table fills as they end.
-function Results({device, summary, live, onCompared}: {device: Device; summary: DeviceSummary; live: boolean; onCompared: (recordings: string) => void}): JSX.Element {
+function Results({device, summary, live, onCompared}: {device: Device; summary: DeviceSummary; live: boolean; onCompared: (items: string) => void}): JSX.Element {
   const {query} = usePlace();
   const axes = summary.channels.filter(channel => channel.axis && ['angular_rate', 'specific_force'].includes(channel.quantity));
   const wanted = `${query.get('sensor') ?? ''}:${query.get('axis') ?? ''}`;
@@ -82,10 +83,10 @@ function Results({device, summary, live, onCompared}: {device: Device; summary: 
     if (watched ? !live : on) { read.again(); trends.again(); }
     setWatched(on);
   }, [live, pooling]);
-  const compared = (read.data?.rows ?? []).map(row => row.recordings[0]).slice(0, CONDITIONS).join(',');
+  const compared = (read.data?.rows ?? []).slice(0, CONDITIONS).map(row => conditionKey(device.name, conditionText(row.condition), read.data!.sensor, read.data!.axis ?? '')).join(',');
   const colour = useMemo(() => new Map(read.data ? colours(read.data.rows).map((one, i) => [read.data!.rows[i]!.label, one] as const) : []), [read.data]);
   const select = (axis: string): void => choose({axis, sensor: chosen ? sensorOf(chosen.quantity) : null});
-  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (compared) go(`/compare?with=${compared}`); }});
+  usePageKeys({1: () => select('x'), 2: () => select('y'), 3: () => select('z'), c: () => { if (compared) go(`/compare?with=${encodeURIComponent(compared)}`); }});
   useEffect(() => onCompared(compared), [compared]);
   if (!chosen || !path) return live ? <></> : <p class="verdict">No results yet. {plural(summary.recordings, 'recording')} wait{summary.recordings === 1 ? 's' : ''}. <CharacteriseAll device={device} /></p>;
   const text = async (type: string, extension: string): Promise<void> => save(`${device.name}-${chosen.axis}.${extension}`, type, await (await ask(path, {headers: {Accept: type}})).text());
@@ -145,7 +146,7 @@ export default function DevicePage(): JSX.Element {
   return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
       facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
-      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${compared}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => forget(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
+      actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${encodeURIComponent(compared)}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => forget(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
     {refused && <Refusal problem={refused} />}
     <LiveLine jobs={live} />
     <Shown read={summary}>{found => <><Results device={device} summary={found} live={live.length > 0} onCompared={setCompared} />{found.channels.length === 0 && <Recordings device={device} axis={null} />}</>}</Shown>

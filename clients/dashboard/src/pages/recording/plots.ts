@@ -41,7 +41,7 @@ function robustDetail(channel: Channel): string {
   return disjoint > 0 ? `${disjoint} of ${channel.haar.scale.length} scales differ` : 'agrees';
 }
 
-function measuredSeries(channel: Channel, factor: number, curve: Curve): Series {
+export function measuredSeries(channel: Channel, factor: number, curve: Curve): Series {
   const base = {id: 'classical', name: 'classical', detail: '95 % interval', mark: 'dot' as const, line: true, colour: 'var(--measured)', band: 'var(--band)', width: 0.8};
   if (curve === 'allan') {
     const {allan} = channel;

@@ -1,0 +1,41 @@
+// What may be added to a comparison: what was recorded last, what is found by name, the conditions of a device.
+import type {JSX} from 'preact';
+import {useState} from 'preact/hooks';
+import {useRead} from '../../api/client';
+import type {DeviceSummary, List, Recording} from '../../api/documents';
+import {conditionName, conditionText, sensorOf} from '../../format/words';
+import {Refusal} from '../../shell/states';
+import {conditionKey} from './items';
+
+interface Hit { kind: string; id: string; title: string; subtitle: string }
+type Choice = readonly [key: string, text: string];
+
+function Conditions({device, onAdd}: {device: string; onAdd: (key: string) => void}): JSX.Element | null {
+  const summary = useRead<DeviceSummary>(`/v1/devices/${encodeURIComponent(device)}/summary`);
+  const axes = (summary.data?.channels ?? []).filter(channel => channel.axis && ['angular_rate', 'specific_force'].includes(channel.quantity));
+  const [nth, setNth] = useState(0);
+  const axis = axes[nth];
+  if (summary.problem) return <Refusal problem={summary.problem} />;
+  if (summary.data && !axis) return <span class="sec">No recording of {device} is characterised.</span>;
+  return <>{axes.length > 1 && <select aria-label="Sensor and axis" value={nth} onChange={event => setNth(Number(event.currentTarget.value))}>{axes.map((each, i) => <option key={i} value={i}>{sensorOf(each.quantity)} {each.axis}</option>)}</select>}
+    {axis && summary.data!.conditions.map(({condition}) => condition && <button type="button" class="btn" key={conditionText(condition)} onClick={() => onAdd(conditionKey(device, conditionText(condition), sensorOf(axis.quantity), axis.axis!))}>{conditionName(condition, axis.axis)}</button>)}</>;
+}
+
+export function Add({onAdd, deviceName}: {onAdd: (key: string) => void; deviceName: (id: string) => string}): JSX.Element {
+  const [text, setText] = useState('');
+  const [device, setDevice] = useState('');
+  const q = text.trim();
+  const recent = useRead<List<Recording>>('/v1/recordings?sort=-created_at&has_result=true&limit=8');
+  const found = useRead<{items: Hit[]}>(q ? `/v1/search?q=${encodeURIComponent(q)}&limit=12` : null);
+  const add = (key: string): void => { setText(''); setDevice(''); onAdd(key); };
+  const recordings: Choice[] = q ? (found.data?.items ?? []).filter(hit => hit.kind === 'recording').map(hit => [hit.id, `${hit.title}, ${hit.subtitle}`] as const)
+    : (recent.data?.items ?? []).map(one => [one.id, [deviceName(one.device), one.metadata.id ?? one.id, conditionName(one.metadata.condition)].filter(Boolean).join(', ')] as const);
+  const devices = (found.data?.items ?? []).filter(hit => hit.kind === 'device');
+  return <div class="chips"><input type="search" aria-label="Find what to compare" placeholder="Find a recording or device" value={text} onInput={event => { setText(event.currentTarget.value); setDevice(''); }} />
+    {device ? <Conditions device={device} onAdd={add} /> : <>
+      {q && devices.map(hit => <button type="button" class="btn" key={hit.id} onClick={() => setDevice(hit.title)}>Conditions of {hit.title}</button>)}
+      {recordings.map(([key, name]) => <button type="button" class="btn" key={key} onClick={() => add(key)}>{name}</button>)}
+      {q && found.data && devices.length + recordings.length === 0 && <span class="sec">Nothing that can be compared is called so.</span>}
+      {(recent.problem ?? found.problem) && <Refusal problem={(recent.problem ?? found.problem)!} />}</>}
+  </div>;
+}
