@@ -153,6 +153,21 @@ test('conditions and fits are compared as recordings are, and nothing has the na
   await closed(page);
 });
 
+test('rows are 6 px higher where comfortable ones were chosen, after a reload too', async () => {
+  const page = await open(browser, daemon, '/devices');
+  const height = async () => (await page.locator('tbody tr').first().boundingBox()).height;
+  await page.locator('tbody tr').first().waitFor();
+  const compact = await height();
+  await page.getByRole('button', {name: 'Settings'}).click();
+  await page.getByRole('dialog', {name: 'Keys and settings'}).getByRole('button', {name: 'Comfortable'}).click();
+  await page.keyboard.press('Escape');
+  assert.equal(await height(), compact + 6);
+  await page.reload();
+  await page.locator('tbody tr').first().waitFor();
+  assert.equal(await height(), compact + 6);
+  await closed(page);
+});
+
 test('an outage evaluation shows what its runs say while they go on', {timeout: 300000}, async () => {
   const made = await daemon.json('/v1/outage-evaluations', {scenario: 'paper', runs: 400});
   const page = await open(browser, daemon, `/outages/${made.id}`);

@@ -4,6 +4,7 @@ import {send, useOffline, useRead} from '../api/client';
 import type {Counts, Session} from '../api/documents';
 import {usePlace} from '../route';
 import {Find} from './Find';
+import {openKeys} from './Help';
 
 const PAGES: readonly (readonly [string, string])[] = [['/', 'Lab'], ['/devices', 'Devices'], ['/investigations', 'Investigations'], ['/outages', 'Outages'], ['/regressions', 'Regressions'], ['/jobs', 'Jobs']];
 const OWNERS: Record<string, string> = {record: '/', recordings: '/devices', compare: '/devices', studies: '/devices', models: '/devices', calibrations: '/devices', populations: '/devices', 'data-sheets': '/devices', drives: '/outages', 'drive-evaluations': '/outages', webhooks: '/jobs'};
@@ -36,6 +37,7 @@ export function Bar(): JSX.Element {
       <a class="word" href="/" aria-label="driftlab, the lab page"><Mark />driftlab</a>
       <nav class={open ? 'open' : ''} aria-label="Pages" id="pages" onClick={() => setOpen(false)}>
         {PAGES.map(([href, name]) => <a key={href} href={href} {...(href === current ? {'aria-current': 'page' as const} : {})}>{name}</a>)}
+        <button type="button" onClick={openKeys}>Settings</button>
       </nav>
       <Find />
       <LiveJobs />
