@@ -104,17 +104,20 @@ export function layout(plots: readonly Plot[], width: number, share = 1): Layout
   const keys = keyed.length;
   const keyBelow = width < NARROW || keys === 0;
   const keyWidth = Math.max(...keyed.map(series => KEY_SAMPLE + KEY_LETTER * series.name.length), 100);
-  const right = keyBelow ? width - 8 : width - KEY;
   const x = domainX(plots);
+  const decades = ([low, high]: readonly [number, number]): number => Math.log10(high / low);
+  // Decades that are equal and too high for a screen are all smaller: what was measured is never cut.
+  const highest = Math.max(0, ...plots.filter(plot => plot.equalDecades).map(plot => decades(domainY(plot, x))));
+  const right = Math.min(keyBelow ? width - 8 : width - KEY, LEFT + (highest > 0 ? MOST_EQUAL / highest * decades(x) : Infinity));
   let top = 0;
   const areas: Area[] = [];
   for (const plot of plots) {
     const y = domainY(plot, x);
     let height = share * (plot.height ?? 220);
     if (plot.equalDecades) {
-      const perDecade = (right - LEFT) / Math.log10(x[1] / x[0]);
-      height = perDecade * Math.log10(y[1] / y[0]);
-      const wanted = Math.min(Math.max(height, share * LEAST_EQUAL), MOST_EQUAL);
+      const perDecade = (right - LEFT) / decades(x);
+      height = perDecade * decades(y);
+      const wanted = Math.max(height, share * LEAST_EQUAL);
       const more = 10 ** ((wanted - height) / perDecade / 2);
       y[0] /= more;
       y[1] *= more;
@@ -127,5 +130,5 @@ export function layout(plots: readonly Plot[], width: number, share = 1): Layout
     top = foot;
   }
   const columns = Math.max(1, Math.floor(width / keyWidth));
-  return {width, height: top + (keyBelow && keys > 0 ? Math.ceil(keys / columns) * KEY_LINE + 6 : 0), areas, keyBelow, keyLeft: width - KEY + 14, keyWidth};
+  return {width, height: top + (keyBelow && keys > 0 ? Math.ceil(keys / columns) * KEY_LINE + 6 : 0), areas, keyBelow, keyLeft: keyBelow ? width - KEY + 14 : right + 14, keyWidth};
 }

@@ -10,7 +10,9 @@ export const ROW = 36;
 const NAMES = 132;
 const HEAD = 22;
 const GAP = 14;
-const LEAST = 660;
+const LEAST = 660;     // of the mean and its outages side by side
+const LEAST_ALONE = 300;
+const MOST_TICKS = 10;
 const LABEL = 34;  // of the mean's value, behind its whisker
 
 type Erring = Pick<Filter, 'name' | 'mean_error_m' | 'outages'>;
@@ -18,14 +20,14 @@ type Erring = Pick<Filter, 'name' | 'mean_error_m' | 'outages'>;
 // A running evaluation knows the mean over all outages alone.
 export function Errors({filters, colours}: {filters: readonly Erring[]; colours: readonly string[]}): JSX.Element {
   const [box, room] = useWidth();
-  const width = Math.max(room, LEAST);
   const outages = filters[0]?.outages ?? [];
+  const width = Math.max(room, outages.length > 0 ? LEAST : LEAST_ALONE);
   const facets: {title: string; pick: (filter: Erring) => Quantity}[] = [{title: outages.length > 0 ? `mean of ${outages.length}` : 'mean of all outages', pick: filter => filter.mean_error_m}, ...outages.map((one, i) => ({title: `outage ${one.index}`, pick: (filter: Erring) => filter.outages[i]!.error_m}))];
   const most = Math.max(...filters.flatMap(filter => facets.map(({pick}) => pick(filter).ci95?.[1] ?? pick(filter).value ?? 0))) * 1.05;
   const wide = (width - NAMES - LABEL) / facets.length - GAP;
   const height = HEAD + filters.length * ROW + 20;
   const bottom = height - 18;
-  const ticks = scaleLinear().domain([0, most]).ticks(Math.max(1, Math.floor(wide / 60)));
+  const ticks = scaleLinear().domain([0, most]).ticks(Math.min(MOST_TICKS, Math.max(1, Math.floor(wide / 60))));
   return <div class="scroll" ref={box} tabIndex={0} role="region" aria-label="Errors by filter"><svg viewBox={`0 0 ${width} ${height}`} width={width} height={height} role="img"
     aria-label={`Mean horizontal error: ${filters.map(filter => `${filter.name} ${writeQuantity(filter.mean_error_m).value} m ${writeQuantity(filter.mean_error_m).interval}`).join('; ')}.`}>
     {filters.map((filter, i) => <text key={filter.name} class="t" x="0" y={HEAD + i * ROW + ROW / 2 + 4} style={colours[i] === 'var(--measured)' ? undefined : {fill: colours[i]}}>{filter.name}</text>)}
