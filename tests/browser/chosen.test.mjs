@@ -41,6 +41,11 @@ test('recordings are chosen one by one and in a row, and the choice outlives rel
   await bar.getByRole('link', {name: 'Compare'}).click();
   await page.waitForURL(/\/compare\?with=/);
   await page.goBack();
+  // A finger's long press is the menu of a mouse, which stays the browser's.
+  const pressed = pointerType => page.locator('.list-of-recordings tr', {hasText: 'many-2'}).evaluate((row, kind) => row.dispatchEvent(new PointerEvent('contextmenu', {bubbles: true, cancelable: true, pointerType: kind})), pointerType);
+  assert.equal(await pressed('mouse'), true);
+  assert.equal(await pressed('touch'), false);
+  await bar.getByText('3 chosen').waitFor();
   await bar.getByRole('button', {name: 'Choose none'}).click();
   await bar.waitFor({state: 'detached'});
   await closed(page);

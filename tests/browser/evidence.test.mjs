@@ -68,6 +68,8 @@ test('runs against one baseline are drawn with intervals and margins, under the 
 
   // The page of a run leads on: to a pipeline, to a merge request, and to a new baseline with a reason.
   await page.goto(`${daemon.address}/regressions/${jobs[1]}`);
+  // The runs so far of the parameter, with this one among them.
+  await panel(page, 'White noise N, the runs against firmware=1.0').locator('svg[tabindex] [data-mark], svg[tabindex] circle').first().waitFor();
   // Both arms over each other, above their ratio: a point of the candidate for each averaging time, and the baseline's line.
   const arms = panel(page, 'Allan deviation, gyroscope z').locator('svg[tabindex]');
   await arms.waitFor();

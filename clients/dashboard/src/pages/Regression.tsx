@@ -2,7 +2,7 @@
 import type {JSX} from 'preact';
 import {useMemo} from 'preact/hooks';
 import {ask, useJobEvents, useRead} from '../api/client';
-import type {Job, Nullable, Recording} from '../api/documents';
+import type {Job, List, Nullable, Recording} from '../api/documents';
 import {writeNumber, writeP, writeQuantity, writeTick, type Written} from '../format/number';
 import {writeDuration} from '../format/time';
 import {conditionName, plural, writeSentence, writeUnit} from '../format/words';
@@ -16,8 +16,8 @@ import {copy, curlOf} from '../shell/copy';
 import {Hairlines, Panel, Progress, Refusal, Segments} from '../shell/states';
 import {useTitle} from '../shell/title';
 import {Accept} from './regression/Accept';
-import type {Regression as Document, Test, Unit} from './regression/documents';
-import {axisName, parameterName} from './regression/History';
+import type {Regression as Document, RegressionRun, Test, Unit} from './regression/documents';
+import {axisName, History, parameterName} from './regression/History';
 
 const COLOURS: Record<string, string> = {beyond: 'var(--robust)', worse_within_margin: 'var(--measured)', open: 'var(--measured)', ok: 'var(--measured)', improved: 'var(--model)'};
 const WORDS: Record<string, string> = {ok: 'no worse', worse_within_margin: 'worse, within the margin', beyond: 'beyond the margin', open: 'open', improved: 'better'};
@@ -57,6 +57,15 @@ function Tests({unit}: {unit: Unit}): JSX.Element {
   </Panel>;
 }
 
+// The runs of this device against the same baseline, one parameter at a time: the one chosen, or white noise, which every model has.
+const FIRST = 'white_noise.N';
+function Strip({document}: {document: Document}): JSX.Element | null {
+  const parameter = usePlace().query.get('param') ?? FIRST;
+  const path = `/v1/regressions?device=${encodeURIComponent(document.device)}&parameter=${encodeURIComponent(parameter)}&sort=-created_at&limit=50`;
+  const runs = useRead<List<RegressionRun>>(path).data?.items.filter(run => run.baseline === document.arms.baseline.label) ?? [];
+  return <History title={`the runs against ${document.arms.baseline.label || 'this baseline'}`} parameter={parameter} runs={runs} path={path} />;
+}
+
 // A recording by its name; by its id until that is known, or where it is gone.
 function RecordingLink({id}: {id: string}): JSX.Element {
   const read = useRead<Recording>(`/v1/recordings/${id}`);
@@ -83,6 +92,7 @@ function Shown({document}: {document: Document}): JSX.Element {
           {document.versus_previous && <p class="note">Against {document.versus_previous.label}: {document.versus_previous.sentence}</p>}</Panel>
         <Panel title="Recordings" sub={`${plural(document.arms.baseline.sessions.length, 'session')} before, ${document.arms.candidate.sessions.length} after`}><ul class="rows plain">{[...new Set(recordings)].map(id => <li key={id}><RecordingLink id={id} /></li>)}</ul>{document.arms.excluded.map(each => <p key={each.recording} class="note">Left out: <RecordingLink id={each.recording} />, {each.reason}</p>)}</Panel></div>
     </div>}
+    <Strip document={document} />
   </>;
 }
 

@@ -66,12 +66,18 @@ export function Recordings({device, axis}: {device: Device; axis: string | null}
     last.current = id;
     choose({chosen: (chosen.includes(id) ? chosen.filter(each => !these.includes(each)) : [...chosen, ...these.filter(each => !chosen.includes(each))]).join(',')});
   };
+  // What a finger asks by a long press, where a mouse asks for the browser's menu.
+  const press = (event: MouseEvent, id: string, ids: readonly string[]): void => {
+    if ((event as PointerEvent).pointerType !== 'touch') return;
+    event.preventDefault();
+    toggle(event, id, ids);
+  };
   const attention = useRead<List<Attention>>(`/v1/attention?device=${device.id}&limit=500`);
   return <Panel title="Recordings" sub="newest first" tools={<div class="tools"><button type="button" class="quiet" onClick={() => copy(curlOf(`/v1/recordings?device=${device.id}&sort=-created_at`), 'The command is')}>curl</button></div>}>
     <Shown read={read}>{list => <>
       <div class="scroll"><table class="stacked list-of-recordings">
         <thead><tr><th scope="col" class="no-print"><span class="visually-hidden">Chosen</span></th><th scope="col">recording</th><th scope="col">condition</th><th scope="col" class="n">length</th><th scope="col">quality</th><th scope="col">result</th><th scope="col">uploaded</th></tr></thead>
-        <tbody>{list.items.map(recording => <tr key={recording.id}>
+        <tbody>{list.items.map(recording => <tr key={recording.id} onContextMenu={event => press(event, recording.id, list.items.map(each => each.id))}>
           <td class="no-print pick"><label class="touch"><input type="checkbox" checked={chosen.includes(recording.id)} onClick={event => toggle(event, recording.id, list.items.map(each => each.id))} /><span class="visually-hidden">Choose {nameOf(recording)}</span></label></td>
           <th scope="row"><a href={pageOf('recordings', recording.id)}>{nameOf(recording)}</a></th><td>{conditionName(recording.metadata.condition, axis)}</td>
           <td class="n nowrap" data-label="length">{recording.duration_s === null ? plural(recording.quality.samples, 'sample') : writeDuration(recording.duration_s)}{recording.rate_hz !== null && <span class="dim">, {writeTick(Number(recording.rate_hz.toPrecision(4)))} Hz</span>}</td><td class="sec">{qualityWords(recording)}</td><td class="sec"><ResultCell recording={recording} attention={attention.data} /></td><td class="sec">{writeWhen(recording.created_at)}</td>
