@@ -145,7 +145,7 @@ export default function DevicePage(): JSX.Element {
   useTitle(read.data?.name ?? name);
   return <Shown read={read} page="Device">{device => <>
     <Head crumb={[['Devices', '/devices'], [device.name, null]]} title={device.name}
-      facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `characterised ${writeWhen(summary.data.latest.at)}`]}
+      facts={[summary.data && plural(summary.data.recordings, 'recording'), summary.data && plural(summary.data.conditions.length, 'condition'), (device.model || device.imu || device.serial) && <Unit device={device} />, summary.data?.latest && `last result ${writeWhen(summary.data.latest.at)}`]}
       actions={<><a class="btn" href={`/upload`}>Add recordings</a>{compared && <a class="btn" href={`/compare?with=${encodeURIComponent(compared)}`}>Compare <kbd>c</kbd></a>}<a class="btn" href={`/investigations?device=${encodeURIComponent(device.name)}`}>Investigate</a>{compared && <ExportModel device={device.name} />}<Report /><Delete title={`Delete ${device.name}?`} onDelete={() => forget(device)}>It is refused while recordings, studies, models or running jobs depend on it.</Delete></>} />
     {refused && <Refusal problem={refused} />}
     <LiveLine jobs={live} />
