@@ -159,6 +159,8 @@ class Attention(DaemonTest):
         self.assertEqual(beside["summed"]["summary"]["latest"], fine)
         self.expect(204, self.daemon.request("DELETE", bare.headers["location"], headers={"If-Match": "*"}))
         self.assertEqual(self.latest("summed"), first, "with what was deleted its results go")
+        self.expect(204, self.daemon.request("DELETE", wanders.headers["location"], headers={"If-Match": "*"}))
+        self.assertIsNone(self.latest("summed"))
 
     def test_what_does_not_fit_is_listed_until_it_is_gone_and_what_fits_is_not(self) -> None:
         since = now()
