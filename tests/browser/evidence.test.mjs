@@ -75,9 +75,9 @@ test('runs against one baseline are drawn with intervals and margins, under the 
   await arms.waitFor();
   const scales = (await daemon.json(`/v1/regressions/${jobs[1]}`)).units[0].tests.filter(each => each.kind === 'scale');
   const [csv] = await Promise.all([page.waitForEvent('download'), panel(page, 'Allan deviation, gyroscope z').getByRole('button', {name: 'CSV'}).click()]);
-  const rows = readFileSync(await csv.path(), 'utf8').trim().split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
-  const column = name => rows[0].findIndex(each => each.includes(name) && each.includes('deg/h'));
-  for (const [i, scale] of scales.entries()) for (const arm of ['candidate', 'baseline']) assert.equal(Number(rows[i + 1][column(arm)]), scale[arm].value, `${arm} at ${scale.tau_s} s of ${rows[0]}`);
+  const lines = readFileSync(await csv.path(), 'utf8').trim().split('\n').map(line => line.split(/,(?=(?:[^"]*"[^"]*")*[^"]*$)/));
+  const column = name => lines[0].findIndex(each => each.includes(name) && each.includes('deg/h'));
+  for (const [i, scale] of scales.entries()) for (const arm of ['candidate', 'baseline']) assert.equal(Number(lines[i + 1][column(arm)]), scale[arm].value, `${arm} at ${scale.tau_s} s of ${lines[0]}`);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: 'JUnit'}).click()]);
   assert.equal(download.suggestedFilename(), `${jobs[1]}.xml`);
   await page.getByRole('button', {name: 'Markdown'}).click();
@@ -142,7 +142,7 @@ test('conditions and fits are compared as recordings are, and nothing has the na
   await page.getByRole('button', {name: '9 deg/s', exact: true}).click();
   await page.waitForURL(url => (url.searchParams.get('with') ?? '').endsWith(',alike~constant_rate%3Az%3A9%3Adeg%2Fs~gyroscope~z'));
   const table = await daemon.json('/v1/parameter-tables?device=alike&sensor=gyroscope&axis=z');
-  const {value} = table.rows.find(each => each.label.startsWith('constant_rate')).values['white_noise.N'];
+  const {value} = table.rows.find(each => each.condition.kind === 'constant_rate').values['white_noise.N'];
   const cell = page.getByRole('row', {name: /white noise N/}).getByRole('cell').last();
   await cell.getByText(/differs by/).waitFor();
   assert.ok(Math.abs(Number((await cell.locator('b').innerText()).replace('\u202f', '')) / value - 1) < 0.01);
