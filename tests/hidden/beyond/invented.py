@@ -181,24 +181,26 @@ KINDS = ["noise_by_temperature", "bias_by_temperature", "noise_by_angle", "bias_
          "quiet_spells", "pulses", "triangle_in_one", "echo", "notch", "tilt", "lopsided"]
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Writes studies whose effects have no name.")
+def write_studies(what: str, seed: int, letter: str, kinds: list[str], put_in: Callable[[str, World, float], float],
+                  axes: dict[str, str] | None = None, allowed: dict[str, list[str]] | None = None) -> None:
+    """The program of a set of kinds: `put_in` puts one into a world of its `axes` (z where nothing is said); `allowed` are facts besides."""
+    parser = argparse.ArgumentParser(description=what)
     parser.add_argument("folder")
     parser.add_argument("--studies", type=int, default=6, help="of each kind")
-    parser.add_argument("--seed", type=int, default=515)
+    parser.add_argument("--seed", type=int, default=seed)
     parser.add_argument("--z", type=float, default=30.0)
     given = parser.parse_args()
     folder = Path(given.folder)
     answers: dict[str, dict] = {}
-    for c, kind in enumerate(KINDS):
+    for c, kind in enumerate(kinds):
         for k in range(given.studies):
-            world = World(random.Random(given.seed * 300007 + 1000 * c + k), 50.0, 300.0, "z", "wn" if k % 2 == 0 else "gm")
-            oracle_z = make(kind, world, given.z)
-            ident = f"i{c:02d}{k:02d}"
+            world = World(random.Random(given.seed * 300007 + 1000 * c + k), 50.0, 300.0, (axes or {}).get(kind, "z"), "wn" if k % 2 == 0 else "gm")
+            oracle_z = put_in(kind, world, given.z)
+            ident = f"{letter}{c:02d}{k:02d}"
             world.write(folder / "cases" / ident, ident)
-            answers[ident] = {"group": "outside", "kind": kind, "cause": "unnamed", "allowed": [], "oracle_z": round(oracle_z, 1)}
+            answers[ident] = {"group": "outside", "kind": kind, "cause": "unnamed", "allowed": (allowed or {}).get(kind, []), "oracle_z": round(oracle_z, 1)}
     (folder / "answers.json").write_text(json.dumps({"cases": answers}, indent=1))
 
 
 if __name__ == "__main__":
-    main()
+    write_studies("Writes studies whose effects have no name.", 515, "i", KINDS, make)
