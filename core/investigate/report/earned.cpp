@@ -17,6 +17,9 @@ namespace {
 /// measured.
 constexpr double kMostRecords = 20.0;
 
+/// Chosen well below the level of a check, for a doubt takes a finding back. Not measured.
+constexpr double kClear = 0.001;
+
 bool is_fact(const Cause& cause) { return cause.as<FileFact>() != nullptr || cause.as<RecordingFault>() != nullptr; }
 
 bool at_bound(const Evidence& evidence, const ChannelGroup& group) {
@@ -122,6 +125,40 @@ bool goes_one_way(const Evidence& evidence, const ChannelGroup& group) {
   return other_way;
 }
 
+bool turns_unevenly(const StudyRecording& recording) {
+  const ConditionKind kind = recording.condition.kind;
+  return kind == ConditionKind::ConstantAngularAcceleration || kind == ConditionKind::Profile ||
+         kind == ConditionKind::Drive;
+}
+
+/// Slow noise, or a level, that recordings with a changing rate alone have, though there are others: an error of any
+/// form that goes with the motion would be found in the same places.
+bool goes_with_motion(const Evidence& evidence, const ChannelGroup& group) {
+  const SlowNoise* const slow = evidence.cause->as<SlowNoise>();
+  const NoiseLevel* const level = evidence.cause->as<NoiseLevel>();
+  const bool of_recordings =
+      (slow != nullptr && slow->kind != &constant_offset()) || (level != nullptr && level->replaces_white);
+  return of_recordings && !evidence.members.empty() && evidence.members.size() < group.members.size() &&
+         std::all_of(
+             evidence.members.begin(), evidence.members.end(),
+             [&](std::size_t r) { return turns_unevenly(*group.members[r].recording); });
+}
+
+/// The check of slow misfit that still fails in a recording of a slow finding; nullptr: it is mended.
+const Check* not_mended(const Evidence& evidence, const ChannelGroup& group, const Report& report) {
+  if (!evidence.cause->is_slow()) {
+    return nullptr;
+  }
+  const auto is_of_it = [&](const Check& check) {
+    return check.of_slow_misfit && check.channel == group.column && check.failed && check.p_after_adjusted < kClear &&
+           std::any_of(
+               evidence.members.begin(), evidence.members.end(),
+               [&](std::size_t r) { return group.members[r].recording->id == check.recording; });
+  };
+  const auto found = std::find_if(report.checks.begin(), report.checks.end(), is_of_it);
+  return found == report.checks.end() ? nullptr : &*found;
+}
+
 /// What a profile is of is what the cause is of.
 bool are_of_one_kind(const Cause& cause, UnnamedKind kind) {
   switch (kind) {
@@ -184,13 +221,33 @@ bool surpassed(const Evidence& evidence, const ChannelGroup& group, const std::v
          });
 }
 
+/// Noise that still changes takes every finding of noise back. A mean effect is taken back by what a mean can show
+/// in, if it is a rival by its size.
+bool speaks_against(const Remainder& remainder, const Evidence& evidence) {
+  return evidence.cause->as<MeanEffect>() == nullptr ||
+         (!remainder.of_power_alone && remainder.observed > kShare * std::max(evidence.heldout_gain, 0.0));
+}
+
+/// Whether two findings are of the same thing: the mean, or the level of the noise.
+bool are_of_one_kind(const Cause& a, const Cause& b) {
+  return (a.as<NoiseLevel>() != nullptr && b.as<NoiseLevel>() != nullptr) || (a.is_slow() && b.is_slow());
+}
+
+/// The larger finding of the same kind on the same channel that has been doubted: where its form is not known, a
+/// smaller one may be what is left of it. nullptr: there is none.
+const Evidence* in_shadow_of(const Evidence& evidence, const std::vector<Evidence>& found) {
+  const auto larger = std::find_if(found.begin(), found.end(), [&](const Evidence& other) {
+    return !other.doubt.empty() && other.group == evidence.group && are_of_one_kind(*evidence.cause, *other.cause) &&
+           evidence.heldout_gain < kShare * other.heldout_gain;
+  });
+  return larger == found.end() ? nullptr : &*larger;
+}
+
 /// Why one finding is not earned; empty: it is.
 std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const std::vector<double>& means,
                      const std::vector<Remainder>& remains, const Report& report) {
   // Failed checks that take a finding back. Chosen, not measured: one or two may fail beside a true cause.
   constexpr std::size_t kFewest = 3;
-  // Chosen well below the level of a check, for a doubt takes a finding back. Not measured.
-  constexpr double kClear = 0.001;
   if (at_bound(evidence, group)) {
     return "a parameter is at the bound of its search";
   }
@@ -203,11 +260,18 @@ std::string doubt_of(const Evidence& evidence, const ChannelGroup& group, const 
   if (goes_one_way(evidence, group)) {
     return "it is that of the recordings that turn one way";
   }
+  if (goes_with_motion(evidence, group)) {
+    return "only recordings whose rate changes have it, as what goes with the motion does";
+  }
+  if (const Check* const check = not_mended(evidence, group, report); check != nullptr) {
+    return "with it in the model " + check->title + " of " + check->recording + " still fails";
+  }
   if (report.failed_after >= kFewest && 2 * report.failed_after >= report.failed_before) {
     return std::to_string(report.failed_after) + " checks still fail with it";
   }
   const auto left = std::find_if(remains.begin(), remains.end(), [&](const Remainder& remainder) {
-    return remainder.channel == group.column && remainder.in_time_or_frequency && remainder.p_study < kClear;
+    return remainder.channel == group.column && remainder.in_time_or_frequency && remainder.p_study < kClear &&
+           speaks_against(remainder, evidence);
   });
   if (left != remains.end()) {
     return "with it in the model the noise of " + group.column + " still changes";
@@ -267,6 +331,15 @@ void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std
     if (evidence.doubt.empty() && suspect != nullptr) {
       evidence.doubt = "the clock of " + suspect->id + " may break instead";
     }
+  }
+  for (Evidence& evidence : found) {
+    const Evidence* const larger =
+        is_fact(*evidence.cause) || !evidence.doubt.empty() ? nullptr : in_shadow_of(evidence, found);
+    if (larger != nullptr) {
+      evidence.doubt = "a larger finding beside it, " + std::string(larger->cause->title) + ", has no certain name";
+    }
+  }
+  for (Evidence& evidence : found) {
     evidence.ambiguous = evidence.ambiguous || !evidence.doubt.empty();
   }
 }

@@ -8,11 +8,15 @@
 ///     of squares about the median is one recording's;
 ///   - a line comes a whole number of times a turn, up to twelve, in each of its recordings, which turn;
 ///   - a level of noise is that of the recordings that turn one way, though others turn the other way;
+///   - slow noise, or a level, is that of recordings whose rate changes and of no other, though there are others;
+///   - the correlation of one-second means still fails (p < 0.001) in a recording of a mean effect or of slow noise;
+///   - a finding of the same thing (the mean, or the level of the noise) that gains three times as much is doubted;
 ///   - a level of noise predicts the recordings worse than a profile of the noise's power against a quantity does that
 ///     was measured without it;
 ///   - a clock that is off all the time is found where one that breaks is not ruled out (`kClockMayBreak`);
 ///   - at least three checks fail with the extended model, and at least half as many as failed with the baseline;
 ///   - noise still changes in time or frequency, on the finding's channel, with p < 0.001 over the study (remains.hpp);
+///     a mean effect is doubted by a change that a mean can make, and by none that shows less than a third of its gain;
 ///   - of tails: errors to one side are larger than to the other, with the same p, by a third of the finding's gain;
 ///   - a profile without a name (unnamed/unnamed_search.hpp) of what the finding is of (the mean, the level or the
 ///     spectrum of the noise) shows itself and predicts at least a third as much as the finding does.
@@ -40,7 +44,8 @@ struct Instead {
 /// Sets `doubt` and `ambiguous` of what was found. `means`: of every group (`means_of`). `report` holds the counts of
 /// failed checks.
 void doubt_what_is_not_earned(const std::vector<ChannelGroup>& groups, const std::vector<std::vector<double>>& means,
-                              const std::vector<Remainder>& remains, const Instead& instead, const Report& report, std::vector<Evidence>& found);
+                              const std::vector<Remainder>& remains, const Instead& instead, const Report& report,
+                              std::vector<Evidence>& found);
 
 /// Whether a profile without a name shows something where every check passes: its chance over all `channels` is below
 /// kShown, and a density or a power differs by 10 % somewhere; a mean always does.

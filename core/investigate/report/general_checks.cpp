@@ -283,14 +283,15 @@ void general_checks(const ChannelGroup& group, const FullRate& data, std::vector
       continue;
     }
     const std::string stem = member.name() + ".";
-    const auto add = [&](const char* name, const char* title, const ChiSquare& statistic) {
+    const auto add = [&](const char* name, const char* title, const ChiSquare& statistic, bool of_slow_misfit = false) {
       if (statistic.dof > 0.0) {
         checks.push_back(chi_square_check(stem + name, member, statistic.x, statistic.dof));
         checks.back().title = title;
+        checks.back().of_slow_misfit = of_slow_misfit;
       }
     };
     add("variance_over_time", "variance over time", segment_statistic(e, data.used[r], all));
-    add("whiteness", "correlation of one-second means", whiteness_statistic(e, data.dt_s));
+    add("whiteness", "correlation of one-second means", whiteness_statistic(e, data.dt_s), true);
     if (!data.spectrum[r].power.empty()) {
       // Beyond half its corner a band limit leaves what no finite autoregression whitens.
       const double share = data.colour.band_limited() ? std::min(1.0, data.colour.corner_hz * data.dt_s) : 1.0;

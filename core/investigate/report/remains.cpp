@@ -308,6 +308,7 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     keep(list, mean_over_time(scores[r], data.dt_s, member.name()), &member, group, "mean_over_time", false);
     keep(list, line_in_variance(scores[r], data.used[r], data.dt_s, member.name()), &member, group, "line_in_variance",
          true);
+    list.back().of_power_alone = true;
   }
   keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
   return list;

@@ -41,6 +41,7 @@ struct Remainder {
   double places = 1.0;
   double p_study = 1.0;
   bool in_time_or_frequency = false;  ///< bursts, lines and changes: what a named cause should have taken away
+  bool of_power_alone = false;        ///< a mean, however it moves, does not show in it
   std::string sentence;               ///< where it is, in words
 };
 

@@ -187,6 +187,78 @@ TEST_F(Earned, ALevelOfTheRecordingsThatTurnOneWayIsNot) {
   EXPECT_EQ(level({1, 2}), "") << "one that turns this way is not louder";
 }
 
+TEST_F(Earned, SlowNoiseOrALevelOfRecordingsWhoseRateChangesAloneIsNot) {
+  const auto in = [&](const char* cause, std::vector<std::size_t> members) {
+    Evidence evidence = evidence_of(cause);
+    evidence.members = std::move(members);
+    return doubt(evidence);
+  };
+  const std::string motion = "only recordings whose rate changes have it, as what goes with the motion does";
+  noise_.recordings[1].condition.kind = ConditionKind::Profile;
+  noise_.recordings[2].condition.kind = ConditionKind::ConstantAngularAcceleration;
+  noise_.recordings[3].condition.kind = ConditionKind::ConstantRate;
+  for (const char* const cause : {"gauss_markov", "random_walk", "white_noise_level"}) {
+    EXPECT_EQ(in(cause, {1, 2}), motion) << cause;
+    EXPECT_EQ(in(cause, {1}), motion) << cause;
+    EXPECT_EQ(in(cause, {1, 3}), "") << cause << ": at an even rate too";
+    EXPECT_EQ(in(cause, {0, 1}), "") << cause << ": at rest too";
+  }
+  EXPECT_EQ(in("turn_on_bias", {1, 2}), "") << "a constant does not follow the motion";
+  EXPECT_EQ(in("noise_level_change", {1}), "") << "it is told by the time within its recording";
+  for (StudyRecording& recording : noise_.recordings) {
+    recording.condition.kind = ConditionKind::Profile;
+  }
+  EXPECT_EQ(in("gauss_markov", {0, 1, 2, 3, 4}), "") << "no recording is without it";
+}
+
+TEST_F(Earned, ASlowFindingThatLeavesSecondsCorrelatedIsNot) {
+  Check check;
+  check.title = "correlation of one-second means";
+  check.recording = noise_.recordings[1].id;
+  check.channel = "gz";
+  check.failed = true;
+  check.of_slow_misfit = true;
+  check.p_after_adjusted = 0.0009;
+  const auto in = [&](const char* cause, const Check& left) {
+    Evidence evidence = evidence_of(cause);
+    evidence.members = {1};
+    report_.checks = {Check{}, left};
+    return doubt(evidence);
+  };
+  const std::string left =
+      "with it in the model correlation of one-second means of " + check.recording + " still fails";
+  EXPECT_EQ(in("bias_step", check), left);
+  EXPECT_EQ(in("random_walk", check), left);
+  EXPECT_EQ(in("noise_level_change", check), "") << "it was not found by the means";
+  Check other = check;
+  other.p_after_adjusted = 0.0011;
+  EXPECT_EQ(in("bias_step", other), "");
+  other = check;
+  other.recording = noise_.recordings[2].id;
+  EXPECT_EQ(in("bias_step", other), "") << "a recording of which it is not";
+  other = check;
+  other.of_slow_misfit = false;
+  EXPECT_EQ(in("bias_step", other), "");
+}
+
+TEST_F(Earned, WhatIsSmallBesideSomethingOfItsKindThatIsDoubtedIsNot) {
+  noise_.recordings[1].condition.kind = ConditionKind::Profile;
+  const auto beside = [&](const char* cause, double gain, std::vector<std::size_t> larger) {
+    std::vector<Evidence> found{evidence_of(cause), evidence_of("white_noise_level")};
+    found[0].members = {0, 1, 2, 3, 4};
+    found[0].heldout_gain = gain;
+    found[1].members = std::move(larger);
+    found[1].heldout_gain = 150.0;
+    doubt_what_is_not_earned(groups_, {means_}, remains_, instead_, report_, found);
+    return found[0].doubt;
+  };
+  EXPECT_EQ(beside("acceleration_dependent_noise", 49.0, {1}),
+            "a larger finding beside it, white noise of another level than the baseline's, has no certain name");
+  EXPECT_EQ(beside("acceleration_dependent_noise", 51.0, {1}), "") << "no remainder of it";
+  EXPECT_EQ(beside("acceleration_dependent_noise", 49.0, {0}), "") << "the larger one is certain";
+  EXPECT_EQ(beside("turn_on_bias", 49.0, {1}), "") << "of another kind";
+}
+
 TEST_F(Earned, WhatLeavesAtLeastThreeChecksAndHalfOfThemFailingIsNot) {
   const Evidence evidence = evidence_of("white_noise_level");
   const auto failing = [&](std::size_t before, std::size_t after) {
@@ -219,6 +291,24 @@ TEST_F(Earned, WhatLeavesTheNoiseOfItsChannelChangingIsNot) {
   Remainder skewed = burst;
   skewed.in_time_or_frequency = false;
   EXPECT_EQ(beside(skewed), "");
+}
+
+TEST_F(Earned, AMeanIsDoubtedByWhatAMeanCanShowInAndByItsSize) {
+  Remainder change;
+  change.channel = "gz";
+  change.p_study = 0.0009;
+  change.in_time_or_frequency = true;
+  const auto beside = [&](double observed, bool of_power_alone) {
+    change.observed = observed;
+    change.of_power_alone = of_power_alone;
+    remains_ = {change};
+    Evidence evidence = evidence_of("once_per_revolution");
+    evidence.heldout_gain = 90.0;
+    return doubt(evidence);
+  };
+  EXPECT_EQ(beside(31.0, false), "with it in the model the noise of gz still changes");
+  EXPECT_EQ(beside(29.0, false), "") << "less than a third of its gain";
+  EXPECT_EQ(beside(300.0, true), "") << "noise that swells is no mean";
 }
 
 TEST_F(Earned, FactsOfAFileAndFaultsOfARecordingAlwaysAre) {
