@@ -44,25 +44,61 @@ double middle_of(Eigen::VectorXd values) {
   return *middle;
 }
 
+/// The inverse in the directions of which there is information: a quantity that stands still in a recording tells
+/// nothing of a profile there, and where all others pass a bin by, the level of the rest is the recordings' constant.
+Eigen::MatrixXd known_part_of_inverse(const Eigen::MatrixXd& normal) {
+  constexpr double kNothing = 1e-6;  // Of the largest eigenvalue. Chosen, not measured.
+  const SymmetricEigen eigen = symmetric_eigen(normal);
+  const double least = kNothing * std::max(eigen.values.maxCoeff(), 1e-300);
+  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(normal.rows(), normal.cols());
+  for (Eigen::Index k = 0; k < normal.rows(); ++k) {
+    if (eigen.values[k] > least) {
+      known += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / eigen.values[k];
+    }
+  }
+  // What is left of a bin without information is rounding.
+  const double largest = known.diagonal().maxCoeff();
+  for (Eigen::Index b = 0; b < known.rows(); ++b) {
+    if (known(b, b) < kNothing * largest) {
+      known.row(b).setZero();
+      known.col(b).setZero();
+    }
+  }
+  return known;
+}
+
+/// By moments, each bin by the certainty with which its square is known; bins without information do not count.
+double prior_variance(const Eigen::VectorXd& mean, const Eigen::VectorXd& error, const Eigen::VectorXd& variance) {
+  double sum = 0.0;
+  double weights = 0.0;
+  for (Eigen::Index b = 0; b < mean.size(); ++b) {
+    if (variance[b] > 0.0 && error[b] > 0.0) {
+      const double weight = 1.0 / (error[b] * error[b]);
+      sum += weight * (mean[b] * mean[b] - error[b]);
+      weights += weight;
+    }
+  }
+  return weights > 0.0 ? std::max(0.0, sum / weights) : 0.0;
+}
+
 }  // namespace
 
 BinMeans fit_bin_means(const Eigen::MatrixXd& gram, ExpectedMeans expected) {
   const Eigen::Index bins = gram.rows() - 1;
   Eigen::MatrixXd normal = gram.block(1, 1, bins, bins);
-  double trace = 0.0;  // GCC 12 takes Eigen's for one of no element
-  for (Eigen::Index b = 0; b < bins; ++b) {
-    trace += normal(b, b);
-  }
-  const double ridge = 1e-9 * std::max(trace / static_cast<double>(bins), 1e-300);
-  normal.diagonal().array() += ridge;
   const Eigen::VectorXd moment = gram.col(0).segment(1, bins);
-  const Eigen::VectorXd plain = solve_symmetric(normal, moment);
+  const Eigen::MatrixXd variance = known_part_of_inverse(normal);
+  const Eigen::VectorXd plain = variance * moment;
   // A constant in all bins is no profile, and has no information: of the error only what is orthogonal to it counts.
   const Eigen::MatrixXd centre =
       Eigen::MatrixXd::Identity(bins, bins) - Eigen::MatrixXd::Constant(bins, bins, 1.0 / static_cast<double>(bins));
-  const Eigen::VectorXd error = (centre * inverse(normal) * centre).diagonal().cwiseMax(0.0);
+  Eigen::VectorXd error = (centre * variance * centre).diagonal().cwiseMax(0.0);
+  const double largest = error.maxCoeff();
+  for (Eigen::Index b = 0; b < bins; ++b) {
+    error[b] = variance(b, b) > 0.0 ? error[b] : largest;
+  }
   const Eigen::VectorXd centred = centre * plain;
-  const double prior = std::max(0.0, (centred.cwiseAbs2() - error).mean());
+  const double prior = prior_variance(centred, error, variance.diagonal());
   BinMeans fit{Eigen::VectorXd::Zero(bins), error.cwiseSqrt()};
   if (expected == ExpectedMeans::Few) {
     // What the many have is the constant.
