@@ -3,6 +3,7 @@
 #include "core/investigate/causes/cause.hpp"
 #include "core/investigate/fullrate/fourier.hpp"
 #include "core/investigate/fullrate/spectrum.hpp"
+#include "core/investigate/report/dependence.hpp"
 #include "core/process/distributions.hpp"
 #include "core/process/random.hpp"
 
@@ -18,12 +19,6 @@ namespace driftlab::investigate {
 namespace {
 
 constexpr std::size_t kFewest = 500;  ///< samples of a recording that is looked at
-
-std::string digits(double value) {
-  char buffer[32];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3);
-  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
-}
 
 /// The normal quantile of each innovation's rank among all of the channel; 0 where one is not in use.
 std::vector<std::vector<double>> normal_scores(const FullRate& data) {
@@ -132,10 +127,11 @@ class Tiles {
     }
     const double hz = 1.0 / (static_cast<double>(samples_) * dt_s_);
     best.observed = surprise;
-    best.sentence = name + ": from " + digits(start_s_[from]) + " to " +
-                    digits(start_s_[to - 1] + static_cast<double>(samples_) * dt_s_) + " s the noise between " +
-                    digits(static_cast<double>(low + 1) * hz) + " and " + digits(static_cast<double>(high) * hz) +
-                    " Hz has " + digits(mean) + " times its usual power";
+    best.sentence = name + ": from " + three_digits(start_s_[from]) + " to " +
+                    three_digits(start_s_[to - 1] + static_cast<double>(samples_) * dt_s_) + " s the noise between " +
+                    three_digits(static_cast<double>(low + 1) * hz) + " and " +
+                    three_digits(static_cast<double>(high) * hz) + " Hz has " + three_digits(mean) +
+                    " times its usual power";
   }
 
   double dt_s_;
@@ -163,8 +159,8 @@ Remainder mean_over_time(const std::vector<double>& score, double dt_s, const st
       best.places += 1.0;
       if (surprise > best.observed) {
         best.observed = surprise;
-        best.sentence = name + ": from " + digits(static_cast<double>(from) * dt_s) + " to " +
-                        digits(static_cast<double>(to) * dt_s) + " s the mean is off by " + digits(mean) +
+        best.sentence = name + ": from " + three_digits(static_cast<double>(from) * dt_s) + " to " +
+                        three_digits(static_cast<double>(to) * dt_s) + " s the mean is off by " + three_digits(mean) +
                         " of the sample noise, beyond what the slow noise of the model does";
       }
     }
@@ -199,7 +195,7 @@ Remainder line_in_variance(const std::vector<double>& score, const std::vector<u
     if (surprise > best.observed) {
       best.observed = surprise;
       best.sentence = name + ": the noise swells and fades at " +
-                      digits(static_cast<double>(k) / (static_cast<double>(n) * dt_s)) + " Hz";
+                      three_digits(static_cast<double>(k) / (static_cast<double>(n) * dt_s)) + " Hz";
     }
   }
   return best;
@@ -231,7 +227,7 @@ Remainder skewness(const FullRate& data, const std::string& name) {
   const double spread = std::max(6.0, sixth / count / std::pow(scale, 6.0) - 9.0);
   const double z = skew / std::sqrt(spread / count);
   best.observed = 0.5 * z * z;
-  best.sentence = name + ": errors to one side are larger than to the other (skewness " + digits(skew) + ")";
+  best.sentence = name + ": errors to one side are larger than to the other (skewness " + three_digits(skew) + ")";
   return best;
 }
 
@@ -263,9 +259,9 @@ Remainder between(const Series& a, const Series& b, double known, double dt_s, c
       if (surprise > best.observed) {
         const double hz = 1.0 / (static_cast<double>(n) * dt_s);
         best.observed = surprise;
-        best.sentence = name + ": the two share " + digits(100.0 * std::sqrt(coherence)) +
-                        " % of their noise between " + digits(static_cast<double>(from) * hz) + " and " +
-                        digits(static_cast<double>(to) * hz) + " Hz";
+        best.sentence = name + ": the two share " + three_digits(100.0 * std::sqrt(coherence)) +
+                        " % of their noise between " + three_digits(static_cast<double>(from) * hz) + " and " +
+                        three_digits(static_cast<double>(to) * hz) + " Hz";
       }
     }
   }
@@ -296,6 +292,12 @@ void keep(std::vector<Remainder>& list, Remainder remainder, const ChannelGroup:
 
 }  // namespace
 
+std::string three_digits(double value) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3);
+  return error == std::errc{} ? std::string(buffer, end) : std::string("?");
+}
+
 std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullRate& data) {
   std::vector<Remainder> list;
   const std::vector<std::vector<double>> scores = normal_scores(data);
@@ -309,6 +311,10 @@ std::vector<Remainder> remains_of_channel(const ChannelGroup& group, const FullR
     keep(list, line_in_variance(scores[r], data.used[r], data.dt_s, member.name()), &member, group, "line_in_variance",
          true);
     list.back().of_power_alone = true;
+    keep(list, dependence_over_time(scores[r], data.used[r], member.name()), &member, group, "dependence", false);
+    list.back().follows_changes = true;
+    keep(list, slow_distribution(scores[r], data.dt_s, member.name()), &member, group, "slow_distribution", false);
+    list.back().follows_changes = true;
   }
   keep(list, skewness(data, group.column), nullptr, group, "skewness", false);
   return list;
@@ -341,6 +347,10 @@ std::vector<Remainder> what_remains(const std::vector<ChannelGroup>& groups, con
              first, "", false);
         list.back().id = recording + "/" + first.column + "." + second.column + ".coherence";
         list.back().recording = recording;
+        keep(list, shared_loudness(one, other, name), nullptr, first, "", false);
+        list.back().id = recording + "/" + first.column + "." + second.column + ".loudness";
+        list.back().recording = recording;
+        list.back().follows_changes = true;
       }
     }
   }
@@ -358,8 +368,14 @@ void report_remains(const std::vector<Remainder>& remains, Report& report) {
   // Shown of one channel. Chosen for who reads the list.
   constexpr std::size_t kMostOfChannel = 3;
   std::map<std::string, std::size_t> shown;
+  const auto changes = [&](const std::string& channel) {
+    return std::any_of(remains.begin(), remains.end(), [&](const Remainder& other) {
+      return other.channel == channel && other.in_time_or_frequency && other.p_study < kShown;
+    });
+  };
   for (const Remainder& remainder : remains) {
-    if (remainder.p_study >= kShown || ++shown[remainder.channel] > kMostOfChannel) {
+    if (remainder.p_study >= kShown || (remainder.follows_changes && changes(remainder.channel)) ||
+        ++shown[remainder.channel] > kMostOfChannel) {
       continue;
     }
     Check check;

@@ -15,6 +15,7 @@
 ///   deviation.
 /// - Lines in the variance. x is the periodogram of the squared scores less their mean, over its expectation.
 /// - Skewness. x = z^2/2 of the third moment of the innovations themselves, cut at six standard deviations.
+/// - Dependence, the distribution of means and loudness that axes share: report/dependence.hpp.
 /// - Coherence. Between two axes of one recording x = m |C|^2 in dyadic bands of m ordinates, of innovations cut at
 ///   four standard deviations.
 ///
@@ -42,8 +43,12 @@ struct Remainder {
   double p_study = 1.0;
   bool in_time_or_frequency = false;  ///< bursts, lines and changes: what a named cause should have taken away
   bool of_power_alone = false;        ///< a mean, however it moves, does not show in it
+  bool follows_changes = false;       ///< noise that changes in time shows in it too: told where nothing changes
   std::string sentence;               ///< where it is, in words
 };
+
+/// For a sentence.
+[[nodiscard]] std::string three_digits(double value);
 
 /// The strongest departure of each test within one channel that has been searched, `p_study` still to be told.
 /// O(samples log samples). Deterministic.
@@ -62,7 +67,8 @@ struct Remainder {
 /// chances.
 void report_unexplained(Check check, const std::string& sentence, Report& report);
 
-/// Adds a check and an entry of `unexplained` for each departure below kShown, at most three of a channel.
+/// Adds a check and an entry of `unexplained` for each departure below kShown, at most three of a channel. What follows
+/// from noise that changes in time is not told of a channel where such a change is.
 void report_remains(const std::vector<Remainder>& remains, Report& report);
 
 }  // namespace driftlab::investigate
